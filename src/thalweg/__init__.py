@@ -1,0 +1,1 @@
+"""Thalweg: voyage optimisation for ships."""

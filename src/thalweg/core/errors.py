@@ -1,0 +1,126 @@
+"""The errors a user can meet, each saying what was asked, what is possible and what to do."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+
+class ThalwegWarning(UserWarning):
+    """Something a user should know that does not stop the work."""
+
+
+class ThalwegError(Exception):
+    """Base of every error raised for a user's sake.
+
+    Parameters
+    ----------
+    asked : str
+        What was asked and why it cannot be done.
+    possible : str, optional
+        What is possible instead.
+    remedy : str, optional
+        What the user can do.
+    **details
+        Machine-readable facts (field, value, file, ...), kept in ``details``.
+    """
+
+    def __init__(self, asked: str, possible: str = "", remedy: str = "", **details: Any) -> None:
+        self.asked, self.possible, self.remedy = asked, possible, remedy
+        self.details = details
+        super().__init__(" ".join(part for part in (asked, possible, remedy) if part))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the error as plain data for a JSON answer."""
+        return {
+            "error": type(self).__name__,
+            "asked": self.asked,
+            "possible": self.possible,
+            "remedy": self.remedy,
+            "details": {key: _plain(value) for key, value in self.details.items()},
+        }
+
+
+class InputError(ThalwegError, ValueError):
+    """A request, a file or a value given by the user cannot be used."""
+
+
+class CoverageError(ThalwegError):
+    """The data do not cover what was asked."""
+
+
+class OutsideAreaError(CoverageError):
+    """A position lies outside the area of the data."""
+
+
+class OutsidePeriodError(CoverageError):
+    """A time lies outside the period of the data."""
+
+
+class MissingVariableError(CoverageError):
+    """A variable that is needed is in none of the data."""
+
+
+class DatasetError(ThalwegError):
+    """A data file is broken, ambiguous or in units that make no sense."""
+
+
+class ModelRangeError(ThalwegError):
+    """A model was asked for values outside the range it is valid for."""
+
+
+class NoRouteError(ThalwegError):
+    """No route exists on the network within the limits.
+
+    Parameters
+    ----------
+    asked, possible, remedy : str
+        As in `ThalwegError`.
+    reasons : mapping of str to int
+        How many legs were refused for each reason.
+    nearest : tuple of float, optional
+        Latitude and longitude [deg] of the reached point nearest to the goal.
+    """
+
+    def __init__(
+        self,
+        asked: str,
+        possible: str = "",
+        remedy: str = "",
+        *,
+        reasons: Mapping[str, int] | None = None,
+        nearest: tuple[float, float] | None = None,
+        **details: Any,
+    ) -> None:
+        self.reasons = dict(reasons or {})
+        self.nearest = nearest
+        super().__init__(asked, possible, remedy, reasons=self.reasons, nearest=nearest, **details)
+
+
+def near_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
+    """Return the known words that look most like ``word``, best first, ignoring case."""
+    by_lower = {name.casefold(): name for name in known}
+    found = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
+    return [by_lower[name] for name in found]
+
+
+def unknown_name(kind: str, word: str, known: Iterable[str]) -> InputError:
+    """Build the error for a name that is not among the known ones, with near matches."""
+    names = sorted(known)
+    near = near_matches(word, names)
+    listed = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")
+    remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Check the name."
+    return InputError(
+        f"There is no {kind} named {word!r}.", f"Known: {listed}.", remedy, value=word, near=near
+    )
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple, set)):
+        return [_plain(v) for v in value]
+    if isinstance(value, (str, int, float, bool)) or value is None:
+        return value
+    return str(value)

@@ -1,0 +1,157 @@
+"""Geodesy on the WGS 84 ellipsoid; positions are (lat, lon) in degrees everywhere.
+
+All exact lengths and courses come from `pyproj.Geod` (Karney 2013, "Algorithms for geodesics",
+J. Geodesy 87, 43-55), whose own order (lon, lat) is hidden here.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pyproj import Geod
+
+from thalweg.core.errors import InputError
+
+Position: TypeAlias = tuple[float, float]
+FloatArray: TypeAlias = NDArray[np.float64]
+
+WGS84 = Geod(ellps="WGS84")
+EQUATORIAL_RADIUS = WGS84.a
+FLATTENING = WGS84.f
+MEAN_RADIUS = 6371008.8  #: mean radius of the ellipsoid [m] (IUGG)
+
+
+def wrap_longitude(lon: ArrayLike) -> FloatArray:
+    """Return longitude in [-180, 180) degrees."""
+    return (np.asarray(lon, float) + 180.0) % 360.0 - 180.0
+
+
+def inverse(
+    lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Solve the inverse geodesic problem.
+
+    Parameters
+    ----------
+    lat1, lon1, lat2, lon2 : array_like
+        Positions [deg]; broadcast together.
+
+    Returns
+    -------
+    distance : ndarray
+        Length of the geodesic [m].
+    course_start, course_end : ndarray
+        Course at the start and at the end, clockwise from north [rad], in [0, 2 pi).
+    """
+    a, b, c, d = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+    start, back, distance = WGS84.inv(b.copy(), a.copy(), d.copy(), c.copy())
+    two_pi = 2.0 * math.pi
+    return (
+        np.asarray(distance),
+        np.radians(start) % two_pi,
+        np.radians(np.asarray(back) + 180.0) % two_pi,
+    )
+
+
+def distance(lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike) -> FloatArray:
+    """Return the length of the geodesic [m] between positions [deg]."""
+    return inverse(lat1, lon1, lat2, lon2)[0]
+
+
+def direct(
+    lat: ArrayLike, lon: ArrayLike, course: ArrayLike, distance: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """Return the positions [deg] reached after a distance [m] on an initial course [rad]."""
+    a, b, c, d = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat, lon, course, distance)))
+    lon2, lat2, _ = WGS84.fwd(b.copy(), a.copy(), np.degrees(c), d.copy())
+    return np.asarray(lat2), wrap_longitude(lon2)
+
+
+def along(
+    lat1: float, lon1: float, lat2: float, lon2: float, fractions: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """Return positions [deg] at the given fractions of the geodesic from the first to the second."""
+    length, course, _ = inverse(lat1, lon1, lat2, lon2)
+    return direct(lat1, lon1, course, np.asarray(fractions, float) * length)
+
+
+def densify(
+    lat: ArrayLike, lon: ArrayLike, spacing: float
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Cut the geodesics of a polyline into equal pieces no longer than ``spacing`` [m].
+
+    Returns
+    -------
+    lat, lon : ndarray
+        Positions [deg], original vertices included.
+    leg : ndarray of int
+        For each position but the last, the index of the leg its piece lies on.
+    """
+    lat, lon = np.asarray(lat, float), np.asarray(lon, float)
+    lengths, courses, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    pieces = np.maximum(1, np.ceil(lengths / spacing - 1e-9)).astype(np.int64)
+    leg = np.repeat(np.arange(len(pieces)), pieces)
+    first = np.repeat(np.cumsum(pieces) - pieces, pieces)
+    fraction = (np.arange(len(leg)) - first) / pieces[leg]
+    out_lat, out_lon = direct(lat[leg], lon[leg], courses[leg], fraction * lengths[leg])
+    at_vertex = fraction == 0.0
+    out_lat[at_vertex], out_lon[at_vertex] = lat[leg[at_vertex]], wrap_longitude(lon[leg[at_vertex]])
+    return np.append(out_lat, lat[-1]), np.append(out_lon, wrap_longitude(lon[-1])), leg
+
+
+def check_position(lat: float, lon: float, what: str = "position") -> Position:
+    """Return (lat, lon) with longitude wrapped, or raise `InputError` for impossible values."""
+    lat, lon = float(lat), float(lon)
+    if not (math.isfinite(lat) and math.isfinite(lon)):
+        raise InputError(f"The {what} ({lat}, {lon}) is not a number.", "", "Give lat, lon in degrees.")
+    if abs(lat) > 90.0:
+        hint = "Latitude comes first: are latitude and longitude swapped?" if abs(lon) <= 90 else ""
+        raise InputError(
+            f"The {what} ({lat:g}, {lon:g}) has a latitude beyond 90 degrees.",
+            "Latitude lies between -90 and 90 degrees.",
+            hint or "Give lat, lon in degrees.",
+            value=(lat, lon),
+        )
+    if abs(lon) > 360.0:
+        raise InputError(
+            f"The {what} ({lat:g}, {lon:g}) has a longitude beyond 360 degrees.",
+            "Longitude lies between -180 and 180 (or 0 and 360) degrees.",
+            "Give lat, lon in degrees.",
+            value=(lat, lon),
+        )
+    return lat, float(wrap_longitude(lon))
+
+
+_NUMBER = r"(\d+(?:\.\d+)?)"
+_DMS = rf"{_NUMBER}(?:[°\s:-]+{_NUMBER}['′]?)?(?:[\s:-]*{_NUMBER}[\"″]?)?\s*°?\s*"
+_HEMISPHERES = re.compile(rf"^\s*{_DMS}([NSns])[\s,]+{_DMS}([EWew])\s*$")
+_PAIR = re.compile(r"^\s*([+-]?\d+(?:\.\d+)?)\s*[,;\s]\s*([+-]?\d+(?:\.\d+)?)\s*$")
+
+
+def parse_position(text: str) -> Position | None:
+    """Read ``52.0N 4.1E``, ``52 30 N 4 06 E`` or ``52.0,4.1`` (lat, lon); None if it is a name.
+
+    Raises
+    ------
+    InputError
+        If it reads as a position that cannot exist.
+    """
+    pair = _PAIR.match(text)
+    if pair:
+        return check_position(float(pair[1]), float(pair[2]))
+    match = _HEMISPHERES.match(text)
+    if not match:
+        return None
+    d1, m1, s1, ns, d2, m2, s2, ew = match.groups()
+    lat = float(d1) + float(m1 or 0) / 60 + float(s1 or 0) / 3600
+    lon = float(d2) + float(m2 or 0) / 60 + float(s2 or 0) / 3600
+    return check_position(-lat if ns in "Ss" else lat, -lon if ew in "Ww" else lon)
+
+
+def format_position(lat: float, lon: float) -> str:
+    """Return a position as text, such as ``52.0000N 4.1000E``."""
+    return f"{abs(lat):.4f}{'N' if lat >= 0 else 'S'} {abs(lon):.4f}{'E' if lon >= 0 else 'W'}"

@@ -1,0 +1,75 @@
+"""Time: ISO 8601 UTC at the boundary, float seconds since 1970-01-01T00:00Z inside."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime
+from typing import TypeAlias
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+
+TimeLike: TypeAlias = "str | float | int | datetime | np.datetime64"
+
+
+def parse_time(value: TimeLike) -> float:
+    """Return seconds since 1970-01-01T00:00Z.
+
+    Parameters
+    ----------
+    value : str, datetime, numpy.datetime64 or float
+        ISO 8601 text (``2026-01-01T00:00Z``; without a zone it is read as UTC), a datetime
+        (naive ones are read as UTC) or seconds since the epoch.
+
+    Returns
+    -------
+    float
+        Seconds since 1970-01-01T00:00Z.
+
+    Raises
+    ------
+    InputError
+        If the text is not a time, or the number is not finite.
+    """
+    if isinstance(value, np.datetime64):
+        if np.isnat(value):
+            raise InputError("A time is missing (NaT).", "", "Give a date such as 2026-01-01T00:00Z.")
+        return float(value.astype("datetime64[ns]").astype(np.int64)) / 1e9
+    if isinstance(value, datetime):
+        moment = value
+    elif isinstance(value, str):
+        moment = _parse_text(value)
+    else:
+        seconds = float(value)
+        if not math.isfinite(seconds):
+            raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
+        return seconds
+    if moment.tzinfo is None:
+        moment = moment.replace(tzinfo=UTC)
+    return moment.timestamp()
+
+
+def _parse_text(text: str) -> datetime:
+    try:
+        return datetime.fromisoformat(text.strip())
+    except ValueError:
+        raise InputError(
+            f"{text!r} is not a time.",
+            "Times are ISO 8601 in UTC, such as 2026-01-01T06:30Z.",
+            "Write the time that way.",
+            value=text,
+        ) from None
+
+
+def format_time(seconds: float) -> str:
+    """Return ISO 8601 text in UTC with a Z, rounded to the second; 'unknown' for NaN."""
+    if not math.isfinite(seconds):
+        return "unknown"
+    return datetime.fromtimestamp(round(seconds), UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def to_datetime64(seconds: float | np.ndarray) -> np.ndarray:
+    """Return ``datetime64[ns]`` (UTC) for seconds since the epoch."""
+    nanoseconds = np.round(np.asarray(seconds, float) * 1e9)
+    return nanoseconds.astype(np.int64).astype("datetime64[ns]")

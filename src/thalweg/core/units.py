@@ -1,0 +1,13 @@
+"""Units: the one place where boundary units become SI and back."""
+
+from __future__ import annotations
+
+from typing import Final
+
+KNOT: Final = 1852.0 / 3600.0  #: metres per second in a knot
+NAUTICAL_MILE: Final = 1852.0  #: metres
+HOUR: Final = 3600.0  #: seconds
+DAY: Final = 86400.0  #: seconds
+TONNE: Final = 1000.0  #: kilograms
+GRAVITY: Final = 9.80665  #: standard gravity [m/s2]
+SEA_WATER_DENSITY: Final = 1025.0  #: [kg/m3]

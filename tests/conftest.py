@@ -1,0 +1,29 @@
+"""What every test may use."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("thalweg", deadline=None, print_blob=True)
+settings.load_profile("thalweg")
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def data_folder() -> Path | None:
+    """Return the folder of real test data, if there is one."""
+    override = os.environ.get("THALWEG_TEST_DATA")
+    folder = Path(override) if override else ROOT.parent / "shared" / "data"
+    return folder if folder.is_dir() else None
+
+
+def data_file(name: str) -> Path:
+    """Return a file of real data, or skip the test with the reason."""
+    folder = data_folder()
+    if folder is None or not (folder / name).exists():
+        pytest.skip(f"real data file {name} is not here (set THALWEG_TEST_DATA)")
+    return folder / name
