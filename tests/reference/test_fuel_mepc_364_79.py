@@ -1,0 +1,105 @@
+"""Carbon factors of MEPC.364(79) and fuel switching."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg.core.errors import InputError
+from thalweg.ship.methods import fuel
+
+PRINTED = {
+    "mgo": (3.206, 42_700),
+    "lfo": (3.151, 41_200),
+    "hfo": (3.114, 40_200),
+    "lpg_propane": (3.000, 46_300),
+    "lpg_butane": (3.030, 45_700),
+    "ethane": (2.927, 46_400),
+    "lng": (2.750, 48_000),
+    "methanol": (1.375, 19_900),
+    "ethanol": (1.913, 26_800),
+}
+
+
+@pytest.mark.parametrize(("name", "row"), PRINTED.items())
+def test_factors(name, row):
+    found = fuel.fuel_named(name)
+    assert (found.carbon_factor, found.heating_value / 1e3) == row
+    assert found.source
+
+
+def test_every_fuel_is_in_the_printed_table():
+    assert set(fuel.FUELS) == set(PRINTED)
+
+
+def test_carbon_factor_is_carbon_content_times_44_over_12():
+    """The resolution's carbon contents .8744 ... .5217 give its factors to the third digit."""
+    contents = {
+        "mgo": 0.8744,
+        "lfo": 0.8594,
+        "hfo": 0.8493,
+        "lpg_propane": 0.8182,
+        "lpg_butane": 0.8264,
+        "ethane": 0.7989,
+        "lng": 0.75,
+        "methanol": 0.375,
+        "ethanol": 0.5217,
+    }
+    for name, content in contents.items():
+        factor = content * (12.0107 + 2 * 15.9994) / 12.0107
+        assert fuel.FUELS[name].carbon_factor == pytest.approx(factor, abs=4e-3)
+
+
+def test_co2_of_the_example():
+    """27.593 t of heavy fuel oil: 85.925 t CO2."""
+    assert fuel.co2_mass(27.593, carbon_factor=3.114) == pytest.approx(85.925, abs=5e-4)
+
+
+def test_names():
+    assert fuel.fuel_named("MDO").name == "mgo"
+    assert fuel.fuel_named("LPG Butane").name == "lpg_butane"
+    with pytest.raises(InputError, match="methanol"):
+        fuel.fuel_named("metanol")
+
+
+def test_same_heat():
+    mgo, hfo = fuel.FUELS["mgo"], fuel.FUELS["hfo"]
+    assert fuel.same_heat_mass(100.0, of=hfo, to=mgo) == pytest.approx(100.0 * 40.2 / 42.7)
+    assert fuel.same_heat_mass(5.0, of=hfo, to=hfo) == 5.0
+
+
+def test_switching_all_none_half():
+    hfo, mgo = fuel.FUELS["hfo"], fuel.FUELS["mgo"]
+    got = fuel.switch_in_control_area(
+        [1000.0, 1000.0, 1000.0],
+        [0.0, 1.0, 0.5],
+        outside=hfo,
+        inside=mgo,
+        price_outside_t=500.0,
+        price_inside_t=800.0,
+    )
+    light = 1000.0 * 40.2 / 42.7
+    assert got.mass == pytest.approx([1000.0, light, 500.0 + light / 2])
+    assert got.co2 == pytest.approx([3114.0, light * 3.206, 1557.0 + light / 2 * 3.206])
+    assert got.cost == pytest.approx([500.0, light * 0.8, 250.0 + light * 0.4])
+
+
+def test_switching_without_price_and_with_unknown():
+    hfo, mgo = fuel.FUELS["hfo"], fuel.FUELS["mgo"]
+    got = fuel.switch_in_control_area(
+        [1000.0, np.nan], [0.0, 0.5], outside=hfo, inside=mgo, price_outside_t=500.0
+    )
+    assert got.cost[0] == pytest.approx(500.0)
+    assert np.isnan(got.mass[1])
+    assert np.isnan(got.cost[1])
+    with pytest.raises(InputError, match="share"):
+        fuel.switch_in_control_area(1.0, 1.5, outside=hfo, inside=mgo)
+
+
+def test_seuren_multiplier():
+    """300 USD/t and 1.5593 inside (Seuren 2020, Table 5.2)."""
+    hfo = fuel.FUELS["hfo"]
+    got = fuel.switch_in_control_area(
+        2000.0, True, outside=hfo, inside=hfo, price_outside_t=300.0, price_inside_t=300 * 1.5593
+    )
+    assert got.cost == pytest.approx(2.0 * 300.0 * 1.5593)

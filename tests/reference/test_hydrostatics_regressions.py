@@ -1,0 +1,108 @@
+"""Loading and estimated particulars against definitions and real ships."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg.ship.methods import hydrostatics as hydro
+
+
+def test_load_factor_runs_from_empty_to_full():
+    got = hydro.between_empty_and_full([0.0, 0.25, 1.0], empty=4.0, full=8.0)
+    assert got.tolist() == [4.0, 5.0, 8.0]
+    assert hydro.load_factor_of(5.0, empty=4.0, full=8.0) == 0.25
+
+
+def test_load_factor_outside_is_unknown():
+    assert np.isnan(hydro.between_empty_and_full([-0.01, 1.01, np.nan], empty=4.0, full=8.0)).all()
+    assert np.isnan(hydro.load_factor_of([3.9, 8.1], empty=4.0, full=8.0)).all()
+
+
+def test_a_full_ship_may_be_slower():
+    assert hydro.between_empty_and_full(0.5, empty=14.0, full=12.0) == 13.0
+
+
+def test_volume_and_block_are_inverse():
+    volume = hydro.displacement_volume(200.0, 32.0, draught=10.0, block_coefficient=0.8)
+    assert volume == pytest.approx(51_200.0)
+    back = hydro.block_coefficient_of(volume, length=200.0, breadth=32.0, draught=10.0)
+    assert back == pytest.approx(0.8)
+
+
+def test_denny_mumford_of_yus_ship():
+    """172.42 x 32 x 10 m, volume .785 x 169 x 32 x 10: 7176 m2."""
+    volume = 0.785 * 169.0 * 32.0 * 10.0
+    got = hydro.wetted_surface_denny_mumford(172.42, draught=10.0, displacement=volume)
+    assert got == pytest.approx(2931.14 + 4245.28, abs=0.01)
+
+
+def test_denny_mumford_of_a_tanker_within_its_error():
+    """KVLCC2: 320 m, 20.8 m, 312 622 m3, wetted surface 27 194 m2 (published)."""
+    got = hydro.wetted_surface_denny_mumford(325.5, draught=20.8, displacement=312_622.0)
+    assert got == pytest.approx(27_194.0, rel=0.04)
+
+
+@pytest.mark.parametrize(
+    ("block", "midship", "waterplane"), [(0.8098, 0.998, 0.90), (0.651, 0.985, 0.82)]
+)
+def test_coefficients_of_kvlcc2_and_kcs(block, midship, waterplane):
+    """Published forms: KVLCC2 C_B .8098, C_M .998; KCS C_B .651, C_M .985."""
+    assert hydro.midship_from_block(block) == pytest.approx(midship, abs=0.012)
+    assert hydro.midship_kerlen(block) == pytest.approx(midship, abs=0.012)
+    assert hydro.waterplane_from_block(block) == pytest.approx(waterplane, abs=0.06)
+
+
+def test_lcb_of_kvlcc2_and_kcs():
+    """KVLCC2 +3.48 %, KCS -1.48 % of L_PP (published)."""
+    assert hydro.lcb_from_prismatic(0.8098 / 0.998) == pytest.approx(3.48, abs=1.5)
+    assert hydro.lcb_from_prismatic(0.651 / 0.985) == pytest.approx(-1.48, abs=1.5)
+
+
+def test_block_from_froude():
+    """KCS at Fn .26 has .651; KVLCC2 at .142 lies outside."""
+    assert hydro.block_from_froude(0.26) == pytest.approx(0.651, abs=0.05)
+    assert np.isnan(hydro.block_from_froude([0.142, 0.33])).all()
+
+
+def test_block_grows_with_draught_and_meets_the_design():
+    blocks = hydro.block_at_draught([6.0, 8.0, 10.0], design_draught=10.0, design_block=0.8)
+    assert np.all(np.diff(blocks) > 0.0)
+    assert blocks[-1] == pytest.approx(0.8)
+
+
+def test_wall_sided_volume():
+    got = hydro.displacement_at_draught(
+        [10.0, 9.0, 1.0], design_draught=10.0, design_displacement=50_000.0, waterplane_area=6000.0
+    )
+    np.testing.assert_allclose(got, [50_000.0, 44_000.0, np.nan])
+
+
+SHIP = {
+    "length_between_perpendiculars_m": 169.0,
+    "length_waterline_m": 172.42,
+    "breadth_m": 32.0,
+    "draught_m": 10.0,
+    "displacement_m3": 42_453.0,
+    "block_coefficient": 0.77,
+    "midship_coefficient": 0.995,
+    "design_froude": 0.2,
+}
+
+
+@pytest.mark.parametrize("quantity", sorted(hydro.ESTIMATORS))
+def test_every_estimator_runs_on_a_ship_and_names_its_source(quantity):
+    for estimator in hydro.ESTIMATORS[quantity]:
+        value = estimator.function(*(SHIP[name] for name in estimator.inputs))
+        assert np.isfinite(value)
+        assert estimator.source
+        if quantity in SHIP:
+            error = estimator.typical_error if quantity != "block_coefficient" else 0.06
+            assert value == pytest.approx(SHIP[quantity], rel=max(2 * error, 0.01))
+
+
+def test_arrays_equal_scalars():
+    blocks = np.array([0.6, 0.7, np.nan, 0.85])
+    got = hydro.midship_from_block(blocks)
+    assert np.isnan(got[2])
+    assert got[3] == hydro.midship_from_block(0.85)

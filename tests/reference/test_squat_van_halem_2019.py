@@ -1,0 +1,111 @@
+"""Squat: the corrected van Oord rule of van Halem (2019), Barrass, and their limits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg.core.units import KNOT
+from thalweg.ship.methods import squat
+
+HOPPER = {"draught": 6.5, "breadth": 20.0}
+BLOCK = 10_000e3 / 1025.0 / (80.0 * 20.0 * 6.5)  # 10 000 t, 80 x 20 x 6.5 m: 0.938
+
+#: depth -> speed [m/s] with V_max 10 kn and 1 m clearance (corrected column).
+CORRECTED = {
+    7.5: 0.0,
+    7.6: 1.8526,
+    7.8: 3.1707,
+    8.0: 3.6058,
+    9.0: 3.8750,
+    10.0: 4.0799,
+    12.0: 4.3636,
+    25.0: 4.9234,
+}
+
+
+def limit(depth, **changes):
+    given = {"clearance": 1.0, "gravity": 9.81, "block_coefficient": BLOCK, **HOPPER, **changes}
+    return squat.speed_limit(10.0 * KNOT, depth, **given)
+
+
+@pytest.mark.parametrize(("depth", "speed"), CORRECTED.items())
+def test_corrected_speeds_to_printed_digits(depth, speed):
+    assert limit(depth) == pytest.approx(speed, abs=5.1e-5)
+
+
+def test_block_coefficient_of_the_example_is_not_a_thousandth():
+    assert pytest.approx(0.938, abs=5e-4) == BLOCK
+
+
+def test_the_released_program_is_faster_where_squat_rules():
+    """Its squat limit never acts: 3.4749 and 3.5422 m/s at 7.6 and 7.8 m are critical speeds."""
+    critical = squat.critical_speed(10.0 * KNOT, [7.6, 7.8], gravity=9.81, **HOPPER)
+    assert critical == pytest.approx([3.4749, 3.5422], abs=5.1e-5)
+    assert np.all(limit([7.6, 7.8]) < critical)
+
+
+def test_array_equals_scalars():
+    depths = np.array(list(CORRECTED))
+    assert limit(depths).tolist() == [float(limit(d)) for d in depths]
+
+
+def test_no_depth_no_speed_and_unknown_stays_unknown():
+    assert limit(0.0) == 0.0
+    assert limit(-3.0) == 0.0
+    assert np.isnan(limit(np.nan))
+
+
+def test_deep_water_gives_the_deep_speed():
+    deep = squat.speed_limit(
+        5.0, 5000.0, draught=6.5, breadth=20.0, block_coefficient=0.8, clearance=1.0
+    )
+    assert 0.999 * 5.0 < deep <= 5.0
+
+
+def test_zero_speed_stays_zero():
+    assert squat.critical_speed(0.0, 10.0, **HOPPER) == 0.0
+    assert squat.barrass_squat(0.0, 10.0, block_coefficient=0.8, **HOPPER) == 0.0
+
+
+def test_speed_never_falls_with_depth():
+    depths = np.linspace(7.0, 60.0, 400)
+    assert np.all(np.diff(limit(depths)) >= 0.0)
+
+
+def test_barrass_by_hand():
+    """B 20, T 6.5, h 10, width 180: S2 = 130/1670; C_B .8, 10 kn."""
+    expected = 0.8 * (130.0 / 1670.0) ** (2.0 / 3.0) * 10.0**2.08 / 30.0
+    got = squat.barrass_squat(10.0 * KNOT, 10.0, block_coefficient=0.8, **HOPPER)
+    assert got == pytest.approx(expected, rel=1e-12)
+    assert got == pytest.approx(0.585, abs=5e-4)
+
+
+def test_inverse_of_barrass():
+    speeds = np.array([1.0, 3.0, 5.0])
+    sunk = squat.barrass_squat(speeds, 9.0, block_coefficient=0.8, **HOPPER)
+    back = squat.speed_for_squat(sunk, 9.0, block_coefficient=0.8, **HOPPER)
+    assert back == pytest.approx(speeds, rel=1e-12)
+
+
+def test_a_channel_sinks_the_ship_deeper():
+    open_water = squat.barrass_squat(4.0, 10.0, block_coefficient=0.8, **HOPPER)
+    canal = squat.barrass_squat(4.0, 10.0, block_coefficient=0.8, channel_width=80.0, **HOPPER)
+    assert canal / open_water == pytest.approx((1670.0 / 670.0) ** (2.0 / 3.0))
+
+
+def test_a_filled_channel_is_blocked():
+    assert squat.blockage_ratio(6.0, 6.5, breadth=20.0, channel_width=20.0) == np.inf
+    assert limit(6.4, channel_width=20.0) == 0.0
+
+
+def test_later_barrass_form_agrees_within_its_scatter():
+    """The 1979 and 2004 forms describe the same thing: within a factor of 1.5 in open water."""
+    kwargs = {"draught": 10.0, "breadth": 30.0, "block_coefficient": 0.8}
+    old = squat.barrass_squat(5.0, 12.0, **kwargs)
+    new = squat.barrass_2004_squat(5.0, 12.0, **kwargs)
+    assert 1.0 / 1.5 < new / old < 1.5
+
+
+def test_clearance_under_way():
+    assert squat.clearance_under_way(10.0, 6.5, squat=0.5) == pytest.approx(3.0)
