@@ -1,0 +1,82 @@
+"""Friction lines, Froude and Reynolds numbers that several methods share."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.units import GRAVITY
+
+FloatArray = NDArray[np.float64]
+
+SEA_WATER_VISCOSITY: Final = 1.1883e-6  #: kinematic viscosity at 15 degC, 3.5 % salt [m2/s]
+_LEAST_REYNOLDS: Final = 1.0e5
+
+
+def ship_speed(speed: ArrayLike) -> FloatArray:
+    """Return speeds as floats; a negative speed (astern) is unknown to every method: NaN."""
+    values = np.asarray(speed, dtype=float)
+    return np.where(values < 0.0, np.nan, values)
+
+
+def froude_number(speed: ArrayLike, *, length: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
+    """Froude number V / sqrt(g L).
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed through the water [m/s].
+    length : array_like
+        Length [m]; the water depth gives the depth Froude number.
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    ndarray
+    """
+    return np.asarray(speed, dtype=float) / np.sqrt(gravity * np.asarray(length, dtype=float))
+
+
+def reynolds_number(
+    speed: ArrayLike, *, length: ArrayLike, viscosity: ArrayLike = SEA_WATER_VISCOSITY
+) -> FloatArray:
+    """Reynolds number V L / nu, not below 1e5.
+
+    The bound keeps the friction lines, which have a pole near Re = 100, finite for a ship that
+    hardly moves; the resistance still goes to zero with the square of the speed.
+
+    Parameters
+    ----------
+    speed : array_like
+        [m/s].
+    length : array_like
+        [m].
+    viscosity : array_like
+        Kinematic viscosity [m2/s].
+
+    Returns
+    -------
+    ndarray
+    """
+    raw = np.asarray(speed, dtype=float) * np.asarray(length, dtype=float) / np.asarray(viscosity)
+    return np.asarray(np.maximum(raw, _LEAST_REYNOLDS))
+
+
+def ittc_1957(reynolds: ArrayLike) -> FloatArray:
+    """ITTC 1957 model-ship correlation line, C_F = 0.075 / (log10 Re - 2)^2.
+
+    Source: 8th ITTC (1957), Madrid.
+    """
+    return np.asarray(0.075 / (np.log10(np.asarray(reynolds, dtype=float)) - 2.0) ** 2)
+
+
+def dynamic_force(
+    coefficient: ArrayLike, *, speed: ArrayLike, area: ArrayLike, density: ArrayLike
+) -> FloatArray:
+    """Force 0.5 rho V^2 A C [N]."""
+    velocity = np.asarray(speed, dtype=float)
+    force = 0.5 * np.asarray(density) * velocity**2 * np.asarray(area) * np.asarray(coefficient)
+    return np.asarray(force)
