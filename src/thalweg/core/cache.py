@@ -31,4 +31,5 @@ def _candidates() -> list[Path]:
         home = Path.home() / "Library" / "Caches"
     else:
         home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return [home / "thalweg", Path(tempfile.gettempdir()) / f"thalweg-{os.getuid() if hasattr(os, 'getuid') else 0}"]
+    user = os.getuid() if hasattr(os, "getuid") else 0
+    return [home / "thalweg", Path(tempfile.gettempdir()) / f"thalweg-{user}"]

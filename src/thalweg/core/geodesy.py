@@ -26,8 +26,10 @@ MEAN_RADIUS = 6371008.8  #: mean radius of the ellipsoid [m] (IUGG)
 
 
 def wrap_longitude(lon: ArrayLike) -> FloatArray:
-    """Return longitude in [-180, 180) degrees."""
-    return (np.asarray(lon, float) + 180.0) % 360.0 - 180.0
+    """Return longitude in [-180, 180) degrees; values already there stay the same to the bit."""
+    lon = np.asarray(lon, float)
+    inside = (lon >= -180.0) & (lon < 180.0)
+    return np.where(inside, lon, (lon + 180.0) % 360.0 - 180.0)
 
 
 def inverse(
@@ -74,7 +76,7 @@ def direct(
 def along(
     lat1: float, lon1: float, lat2: float, lon2: float, fractions: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return positions [deg] at the given fractions of the geodesic from the first to the second."""
+    """Return positions [deg] at fractions of the geodesic from the first to the second."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     return direct(lat1, lon1, course, np.asarray(fractions, float) * length)
 
@@ -99,7 +101,8 @@ def densify(
     fraction = (np.arange(len(leg)) - first) / pieces[leg]
     out_lat, out_lon = direct(lat[leg], lon[leg], courses[leg], fraction * lengths[leg])
     at_vertex = fraction == 0.0
-    out_lat[at_vertex], out_lon[at_vertex] = lat[leg[at_vertex]], wrap_longitude(lon[leg[at_vertex]])
+    out_lat[at_vertex] = lat[leg[at_vertex]]
+    out_lon[at_vertex] = wrap_longitude(lon[leg[at_vertex]])
     return np.append(out_lat, lat[-1]), np.append(out_lon, wrap_longitude(lon[-1])), leg
 
 
@@ -107,7 +110,9 @@ def check_position(lat: float, lon: float, what: str = "position") -> Position:
     """Return (lat, lon) with longitude wrapped, or raise `InputError` for impossible values."""
     lat, lon = float(lat), float(lon)
     if not (math.isfinite(lat) and math.isfinite(lon)):
-        raise InputError(f"The {what} ({lat}, {lon}) is not a number.", "", "Give lat, lon in degrees.")
+        raise InputError(
+            f"The {what} ({lat}, {lon}) is not a number.", "", "Give lat, lon in degrees."
+        )
     if abs(lat) > 90.0:
         hint = "Latitude comes first: are latitude and longitude swapped?" if abs(lon) <= 90 else ""
         raise InputError(

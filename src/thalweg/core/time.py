@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from typing import TypeAlias
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 
-TimeLike: TypeAlias = "str | float | int | datetime | np.datetime64"
+TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
 
 
 def parse_time(value: TimeLike) -> float:
@@ -34,10 +34,12 @@ def parse_time(value: TimeLike) -> float:
     """
     if isinstance(value, np.datetime64):
         if np.isnat(value):
-            raise InputError("A time is missing (NaT).", "", "Give a date such as 2026-01-01T00:00Z.")
+            raise InputError("A time is missing (NaT).", "", "Give one such as 2026-01-01T00:00Z.")
         return float(value.astype("datetime64[ns]").astype(np.int64)) / 1e9
     if isinstance(value, datetime):
         moment = value
+    elif isinstance(value, date):
+        moment = datetime(value.year, value.month, value.day)
     elif isinstance(value, str):
         moment = _parse_text(value)
     else:

@@ -1,0 +1,136 @@
+"""Options that several commands share, and how their values become objects."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import NAUTICAL_MILE
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+FILLABLE = ("currents", "wind", "waves")
+
+
+def add_world_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that name ship, sea and chart."""
+    parser.add_argument("--ship", required=True, metavar="NAME|FILE", help="library ship or YAML")
+    sea = parser.add_argument_group("sea")
+    sea.add_argument(
+        "--sea",
+        nargs="+",
+        action="extend",
+        metavar="FILE",
+        help="met-ocean files, first has priority; 'storm' for the embedded modelled storm",
+    )
+    sea.add_argument("--calm", action="store_true", help="no wind, waves or currents at all")
+    sea.add_argument(
+        "--fill",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME=VALUE",
+        help=f"take unknown {'/'.join(FILLABLE)} as this value (recorded in the plan)",
+    )
+    chart = parser.add_argument_group("chart")
+    chart.add_argument("--depth", action="append", default=[], metavar="FILE", help="depth grid")
+    chart.add_argument("--zones", action="append", default=[], metavar="FILE", help="GeoJSON zones")
+    chart.add_argument(
+        "--coast",
+        default="i",
+        choices=("c", "l", "i", "h", "f", "none"),
+        help="GSHHG coastline resolution (h and f need thalweg[hires]; none: open water)",
+    )
+    parser.add_argument("--ukc", type=float, metavar="M", help="least under-keel clearance")
+    parser.add_argument("--load-factor", type=float, metavar="0..1", help="0 empty, 1 full")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--out", metavar="DIR", help="folder for files and pictures")
+
+
+def open_sea(arguments: argparse.Namespace) -> Sea:
+    """Build the sea that the options name."""
+    from thalweg.sea import Sea
+
+    if arguments.calm and arguments.sea:
+        raise InputError("Both --calm and --sea are given.", "", "Choose one.")
+    if not arguments.calm and not arguments.sea:
+        raise InputError(
+            "No sea is given.",
+            "Weather is never assumed to be calm.",
+            "Give --sea FILE..., --sea storm, or ask for --calm.",
+        )
+    if arguments.calm:
+        return Sea.calm()
+    files = [name for name in arguments.sea if name != "storm"]
+    layers = [Sea.open(*files)] if files else []
+    if "storm" in arguments.sea:
+        layers.append(Sea.storm())
+    sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
+    policies = dict(_policy(text) for text in arguments.fill)
+    return sea.filled(**policies) if policies else sea
+
+
+def _policy(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        if name not in FILLABLE:
+            raise ValueError
+        return name, float(value)
+    except ValueError:
+        raise InputError(
+            f"--fill {text} is not understood.",
+            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}.",
+            "Write it that way.",
+        ) from None
+
+
+def open_chart(arguments: argparse.Namespace) -> Chart:
+    """Build the chart that the options name."""
+    from thalweg.chart import Chart
+
+    if arguments.coast == "none":
+        chart = Chart.open_water(-90.0, 90.0, -180.0, 180.0)
+    else:
+        chart = Chart.gshhg(arguments.coast)
+    for path in arguments.depth:
+        chart = chart.with_depth(path)
+    for path in arguments.zones:
+        chart = chart.with_zones(path)
+    return chart
+
+
+def open_ship(arguments: argparse.Namespace) -> Ship:
+    """Build the ship that the options name."""
+    from thalweg.ship import Ship
+
+    ship = Ship.load(arguments.ship)
+    if arguments.load_factor is not None:
+        ship = ship.with_load_factor(arguments.load_factor)
+    return ship
+
+
+def progress_for(arguments: argparse.Namespace) -> Callable[[str], None] | None:
+    """Return a function that shows what is being done, or None when output is piped or JSON."""
+    if arguments.json or not sys.stderr.isatty():
+        return None
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    return lambda text: console.print(f"[dim]{text}[/dim]")
+
+
+def resolution_m(value_nm: float | None) -> float | None:
+    """Turn the option in nautical miles into metres, refusing what cannot be."""
+    if value_nm is None:
+        return None
+    if not 0.001 <= value_nm <= 300:
+        raise InputError(
+            f"A resolution of {value_nm:g} nm cannot be.", "0.001 to 300 nm.", "Correct it."
+        )
+    return value_nm * NAUTICAL_MILE

@@ -1,0 +1,63 @@
+"""``thalweg evaluate``: the referee scores a route from a file."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from thalweg.cli import common
+
+
+def add_command(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "evaluate",
+        help="score a route from a CSV, GeoJSON or GPX file",
+        description="Re-sail a route in small steps with the ship's own physics.",
+    )
+    parser.add_argument("route", metavar="ROUTE")
+    common.add_world_options(parser)
+    parser.add_argument("--depart", metavar="T", help="departure; the file's own time when absent")
+    parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed through water")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Evaluate, print and write."""
+    from thalweg.planning.evaluation import evaluate_file
+    from thalweg.planning.output import check_folder, write_route
+    from thalweg.planning.plan import route_dict
+
+    if arguments.out:
+        check_folder(arguments.out)
+    route = evaluate_file(
+        arguments.route,
+        ship=common.open_ship(arguments),
+        sea=common.open_sea(arguments),
+        chart=common.open_chart(arguments),
+        depart=arguments.depart,
+        speed_kn=arguments.speed,
+        min_ukc_m=arguments.ukc,
+    )
+    files = write_route(route, arguments.out) if arguments.out else []
+    if arguments.json:
+        print(json.dumps(route_dict(route, "given"), indent=2, allow_nan=False))
+        return 0
+    _show(route)
+    for path in files:
+        print(f"wrote {path}")
+    return 0
+
+
+def _show(route: Any) -> None:
+    from rich.console import Console
+
+    console = Console()
+    console.print(route.to_frame().to_string(index=False))
+    fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
+    console.print(f"[bold]{route.time_h:.2f} h, {route.distance_nm:.1f} nm{fuel}[/bold]")
+    for violation in route.violations:
+        console.print(f"[red]violation:[/red] {violation}")
+    if route.feasible:
+        console.print("Every limit is kept.")

@@ -1,0 +1,33 @@
+"""The one table from errors to exit codes and to what is printed."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from thalweg.core.errors import CoverageError, NoRouteError, ThalwegError
+
+DONE, BAD_INPUT, NO_COVERAGE, NO_ROUTE = 0, 2, 3, 4
+
+
+def exit_code(error: ThalwegError) -> int:
+    """Return 2 for bad input, 3 for missing coverage, 4 for no route."""
+    if isinstance(error, NoRouteError):
+        return NO_ROUTE
+    if isinstance(error, CoverageError):
+        return NO_COVERAGE
+    return BAD_INPUT
+
+
+def report(error: ThalwegError, *, as_json: bool) -> int:
+    """Print an error for a person on stderr, or for a program on stdout; return its exit code."""
+    if as_json:
+        print(json.dumps(error.as_dict(), indent=2))
+        return exit_code(error)
+    lines = [f"error: {error.asked}"]
+    lines += [text for text in (error.possible, error.remedy) if text]
+    if isinstance(error, NoRouteError) and error.reasons:
+        counts = ", ".join(f"{reason}: {count}" for reason, count in error.reasons.items())
+        lines.append(f"Legs refused: {counts}.")
+    print("\n  ".join(lines), file=sys.stderr)
+    return exit_code(error)

@@ -1,0 +1,73 @@
+"""The command line: ``thalweg plan | evaluate | inspect | ship | demo``."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+import warnings
+from collections.abc import Sequence
+
+from thalweg.cli import demo, evaluate, inspect, plan, ship
+from thalweg.cli.exits import report
+from thalweg.core.errors import ThalwegError, ThalwegWarning
+
+_COMMANDS = (plan, evaluate, inspect, ship, demo)
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
+    parser = argparse.ArgumentParser(
+        prog="thalweg",
+        description="Voyage optimisation for ships: routes and speeds through moving water.",
+    )
+    parser.add_argument("--version", action="version", version=f"thalweg {_version()}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for module in _COMMANDS:
+        module.add_command(commands)
+    for sub in commands.choices.values():
+        # A position such as -33.9,151.2 is an argument, not an option.
+        sub._negative_number_matcher = re.compile(r"^-\d[\d.]*([,;\s].*)?$")
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Arguments; those of the process when not given.
+
+    Returns
+    -------
+    int
+        0 done, 2 bad input, 3 no coverage, 4 no route.
+    """
+    arguments = build_parser().parse_args(argv)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("default", category=ThalwegWarning)
+        warnings.showwarning = _show_warning
+        try:
+            return int(arguments.run(arguments))
+        except ThalwegError as error:
+            return report(error, as_json=getattr(arguments, "json", False))
+        except BrokenPipeError:
+            return 0
+        except KeyboardInterrupt:
+            print("stopped", file=sys.stderr)
+            return 130
+
+
+def _show_warning(message, category, filename, lineno, file=None, line=None):  # type: ignore[no-untyped-def]
+    print(f"warning: {message}", file=sys.stderr)
+
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("thalweg")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

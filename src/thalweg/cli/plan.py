@@ -1,0 +1,145 @@
+"""``thalweg plan``: from two places to a refereed route."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from thalweg.cli import common
+
+if TYPE_CHECKING:
+    from thalweg.planning import Plan, Voyage
+
+
+def add_command(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "plan",
+        help="plan a voyage",
+        description="Plan a voyage between two places: positions (52.0N 4.1E as one argument, "
+        "or 52.0,4.1), port names or UN/LOCODEs.",
+    )
+    parser.add_argument("start", metavar="FROM")
+    parser.add_argument("goal", metavar="TO")
+    parser.add_argument("--via", action="append", default=[], metavar="P", help="pass this place")
+    common.add_world_options(parser)
+    when = parser.add_mutually_exclusive_group()
+    when.add_argument("--depart", metavar="T", help="departure, ISO 8601 UTC")
+    when.add_argument("--depart-window", nargs=2, metavar=("T1", "T2"), help="best departure in it")
+    parser.add_argument("--arrive-by", metavar="T", help="latest arrival")
+    parser.add_argument("--objective", default="time", metavar="time|distance")
+    parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed through water")
+    parser.add_argument(
+        "--wait", action=argparse.BooleanOptionalAction, default=True, help="may stop and wait"
+    )
+    parser.add_argument("--resolution", type=float, metavar="NM", help="spacing of the network")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Plan, print and write."""
+    from thalweg.planning import plan
+    from thalweg.planning.output import check_folder
+
+    if arguments.out:
+        check_folder(arguments.out)
+    ship, sea = common.open_ship(arguments), common.open_sea(arguments)
+    found = plan(
+        _voyage(arguments, sea),
+        ship=ship,
+        sea=sea,
+        chart=common.open_chart(arguments),
+        resolution=common.resolution_m(arguments.resolution),
+        progress=common.progress_for(arguments),
+    )
+    files = found.write(arguments.out) if arguments.out else []
+    if arguments.json:
+        print(found.to_json())
+    else:
+        show(found)
+        for path in files:
+            print(f"wrote {path}")
+    return 0
+
+
+def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:
+    from thalweg.planning import Voyage
+
+    depart = arguments.depart
+    if depart is None and arguments.depart_window is None:
+        depart = _first_time(sea)
+    return Voyage(
+        start=arguments.start,
+        goal=arguments.goal,
+        via=tuple(arguments.via),
+        depart=depart,
+        depart_window=tuple(arguments.depart_window) if arguments.depart_window else None,
+        arrive_by=arguments.arrive_by,
+        objective=arguments.objective,
+        wait=arguments.wait,
+        speed_kn=arguments.speed,
+        min_ukc_m=arguments.ukc,
+        seed=arguments.seed,
+    )
+
+
+def _first_time(sea: Any) -> float:
+    """Without --depart: the first moment of the data, or now where the sea has no period."""
+    import math
+    import time
+
+    starts = [row.start for row in sea.coverage() if math.isfinite(row.start)]
+    return max(starts) if starts else float(round(time.time()))
+
+
+def show(plan: Plan) -> None:
+    """Print a plan for a person."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    best = plan.best
+    table = Table(title=_title(plan), title_justify="left")
+    columns = ("waypoint", "time (UTC)", "course", "leg nm", "stw kn", "sog kn", "wait h", "ukc m")
+    for name in columns:
+        table.add_column(name, justify="left" if name in ("waypoint", "time (UTC)") else "right")
+    for row in best.waypoints():
+        table.add_row(*_cells(row))
+    console.print(table)
+    parts = [f"{best.time_h:.2f} h", f"{best.distance_nm:.1f} nm"]
+    if best.fuel_t is not None:
+        parts.append(f"{best.fuel_t:.1f} t fuel")
+    if best.waiting_h > 0:
+        parts.append(f"{best.waiting_h:.2f} h waiting")
+    console.print("[bold]" + ", ".join(parts) + "[/bold]")
+    console.print(
+        f"No route is better than {plan.lower_bound:.2f} {plan.unit}: "
+        f"within {100 * plan.gap:.1f} % of the best possible ({plan.proof.kind})."
+    )
+    for note in plan.notes:
+        console.print(f"[yellow]note:[/yellow] {note}")
+
+
+def _title(plan: Plan) -> str:
+    return f"{plan.provenance['from']} to {plan.provenance['to']}, least {plan.voyage.objective}"
+
+
+def _cells(row: dict[str, Any]) -> list[str]:
+    def number(key: str, digits: int) -> str:
+        value = row.get(key)
+        return "" if value is None else f"{value:.{digits}f}"
+
+    from thalweg.core.geodesy import format_position
+
+    course = number("course_deg", 0)
+    return [
+        format_position(row["lat"], row["lon"]),
+        str(row["time"] or ""),
+        f"{int(course):03d}" if course else "",
+        number("distance_nm", 1),
+        number("speed_through_water_kn", 1),
+        number("speed_over_ground_kn", 1),
+        number("waiting_h", 2) if row.get("waiting_h") else "",
+        number("min_ukc_m", 1),
+    ]

@@ -1,0 +1,101 @@
+"""Where a voyage begins and ends: from text or degrees to navigable water."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import distance, format_position, parse_position
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.planning.voyage import Place
+
+#: Charted coast is generalised: a position given in degrees may lie this far inside it [m].
+SNAP_POSITION = 2_000.0
+#: Harbours lie on land at every resolution of the coastline [m].
+SNAP_PORT = 60_000.0
+
+
+@dataclass(frozen=True)
+class End:
+    """An end of a voyage on navigable water.
+
+    Attributes
+    ----------
+    name : str
+        The port's name, or the position as text.
+    lat, lon : float
+        Position used [deg].
+    moved_m : float
+        How far it was moved to reach navigable water [m].
+    """
+
+    name: str
+    lat: float
+    lon: float
+    moved_m: float
+
+    @property
+    def note(self) -> str:
+        """A sentence for the user when the end was moved, else nothing."""
+        if self.moved_m < 1.0:
+            return ""
+        return (
+            f"{self.name} lies on charted land: moved {self.moved_m / NAUTICAL_MILE:.1f} nm to "
+            f"open water at {format_position(self.lat, self.lon)}."
+        )
+
+
+def find_end(place: Place, chart: Chart, what: str) -> End:
+    """Resolve a place to navigable water of a chart.
+
+    Raises
+    ------
+    InputError
+        If the port is unknown (with near matches), or the place lies on land too far from water.
+    """
+    if isinstance(place, str):
+        position = parse_position(place)
+        if position is None:
+            port = chart.ports.lookup(place)
+            return _on_water(port.name, port.lat, port.lon, chart, what, SNAP_PORT)
+    else:
+        position = place
+    return _on_water(format_position(*position), *position, chart, what, SNAP_POSITION)
+
+
+def _on_water(name: str, lat: float, lon: float, chart: Chart, what: str, limit: float) -> End:
+    if bool(chart.is_navigable(lat, lon)):
+        return End(name, lat, lon, 0.0)
+    found = chart.nearest_navigable(lat, lon, largest=SNAP_PORT)
+    if found is None:
+        raise InputError(
+            f"The {what} {name} is not on navigable water.",
+            f"There is none within {SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart.",
+            _swap_hint(lat, lon, chart) or "Choose another position, or a chart that covers it.",
+            field=what,
+        )
+    near_lat, near_lon, moved = found
+    if moved > limit:
+        raise InputError(
+            f"The {what} {name} lies on land or in closed water.",
+            f"The nearest navigable water is {moved / NAUTICAL_MILE:.1f} nm away, at "
+            f"{format_position(near_lat, near_lon)}.",
+            _swap_hint(lat, lon, chart) or "Give that position, or a port by name.",
+            field=what,
+        )
+    return End(name, float(near_lat), float(near_lon), float(moved))
+
+
+def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
+    if abs(lon) <= 90.0 and bool(chart.is_navigable(lon, lat)):
+        return f"Latitude comes first: {lon:g}, {lat:g} would be at sea. Are they swapped?"
+    return ""
+
+
+def check_apart(start: End, goal: End) -> None:
+    """Raise `InputError` when two ends are the same place."""
+    if float(distance(start.lat, start.lon, goal.lat, goal.lon)) < 1.0:
+        raise InputError(
+            f"{start.name} and {goal.name} are the same place.", "", "Choose two different places."
+        )

@@ -1,0 +1,268 @@
+"""The map of a plan: coast, sea state at the moment of passage, isochrones and routes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.geodesy import along, wrap_longitude
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT
+
+if TYPE_CHECKING:
+    from thalweg.planning.plan import Plan, Surroundings
+
+_WAVES = "sea_surface_wave_significant_height"
+_WIND = ("eastward_wind", "northward_wind")
+_CURRENT = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
+_DEPTH = "sea_floor_depth_below_geoid"
+_LEVEL = "sea_surface_height_above_geopotential_datum"
+
+_LAND, _SHORE, _ROUTE, _INK = "#e9e3d5", "#8f8672", "#c2185b", "#22303c"
+
+
+@dataclass(frozen=True)
+class Box:
+    """The part of the world that is drawn; longitudes run on past 180 where they must."""
+
+    south: float
+    north: float
+    west: float
+    east: float
+
+    @property
+    def aspect(self) -> float:
+        """Height of a degree of latitude over the width of a degree of longitude."""
+        return 1.0 / max(0.05, math.cos(math.radians(0.5 * (self.south + self.north))))
+
+    def unwrapped(self, lon: np.ndarray) -> np.ndarray:
+        """Return longitudes moved by whole turns into the box."""
+        middle = 0.5 * (self.west + self.east)
+        return middle + wrap_longitude(np.asarray(lon) - middle)
+
+
+def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
+    """Draw the map of a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+        A plan with its surroundings (as `thalweg.plan` returns it).
+    path : path, optional
+        Where to save the picture (PNG).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    box = _box_of(plan)
+    width = 10.0
+    shape = (box.north - box.south) * box.aspect / (box.east - box.west)
+    figure = Figure(figsize=(width, min(11.0, max(4.2, width * shape * 0.9 + 1.1))), dpi=130)
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    axes.set_facecolor("#f4f8fb")
+    if plan.surroundings is not None:
+        _draw_sea(figure, axes, plan, plan.surroundings, box)
+        _draw_land(axes, plan.surroundings.chart, box)
+    _draw_routes(axes, plan, box)
+    _finish(axes, plan, box)
+    figure.tight_layout()
+    if path is not None:
+        figure.savefig(path)
+    return figure
+
+
+def _box_of(plan: Plan) -> Box:
+    lat = np.concatenate([route.samples["lat"] for route in plan.routes])
+    lon = np.concatenate([route.samples["lon"] for route in plan.routes])
+    lon = lon[0] + wrap_longitude(lon - lon[0])
+    high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
+    margin = 0.12 * max(high, wide, 1e-3)
+    stretch = math.cos(math.radians(min(80.0, float(np.max(np.abs(lat))))))
+    grow = max(0.0, 0.42 * max(wide, high) - high) / 2
+    widen = max(0.0, 0.6 * high - wide) / 2
+    return Box(
+        max(-89.9, float(lat.min()) - margin - grow),
+        min(89.9, float(lat.max()) + margin + grow),
+        float(lon.min()) - (margin + widen) / stretch,
+        float(lon.max()) + (margin + widen) / stretch,
+    )
+
+
+def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box) -> None:
+    lon, lat = np.meshgrid(
+        np.linspace(box.west, box.east, 240), np.linspace(box.south, box.north, 180)
+    )
+    reached = _passage_times(plan, world, box, lat, lon)
+    moment = np.where(np.isfinite(reached), reached, plan.best.depart)
+    shown = _shade(world, moment, lat, lon)
+    if shown is not None:
+        values, label, colours = shown
+        filled = axes.contourf(lon, lat, values, levels=14, cmap=colours, alpha=0.85)
+        bar = figure.colorbar(filled, ax=axes, shrink=0.8, pad=0.015)
+        bar.set_label(label, fontsize=8)
+        bar.ax.tick_params(labelsize=7)
+    _draw_arrows(axes, world, moment, lat, lon)
+    _draw_isochrones(axes, plan, reached, lat, lon)
+
+
+def _passage_times(
+    plan: Plan, world: Surroundings, box: Box, lat: np.ndarray, lon: np.ndarray
+) -> np.ndarray:
+    """Return when the fastest ship would be at each point; NaN where it never gets."""
+    from scipy.interpolate import LinearNDInterpolator
+
+    node_lon = box.unwrapped(world.lon)
+    use = np.isfinite(world.arrival)
+    use &= (world.lat > box.south - 2) & (world.lat < box.north + 2)
+    use &= (node_lon > box.west - 4) & (node_lon < box.east + 4)
+    index = np.flatnonzero(use)
+    if len(index) < 4 or np.ptp(world.lat[index]) == 0 or np.ptp(node_lon[index]) == 0:
+        return np.full(lat.shape, np.nan)
+    index = index[:: max(1, len(index) // 30_000)]
+    points = np.column_stack([node_lon[index], world.lat[index]])
+    return np.asarray(LinearNDInterpolator(points, world.arrival[index])(lon, lat))
+
+
+def _shade(
+    world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+) -> tuple[np.ndarray, str, str] | None:
+    """Return the most telling field of the sea at passage, its label and its colours."""
+    at = (moment, lat, wrap_longitude(lon))
+    names = world.sea.variables
+    if _WAVES in names:
+        waves = world.sea.sample([_WAVES], *at)[_WAVES]
+        if _varies(waves):
+            return waves, "significant wave height at passage [m]", "YlGnBu"
+    for pair, word, colours in ((_CURRENT, "current", "PuBu"), (_WIND, "wind", "BuPu")):
+        if all(name in names for name in pair):
+            got = world.sea.sample(list(pair), *at)
+            speed = np.hypot(got[pair[0]], got[pair[1]]) / KNOT
+            if _varies(speed):
+                return speed, f"{word} speed at passage [kn]", colours
+    if _DEPTH in names:
+        depth = world.sea.sample([_DEPTH], *at)[_DEPTH]
+        if _LEVEL in names:
+            depth = depth + world.sea.sample([_LEVEL], *at)[_LEVEL]
+        if _varies(depth):
+            return depth, "water depth at passage [m]", "Blues"
+    return None
+
+
+def _varies(values: np.ndarray) -> bool:
+    known = values[np.isfinite(values)]
+    return known.size > 10 and float(np.ptp(known)) > 1e-9
+
+
+def _draw_arrows(
+    axes: Any, world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+) -> None:
+    pick = (slice(6, None, 12), slice(6, None, 12))
+    lat, lon, moment = lat[pick], lon[pick], moment[pick]
+    for pair in (_CURRENT, _WIND):
+        if not all(name in world.sea.variables for name in pair):
+            continue
+        got = world.sea.sample(list(pair), moment, lat, wrap_longitude(lon))
+        east, north = got[pair[0]], got[pair[1]]
+        if _varies(np.hypot(east, north)):
+            axes.quiver(lon, lat, east, north, color=_INK, alpha=0.45, width=0.0013)
+            return
+
+
+def _draw_isochrones(
+    axes: Any, plan: Plan, reached: np.ndarray, lat: np.ndarray, lon: np.ndarray
+) -> None:
+    hours = (reached - plan.best.depart) / HOUR
+    if np.count_nonzero(np.isfinite(hours)) < 10:
+        return
+    steps = np.array([0.05, 0.1, 0.25, 0.5, 1, 2, 3, 6, 12, 24, 48, 96])
+    step = float(steps[np.argmin(np.abs(steps - plan.best.time_h / 9))])
+    top = float(np.nanmax(hours))
+    levels = np.arange(step, min(top, 1.6 * plan.best.time_h), step)
+    if len(levels) < 2:
+        return
+    lines = axes.contour(lon, lat, hours, levels=levels, colors=_INK, linewidths=0.5, alpha=0.6)
+    axes.clabel(lines, levels[1::2], fontsize=6, fmt=lambda value: f"{value:g} h")
+
+
+def _draw_land(axes: Any, chart: Any, box: Box) -> None:
+    from matplotlib.collections import PolyCollection
+
+    polygons = [
+        np.column_stack([box.unwrapped_ring(lon) if False else lon, lat])
+        for lat, lon in chart.land_polygons(box.south, box.north, box.west, box.east)
+    ]
+    if polygons:
+        axes.add_collection(
+            PolyCollection(
+                polygons, facecolors=_LAND, edgecolors=_SHORE, linewidths=0.4, zorder=3
+            )
+        )
+
+
+def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
+    best = plan.best
+    fractions = np.linspace(0, 1, 101)
+    direct_lat, direct_lon = along(
+        best.track.lat[0], best.track.lon[0], best.track.lat[-1], best.track.lon[-1], fractions
+    )
+    axes.plot(
+        box.unwrapped(direct_lon), direct_lat, "--", color=_INK, lw=0.9, zorder=4, label="geodesic"
+    )
+    for number, route in enumerate(plan.routes):
+        axes.plot(
+            box.unwrapped(route.samples["lon"]),
+            route.samples["lat"],
+            color=_ROUTE,
+            lw=2.2 if number == 0 else 1.0,
+            zorder=5,
+            label="route" if number == 0 else None,
+        )
+    track = best.track
+    axes.plot(box.unwrapped(track.lon), track.lat, ".", color=_ROUTE, ms=4, zorder=6)
+    waits = track.wait > 0
+    if waits.any():
+        axes.plot(
+            box.unwrapped(track.lon[waits]), track.lat[waits], "s", color="#ff8f00", ms=6,
+            zorder=7, label="waits",
+        )
+    for index, name in ((0, plan.provenance.get("from")), (-1, plan.provenance.get("to"))):
+        x, y = float(box.unwrapped(track.lon[index : index + 1 or None])[0]), track.lat[index]
+        axes.plot(x, y, "o", mfc="white", mec=_ROUTE, mew=1.6, ms=7, zorder=7)
+        axes.annotate(
+            str(name or ""), (x, y), xytext=(0, 9), textcoords="offset points", fontsize=8,
+            ha="center", zorder=8, color=_INK, fontweight="bold",
+        )
+
+
+def _finish(axes: Any, plan: Plan, box: Box) -> None:
+    best = plan.best
+    fuel = "" if best.fuel_t is None else f", {best.fuel_t:.1f} t fuel"
+    axes.set_title(
+        f"{best.time_h:.1f} h, {best.distance_nm:.0f} nm{fuel}; depart "
+        f"{format_time(best.depart)}; within {100 * plan.gap:.1f} % of the best possible",
+        fontsize=9,
+        loc="left",
+    )
+    axes.set_xlim(box.west, box.east)
+    axes.set_ylim(box.south, box.north)
+    axes.set_aspect(box.aspect)
+    axes.xaxis.set_major_formatter(lambda x, _: _degrees(float(wrap_longitude(x)), "EW"))
+    axes.yaxis.set_major_formatter(lambda y, _: _degrees(y, "NS"))
+    axes.tick_params(labelsize=7)
+    axes.grid(alpha=0.25, lw=0.4)
+    axes.legend(loc="lower right", fontsize=7, framealpha=0.9)
+
+
+def _degrees(value: float, letters: str) -> str:
+    letter = letters[0] if value >= 0 else letters[1]
+    return f"{abs(value):g}°{letter}" if abs(value) > 1e-9 else "0°"

@@ -1,0 +1,182 @@
+"""`Plan`: the routes found, how good they are, and all that is needed to repeat them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route
+
+
+@dataclass(frozen=True)
+class Proof:
+    """How good the answer is.
+
+    Attributes
+    ----------
+    lower_bound : float
+        No route is better than this, in the objective's unit (h or nm).
+    kind : str
+        How the bound was found, and what it rests on.
+    solver_total : float
+        What the search on the network said, before refinement and before the referee.
+    """
+
+    lower_bound: float
+    kind: str
+    solver_total: float
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What the pictures need: the arrival times over the network, the chart, the sea and ship."""
+
+    lat: np.ndarray
+    lon: np.ndarray
+    arrival: np.ndarray
+    chart: Any
+    sea: Any
+    ship: Any
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The answer to a voyage.
+
+    Attributes
+    ----------
+    voyage : Voyage
+        What was asked.
+    routes : tuple of Route
+        The routes found, each scored by the referee; the first is the best.
+    proof : Proof
+        The lower bound and the solver's own total.
+    rejections : mapping of str to int
+        How many legs were refused, for each reason.
+    notes : tuple of str
+        Assumptions and warnings the user must know.
+    provenance : mapping
+        What is needed to repeat the plan: version, data fingerprints, ship, network, seed.
+    surroundings : Surroundings
+        For drawing; not part of the JSON.
+    """
+
+    voyage: Voyage
+    routes: tuple[Route, ...]
+    proof: Proof
+    rejections: Mapping[str, int]
+    notes: tuple[str, ...]
+    provenance: Mapping[str, Any]
+    surroundings: Surroundings | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def best(self) -> Route:
+        """The best route."""
+        return self.routes[0]
+
+    @property
+    def objective_value(self) -> float:
+        """What the best route costs by the referee: hours, or nautical miles."""
+        return self.best.distance_nm if self.voyage.objective == "distance" else self.best.time_h
+
+    @property
+    def unit(self) -> str:
+        """The unit of the objective: ``"h"`` or ``"nm"``."""
+        return "nm" if self.voyage.objective == "distance" else "h"
+
+    @property
+    def lower_bound(self) -> float:
+        """No route is better than this [h for time, nm for distance]."""
+        return self.proof.lower_bound
+
+    @property
+    def solver_total(self) -> float:
+        """The total of the search on its network [h or nm]."""
+        return self.proof.solver_total
+
+    @property
+    def gap(self) -> float:
+        """How far from the best possible the answer may be, as a fraction of its own value."""
+        value = self.objective_value
+        return max(0.0, (value - self.lower_bound) / value) if value > 0 else 0.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the plan as plain data, ready for JSON (unknown numbers are None)."""
+        return {
+            "voyage": self.voyage.to_dict(),
+            "objective": self.voyage.objective,
+            "objective_unit": self.unit,
+            "routes": [route_dict(route, self.voyage.objective) for route in self.routes],
+            "lower_bound": _number(self.lower_bound),
+            "lower_bound_kind": self.proof.kind,
+            "gap": _number(self.gap),
+            "solver_total": _number(self.solver_total),
+            "rejections": dict(self.rejections),
+            "notes": list(self.notes),
+            "provenance": dict(self.provenance),
+        }
+
+    def to_json(self, path: str | Path | None = None) -> str:
+        """Return the plan as JSON text, and write it to a file when a path is given."""
+        text = json.dumps(self.to_dict(), indent=2, allow_nan=False)
+        if path is not None:
+            Path(path).write_text(text + "\n", encoding="utf-8")
+        return text
+
+    def plot(self, path: str | Path | None = None) -> Any:
+        """Draw the map of the plan; save it when a path is given. Returns a matplotlib figure."""
+        from thalweg.planning.map_picture import draw_map
+
+        return draw_map(self, path)
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write plan.json, route.geojson, route.gpx, route.csv, map.png and profile.png.
+
+        Returns
+        -------
+        list of Path
+            The files written.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be written.
+        """
+        from thalweg.planning.output import write_plan
+
+        return write_plan(self, folder)
+
+
+def route_dict(route: Route, objective: str) -> dict[str, Any]:
+    """Return one refereed route as plain data with the units in the names."""
+    return {
+        "objective": objective,
+        "depart": format_time(route.depart),
+        "arrive": format_time(route.arrive),
+        "time_h": _number(route.time_h),
+        "distance_nm": _number(route.distance_nm),
+        "fuel_t": _number(route.fuel_t),
+        "waiting_h": _number(route.waiting_h),
+        "min_ukc_m": _number(route.min_ukc_m),
+        "referee_tolerance_h": _number(route.tolerance_s / HOUR),
+        "feasible": route.feasible,
+        "violations": [violation.as_dict() for violation in route.violations],
+        "waypoints": route.waypoints(),
+    }
+
+
+def in_unit(value: float, objective: str) -> float:
+    """Turn seconds or metres into the unit of an objective."""
+    return value / (NAUTICAL_MILE if objective == "distance" else HOUR)
+
+
+def _number(value: float | None) -> float | None:
+    return None if value is None or not np.isfinite(value) else float(value)

@@ -1,0 +1,202 @@
+"""`plan`: the one place that wires the rooms together."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.core.time import format_time
+from thalweg.core.units import KNOT
+from thalweg.planning.ends import End, check_apart, find_end
+from thalweg.planning.needs import check_period, find_needs
+from thalweg.planning.networks import Builder, NetworkChoice
+from thalweg.planning.passage import Passage, Task, make_passage
+from thalweg.planning.plan import Plan, Proof, Surroundings, in_unit
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route
+from thalweg.route import join as join_routes
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+
+def plan(
+    voyage: Voyage,
+    *,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart | None = None,
+    network: str | Builder = "auto",
+    resolution: float | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Plan:
+    """Plan a voyage: exact search on a network, refinement in open water, score by the referee.
+
+    Parameters
+    ----------
+    voyage : Voyage
+        What is asked.
+    ship : Ship
+        The ship, with its limits.
+    sea : Sea
+        Currents, levels, wind and waves. Never assumed: ask for `Sea.calm` if there is none.
+    chart : Chart, optional
+        Land, depth and zones; GSHHG coastline at resolution "i" when not given.
+    network : {"auto", "lattice", "mesh"} or callable
+        How the network is built; see `thalweg.planning.networks.NetworkChoice`.
+    resolution : float, optional
+        Spacing of the network [m]; chosen from the distance when not given.
+    progress : callable, optional
+        Called with a short text at each stage.
+
+    Returns
+    -------
+    Plan
+        The best route, its proof and its provenance.
+
+    Raises
+    ------
+    InputError
+        For places on land, unknown ports, settings the ship does not have.
+    CoverageError
+        If the data lack a variable, the area or the period.
+    NoRouteError
+        If no route exists within the limits (with the reasons counted).
+    """
+    chart = Chart.gshhg("i") if chart is None else chart
+    ends = _ends(voyage, chart)
+    needs = find_needs(voyage, ship=ship, sea=sea, chart=chart)
+    task = Task(
+        voyage=voyage,
+        ship=ship,
+        sea=sea,
+        chart=chart,
+        needs=needs,
+        table=ship.tabulate(),
+        setting=_setting(voyage, ship),
+        last=check_period(voyage, sea, needs),
+        choice=NetworkChoice(network, resolution),
+        tell=progress or (lambda text: None),
+    )
+    passages = _make_passages(task, ends)
+    return _gather(task, ends, passages)
+
+
+def _ends(voyage: Voyage, chart: Chart) -> list[End]:
+    places = [("start", voyage.start)]
+    places += [(f"via point {i + 1}", place) for i, place in enumerate(voyage.via)]
+    places.append(("goal", voyage.goal))
+    ends = [find_end(place, chart, what) for what, place in places]
+    for first, second in zip(ends, ends[1:]):
+        check_apart(first, second)
+    return ends
+
+
+def _setting(voyage: Voyage, ship: Ship) -> int:
+    speeds = np.asarray(ship.speeds)
+    if voyage.speed_kn is None:
+        return len(speeds) - 1
+    misses = np.abs(speeds / KNOT - voyage.speed_kn)
+    best = int(np.argmin(misses))
+    if misses[best] > 0.05:
+        listed = ", ".join(f"{speed / KNOT:.1f}" for speed in speeds)
+        raise InputError(
+            f"The ship {ship.name!r} has no setting for {voyage.speed_kn:g} kn.",
+            f"Its speeds are {listed} kn.",
+            "Choose one of them.",
+            field="speed_kn",
+        )
+    return best
+
+
+def _make_passages(task: Task, ends: list[End]) -> list[Passage]:
+    window = (task.voyage.earliest_departure, task.voyage.latest_departure)
+    passages: list[Passage] = []
+    for start, goal in zip(ends, ends[1:]):
+        passage = make_passage(task, start, goal, window)
+        passages.append(passage)
+        window = (passage.route.arrive, passage.route.arrive)
+    return passages
+
+
+def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
+    voyage = task.voyage
+    route = passages[0].route if len(passages) == 1 else _joined(task, passages)
+    refused: Counter[str] = Counter()
+    for passage in passages:
+        refused.update(passage.network.meta.rejected)
+        refused.update(passage.result.refused)
+    total = sum(passage.result.cost for passage in passages)
+    bound = sum(passage.bound.value for passage in passages)
+    proof = Proof(
+        lower_bound=in_unit(bound, voyage.objective),
+        kind=passages[0].bound.kind,
+        solver_total=in_unit(total, voyage.objective),
+    )
+    notes = [end.note for end in ends if end.note] + list(task.needs.notes)
+    notes += [note for passage in passages for note in passage.notes]
+    return Plan(
+        voyage=voyage,
+        routes=(route,),
+        proof=proof,
+        rejections={reason: count for reason, count in refused.items() if count},
+        notes=tuple(dict.fromkeys(notes)),
+        provenance=_provenance(task, ends, passages),
+        surroundings=_surroundings(task, passages),
+    )
+
+
+def _joined(task: Task, passages: list[Passage]) -> Route:
+    return join_routes([passage.route for passage in passages])
+
+
+def _surroundings(task: Task, passages: list[Passage]) -> Surroundings:
+    nodes = [passage.network.n_nodes for passage in passages]
+    return Surroundings(
+        lat=np.concatenate([p.network.station_lat[:n] for p, n in zip(passages, nodes)]),
+        lon=np.concatenate([p.network.station_lon[:n] for p, n in zip(passages, nodes)]),
+        arrival=np.concatenate([p.result.node_arrival[:n] for p, n in zip(passages, nodes)]),
+        chart=task.chart,
+        sea=task.sea,
+        ship=task.ship,
+    )
+
+
+def _provenance(task: Task, ends: list[End], passages: list[Passage]) -> dict[str, Any]:
+    from importlib.metadata import version
+
+    table_error = dataclasses.asdict(task.table.error)
+    return {
+        "thalweg": version("thalweg"),
+        "from": ends[0].name,
+        "to": ends[-1].name,
+        "via": [end.name for end in ends[1:-1]],
+        "ship": {
+            "name": task.ship.name,
+            "fingerprint": task.ship.fingerprint(),
+            "speed_kn": float(task.ship.speeds[task.setting]) / KNOT,
+            "draught_m": float(task.ship.draught),
+            "table_error": {k: v if math.isfinite(v) else None for k, v in table_error.items()},
+        },
+        "sea": task.sea.provenance() | {"fingerprint": task.sea.fingerprint()},
+        "chart": task.chart.fingerprint(),
+        "networks": [
+            {
+                "kind": p.network.meta.kind,
+                "nodes": int(p.network.n_nodes),
+                "edges": len(p.network.target),
+                "spacing_m": p.network.meta.spacing_m,
+                "directions": p.network.meta.directions,
+                "settled": int(p.result.settled),
+                "depart": format_time(p.route.depart),
+            }
+            for p in passages
+        ],
+        "seed": task.voyage.seed,
+    }

@@ -1,0 +1,108 @@
+"""The profile of a route: speeds, weather and water under the keel against time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.units import HOUR, KNOT
+from thalweg.route import Route
+
+_INK = "#22303c"
+
+
+def draw_profile(route: Route, path: str | Path | None = None) -> Any:
+    """Draw what happens along a route against the hours since departure.
+
+    Parameters
+    ----------
+    route : Route
+        A route scored by the referee.
+    path : path, optional
+        Where to save the picture (PNG).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel each for speeds, weather and depth, as far as they are known.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    panels = [panel for panel in (_speeds, _weather, _waves, _depths) if panel(route, None)]
+    figure = Figure(figsize=(10, 1.2 + 1.9 * len(panels)), dpi=130)
+    FigureCanvasAgg(figure)
+    rows = np.atleast_1d(figure.subplots(len(panels), 1, sharex=True))
+    for axes, panel in zip(rows, panels):
+        panel(route, axes)
+        axes.grid(alpha=0.3, lw=0.4)
+        axes.legend(fontsize=7, loc="upper right", ncols=3)
+        axes.tick_params(labelsize=7)
+        axes.yaxis.label.set_size(8)
+    rows[-1].set_xlabel("hours since departure", fontsize=8)
+    figure.tight_layout()
+    if path is not None:
+        figure.savefig(path)
+    return figure
+
+
+def _hours(route: Route) -> np.ndarray:
+    return (route.samples["time"] - route.depart) / HOUR
+
+
+def _plot(axes: Any, route: Route, values: np.ndarray, label: str, colour: str) -> None:
+    axes.plot(_hours(route), values, label=label, color=colour, lw=1.4)
+
+
+def _speeds(route: Route, axes: Any | None) -> bool:
+    if axes is None:
+        return True
+    _plot(axes, route, route.samples["speed_through_water"] / KNOT, "through water", "#1565c0")
+    _plot(axes, route, route.samples["speed_over_ground"] / KNOT, "over ground", "#c2185b")
+    axes.set_ylabel("speed [kn]")
+    return True
+
+
+def _magnitude(route: Route, east: str, north: str) -> np.ndarray | None:
+    if east not in route.samples or north not in route.samples:
+        return None
+    speed = np.hypot(route.samples[east], route.samples[north]) / KNOT
+    return speed if np.nanmax(speed, initial=0.0) > 0 else None
+
+
+def _weather(route: Route, axes: Any | None) -> bool:
+    wind = _magnitude(route, "eastward_wind", "northward_wind")
+    current = _magnitude(route, "eastward_sea_water_velocity", "northward_sea_water_velocity")
+    if axes is not None:
+        if wind is not None:
+            _plot(axes, route, wind, "wind", "#6a1b9a")
+        if current is not None:
+            _plot(axes, route, current, "current", "#00838f")
+        axes.set_ylabel("[kn]")
+    return wind is not None or current is not None
+
+
+def _waves(route: Route, axes: Any | None) -> bool:
+    height = route.samples.get("sea_surface_wave_significant_height")
+    if height is None or not np.nanmax(height, initial=0.0) > 0:
+        return False
+    if axes is not None:
+        _plot(axes, route, height, "significant wave height", "#2e7d32")
+        axes.set_ylabel("[m]")
+    return True
+
+
+def _depths(route: Route, axes: Any | None) -> bool:
+    clearance = route.samples["under_keel_clearance"]
+    known = clearance[np.isfinite(clearance)]
+    if not known.size:
+        return False
+    if axes is not None:
+        _plot(axes, route, clearance, "under-keel clearance", _INK)
+        axes.axhline(0.0, color="#b71c1c", lw=0.8)
+        if known.max() > 60:
+            axes.set_yscale("symlog", linthresh=10)
+        axes.set_ylabel("[m]")
+    return True

@@ -1,0 +1,93 @@
+"""Geodesy against published geodesics (Karney 2013; GeographicLib) and its own round trips."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from thalweg.core import geodesy
+from thalweg.core.errors import InputError
+
+lat = st.floats(-89.0, 89.0)
+lon = st.floats(-180.0, 179.999)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "length", "courses"),
+    [
+        ((40.6, -73.8), (51.6, -0.5), 5551759.4003, (51.198883, 107.821777)),
+        ((0.0, 0.0), (0.5, 179.5), 19936288.5790, None),
+        ((0.0, 0.0), (0.5, 179.7), 19944127.4208, None),
+        (
+            (36.530042355041, 0.0),
+            (-48.164270779097769, 5.762344694676510),
+            9398502.0435,
+            (176.125875, 175.334308),
+        ),
+    ],
+)
+def test_geographiclib_geodesics(start, goal, length, courses):
+    got, first, last = geodesy.inverse(*start, *goal)
+    assert float(got) == pytest.approx(length, abs=6e-5)
+    if courses:
+        assert math.degrees(first) == pytest.approx(courses[0], abs=6e-7)
+        assert math.degrees(last) == pytest.approx(courses[1], abs=6e-7)
+
+
+@given(lat, lon, st.floats(0, 2 * math.pi), st.floats(1.0, 5e6))
+def test_direct_undoes_inverse(lat1, lon1, course, length):
+    lat2, lon2 = geodesy.direct(lat1, lon1, course, length)
+    assert float(geodesy.distance(lat1, lon1, lat2, lon2)) == pytest.approx(length, rel=1e-9)
+
+
+@given(lat, lon, lat, lon)
+def test_triangle_inequality(lat1, lon1, lat2, lon2):
+    whole = float(geodesy.distance(lat1, lon1, lat2, lon2))
+    way = float(geodesy.distance(lat1, lon1, 10.0, 20.0) + geodesy.distance(10.0, 20.0, lat2, lon2))
+    assert whole <= way * (1 + 1e-12)
+
+
+def test_densify_keeps_vertices_and_length():
+    lats, lons = np.array([50.0, 45.0, 40.7]), np.array([-5.0, -40.0, -74.0])
+    fine_lat, fine_lon, leg = geodesy.densify(lats, lons, 50_000.0)
+    pieces = geodesy.distance(fine_lat[:-1], fine_lon[:-1], fine_lat[1:], fine_lon[1:])
+    assert pieces.max() <= 50_000.0
+    assert pieces.sum() == pytest.approx(
+        geodesy.distance(lats[:-1], lons[:-1], lats[1:], lons[1:]).sum()
+    )
+    assert fine_lat[np.searchsorted(leg, 1)] == 45.0
+    assert (fine_lat[-1], fine_lon[-1]) == (40.7, -74.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "position"),
+    [
+        ("52.0N 4.1E", (52.0, 4.1)),
+        ("52.0,4.1", (52.0, 4.1)),
+        ("-33.9, 151.2", (-33.9, 151.2)),
+        ("52 30 N 4 06 W", (52.5, -4.1)),
+        ("52°30'N 004°06'W", (52.5, -4.1)),
+        ("33.9S 151.2E", (-33.9, 151.2)),
+        ("0N 190E", (0.0, -170.0)),
+    ],
+)
+def test_positions_in_text(text, position):
+    assert geodesy.parse_position(text) == pytest.approx(position)
+
+
+@pytest.mark.parametrize("text", ["Rotterdam", "NLRTM", "52.0", "52.0N"])
+def test_a_name_is_not_a_position(text):
+    assert geodesy.parse_position(text) is None
+
+
+def test_swapped_latitude_gets_a_hint():
+    with pytest.raises(InputError, match="swapped"):
+        geodesy.check_position(151.2, -33.9)
+
+
+@given(lon)
+def test_wrapping_leaves_longitudes_alone(value):
+    assert float(geodesy.wrap_longitude(value)) == value
+    assert float(geodesy.wrap_longitude(value + 360.0)) == pytest.approx(value, abs=1e-9)
