@@ -1,0 +1,171 @@
+"""Freezing: the sea sampled once at stations or on a raster, for kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError, OutsidePeriodError
+from thalweg.core.time import format_time
+from thalweg.kernels import codes
+from thalweg.sea import names as nm
+from thalweg.sea.fields import FloatArray, GridFields, IntArray, StationFields
+
+if TYPE_CHECKING:
+    from thalweg.sea.sea import Sea
+
+Extra: TypeAlias = Callable[
+    [Mapping[str, FloatArray], FloatArray, FloatArray, FloatArray], FloatArray
+]
+
+CHUNK = 1 << 19  #: values computed at a time, so that temporaries stay small
+
+
+class SampledSea(Mapping[str, FloatArray]):
+    """The sea at given points as a mapping; each variable is sampled when first asked for."""
+
+    def __init__(self, sea: Sea, time: FloatArray, lat: FloatArray, lon: FloatArray) -> None:
+        self._sea, self._points = sea, (time, lat, lon)
+        self._done: dict[str, FloatArray] = {}
+
+    def __getitem__(self, name: str) -> FloatArray:
+        if name not in self._done:
+            if not self._sea.knows(name):
+                raise KeyError(name)
+            self._done[name] = self._sea.sample([name], *self._points)[name]
+        return self._done[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted(self._sea.variables))
+
+    def __len__(self) -> int:
+        return len(self._sea.variables)
+
+
+def freeze_stations(
+    sea: Sea,
+    lat: FloatArray,
+    lon: FloatArray,
+    *,
+    window: tuple[float, float],
+    channels: Sequence[int],
+    extra: Mapping[int, Extra],
+) -> StationFields:
+    """Sample the sea at stations for all native times of a window (see `Sea.freeze_stations`)."""
+    lat, lon = np.ascontiguousarray(lat, np.float64), np.ascontiguousarray(lon, np.float64)
+    index, present = channel_places(sea, channels, extra)
+    times = frozen_times(sea, window, [n for c in present if (n := _variable(c, extra))], extra)
+    values = np.full((lat.size, times.size, len(present)), np.nan, np.float32)
+    rows = max(1, CHUNK // times.size)
+    for first in range(0, lat.size, rows):
+        part = slice(first, first + rows)
+        _fill(values[part], sea, (times, lat[part], lon[part]), present, extra)
+    return StationFields(times, values, index)
+
+
+def freeze_grid(
+    sea: Sea,
+    box: tuple[float, float, float, float],
+    *,
+    window: tuple[float, float],
+    channels: Sequence[int],
+    spacing_deg: float,
+    extra: Mapping[int, Extra],
+) -> GridFields:
+    """Sample the sea on a regular raster for all native times (see `Sea.freeze_grid`)."""
+    south, north, west, east = box
+    if not (spacing_deg > 0.0 and north > south):
+        raise InputError(
+            f"A raster of spacing {spacing_deg:g} deg from {south:g} to {north:g} N is empty.",
+            "The spacing must be positive and the north above the south.",
+            "Check the box.",
+        )
+    width = (east - west) % 360.0 or 360.0
+    ny = max(2, int(np.ceil((north - south) / spacing_deg - 1e-9)) + 1)
+    nx = max(2, int(np.ceil(width / spacing_deg - 1e-9)) + 1)
+    dlat, dlon = (north - south) / (ny - 1), width / (nx - 1)
+    rows, columns = np.meshgrid(
+        south + dlat * np.arange(ny), west + dlon * np.arange(nx), indexing="ij"
+    )
+    stations = freeze_stations(
+        sea, rows.ravel(), columns.ravel(), window=window, channels=channels, extra=extra
+    )
+    shape = (ny, nx, stations.times.size, stations.values.shape[2])
+    values = np.ascontiguousarray(stations.values.reshape(shape).transpose(2, 0, 1, 3))
+    return GridFields(stations.times, south, dlat, west, dlon, values, stations.channel_index)
+
+
+def channel_places(
+    sea: Sea, channels: Sequence[int], extra: Mapping[int, Extra]
+) -> tuple[IntArray, list[int]]:
+    """Return the place of each channel (-1 if the sea lacks it) and the present channels."""
+    wanted = sorted({*channels, *extra})
+    unknown = [c for c in wanted if c not in range(codes.CHANNELS)]
+    if unknown:
+        raise InputError(
+            f"There is no channel {unknown[0]}.",
+            f"Channels are numbered 0 to {codes.CHANNELS - 1}.",
+            "Use the names in thalweg.kernels.codes.",
+        )
+    present = [c for c in wanted if c in extra or nm.CHANNEL_VARIABLES.get(c) in sea.variables]
+    index = np.full(codes.CHANNELS, -1, np.int64)
+    index[present] = np.arange(len(present))
+    return index, present
+
+
+def frozen_times(
+    sea: Sea, window: tuple[float, float], variables: Sequence[str], extra: Mapping[int, Extra]
+) -> FloatArray:
+    """Return the times to freeze, or raise if the data know none in the window."""
+    start, end = window
+    if not (np.isfinite(start) and np.isfinite(end) and end >= start):
+        raise InputError(
+            f"A window from {format_time(start)} to {format_time(end)} holds no time.",
+            "The end must not lie before the start.",
+            "Check departure and horizon.",
+        )
+    if not variables and not extra:
+        return np.array([start, max(end, start + 1.0)])
+    times = sea.times(start, end, names=None if extra else variables)
+    if times.size == 0:
+        first, last = sea.period_of(variables)
+        raise OutsidePeriodError(
+            f"The sea was asked for {format_time(start)} to {format_time(end)}.",
+            f"The data cover {format_time(first)} to {format_time(last)}.",
+            "Choose a departure in that period or give data for the voyage.",
+            start=start,
+            end=end,
+        )
+    return times
+
+
+def _variable(channel: int, extra: Mapping[int, Extra]) -> str | None:
+    return None if channel in extra else nm.CHANNEL_VARIABLES[channel]
+
+
+def _fill(
+    values: NDArray[np.float32],
+    sea: Sea,
+    points: tuple[FloatArray, FloatArray, FloatArray],
+    present: Sequence[int],
+    extra: Mapping[int, Extra],
+) -> None:
+    """Write the channels of some stations into ``values`` (S, T, K)."""
+    times, lat, lon = points
+    plain = {k: n for k, c in enumerate(present) if (n := _variable(c, extra))}
+    series = sea.series(list(plain.values()), times, lat, lon)
+    for k, name in plain.items():
+        values[:, :, k] = series[name]
+    if not extra:
+        return
+    shape = (lat.size, times.size)
+    wide = [
+        np.ascontiguousarray(np.broadcast_to(a, shape)) for a in (times, lat[:, None], lon[:, None])
+    ]
+    sampled = SampledSea(sea, wide[0], wide[1], wide[2])
+    for k, channel in enumerate(present):
+        if channel in extra:
+            values[:, :, k] = extra[channel](sampled, wide[0], wide[1], wide[2])

@@ -1,0 +1,157 @@
+"""The names variables of the sea are known by: CF standard names, and how they hang together.
+
+Inside, every horizontal vector is kept as two components (east, north) pointing *towards* where it
+goes, and the direction of waves as a unit vector pointing to where they travel. Everything else
+(speeds, directions in degrees) is derived from those, so that no direction is ever interpolated as
+a number.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from thalweg.kernels import codes
+
+EASTWARD_WIND: Final = "eastward_wind"
+NORTHWARD_WIND: Final = "northward_wind"
+EASTWARD_CURRENT: Final = "eastward_sea_water_velocity"
+NORTHWARD_CURRENT: Final = "northward_sea_water_velocity"
+WAVE_HEIGHT: Final = "sea_surface_wave_significant_height"
+WAVE_PERIOD: Final = "sea_surface_wave_period_at_variance_spectral_density_maximum"
+WAVE_TO_EAST: Final = "sea_surface_wave_to_direction_eastward_component"
+WAVE_TO_NORTH: Final = "sea_surface_wave_to_direction_northward_component"
+WATER_LEVEL: Final = "sea_surface_height_above_geopotential_datum"
+BED_DEPTH: Final = "sea_floor_depth_below_geoid"
+TOTAL_DEPTH: Final = "sea_floor_depth_below_sea_surface"
+PRESSURE: Final = "air_pressure_at_mean_sea_level"
+ICE: Final = "sea_ice_area_fraction"
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A horizontal vector and the names of its other spellings.
+
+    Attributes
+    ----------
+    east, north : str
+        Canonical names of the components, pointing towards.
+    speed : str
+        CF name of its length; empty for a unit vector.
+    towards, origin : str
+        CF names of its direction [deg] given as towards and as from; empty if CF has none.
+    """
+
+    east: str
+    north: str
+    speed: str
+    towards: str
+    origin: str
+
+    @property
+    def pair(self) -> tuple[str, str]:
+        """Both component names."""
+        return self.east, self.north
+
+
+WIND: Final = Vector(
+    EASTWARD_WIND, NORTHWARD_WIND, "wind_speed", "wind_to_direction", "wind_from_direction"
+)
+CURRENT: Final = Vector(
+    EASTWARD_CURRENT,
+    NORTHWARD_CURRENT,
+    "sea_water_speed",
+    "sea_water_velocity_to_direction",
+    "sea_water_velocity_from_direction",
+)
+WAVES: Final = Vector(
+    WAVE_TO_EAST,
+    WAVE_TO_NORTH,
+    "",
+    "sea_surface_wave_to_direction",
+    "sea_surface_wave_from_direction",
+)
+VECTORS: Final = (WIND, CURRENT, WAVES)
+VECTOR_OF: Final[dict[str, Vector]] = {name: v for v in VECTORS for name in v.pair}
+
+CHANNEL_VARIABLES: Final[dict[int, str]] = {
+    codes.CURRENT_EAST: EASTWARD_CURRENT,
+    codes.CURRENT_NORTH: NORTHWARD_CURRENT,
+    codes.WIND_EAST: EASTWARD_WIND,
+    codes.WIND_NORTH: NORTHWARD_WIND,
+    codes.WAVE_HEIGHT_CH: WAVE_HEIGHT,
+    codes.WAVE_EAST: WAVE_TO_EAST,
+    codes.WAVE_NORTH: WAVE_TO_NORTH,
+    codes.WAVE_PERIOD: WAVE_PERIOD,
+    codes.WATER_LEVEL: WATER_LEVEL,
+    codes.BED_DEPTH: BED_DEPTH,
+}
+
+CANONICAL_UNITS: Final[dict[str, str]] = {
+    EASTWARD_WIND: "m/s",
+    NORTHWARD_WIND: "m/s",
+    EASTWARD_CURRENT: "m/s",
+    NORTHWARD_CURRENT: "m/s",
+    WAVE_HEIGHT: "m",
+    WAVE_PERIOD: "s",
+    WAVE_TO_EAST: "1",
+    WAVE_TO_NORTH: "1",
+    WATER_LEVEL: "m",
+    BED_DEPTH: "m",
+    PRESSURE: "Pa",
+    ICE: "1",
+    "wind_speed": "m/s",
+    "sea_water_speed": "m/s",
+}
+
+_LEVEL = re.compile(
+    r"^(tidal_)?(sea|water)_surface_(height|elevation)(_above_\w+|_anomaly|_relative_to_\w+)?"
+    r"(_due_to_\w+)?$"
+)
+_DEPTH = re.compile(r"^sea_floor_depth(_below_\w+)?$")
+_BED_LEVELS = frozenset(
+    {"bed_level", "sea_floor_altitude", "altitude_of_sea_floor", "sea_floor_height"}
+    | {f"height_above_{d}" for d in ("mean_sea_level", "geoid", "reference_ellipsoid")}
+)
+
+
+def canonical(name: str) -> str:
+    """Return the name a variable is kept under: spellings of level and depth become one.
+
+    Examples
+    --------
+    >>> canonical("sea_floor_depth_below_mean_sea_level")
+    'sea_floor_depth_below_geoid'
+    >>> canonical("tidal_sea_surface_height_above_lowest_astronomical_tide")
+    'sea_surface_height_above_geopotential_datum'
+    """
+    if name == TOTAL_DEPTH:
+        return name
+    if _DEPTH.match(name):
+        return BED_DEPTH
+    if _LEVEL.match(name):
+        return WATER_LEVEL
+    if name in ("surface_air_pressure_at_sea_level", "air_pressure_at_sea_level"):
+        return PRESSURE
+    return name
+
+
+def is_bed_level(name: str) -> bool:
+    """Return whether the name is that of a height of the sea floor, positive up."""
+    return name in _BED_LEVELS
+
+
+def group_of(name: str) -> tuple[str, ...]:
+    """Return the variables that must come from one layer together with this one."""
+    vector = VECTOR_OF.get(name)
+    return vector.pair if vector else (name,)
+
+
+def components_for(name: str) -> tuple[Vector, str] | None:
+    """Return the vector and part ("speed", "towards", "origin") a derived name is made from."""
+    for vector in VECTORS:
+        for part in ("speed", "towards", "origin"):
+            if name and name == getattr(vector, part):
+                return vector, part
+    return None

@@ -1,0 +1,237 @@
+"""Seas given by formulas: names, vectors, shapes, areas, periods, layers and policies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg.core.errors import InputError, OutsidePeriodError
+from thalweg.kernels import codes
+from thalweg.sea import Sea
+
+
+def affine(a: float, b: float, c: float, d: float):
+    return lambda t, lat, lon: a + b * t + c * lat + d * lon
+
+
+def test_scalar_answers_are_spread_over_the_points() -> None:
+    sea = Sea.from_functions({"sea_surface_wave_significant_height": lambda t, lat, lon: 2.0})
+    got = sea.sample(["sea_surface_wave_significant_height"], 0.0, [1.0, 2.0], [[3.0], [4.0]])
+    assert got["sea_surface_wave_significant_height"].tolist() == [[2.0, 2.0], [2.0, 2.0]]
+
+
+def test_functions_get_seconds_and_degrees_in_the_callers_places() -> None:
+    sea = Sea.from_functions({"salinity": affine(1.0, 2.0, 30.0, 500.0)})
+    got = sea.sample(["salinity"], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0])
+    assert got["salinity"].tolist() == [1.0, 3.0, 31.0, 501.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "angle", "east", "north"),
+    [
+        ("wind_from_direction", 270.0, 10.0, 0.0),
+        ("wind_from_direction", 0.0, 0.0, -10.0),
+        ("wind_to_direction", 90.0, 10.0, 0.0),
+    ],
+)
+def test_wind_speed_and_direction_become_components(name, angle, east, north) -> None:
+    sea = Sea.from_functions({"wind_speed": lambda t, y, x: 10.0, name: lambda t, y, x: angle})
+    got = sea.sample(["eastward_wind", "northward_wind", "wind_speed", name], 0.0, 0.0, 0.0)
+    assert got["eastward_wind"] == pytest.approx(east, abs=1e-12)
+    assert got["northward_wind"] == pytest.approx(north, abs=1e-12)
+    assert got["wind_speed"] == pytest.approx(10.0)
+    assert np.cos(np.radians(got[name] - angle)) == pytest.approx(1.0)
+
+
+def test_wave_direction_is_kept_as_a_unit_vector_towards() -> None:
+    sea = Sea.from_functions({"sea_surface_wave_from_direction": lambda t, y, x: 315.0})
+    fields = sea.freeze_stations([0.0], [0.0], 0.0, 100.0, [codes.WAVE_EAST, codes.WAVE_NORTH])
+    assert fields.values[0, 0] == pytest.approx([np.sqrt(0.5), -np.sqrt(0.5)], abs=1e-6)
+
+
+def test_half_a_vector_is_refused() -> None:
+    with pytest.raises(InputError, match="northward_wind"):
+        Sea.from_functions({"eastward_wind": lambda t, y, x: 1.0})
+    with pytest.raises(InputError, match="sea_water_speed"):
+        Sea.from_functions({"sea_water_velocity_to_direction": lambda t, y, x: 1.0})
+
+
+def test_the_same_thing_twice_is_refused() -> None:
+    one = {"sea_floor_depth_below_geoid": lambda t, y, x: 1.0}
+    with pytest.raises(InputError, match="twice"):
+        Sea.from_functions({**one, "sea_floor_depth_below_mean_sea_level": lambda t, y, x: 1.0})
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["sea_floor_depth_below_mean_sea_level", "sea_floor_depth", "sea_floor_depth_below_geoid"],
+)
+def test_every_spelling_of_bed_depth_is_one_channel(name: str) -> None:
+    sea = Sea.from_functions({name: lambda t, y, x: 7.0})
+    fields = sea.freeze_stations([0.0], [0.0], 0.0, 100.0, [codes.BED_DEPTH])
+    assert fields.channel_index[codes.BED_DEPTH] == 0
+    assert fields.values[0, 0, 0] == 7.0
+
+
+def test_bed_level_is_negated_and_depth_below_the_moving_surface_is_freed_of_the_level() -> None:
+    bed = Sea.from_functions({"bed_level": lambda t, y, x: -12.0})
+    assert bed.sample(["sea_floor_depth_below_geoid"], 0, 0, 0)["sea_floor_depth_below_geoid"] == 12
+    moving = Sea.from_functions(
+        {
+            "sea_floor_depth_below_sea_surface": lambda t, y, x: 10.0 + t,
+            "sea_surface_height_above_mean_sea_level": lambda t, y, x: t,
+        }
+    )
+    got = moving.sample(["sea_floor_depth_below_geoid"], [0.0, 3.0], 0.0, 0.0)
+    assert got["sea_floor_depth_below_geoid"].tolist() == [10.0, 10.0]
+
+
+def test_wrong_shape_names_the_function() -> None:
+    sea = Sea.from_functions({"air_pressure_at_mean_sea_level": lambda t, y, x: np.zeros(7)})
+    with pytest.raises(InputError, match=r"air_pressure.*shape \(7,\)"):
+        sea.sample(["air_pressure_at_mean_sea_level"], 0.0, [1.0, 2.0], 0.0)
+    text = Sea.from_functions({"x": lambda t, y, x: "calm"})
+    with pytest.raises(InputError, match="'x' returned a str"):
+        text.sample(["x"], 0.0, 0.0, 0.0)
+
+
+def test_nan_stays_and_says_why() -> None:
+    sea = Sea.from_functions(
+        {"x": lambda t, y, x: np.where(y > 0.5, np.nan, 1.0)},
+        area=(0.0, 1.0, 179.0, -179.0),
+        period=(0.0, 100.0),
+    )
+    got = sea.sample(["x"], [0, 0, 0, 101, 0], [0, 0.6, 0, 0, 0], [180, 180, -179.5, 180, 178.0])[
+        "x"
+    ]
+    assert np.isnan(got).tolist() == [False, True, False, True, True]
+    assert sea.why_missing("x", 0.0, 0.6, 180.0) == "gap"
+    assert sea.why_missing("x", 101.0, 0.0, 180.0) == "period"
+    assert sea.why_missing("x", 0.0, 0.0, 178.0) == "area"
+    assert sea.why_missing("wind_speed", 0.0, 0.0, 180.0) == "variable"
+
+
+def test_unknown_names_are_nan_not_zero() -> None:
+    assert np.isnan(Sea.calm().sample(["sea_ice_area_fraction"], 0, 0, 0)["sea_ice_area_fraction"])
+
+
+def test_automatic_steps() -> None:
+    sea = Sea.from_functions({"x": lambda t, y, x: t})
+    assert np.diff(sea.times(0.0, 20000.0)) == pytest.approx(100.0)
+    assert np.diff(sea.times(0.0, 600.0 * 1000)) == pytest.approx(600.0)
+    assert sea.times(0.0, 1e8).size == 2001
+    assert sea.times(5.0, 5.0).size == 2
+    stepped = Sea.from_functions({"x": lambda t, y, x: t}, time_step=10.0)
+    assert stepped.times(0.0, 95.0).tolist()[-1] == 95.0
+    assert stepped.times(0.0, 95.0).size == 11
+
+
+def test_frozen_stations_hold_what_is_sampled() -> None:
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": affine(0.0, 1e-4, 0.1, 0.01),
+            "northward_sea_water_velocity": affine(1.0, -1e-4, 0.2, 0.02),
+            "x": affine(0.0, 0.0, 1.0, 0.0),
+        }
+    )
+    lat, lon = np.array([0.0, 1.0, 2.0]), np.array([5.0, 6.0, 7.0])
+    fields = sea.freeze_stations(
+        lat,
+        lon,
+        0.0,
+        2000.0,
+        [codes.CURRENT_NORTH, codes.CURRENT_EAST, codes.WIND_EAST],
+        extra={codes.SPEED_FIELD: lambda s, t, y, x: s["x"] * 2.0 + t},
+    )
+    assert fields.values.shape == (3, 201, 3)
+    assert fields.values.dtype == np.float32
+    assert fields.values.flags.c_contiguous
+    assert fields.channel_index[codes.WIND_EAST] == -1
+    east = fields.values[:, :, fields.channel_index[codes.CURRENT_EAST]]
+    expected = 1e-4 * fields.times[None] + 0.1 * lat[:, None] + 0.01 * lon[:, None]
+    assert east == pytest.approx(expected, rel=1e-6)
+    speed = fields.values[:, :, fields.channel_index[codes.SPEED_FIELD]]
+    assert speed == pytest.approx(2.0 * lat[:, None] + fields.times[None], rel=1e-6)
+
+
+def test_frozen_grid_across_the_antimeridian_has_unwrapped_longitudes() -> None:
+    sea = Sea.from_functions(
+        {"sea_surface_wave_significant_height": lambda t, y, x: np.where(x > 0, x, x + 360.0)}
+    )
+    grid = sea.freeze_grid(
+        -1.0, 1.0, 179.0, -179.0, 0.0, 10.0, [codes.WAVE_HEIGHT_CH], spacing_deg=0.5
+    )
+    columns = grid.lon0 + grid.dlon * np.arange(grid.values.shape[2])
+    assert grid.values.shape[1:] == (5, 5, 1)
+    assert columns.tolist() == [179.0, 179.5, 180.0, 180.5, 181.0]
+    assert grid.values[0, 0, :, 0] == pytest.approx(columns)
+
+
+def test_first_layer_that_knows_wins_and_vectors_stay_together() -> None:
+    def hole(t, y, x):
+        return np.where(y > 0.5, np.nan, 1.0)
+
+    coastal = Sea.from_functions({"eastward_wind": hole, "northward_wind": lambda t, y, x: 2.0})
+    world = Sea.from_functions(
+        {
+            "eastward_wind": lambda t, y, x: 10.0,
+            "northward_wind": lambda t, y, x: 20.0,
+            "air_pressure_at_mean_sea_level": lambda t, y, x: 1e5,
+        }
+    )
+    sea = coastal + world
+    names = ["eastward_wind", "northward_wind", "air_pressure_at_mean_sea_level"]
+    got = sea.sample(names, 0.0, [0.0, 1.0], 0.0)
+    assert got["eastward_wind"].tolist() == [1.0, 10.0]
+    assert got["northward_wind"].tolist() == [2.0, 20.0]
+    assert got["air_pressure_at_mean_sea_level"].tolist() == [1e5, 1e5]
+    series = sea.series(names, np.array([0.0, 9.0]), np.array([0.0, 1.0]), np.zeros(2))
+    assert series["northward_wind"].tolist() == [[2.0, 2.0], [20.0, 20.0]]
+    assert Sea.layered(world, coastal).sample(names, 0, 0, 0)["eastward_wind"] == 10.0
+
+
+def test_filling_happens_only_when_named_and_is_told() -> None:
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, y, x: 1.0,
+            "northward_sea_water_velocity": lambda t, y, x: 1.0,
+        },
+        period=(0.0, 100.0),
+    )
+    name = "eastward_sea_water_velocity"
+    assert np.isnan(sea.sample([name], 200.0, 0.0, 0.0)[name])
+    filled = sea.filled(currents=0.0)
+    assert filled.sample([name], [50.0, 200.0], 0.0, 0.0)[name].tolist() == [1.0, 0.0]
+    assert filled.assumptions == ("where unknown, currents = 0.0",)
+    assert filled.fingerprint() != sea.fingerprint()
+    frozen = filled.freeze_stations([0.0], [0.0], 0.0, 1000.0, [codes.CURRENT_EAST])
+    values = np.interp([99.0, 102.0, 900.0], frozen.times, frozen.values[0, :, 0])
+    assert values == pytest.approx([1.0, 0.0, 0.0])
+    with pytest.raises(InputError, match="currents"):
+        sea.filled(current=0.0)
+    with pytest.raises(InputError, match="no direction"):
+        sea.filled(wind=5.0)
+
+
+def test_freezing_outside_the_period_says_which_period_there_is() -> None:
+    sea = Sea.from_functions(
+        {"sea_surface_wave_significant_height": lambda t, y, x: 1.0}, period=(0, 9)
+    )
+    with pytest.raises(OutsidePeriodError, match="1970-01-01T00:00:09Z"):
+        sea.freeze_stations([0.0], [0.0], 100.0, 200.0, [codes.WAVE_HEIGHT_CH])
+
+
+def test_calm_is_steady_and_says_so() -> None:
+    calm = Sea.calm()
+    assert calm.times(0.0, 1e6).tolist() == [0.0, 1e6]
+    assert calm.assumptions
+    got = calm.sample(
+        ["wind_speed", "sea_water_speed", "sea_surface_wave_significant_height"], 0, 0, 0
+    )
+    assert all(value == 0.0 for value in got.values())
+    assert calm.coverage()[0].start is None
+
+
+def test_fingerprint_is_stable() -> None:
+    assert Sea.calm().fingerprint() == Sea.calm().fingerprint()
+    assert Sea.calm().provenance()["layers"][0]["label"] == "calm"
