@@ -8,12 +8,11 @@ from types import MappingProxyType
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import DAY, KNOT, TONNE
-
-Floats = NDArray[np.float64]
+from thalweg.ship.methods.arrays import Floats, floats
 
 #: kg/(W s) in one g/kWh.
 G_KWH: Final = 1e-3 / 3.6e6
@@ -145,8 +144,8 @@ def sfoc_load_factor(load: ArrayLike) -> Floats:
     Fourth IMO GHG Study 2020, annex B.2, eq. 10 (checked against a quotation of the text);
     only for piston engines.
     """
-    x = np.asarray(load, dtype=float)
-    return (1.280 + x * (-0.710 + 0.455 * x))[()]
+    x = floats(load)
+    return 1.280 + x * (-0.710 + 0.455 * x)
 
 
 def fuel_rate(
@@ -179,10 +178,10 @@ def fuel_rate(
     ----------
     Fourth IMO GHG Study 2020, annex B.2, eq. 10.
     """
-    p = np.asarray(power, dtype=float)
+    p = floats(power)
     p = np.where(p >= 0.0, p, np.nan)
-    factor = sfoc_load_factor(p / np.asarray(mcr, dtype=float)) if varies_with_load else 1.0
-    return (p * (np.asarray(sfoc_g_kwh, dtype=float) * factor + pilot_g_kwh) * G_KWH)[()]
+    factor = sfoc_load_factor(p / floats(mcr)) if varies_with_load else 1.0
+    return p * (floats(sfoc_g_kwh) * factor + floats(pilot_g_kwh)) * G_KWH
 
 
 def engines_needed(
@@ -206,10 +205,10 @@ def engines_needed(
     ndarray
         Number of engines, 0 at zero power; NaN where all of them do not suffice.
     """
-    p = np.asarray(power, dtype=float)
+    p = floats(power)
     with np.errstate(invalid="ignore"):
-        need = np.ceil(p / (np.asarray(engine_mcr, dtype=float) * largest_load) - 1e-12)
-        return np.where((p >= 0.0) & (need <= count), need, np.nan)[()]
+        need = np.ceil(p / (floats(engine_mcr) * largest_load) - 1e-12)
+        return np.where((p >= 0.0) & (need <= count), need, np.nan)
 
 
 def plant_fuel_rate(
@@ -246,7 +245,7 @@ def plant_fuel_rate(
     if choice not in ("least_fuel", "fewest"):
         raise unknown_name("choice of engines", choice, ("least_fuel", "fewest"))
     fewest = engines_needed(power, engine_mcr, count=count, largest_load=largest_load)
-    p, least = np.asarray(power, dtype=float), np.asarray(fewest)
+    p, least = floats(power), np.asarray(fewest)
     best = np.where(least == 0.0, 0.0, np.full(np.broadcast(p, least).shape, np.inf))
     running = np.where(least == 0.0, 0.0, np.nan)
     for n in range(1, count + 1):
@@ -254,7 +253,7 @@ def plant_fuel_rate(
         usable = (least == n) if choice == "fewest" else (least <= n) & (least > 0.0)
         better = usable & (burnt < best)
         best, running = np.where(better, burnt, best), np.where(better, float(n), running)
-    return np.where(np.isnan(running), np.nan, best)[()], running[()]
+    return np.where(np.isnan(running), np.nan, best), running
 
 
 def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> Floats:
@@ -276,7 +275,7 @@ def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> Floats:
     ----------
     Fourth IMO GHG Study 2020, annex B.2, eq. 11: auxiliary power times base consumption.
     """
-    return (np.asarray(power, dtype=float) * np.asarray(sfoc_g_kwh, dtype=float) * G_KWH)[()]
+    return floats(power) * floats(sfoc_g_kwh) * G_KWH
 
 
 @dataclass(frozen=True)
@@ -332,7 +331,7 @@ def table_fuel_rate(speed: ArrayLike, table: EngineTable) -> tuple[Floats, Float
     tuple of ndarray
         Fuel [kg/s] and engines running.
     """
-    knots = np.asarray(speed, dtype=float) / KNOT
+    knots = floats(speed) / KNOT
     engines, speeds = np.array(table.engines), np.array(table.speed_kn)
     fuel = np.array(table.fuel_t_day) * TONNE / DAY
     best, running = np.full(knots.shape, np.inf), np.full(knots.shape, np.nan)
@@ -342,4 +341,4 @@ def table_fuel_rate(speed: ArrayLike, table: EngineTable) -> tuple[Floats, Float
         burnt = np.interp(knots, speeds[order], fuel[order])
         better = inside & (burnt < best)
         best, running = np.where(better, burnt, best), np.where(better, float(n), running)
-    return np.where(np.isnan(running), np.nan, best)[()], running[()]
+    return np.where(np.isnan(running), np.nan, best), running

@@ -8,12 +8,11 @@ from types import MappingProxyType
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import TONNE
-
-Floats = NDArray[np.float64]
+from thalweg.ship.methods.arrays import Floats, floats
 
 
 @dataclass(frozen=True)
@@ -140,7 +139,7 @@ def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> Floats:
     ----------
     MEPC.364(79), section 2.2.1.
     """
-    return (np.asarray(fuel_mass, dtype=float) * np.asarray(carbon_factor, dtype=float))[()]
+    return floats(fuel_mass) * floats(carbon_factor)
 
 
 def same_heat_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> Floats:
@@ -158,7 +157,7 @@ def same_heat_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> Floats:
     ndarray
         Mass of ``to``, in the unit of ``fuel_mass``.
     """
-    return (np.asarray(fuel_mass, dtype=float) * of.heating_value / to.heating_value)[()]
+    return floats(fuel_mass) * of.heating_value / to.heating_value
 
 
 def fuel_cost(fuel_mass: ArrayLike, *, price_t: ArrayLike) -> Floats:
@@ -176,7 +175,7 @@ def fuel_cost(fuel_mass: ArrayLike, *, price_t: ArrayLike) -> Floats:
     ndarray
         Cost.
     """
-    return (np.asarray(fuel_mass, dtype=float) / TONNE * np.asarray(price_t, dtype=float))[()]
+    return floats(fuel_mass) / TONNE * floats(price_t)
 
 
 @dataclass(frozen=True)
@@ -235,14 +234,14 @@ def switch_in_control_area(
     Seuren (2020) gives one factor for fuel cost inside control areas, 1.5593 (Table 5.2); that is
     ``price_inside_t / price_outside_t`` here with one fuel and no change of heating value.
     """
-    share = np.asarray(share_inside, dtype=float)
+    share = floats(share_inside)
     if np.any((share < 0.0) | (share > 1.0)):
         raise InputError(
             "The share of a leg inside a control area lies outside 0 to 1.",
             f"It runs from {np.nanmin(share):g} to {np.nanmax(share):g}.",
             "Give lengths inside the area divided by leg lengths.",
         )
-    mass_out = np.asarray(fuel_mass, dtype=float) * (1.0 - share)
+    mass_out = floats(fuel_mass) * (1.0 - share)
     mass_in = np.asarray(same_heat_mass(np.asarray(fuel_mass) * share, of=outside, to=inside))
     cost = np.where(mass_out > 0, mass_out * price_outside_t, 0.0 * mass_out)
     cost = (cost + np.where(mass_in > 0, mass_in * price_inside_t, 0.0 * mass_in)) / TONNE

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from thalweg.ship.methods.arrays import Floats, floats
 
 #: Published ranges: function -> quantity -> (low, high).
 VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
@@ -47,9 +47,9 @@ def between_empty_and_full(load_factor: ArrayLike, *, empty: ArrayLike, full: Ar
     ----------
     J. P. van Halem, "Route optimization in dynamic currents", TU Delft (2019), section 3.2.3.
     """
-    r = np.asarray(load_factor, dtype=float)
+    r = floats(load_factor)
     inside = (r >= 0.0) & (r <= 1.0)
-    return ((1.0 - np.where(inside, r, np.nan)) * empty + r * np.asarray(full, dtype=float))[()]
+    return (1.0 - np.where(inside, r, np.nan)) * floats(empty) + r * floats(full)
 
 
 def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
@@ -67,10 +67,10 @@ def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Fl
     ndarray
         Load factor [-], NaN where it would lie outside 0 to 1.
     """
-    low = np.asarray(empty, dtype=float)
+    low = floats(empty)
     with np.errstate(divide="ignore", invalid="ignore"):
-        r = (np.asarray(value, dtype=float) - low) / (np.asarray(full, dtype=float) - low)
-        return np.where((r >= -1e-12) & (r <= 1.0 + 1e-12), np.clip(r, 0.0, 1.0), np.nan)[()]
+        r = (floats(value) - low) / (floats(full) - low)
+        return np.where((r >= -1e-12) & (r <= 1.0 + 1e-12), np.clip(r, 0.0, 1.0), np.nan)
 
 
 def displacement_volume(
@@ -90,7 +90,7 @@ def displacement_volume(
     ndarray
         Volume [m3].
     """
-    return (np.asarray(block_coefficient, dtype=float) * length * breadth * draught)[()]
+    return floats(block_coefficient) * floats(length) * floats(breadth) * floats(draught)
 
 
 def block_coefficient_of(
@@ -110,7 +110,7 @@ def block_coefficient_of(
     ndarray
         Block coefficient [-].
     """
-    return (np.asarray(displacement, dtype=float) / (np.asarray(length) * breadth * draught))[()]
+    return floats(displacement) / (floats(length) * floats(breadth) * floats(draught))
 
 
 def block_at_draught(
@@ -135,8 +135,8 @@ def block_at_draught(
     Riddlesworth's method as given by J.-P. Jalkanen et al., "Extension of an assessment model of
     ship traffic exhaust emissions", Atmos. Chem. Phys. 12 (2012) (from memory).
     """
-    ratio = np.asarray(design_draught, dtype=float) / draught
-    return (1.0 - (1.0 - np.asarray(design_block, dtype=float)) * np.cbrt(ratio))[()]
+    ratio = floats(design_draught) / floats(draught)
+    return 1.0 - (1.0 - floats(design_block)) * np.cbrt(ratio)
 
 
 def displacement_at_draught(
@@ -162,9 +162,9 @@ def displacement_at_draught(
     ndarray
         Volume [m3], NaN where it would not be positive.
     """
-    change = np.asarray(draught, dtype=float) - design_draught
-    volume = np.asarray(design_displacement, dtype=float) + waterplane_area * change
-    return np.where(volume > 0.0, volume, np.nan)[()]
+    change = floats(draught) - floats(design_draught)
+    volume = floats(design_displacement) + floats(waterplane_area) * change
+    return np.where(volume > 0.0, volume, np.nan)
 
 
 # --- regressions ---------------------------------------------------------------------------
@@ -190,9 +190,9 @@ def block_from_froude(froude: ArrayLike) -> Floats:
     H. Schneekluth, V. Bertram, "Ship design for efficiency and economy", 2nd ed. (1998),
     section 1.5 (after Jensen).
     """
-    fn = np.asarray(froude, dtype=float)
+    fn = floats(froude)
     fn = np.where((fn >= 0.15) & (fn <= 0.32), fn, np.nan)
-    return (-4.22 + 27.8 * np.sqrt(fn) - 39.1 * fn + 46.6 * fn**3)[()]
+    return -4.22 + 27.8 * np.sqrt(fn) - 39.1 * fn + 46.6 * fn**3
 
 
 def midship_from_block(block_coefficient: ArrayLike) -> Floats:
@@ -212,7 +212,7 @@ def midship_from_block(block_coefficient: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.6 (after Jensen, HSVA).
     """
-    return (1.0 / (1.0 + (1.0 - np.asarray(block_coefficient, dtype=float)) ** 3.5))[()]
+    return 1.0 / (1.0 + (1.0 - floats(block_coefficient)) ** 3.5)
 
 
 def midship_kerlen(block_coefficient: ArrayLike) -> Floats:
@@ -232,7 +232,7 @@ def midship_kerlen(block_coefficient: ArrayLike) -> Floats:
     ----------
     Kerlen (1970) as given by Schneekluth and Bertram (1998), section 1.6.
     """
-    return (1.006 - 0.0056 * np.asarray(block_coefficient, dtype=float) ** -3.56)[()]
+    return 1.006 - 0.0056 * floats(block_coefficient) ** -3.56
 
 
 def waterplane_from_block(block_coefficient: ArrayLike) -> Floats:
@@ -252,7 +252,7 @@ def waterplane_from_block(block_coefficient: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.6.
     """
-    return ((1.0 + 2.0 * np.asarray(block_coefficient, dtype=float)) / 3.0)[()]
+    return (1.0 + 2.0 * floats(block_coefficient)) / 3.0
 
 
 def waterplane_u_sections(prismatic_coefficient: ArrayLike) -> Floats:
@@ -272,8 +272,8 @@ def waterplane_u_sections(prismatic_coefficient: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.6.
     """
-    cp = np.asarray(prismatic_coefficient, dtype=float)
-    return (0.95 * cp + 0.17 * np.cbrt(1.0 - cp))[()]
+    cp = floats(prismatic_coefficient)
+    return 0.95 * cp + 0.17 * np.cbrt(1.0 - cp)
 
 
 def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
@@ -293,7 +293,7 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.5, the line for cargo ships in general.
     """
-    return (19.4 * np.asarray(prismatic_coefficient, dtype=float) - 13.5)[()]
+    return 19.4 * floats(prismatic_coefficient) - 13.5
 
 
 def lcb_from_froude(froude: ArrayLike) -> Floats:
@@ -313,7 +313,7 @@ def lcb_from_froude(froude: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.5.
     """
-    return (8.80 - 38.9 * np.asarray(froude, dtype=float))[()]
+    return 8.80 - 38.9 * floats(froude)
 
 
 def wetted_surface_denny_mumford(
@@ -340,10 +340,8 @@ def wetted_surface_denny_mumford(
     Denny and Mumford, as given by A. F. Molland, S. R. Turnock, D. A. Hudson, "Ship resistance
     and propulsion" (2011).
     """
-    t = np.asarray(draught, dtype=float)
-    return (1.7 * np.asarray(length, dtype=float) * t + np.asarray(displacement, dtype=float) / t)[
-        ()
-    ]
+    t = floats(draught)
+    return 1.7 * floats(length) * t + floats(displacement) / t
 
 
 def waterline_from_perpendiculars(length_between_perpendiculars: ArrayLike) -> Floats:
@@ -363,7 +361,7 @@ def waterline_from_perpendiculars(length_between_perpendiculars: ArrayLike) -> F
     ----------
     H. O. Kristensen, M. Lützen, "Prediction of resistance and propulsion power of ships" (2012).
     """
-    return (1.02 * np.asarray(length_between_perpendiculars, dtype=float))[()]
+    return 1.02 * floats(length_between_perpendiculars)
 
 
 def perpendiculars_from_waterline(length_waterline: ArrayLike) -> Floats:
@@ -383,7 +381,7 @@ def perpendiculars_from_waterline(length_waterline: ArrayLike) -> Floats:
     ----------
     Kristensen and Lützen (2012), inverted.
     """
-    return (np.asarray(length_waterline, dtype=float) / 1.02)[()]
+    return floats(length_waterline) / 1.02
 
 
 def length_over_surface_no_bulb(length_waterline: ArrayLike) -> Floats:
@@ -403,7 +401,7 @@ def length_over_surface_no_bulb(length_waterline: ArrayLike) -> Floats:
     ----------
     Definition in U. Hollenbach, "Estimating resistance and propulsion" (1998).
     """
-    return np.asarray(length_waterline, dtype=float)[()]
+    return floats(length_waterline)
 
 
 def propeller_diameter_from_draught(draught: ArrayLike) -> Floats:
@@ -423,7 +421,7 @@ def propeller_diameter_from_draught(draught: ArrayLike) -> Floats:
     ----------
     Kristensen and Lützen (2012).
     """
-    return (0.395 * np.asarray(draught, dtype=float) + 1.30)[()]
+    return 0.395 * floats(draught) + 1.30
 
 
 @dataclass(frozen=True)
@@ -500,7 +498,7 @@ ESTIMATORS: Final[Mapping[str, tuple[Estimator, ...]]] = MappingProxyType(
         ),
         "lcb_percent": (
             Estimator(
-                lambda block, midship: lcb_from_prismatic(np.asarray(block, dtype=float) / midship),
+                lambda block, midship: lcb_from_prismatic(floats(block) / midship),
                 ("block_coefficient", "midship_coefficient"),
                 _SB,
                 1.5,

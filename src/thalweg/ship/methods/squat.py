@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.units import GRAVITY, KNOT
-
-Floats = NDArray[np.float64]
+from thalweg.ship.methods.arrays import Floats, floats
 
 #: Width of open water that takes part in the flow, in ship breadths (van Halem 2019).
 OPEN_WATER_BREADTHS: Final = 9.0
@@ -27,8 +26,8 @@ VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
 
 def _width(breadth: ArrayLike, channel_width: ArrayLike | None) -> Floats:
     if channel_width is None:
-        return OPEN_WATER_BREADTHS * np.asarray(breadth, dtype=float)
-    return np.asarray(channel_width, dtype=float)
+        return OPEN_WATER_BREADTHS * floats(breadth)
+    return floats(channel_width)
 
 
 def blockage_ratio(
@@ -56,10 +55,10 @@ def blockage_ratio(
     ----------
     C. B. Barrass, "The phenomenon of ship squat", Int. Shipbuilding Progress 26 (1979).
     """
-    h, section = np.asarray(depth, dtype=float), np.asarray(breadth, dtype=float) * draught
+    h, section = floats(depth), floats(breadth) * floats(draught)
     free = _width(breadth, channel_width) * h - section
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(free > 0.0, section / free, np.where(np.isnan(free), np.nan, np.inf))[()]
+        return np.where(free > 0.0, section / free, np.where(np.isnan(free), np.nan, np.inf))
 
 
 def barrass_squat(
@@ -99,12 +98,12 @@ def barrass_squat(
     C. B. Barrass, "The phenomenon of ship squat", Int. Shipbuilding Progress 26 (1979).
     """
     blockage = blockage_ratio(depth, draught, breadth=breadth, channel_width=channel_width)
-    knots = np.abs(np.asarray(speed, dtype=float)) / KNOT
+    knots = np.abs(floats(speed)) / KNOT
     sink = knots**2.08 / 30.0
     with np.errstate(invalid="ignore"):
         return np.where(
-            knots == 0.0, 0.0 * blockage, block_coefficient * blockage ** (2.0 / 3.0) * sink
-        )[()]
+            knots == 0.0, 0.0 * blockage, floats(block_coefficient) * blockage ** (2.0 / 3.0) * sink
+        )
 
 
 def barrass_2004_squat(
@@ -142,17 +141,13 @@ def barrass_2004_squat(
     C. B. Barrass, "Thirty-two years of research into ship squat", Squat Workshop, Oldenburg
     (2004).
     """
-    block = np.asarray(block_coefficient, dtype=float)
-    width = (
-        7.04 / block**0.85 * np.asarray(breadth, dtype=float)
-        if channel_width is None
-        else np.asarray(channel_width, dtype=float)
-    )
-    h = np.asarray(depth, dtype=float)
-    knots = np.abs(np.asarray(speed, dtype=float)) / KNOT
+    block = floats(block_coefficient)
+    width = 7.04 / block**0.85 * floats(breadth) if channel_width is None else floats(channel_width)
+    h = floats(depth)
+    knots = np.abs(floats(speed)) / KNOT
     with np.errstate(divide="ignore", invalid="ignore"):
-        blockage = np.asarray(breadth, dtype=float) * draught / (width * np.where(h > 0, h, np.nan))
-        return (block * blockage**0.81 * knots**2.08 / 20.0)[()]
+        blockage = floats(breadth) * floats(draught) / (width * np.where(h > 0, h, np.nan))
+        return block * blockage**0.81 * knots**2.08 / 20.0
 
 
 def speed_for_squat(
@@ -184,11 +179,13 @@ def speed_for_squat(
     and gives the blockage as a length; the program published with the thesis compares the
     result, which is in knots, with metres per second. All four are put right here.
     """
-    allowed = np.asarray(squat, dtype=float)
+    allowed = floats(squat)
     blockage = blockage_ratio(depth, draught, breadth=breadth, channel_width=channel_width)
     with np.errstate(divide="ignore", invalid="ignore"):
-        base = 30.0 * np.maximum(allowed, 0.0) / (block_coefficient * blockage ** (2.0 / 3.0))
-        return (KNOT * base ** (1.0 / 2.08))[()]
+        base = (
+            30.0 * np.maximum(allowed, 0.0) / (floats(block_coefficient) * blockage ** (2.0 / 3.0))
+        )
+        return KNOT * base ** (1.0 / 2.08)
 
 
 def critical_speed(
@@ -231,18 +228,18 @@ def critical_speed(
     O. Schlichting (1934) and L. Landweber (1939) as used by van Oord; van Halem (2019), eq. 2.5,
     where V_max and the root of the tanh are missing and 0.0191 is cut to 0.019.
     """
-    v, h = np.asarray(deep_speed, dtype=float), np.asarray(depth, dtype=float)
-    b, width = np.asarray(breadth, dtype=float), _width(breadth, channel_width)
-    section = b * draught
+    v, h = floats(deep_speed), floats(depth)
+    b, width = floats(breadth), _width(breadth, channel_width)
+    section = b * floats(draught)
     free = width * h - section
     open_water = (free > 0.0) & (h > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         schlichting = np.where(v > 0.0, np.sqrt(np.tanh(gravity * h / v**2)), 1.0 + 0.0 * h)
-        radius = free / (width + 2.0 * h + 2.0 * np.asarray(draught, dtype=float) + b)
+        radius = free / (width + 2.0 * h + 2.0 * floats(draught) + b)
         q = np.sqrt(section) / np.where(open_water, radius, np.nan)
         landweber = np.clip(1.002 + q * (0.005 + q * (-0.1159 + q * 0.0191)), 0.0, 1.0)
     blocked = np.where(np.isnan(free * v), np.nan, 0.0)
-    return np.where(open_water, v * schlichting * landweber, blocked)[()]
+    return np.where(open_water, v * schlichting * landweber, blocked)
 
 
 def speed_limit(
@@ -299,7 +296,7 @@ def speed_limit(
         channel_width=channel_width,
         gravity=gravity,
     )
-    room = np.asarray(depth, dtype=float) - draught - clearance
+    room = floats(depth) - floats(draught) - floats(clearance)
     squatting = speed_for_squat(
         room,
         depth,
@@ -308,7 +305,7 @@ def speed_limit(
         block_coefficient=block_coefficient,
         channel_width=channel_width,
     )
-    return np.minimum(critical, squatting)[()]
+    return np.minimum(critical, squatting)
 
 
 def clearance_under_way(depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLike) -> Floats:
@@ -324,4 +321,4 @@ def clearance_under_way(depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLik
     ndarray
         Clearance [m], negative where the ship would touch the bed.
     """
-    return (np.asarray(depth, dtype=float) - draught - np.asarray(squat, dtype=float))[()]
+    return floats(depth) - floats(draught) - floats(squat)
