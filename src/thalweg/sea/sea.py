@@ -352,7 +352,7 @@ class Sea:
         vector, part = nm.components_for(kept) or (nm.WIND, "speed")
         east, north = base[vector.east], base[vector.north]
         if part == "speed":
-            return np.sqrt(east * east + north * north)
+            return np.asarray(np.hypot(east, north), np.float64)
         sign = 1.0 if part == "towards" else -1.0
         return np.degrees(np.arctan2(sign * east, sign * north)) % 360.0
 
