@@ -1,1 +1,26 @@
-"""The room ship."""
+"""Ship physics and performance: how fast a ship goes, and what it burns, in given conditions.
+
+In: ship files (YAML), functions, conditions as arrays in SI. Out: speeds, powers, fuel rates, and a
+`PerformanceTable` with a measured error for the kernels. Knows no maps, no weather files, no clock.
+"""
+
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.limits import ShipLimits
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.ship import Ship
+from thalweg.ship.ship_file import library_names
+from thalweg.ship.table import PerformanceTable, TableError, TablePart
+
+__all__ = [
+    "Conditions",
+    "Estimate",
+    "Loading",
+    "PerformanceTable",
+    "Ship",
+    "ShipLimits",
+    "ShipModel",
+    "TableError",
+    "TablePart",
+    "library_names",
+]

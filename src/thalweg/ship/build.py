@@ -1,0 +1,229 @@
+"""Build the parts of a ship from the checked data of a ship file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
+from thalweg.ship.hull import Hull, require
+from thalweg.ship.limits import ShipLimits
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.nominal import KwonLoss, NominalModel, check_rising, cubic_law
+
+FloatArray = NDArray[np.float64]
+Data = Mapping[str, Any]
+
+
+def build_limits(data: Data) -> ShipLimits:
+    """Return the limits of a ship file."""
+    given = data.get("limits", {})
+    wind = given.get("max_wind_speed_m_s", given.get("max_wind_speed_kn", math.inf))
+    if "max_wind_speed_m_s" in given and "max_wind_speed_kn" in given:
+        raise InputError(
+            "The wind limit is given twice, in knots and in m/s.",
+            "",
+            "Keep max_wind_speed_kn or max_wind_speed_m_s.",
+            key="limits.max_wind_speed_kn",
+        )
+    factor = KNOT if "max_wind_speed_kn" in given else 1.0
+    waves = given.get("max_significant_wave_height_m", math.inf)
+    return ShipLimits(wave_height=waves, wind_speed=wind * factor)
+
+
+def build_loading(data: Data, hull: Hull) -> Loading:
+    """Return the loading of a ship file.
+
+    Raises
+    ------
+    InputError
+        If there is no draught.
+    """
+    given = data.get("loading", {})
+    full = given.get("draught_full_m", hull.number("draught_m"))
+    if full is None:
+        raise InputError(
+            "The ship file gives no draught.",
+            "It is hull.draught_m, or loading.draught_full_m with loading.draught_empty_m.",
+            "Add one of them.",
+            missing=["hull.draught_m"],
+        )
+    return Loading(
+        draught_full=full,
+        draught_empty=given.get("draught_empty_m", full),
+        displacement_full=_volume(given, "full", hull.number("displacement_m3")),
+        displacement_empty=_volume(
+            given, "empty", None, _volume(given, "full", hull.number("displacement_m3"))
+        ),
+        load_factor=given.get("load_factor", 1.0),
+        condition=given.get("condition", "loaded"),
+        capacity=given.get("capacity_m3", math.nan),
+    )
+
+
+def _volume(
+    given: Data, state: str, hull_volume: float | None, otherwise: float = math.nan
+) -> float:
+    """Displaced volume [m3] from a volume, or from a weight in sea water."""
+    if f"displacement_{state}_m3" in given:
+        return float(given[f"displacement_{state}_m3"])
+    if f"weight_{state}_t" in given:
+        return float(given[f"weight_{state}_t"]) * TONNE / SEA_WATER_DENSITY
+    return otherwise if hull_volume is None else hull_volume
+
+
+def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
+    """Return the model of a ship that gives its calm-water speeds.
+
+    Raises
+    ------
+    InputError
+        If there are no speeds, several kinds of them, or they contradict each other.
+    """
+    law = _law(data)
+    full, empty = _speeds(data)
+    fuel, power = _LAWS[law](data, full)
+    check_rising(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
+    return NominalModel(full, empty, fuel, power, law, build_loss(data, hull, loading))
+
+
+def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
+    """Return the speed loss chosen under ``models.speed_loss``."""
+    models = data.get("models", {})
+    name = models.get("speed_loss", "none")
+    if name not in SPEED_LOSSES:
+        raise unknown_name("speed loss", name, SPEED_LOSSES)
+    if name == "none":
+        return None
+    needed = ("length_between_perpendiculars_m", "block_coefficient")
+    length, block = require(hull, needed, "kwon_2008", instead="speed_loss: none")
+    if math.isnan(loading.displacement_full):
+        require(hull, ("displacement_m3",), "kwon_2008", instead="speed_loss: none")
+    return KwonLoss(
+        length=length,
+        block_coefficient=block,
+        loading=loading,
+        sign=models.get("kwon_sign", "plus"),
+        ship_type=models.get("kwon_ship_type", "other"),
+        classes=models.get("kwon_classes", False),
+    )
+
+
+def _law(data: Data) -> str:
+    """Which law ties fuel and power to speed."""
+    name = data.get("models", {}).get("calm_water")
+    if name is None:
+        return "table" if "table" in data else "cubic" if _has_reference(data) else "none"
+    if name not in _LAWS:
+        raise unknown_name("calm-water model", name, _LAWS)
+    return str(name)
+
+
+def _has_reference(data: Data) -> bool:
+    return "reference_power_kw" in data.get("engine", {}) or "reference_t_per_day" in data.get(
+        "fuel", {}
+    )
+
+
+def _speeds(data: Data) -> tuple[FloatArray, FloatArray]:
+    """Calm-water speeds full and empty [m/s], ascending, from the one place that gives them."""
+    loading = data.get("loading", {})
+    places = {
+        "speeds_kn": data.get("speeds_kn"),
+        "table.speed_kn": data.get("table", {}).get("speed_kn"),
+        "loading.speeds_full_kn": loading.get("speeds_full_kn"),
+    }
+    given = {name: values for name, values in places.items() if values is not None}
+    if len(given) != 1:
+        found = f"gives speeds under {' and '.join(given)}" if given else "gives no speeds"
+        raise InputError(
+            f"The ship file {found}.",
+            "Speeds come from speeds_kn, from a table, or from loading.speeds_full_kn.",
+            "Keep one of them." if given else "Add 'speeds_kn: [...]'.",
+            missing=[] if given else ["speeds_kn"],
+        )
+    full = np.array(next(iter(given.values())), float)
+    empty = np.array(loading.get("speeds_empty_kn", full), float)
+    if empty.shape != full.shape:
+        raise InputError(
+            f"There are {len(full)} speeds full and {len(empty)} speeds empty.",
+            "Each setting has one of both.",
+            "Give loading.speeds_empty_kn as many numbers.",
+            key="loading.speeds_empty_kn",
+        )
+    order = np.argsort(full, kind="stable")
+    if (np.diff(full[order]) <= 0).any() or (np.diff(empty[order]) <= 0).any():
+        raise InputError(
+            "A speed is given twice.",
+            "Each setting has its own speed, full and empty in the same order.",
+            "Remove one of them.",
+            key=next(iter(given)),
+        )
+    return full[order] * KNOT, empty[order] * KNOT
+
+
+def _no_law(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+    unknown = np.full(len(speeds), math.nan)
+    return unknown, unknown
+
+
+def _cubic(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Fuel rates [kg/s] and powers [W] through the reference point."""
+    engine, fuel = data.get("engine", {}), data.get("fuel", {})
+    reference = engine.get("reference_speed_kn", speeds.max() / KNOT) * KNOT
+    if not _has_reference(data):
+        raise InputError(
+            "The cubic law has no reference point.",
+            "It goes through engine.reference_power_kw or fuel.reference_t_per_day at "
+            "engine.reference_speed_kn (the highest speed when not given).",
+            "Add one, or choose calm_water: none.",
+            missing=["engine.reference_power_kw", "fuel.reference_t_per_day"],
+        )
+    power_kw = engine.get("reference_power_kw", math.nan)
+    burnt = fuel.get("reference_t_per_day", math.nan) * TONNE / DAY
+    if math.isnan(burnt) and "sfoc_g_per_kwh" in engine:
+        burnt = power_kw * engine["sfoc_g_per_kwh"] / 3.6e6
+    return (
+        cubic_law(speeds, reference_speed=reference, reference_value=burnt),
+        cubic_law(speeds, reference_speed=reference, reference_value=power_kw * 1000.0),
+    )
+
+
+def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Fuel rates [kg/s] and powers [W] of the table's rows, in the order of speed."""
+    table = data.get("table")
+    if table is None or "speed_kn" not in table:
+        raise InputError(
+            "calm_water: table is chosen, but the ship file has no table with speed_kn.",
+            "A table has columns speed_kn and fuel_t_per_day, power_kw or both.",
+            "Add 'table:', or choose another calm_water model.",
+            missing=["table.speed_kn"],
+        )
+    ragged = {name for name, column in table.items() if len(column) != len(table["speed_kn"])}
+    if ragged:
+        raise InputError(
+            f"In the ship's table {', '.join(sorted(ragged))} has another length than speed_kn.",
+            "Every row has every column.",
+            "Fill the missing numbers.",
+            key="table",
+        )
+    order = np.argsort(table["speed_kn"], kind="stable")
+    blank = [math.nan] * len(order)
+    power = np.array(table.get("power_kw", blank), float)[order] * 1000.0
+    fuel = np.array(table.get("fuel_t_per_day", blank), float)[order] * TONNE / DAY
+    if np.isnan(fuel).all() and "sfoc_g_per_kwh" in data.get("engine", {}):
+        fuel = power * data["engine"]["sfoc_g_per_kwh"] / 3.6e9
+    return fuel, power
+
+
+_LAWS: Final[dict[str, Callable[[Data, FloatArray], tuple[FloatArray, FloatArray]]]] = {
+    "none": _no_law,
+    "cubic": _cubic,
+    "table": _table,
+}
+SPEED_LOSSES: Final = ("none", "kwon_2008")

@@ -1,0 +1,226 @@
+"""`Conditions`: what a ship meets, as arrays in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError, near_matches
+from thalweg.ship.variables import (
+    BED_DEPTH,
+    EASTWARD_CURRENT,
+    EASTWARD_WIND,
+    NORTHWARD_CURRENT,
+    NORTHWARD_WIND,
+    WATER_LEVEL,
+    WAVE_EAST,
+    WAVE_FROM,
+    WAVE_HEIGHT,
+    WAVE_NORTH,
+    WAVE_PERIOD,
+    WAVE_TO,
+)
+
+FloatArray = NDArray[np.float64]
+
+
+class Conditions(Mapping[str, FloatArray]):
+    """A frozen set of arrays that broadcast together, read by attribute or by key.
+
+    Parameters
+    ----------
+    values : mapping of str to array_like, optional
+        Conditions by name; for names that are no Python words.
+    **more : array_like
+        Conditions by name.
+
+    Notes
+    -----
+    The names ship models know, all SI: ``lat``, ``lon`` [deg], ``time`` [s since 1970-01-01Z],
+    ``heading`` [rad from north], ``wind_speed`` [m/s] at 10 m relative to the moving water and
+    ``wind_angle`` [rad] between the heading and where that wind comes from (0 head, pi following),
+    ``wave_height`` (significant) [m], ``wave_angle`` [rad, as ``wind_angle``], ``wave_period``
+    (peak) [s], ``depth`` of the water [m], ``current_east``, ``current_north`` [m/s towards],
+    ``load_factor`` [0 empty to 1 full]. Other names are plain sea variables. NaN is unknown.
+
+    Examples
+    --------
+    >>> c = Conditions(wind_speed=[0.0, 12.0], wind_angle=0.0)
+    >>> c.shape
+    (2,)
+    >>> float(c.wind_speed[1])
+    12.0
+    """
+
+    __slots__ = ("_shape", "_values")
+
+    def __init__(self, values: Mapping[str, ArrayLike] | None = None, /, **more: ArrayLike) -> None:
+        arrays = {name: _frozen(name, value) for name, value in {**(values or {}), **more}.items()}
+        try:
+            shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+            raise InputError(
+                f"The conditions do not broadcast together: {shapes}.",
+                "Arrays must have the same shape, or shapes that NumPy stretches to one.",
+                "Give arrays of one length, or numbers.",
+            ) from None
+        object.__setattr__(self, "_values", arrays)
+        object.__setattr__(self, "_shape", shape)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape all conditions broadcast to."""
+        return self._shape
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"conditions are frozen: use with_values({name}=...)")
+
+    def __getattr__(self, name: str) -> FloatArray:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self[name]
+
+    def __getitem__(self, name: str) -> FloatArray:
+        try:
+            return self._values[name]
+        except KeyError:
+            raise self._missing(name) from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._values
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __repr__(self) -> str:
+        return f"Conditions({', '.join(self._values)}; shape {self._shape})"
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return a condition, or the default when it is not there."""
+        return self._values.get(name, default)
+
+    def with_values(self, **more: ArrayLike) -> Conditions:
+        """Return new conditions with some values added or replaced."""
+        return Conditions({**self._values, **more})
+
+    def with_default(self, **defaults: ArrayLike) -> Conditions:
+        """Return conditions with values added for names that are not there yet."""
+        new = {name: value for name, value in defaults.items() if name not in self}
+        return self.with_values(**new) if new else self
+
+    def _missing(self, name: str) -> InputError:
+        near = near_matches(name, self._values)
+        hint = f" Did you mean {' or '.join(repr(n) for n in near)}?" if near else ""
+        return InputError(
+            f"The ship model reads {name!r}, which is not among the conditions.",
+            f"There are: {', '.join(sorted(self._values)) or 'none'}.",
+            f"Supply {name!r}, or use a model that does without it.{hint}",
+            value=name,
+        )
+
+    @classmethod
+    def from_sea(
+        cls,
+        sampled: Mapping[str, ArrayLike],
+        *,
+        heading: ArrayLike | None = None,
+        **more: ArrayLike,
+    ) -> Conditions:
+        """Make conditions from sampled sea variables.
+
+        Parameters
+        ----------
+        sampled : mapping of str to array_like
+            Sea variables by CF standard name, SI, NaN where unknown; all are kept under their own
+            names too.
+        heading : array_like, optional
+            Heading of the ship [rad from north]; without it there are no relative angles.
+        **more : array_like
+            Further conditions (``lat``, ``lon``, ``time``, ``depth``, ...), which win.
+
+        Returns
+        -------
+        Conditions
+            Without currents among the variables the wind relative to the water is the wind.
+        """
+        raw = {name: np.asarray(value, float) for name, value in sampled.items()}
+        derived: dict[str, ArrayLike] = {**_currents(raw), **_wind(raw, heading)}
+        derived |= {**_waves(raw, heading), **_depth(raw)}
+        if heading is not None:
+            derived["heading"] = heading
+        return cls({**raw, **derived, **more})
+
+
+def relative_angle(from_east: ArrayLike, from_north: ArrayLike, heading: ArrayLike) -> FloatArray:
+    """Return the angle [rad, 0 to pi] between a heading and where something comes from.
+
+    Parameters
+    ----------
+    from_east, from_north : array_like
+        Components of a vector that points where it comes from; any length.
+    heading : array_like
+        Heading of the ship [rad from north].
+    """
+    east, north = np.asarray(from_east, float), np.asarray(from_north, float)
+    sine, cosine = np.sin(heading), np.cos(heading)
+    ahead = east * sine + north * cosine
+    abeam = east * cosine - north * sine
+    return np.arctan2(np.abs(abeam), ahead + 0.0)
+
+
+def _frozen(name: str, value: ArrayLike) -> FloatArray:
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"The condition {name!r} is not made of numbers.", "", "Give a number or an array."
+        ) from None
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
+def _currents(raw: Mapping[str, FloatArray]) -> dict[str, ArrayLike]:
+    pairs = (("current_east", EASTWARD_CURRENT), ("current_north", NORTHWARD_CURRENT))
+    return {name: raw[source] for name, source in pairs if source in raw}
+
+
+def _wind(raw: Mapping[str, FloatArray], heading: ArrayLike | None) -> dict[str, ArrayLike]:
+    if EASTWARD_WIND not in raw or NORTHWARD_WIND not in raw:
+        return {}
+    east = raw[EASTWARD_WIND] - raw.get(EASTWARD_CURRENT, np.zeros(()))
+    north = raw[NORTHWARD_WIND] - raw.get(NORTHWARD_CURRENT, np.zeros(()))
+    found: dict[str, ArrayLike] = {"wind_speed": np.hypot(east, north)}
+    if heading is not None:
+        found["wind_angle"] = relative_angle(-east, -north, heading)
+    return found
+
+
+def _waves(raw: Mapping[str, FloatArray], heading: ArrayLike | None) -> dict[str, ArrayLike]:
+    found: dict[str, ArrayLike] = {}
+    if WAVE_HEIGHT in raw:
+        found["wave_height"] = raw[WAVE_HEIGHT]
+    if WAVE_PERIOD in raw:
+        found["wave_period"] = raw[WAVE_PERIOD]
+    if heading is None:
+        return found
+    if WAVE_EAST in raw and WAVE_NORTH in raw:
+        found["wave_angle"] = relative_angle(-raw[WAVE_EAST], -raw[WAVE_NORTH], heading)
+    elif WAVE_FROM in raw or WAVE_TO in raw:
+        degrees = raw[WAVE_FROM] if WAVE_FROM in raw else raw[WAVE_TO] + 180.0
+        angle = np.radians(degrees)
+        found["wave_angle"] = relative_angle(np.sin(angle), np.cos(angle), heading)
+    return found
+
+
+def _depth(raw: Mapping[str, FloatArray]) -> dict[str, ArrayLike]:
+    if BED_DEPTH not in raw or "depth" in raw:
+        return {}
+    return {"depth": raw[BED_DEPTH] + raw.get(WATER_LEVEL, np.zeros(()))}

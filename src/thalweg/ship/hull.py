@@ -1,0 +1,199 @@
+"""Particulars of a hull: what follows from what is given, and what cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import SEA_WATER_DENSITY, TONNE
+from thalweg.ship.model import Estimate
+
+_DENSITY = SEA_WATER_DENSITY / TONNE  # t/m3
+
+
+@dataclass(frozen=True)
+class Hull:
+    """Particulars as in a ship file (units in the names), with what follows from them.
+
+    Attributes
+    ----------
+    values : mapping of str to float or str
+        By key of the ship file.
+    estimated : tuple of Estimate
+        Those that were not given.
+    """
+
+    values: Mapping[str, float | str]
+    estimated: tuple[Estimate, ...] = field(default=())
+
+    def number(self, key: str) -> float | None:
+        """Return a number, or None when it is neither given nor known."""
+        value = self.values.get(key)
+        return None if value is None or isinstance(value, str) else value
+
+    def with_estimates(self, *estimates: Estimate) -> Hull:
+        """Return the hull with values added for keys that are not there."""
+        new = tuple(e for e in estimates if e.key not in self.values)
+        return Hull({**self.values, **{e.key: e.value for e in new}}, (*self.estimated, *new))
+
+
+def complete_hull(given: Mapping[str, float | str]) -> Hull:
+    """Return the hull with everything that follows from definitions, after checking it.
+
+    Parameters
+    ----------
+    given : mapping
+        The section ``hull`` of a ship file, checked.
+
+    Raises
+    ------
+    InputError
+        For hulls that cannot be: deeper than their depth, fuller than a box, particulars that
+        contradict each other.
+    """
+    values = dict(given)
+    _draughts(values)
+    if "displacement_m3" not in values and "displacement_t" in values:
+        values["displacement_m3"] = float(values["displacement_t"]) / _DENSITY
+    hull = _length(Hull(values))
+    hull = _fullness(hull)
+    _check_possible(hull)
+    return hull
+
+
+def _draughts(values: dict[str, float | str]) -> None:
+    """Mean, fore and aft draught from each other."""
+    if "draught_m" in values:
+        values.setdefault("draught_fore_m", values["draught_m"])
+        values.setdefault("draught_aft_m", values["draught_m"])
+    one = values.get("draught_fore_m", values.get("draught_aft_m"))
+    if one is None:
+        return
+    values.setdefault("draught_fore_m", one)
+    values.setdefault("draught_aft_m", one)
+    mean = 0.5 * (float(values["draught_fore_m"]) + float(values["draught_aft_m"]))
+    if "draught_m" not in values:
+        values["draught_m"] = mean
+    elif abs(float(values["draught_m"]) - mean) > 0.02 * max(mean, 0.1):
+        raise InputError(
+            f"draught_m {values['draught_m']:g} is not the mean of fore and aft, {mean:g}.",
+            "The mean draught is half the sum of draught_fore_m and draught_aft_m.",
+            "Leave draught_m out, or correct it.",
+            key="hull.draught_m",
+        )
+
+
+def _length(hull: Hull) -> Hull:
+    """Length between perpendiculars from the waterline's, and the other way round."""
+    lpp, lwl = (hull.number(f"length_{k}_m") for k in ("between_perpendiculars", "waterline"))
+    if lpp is None and lwl is not None:
+        guess = Estimate("length_between_perpendiculars_m", lwl, "taken as the waterline length")
+        return hull.with_estimates(guess)
+    if lwl is None and lpp is not None:
+        guess = Estimate("length_waterline_m", lpp, "taken as the length between perpendiculars")
+        return hull.with_estimates(guess)
+    overall = hull.number("length_overall_m")
+    if lpp is None and overall is not None:
+        guess = Estimate(
+            "length_between_perpendiculars_m", 0.96 * overall, "0.96 of length overall"
+        )
+        wet = Estimate("length_waterline_m", 0.98 * overall, "0.98 of length overall")
+        return hull.with_estimates(guess, wet)
+    return hull
+
+
+def _fullness(hull: Hull) -> Hull:
+    """Block coefficient from displacement, displacement from block coefficient."""
+    keys = ("length_between_perpendiculars_m", "breadth_m", "draught_m")
+    box = [hull.number(key) for key in keys]
+    block, volume = hull.number("block_coefficient"), hull.number("displacement_m3")
+    if any(side is None for side in box):
+        return hull
+    length, breadth, draught = (float(side or 0.0) for side in box)
+    brick = length * breadth * draught
+    if brick <= 0.0:
+        return hull
+    if block is None and volume is not None:
+        block = volume / brick
+        _check_block(block)
+        made = Estimate("block_coefficient", block, "displacement over L_PP B T")
+        return hull.with_estimates(made)
+    if volume is None and block is not None:
+        made = Estimate("displacement_m3", block * brick, "C_B L_PP B T")
+        return hull.with_estimates(made)
+    return hull
+
+
+def _check_block(block: float) -> None:
+    if not 0.0 < block <= 1.0:
+        raise InputError(
+            f"The displacement is {block:.3g} times the box around the hull.",
+            "A block coefficient lies between 0 and 1.",
+            "Check length, breadth, draught and displacement_m3.",
+            key="hull.displacement_m3",
+        )
+
+
+def _check_possible(hull: Hull) -> None:
+    _check_box(hull)
+    depth, draught = hull.number("depth_m"), hull.number("draught_m")
+    if depth is not None and draught is not None and draught > depth:
+        raise InputError(
+            f"The draught of {draught:g} m is more than the depth of the hull, {depth:g} m.",
+            "A ship floats with part of its side above the water.",
+            "Correct draught_m or depth_m.",
+            key="hull.draught_m",
+        )
+    _check_coefficients(hull)
+
+
+def _check_box(hull: Hull) -> None:
+    """The volume must fit a box, and the given block coefficient within ten per cent."""
+    lwl, lpp = hull.number("length_waterline_m"), hull.number("length_between_perpendiculars_m")
+    sides = (max(lwl or 0.0, lpp or 0.0), hull.number("breadth_m"), hull.number("draught_m"))
+    volume, block = hull.number("displacement_m3"), hull.number("block_coefficient")
+    length, breadth, draught = sides
+    if not (length and breadth and draught and volume):
+        return
+    ratio = volume / (length * breadth * draught)
+    _check_block(ratio)
+    if block is not None and not 0.85 < ratio / block < 1.10:
+        raise InputError(
+            f"block_coefficient {block:g} does not fit displacement_m3 {volume:g}: with length "
+            f"{length:g}, breadth {breadth:g} and draught {draught:g} m it is {ratio:.3g}.",
+            "The displaced volume is block coefficient x length x breadth x draught.",
+            "Correct or leave out one of them.",
+            key="hull.block_coefficient",
+        )
+
+
+def _check_coefficients(hull: Hull) -> None:
+    block, midship = hull.number("block_coefficient"), hull.number("midship_coefficient")
+    waterplane = hull.number("waterplane_coefficient")
+    for name, other in (("midship", midship), ("waterplane", waterplane)):
+        if block is not None and other is not None and other < block - 1e-9:
+            raise InputError(
+                f"The {name} coefficient {other:g} is less than the block coefficient {block:g}.",
+                "The hull's fullest section and its waterplane contain it.",
+                "Correct one of them.",
+                key=f"hull.{name}_coefficient",
+            )
+
+
+def require(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> list[float]:
+    """Return the numbers a method needs, or raise an error that names those missing.
+
+    Raises
+    ------
+    InputError
+    """
+    missing = [key for key in keys if hull.number(key) is None]
+    if missing:
+        raise InputError(
+            f"{method} needs {', '.join(missing)} under 'hull', not given and not estimated.",
+            f"It needs {', '.join(keys)}.",
+            f"Add them, or choose {instead}.",
+            missing=missing,
+        )
+    return [float(hull.values[key]) for key in keys]

@@ -1,0 +1,92 @@
+"""`Loading`: how deep a ship lies, between empty and full."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Loading:
+    """Draught and displacement, linear in the load factor between empty (0) and full (1).
+
+    Attributes
+    ----------
+    draught_full, draught_empty : float
+        [m]; equal when the ship file gives one draught.
+    displacement_full, displacement_empty : float
+        Displaced volume [m3]; NaN when unknown.
+    load_factor : float
+        The ship's state, 0 to 1: (W - W_empty) / (W_full - W_empty) of van Halem (2019).
+    condition : {"loaded", "normal", "ballast"}
+        The condition whose coefficients empirical methods shall take.
+    capacity : float
+        Volume of cargo at load factor 1 [m3]; NaN when unknown.
+    """
+
+    draught_full: float
+    draught_empty: float
+    displacement_full: float = math.nan
+    displacement_empty: float = math.nan
+    load_factor: float = 1.0
+    condition: Literal["loaded", "normal", "ballast"] = "loaded"
+    capacity: float = math.nan
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.load_factor <= 1.0:
+            raise InputError(
+                f"The load factor is {self.load_factor:g}.",
+                "It lies between 0 (empty) and 1 (full).",
+                "Give it as a fraction.",
+                value=self.load_factor,
+            )
+        if not 0.0 <= self.draught_empty <= self.draught_full < math.inf:
+            raise InputError(
+                f"The draught is {self.draught_empty:g} m empty and {self.draught_full:g} m full.",
+                "Draughts are not negative, and a full ship lies at least as deep as an empty one.",
+                "Correct draught_full_m and draught_empty_m.",
+            )
+        if self.displacement_empty > self.displacement_full:
+            raise InputError(
+                "The ship displaces more when empty than when full.",
+                f"Given: {self.displacement_empty:g} and {self.displacement_full:g} m3.",
+                "Correct the displacements or weights under 'loading'.",
+            )
+
+    @property
+    def draught(self) -> float:
+        """Draught at the load factor [m]."""
+        return float(self.draught_at(self.load_factor))
+
+    @property
+    def displacement(self) -> float:
+        """Displaced volume at the load factor [m3]; NaN when unknown."""
+        return float(self.displacement_at(self.load_factor))
+
+    def draught_at(self, load_factor: ArrayLike) -> FloatArray:
+        """Draught [m] at load factors."""
+        return between(self.draught_empty, self.draught_full, load_factor)
+
+    def displacement_at(self, load_factor: ArrayLike) -> FloatArray:
+        """Displaced volume [m3] at load factors."""
+        return between(self.displacement_empty, self.displacement_full, load_factor)
+
+    def at(self, load_factor: float) -> Loading:
+        """Return the same ship loaded differently."""
+        return replace(self, load_factor=float(load_factor))
+
+
+def between(empty: ArrayLike, full: ArrayLike, load_factor: ArrayLike) -> FloatArray:
+    """Interpolate linearly from an empty ship's value to a full one's; NaN outside 0 to 1."""
+    factor = np.asarray(load_factor, float)
+    factor = np.where((factor >= 0.0) & (factor <= 1.0), factor, np.nan)
+    low, high = np.asarray(empty, float), np.asarray(full, float)
+    return low * (1.0 - factor) + high * factor

@@ -1,0 +1,361 @@
+"""`Ship`: a name, a model, a loading and limits; what the rest of the house sees of a ship."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError, ModelRangeError
+from thalweg.core.units import KNOT
+from thalweg.ship.build import build_limits, build_loading, build_nominal
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
+from thalweg.ship.hull import complete_hull
+from thalweg.ship.limits import ShipLimits
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.methods.notes import RangeNote
+from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.schema import check_ship_data
+from thalweg.ship.ship_file import read_ship
+from thalweg.ship.table import PerformanceTable
+from thalweg.ship.variables import needed_variables
+
+FloatArray = NDArray[np.float64]
+_SINGLE_PRECISION = 2.0**-23
+
+
+@dataclass(frozen=True, eq=False)
+class Ship:
+    """A ship: how fast it goes and what it burns in given conditions, and what it must not meet.
+
+    Made by `Ship.load`, `Ship.from_dict`, `Ship.simple` or `Ship.from_speed_function`.
+
+    Attributes
+    ----------
+    name : str
+    model : ShipModel
+        Speed, power and fuel.
+    loading : Loading
+        Draught and load factor.
+    limits : ShipLimits
+        Greatest waves and wind.
+    data : mapping
+        The ship file it came from, checked.
+    estimated : tuple of Estimate
+        Particulars that were not given.
+
+    Examples
+    --------
+    >>> ship = Ship.simple(speed_kn=8.0, draught_m=5.0)
+    >>> float(ship.draught), len(ship.speeds)
+    (5.0, 1)
+    """
+
+    name: str
+    model: ShipModel
+    loading: Loading
+    limits: ShipLimits = field(default_factory=ShipLimits)
+    data: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    estimated: tuple[Estimate, ...] = ()
+
+    @classmethod
+    def load(cls, name_or_path: str | Path) -> Ship:
+        """Read a ship of the library by name, or a ship file (YAML) by path.
+
+        Raises
+        ------
+        InputError
+            If there is none (with near matches), or the file holds what cannot be.
+        """
+        data, source = read_ship(name_or_path)
+        return cls.from_dict(data, source=source)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], *, source: str = "ship") -> Ship:
+        """Make a ship from the plain data of a ship file.
+
+        Raises
+        ------
+        InputError
+            For unknown or missing keys, numbers out of range and hulls that cannot be.
+        """
+        checked = check_ship_data(data, source)
+        hull = complete_hull(checked.get("hull", {}))
+        loading = build_loading(checked, hull)
+        return cls(
+            name=checked["name"],
+            model=build_nominal(checked, hull, loading),
+            loading=loading,
+            limits=build_limits(checked),
+            data=MappingProxyType(checked),
+            estimated=hull.estimated,
+        )
+
+    @classmethod
+    def simple(
+        cls,
+        speed_kn: float = 8.0,
+        draught_m: float = 5.0,
+        *,
+        name: str = "simple ship",
+        speeds_kn: Sequence[float] | None = None,
+        length_m: float | None = None,
+        breadth_m: float | None = None,
+        block_coefficient: float | None = None,
+        displacement_m3: float | None = None,
+        fuel_t_per_day: float | None = None,
+        speed_loss: str = "none",
+        max_wave_height_m: float | None = None,
+        max_wind_speed_kn: float | None = None,
+    ) -> Ship:
+        """Make a ship from a few numbers.
+
+        Parameters
+        ----------
+        speed_kn : float
+            Calm-water speed [kn].
+        draught_m : float
+            [m].
+        name : str
+        speeds_kn : sequence of float, optional
+            Several ordered speeds [kn]; ``speed_kn`` is then only the reference of the fuel.
+        length_m, breadth_m, block_coefficient, displacement_m3 : float, optional
+            Particulars, for the speed loss.
+        fuel_t_per_day : float, optional
+            Fuel at ``speed_kn`` [t/day]; other speeds follow the cubic law.
+        speed_loss : {"none", "kwon_2008"}
+        max_wave_height_m, max_wind_speed_kn : float, optional
+            Limits: significant wave height [m], wind at 10 m [kn].
+
+        Returns
+        -------
+        Ship
+            Without fuel data its fuel is unknown (NaN), never zero.
+
+        Raises
+        ------
+        InputError
+        """
+        sections: dict[str, dict[str, Any]] = {
+            "hull": {
+                "length_between_perpendiculars_m": length_m,
+                "breadth_m": breadth_m,
+                "draught_m": draught_m,
+                "block_coefficient": block_coefficient,
+                "displacement_m3": displacement_m3,
+            },
+            "limits": {
+                "max_significant_wave_height_m": max_wave_height_m,
+                "max_wind_speed_kn": max_wind_speed_kn,
+            },
+            "fuel": {"reference_t_per_day": fuel_t_per_day},
+            "engine": {"reference_speed_kn": speed_kn},
+            "models": {"speed_loss": speed_loss},
+        }
+        given = {
+            section: {key: value for key, value in values.items() if value is not None}
+            for section, values in sections.items()
+        }
+        speeds = [speed_kn] if speeds_kn is None else list(speeds_kn)
+        return cls.from_dict({"name": name, "speeds_kn": speeds, **given})
+
+    @classmethod
+    def from_speed_function(
+        cls,
+        function: SpeedFunction,
+        *,
+        draught_m: float = 0.0,
+        top_speed: float | None = None,
+        top_speed_kn: float | None = None,
+        name: str = "function ship",
+        limits: ShipLimits | None = None,
+    ) -> Ship:
+        """Make a ship from a function of conditions.
+
+        Parameters
+        ----------
+        function : callable
+            ``f(conditions) -> speed through water [m/s]``; conditions are read by attribute or key
+            (see `Conditions`), as arrays. It may read either only what a table has axes for (wind
+            and waves relative to the bow, depth), or only what does not depend on the heading
+            (place, time, currents, plain sea variables by name).
+        draught_m : float
+            [m].
+        top_speed, top_speed_kn : float, optional
+            Greatest speed it ever gives, [m/s] or [kn]; measured when not given, if possible.
+        name : str
+        limits : ShipLimits, optional
+
+        Raises
+        ------
+        InputError
+            If the function fails, mixes both kinds, or gives other than one speed per condition.
+        """
+        if top_speed_kn is not None:
+            top_speed = top_speed_kn * KNOT
+        if top_speed is not None and not 0.0 < top_speed < math.inf:
+            raise InputError(
+                f"The greatest speed is {top_speed:g} m/s.", "It is positive.", "Correct it."
+            )
+        model = model_of_function(function, top_speed=top_speed)
+        loading = Loading(float(draught_m), float(draught_m))
+        return cls(name, model, loading, limits or ShipLimits())
+
+    @property
+    def speeds(self) -> FloatArray:
+        """Calm-water speed of every setting at the load factor [m/s], ascending."""
+        return self.model.speeds(self.loading.load_factor)
+
+    @property
+    def draught(self) -> float:
+        """Draught at the load factor [m]."""
+        return self.loading.draught
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Conditions the model reads (names of `Conditions`)."""
+        return self.model.reads
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """Sea variables (CF standard names) that the model and the limits need."""
+        if isinstance(self.model, FunctionModel):
+            return self.model.needs | self.limits.needs
+        return needed_variables(self.model.reads) | self.limits.needs
+
+    @property
+    def speed_field(self) -> Callable[..., FloatArray] | None:
+        """``f(sampled, time, lat, lon) -> speed [m/s]`` for ships whose speed is a field, or None.
+
+        ``sampled`` maps the variables of `needs` to arrays (m, s, m/s); time in seconds since
+        1970-01-01T00:00Z, positions in degrees.
+        """
+        if isinstance(self.model, FunctionModel):
+            return self.model.field(self.loading.load_factor)
+        return None
+
+    def with_load_factor(self, load_factor: float) -> Ship:
+        """Return the ship loaded differently, 0 empty to 1 full."""
+        return replace(self, loading=self.loading.at(load_factor))
+
+    def with_limits(self, limits: ShipLimits) -> Ship:
+        """Return the ship with other limits."""
+        return replace(self, limits=limits)
+
+    def with_speeds(self, speeds: ArrayLike) -> Ship:
+        """Return the ship with other settings, given by their calm-water speeds [m/s].
+
+        Raises
+        ------
+        InputError
+            If a speed is not positive, is outside the ship's range, or the model has one speed.
+        """
+        wanted = np.unique(np.atleast_1d(np.asarray(speeds, float)))
+        change = getattr(self.model, "with_speeds", None)
+        if change is None:
+            raise InputError(
+                f"The ship {self.name!r} goes as its model says; no speed can be ordered.",
+                "",
+                "Leave the ordered speed out.",
+            )
+        return replace(self, model=change(wanted, self.loading.load_factor))
+
+    def speed_through_water(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
+        """Speed through water [m/s].
+
+        Parameters
+        ----------
+        conditions : Conditions
+            What the ship meets, arrays that broadcast; see `reads`.
+        setting : array_like of int
+            Index into `speeds`.
+
+        Returns
+        -------
+        ndarray
+            At least 0; NaN where a condition is unknown or out of the model's range.
+
+        Raises
+        ------
+        InputError
+            If a condition is missing or there is no such setting.
+        """
+        return self.model.speed_through_water(self._loaded(conditions), setting)
+
+    def power(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
+        """Brake power [W]; NaN where unknown. Parameters as in `speed_through_water`."""
+        return self.model.power(self._loaded(conditions), setting)
+
+    def fuel_rate(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
+        """Fuel rate [kg/s]; NaN where unknown. Parameters as in `speed_through_water`."""
+        return self.model.fuel_rate(self._loaded(conditions), setting)
+
+    def notes(
+        self, conditions: Conditions, setting: ArrayLike = 0, *, strict: bool = False
+    ) -> list[RangeNote]:
+        """Say which methods are used outside their range in these conditions.
+
+        Raises
+        ------
+        ModelRangeError
+            If ``strict`` and there is any.
+        """
+        found = self.model.notes(self._loaded(conditions), setting)
+        if strict and found:
+            raise ModelRangeError(
+                "; ".join(str(note) for note in found) + ".",
+                "Each method holds in the range it was fitted for.",
+                "Choose other methods, or do without strictness.",
+                notes=[str(note) for note in found],
+            )
+        return found
+
+    def top_speed(self, setting: int = 0) -> float | None:
+        """Upper bound of the speed through water [m/s]; None for a field that nothing bounds.
+
+        It covers the model and its table, rounded to single precision, alike.
+        """
+        top = self.model.top_speed(setting, self.loading.load_factor)
+        return None if top is None else top * (1.0 + _SINGLE_PRECISION)
+
+    def tabulate(self, *, tolerance: float = 0.01) -> PerformanceTable:
+        """Tabulate the speed through water at the ship's load factor.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative error that 99 % of random conditions shall meet; the table says what it met.
+
+        Returns
+        -------
+        PerformanceTable
+        """
+        parts, error = self.model.tabulate(self.loading.load_factor, tolerance)
+        return PerformanceTable(parts, self.speeds, self.fingerprint(), error)
+
+    def fingerprint(self) -> str:
+        """Return a text that is the same for ships that behave the same, and for no others."""
+        return self._fingerprint
+
+    @cached_property
+    def _fingerprint(self) -> str:
+        facts = {
+            "model": self.model.identity,
+            "loading": repr(self.loading),
+            "limits": repr(self.limits),
+        }
+        text = json.dumps(facts, sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def _loaded(self, conditions: Conditions) -> Conditions:
+        return conditions.with_default(load_factor=self.loading.load_factor)

@@ -1,0 +1,214 @@
+"""`PerformanceTable`: a ship on uniform axes, as a sum of parts, with its measured error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels.codes import AXES, AXIS_DEPTH
+from thalweg.kernels.tables import TableArrays
+from thalweg.ship.variables import CONDITION_OF
+
+FloatArray = NDArray[np.float64]
+_EDGE = 1e-6  # how far outside an axis counts as on it [steps]
+
+
+@dataclass(frozen=True)
+class TableError:
+    """How far a table is from the model itself, measured at random conditions between its nodes.
+
+    Attributes
+    ----------
+    mean, p99, max : float
+        Absolute difference over the model's value, the latter not taken below a tenth of the
+        greatest value of its setting.
+    samples : int
+        Number of random conditions measured.
+    """
+
+    mean: float
+    p99: float
+    max: float
+    samples: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class TablePart:
+    """One term of a table: values on uniform axes, the setting innermost.
+
+    Attributes
+    ----------
+    axes : tuple of int
+        Axis ids (``AXIS_*`` of `thalweg.kernels.codes`); empty for a constant per setting.
+    grids : tuple of ndarray
+        Uniform, ascending grid points of each axis, SI.
+    values : float32 ndarray
+        Shape ``(len(grid) for each axis..., settings)``; NaN where the model has no value.
+
+    Raises
+    ------
+    InputError
+        If a grid is not uniform and ascending, or the shapes do not fit.
+    """
+
+    axes: tuple[int, ...]
+    grids: tuple[FloatArray, ...]
+    values: NDArray[np.float32]
+
+    def __post_init__(self) -> None:
+        grids = tuple(np.ascontiguousarray(grid, float) for grid in self.grids)
+        values = np.ascontiguousarray(self.values, np.float32)
+        object.__setattr__(self, "grids", grids)
+        object.__setattr__(self, "values", values)
+        self._check()
+
+    def _check(self) -> None:
+        if len(self.axes) != len(self.grids) or len(set(self.axes)) != len(self.axes):
+            raise _bad_part("needs one grid for each of its axes, and each axis once")
+        if any(axis not in CONDITION_OF for axis in self.axes):
+            raise _bad_part(f"has an unknown axis among {self.axes}")
+        if self.values.shape[:-1] != tuple(len(grid) for grid in self.grids):
+            raise _bad_part(
+                f"has values of shape {self.values.shape}, which does not fit its grids"
+            )
+        for axis, grid in zip(self.axes, self.grids):
+            if len(grid) < 2 or not np.isfinite(grid).all() or grid[-1] <= grid[0]:
+                raise _bad_part(f"has no ascending grid for {CONDITION_OF[axis]}")
+            even = np.linspace(grid[0], grid[-1], len(grid))
+            if np.abs(grid - even).max() > 1e-6 * (grid[1] - grid[0]):
+                raise _bad_part(f"has an uneven grid for {CONDITION_OF[axis]}")
+
+    def lookup(self, where: Mapping[str, ArrayLike], setting: ArrayLike = 0) -> FloatArray:
+        """Return the multilinear look-up; NaN outside an axis (only depth reaches on downwards)."""
+        names = [CONDITION_OF[axis] for axis in self.axes]
+        points = np.broadcast_arrays(
+            *(np.asarray(where[n], float) for n in names), np.asarray(setting)
+        )
+        chosen = points[-1].astype(np.intp)
+        located = [
+            _locate(axis, grid, x) for axis, grid, x in zip(self.axes, self.grids, points[:-1])
+        ]
+        total = np.zeros(points[-1].shape)
+        for corner in range(1 << len(self.axes)):
+            weight = np.ones(total.shape)
+            index: list[NDArray[np.intp]] = []
+            for bit, (cell, fraction) in enumerate(located):
+                up = corner >> bit & 1
+                index.append(cell + up)
+                weight = weight * (fraction if up else 1.0 - fraction)
+            value = self.values[(*index, chosen)]
+            total += np.where(weight == 0.0, 0.0, weight * value)
+        return total
+
+
+@dataclass(frozen=True, eq=False)
+class PerformanceTable:
+    """A ship tabulated: its speed through water is the sum over parts of multilinear look-ups.
+
+    Attributes
+    ----------
+    parts : tuple of TablePart
+        The terms of the sum.
+    settings : ndarray
+        The settings: calm-water speeds [m/s], ascending.
+    fingerprint : str
+        Of the ship the table was made from.
+    error : TableError
+        Measured against the ship itself.
+    """
+
+    parts: tuple[TablePart, ...]
+    settings: FloatArray
+    fingerprint: str
+    error: TableError
+
+    def __post_init__(self) -> None:
+        if not self.parts:
+            raise _bad_part("is missing: a table has at least one")
+        count = len(self.settings)
+        if any(part.values.shape[-1] != count for part in self.parts):
+            raise _bad_part(f"has another number of settings than the table's {count}")
+
+    @property
+    def axes(self) -> frozenset[str]:
+        """The conditions the table looks at."""
+        return frozenset(CONDITION_OF[axis] for part in self.parts for axis in part.axes)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the values [bytes]."""
+        return sum(part.values.nbytes for part in self.parts)
+
+    def lookup(self, where: Mapping[str, ArrayLike], setting: ArrayLike = 0) -> FloatArray:
+        """Return the table's value; NaN outside an axis or where the model has none.
+
+        Parameters
+        ----------
+        where : mapping of str to array_like
+            Conditions by name (`Conditions` will do), SI.
+        setting : array_like of int
+            Index of the setting.
+        """
+        return reduce(np.add, (part.lookup(where, setting) for part in self.parts))
+
+    def largest(self, setting: int) -> float:
+        """Return an upper bound of the table's value at a setting [m/s]."""
+        return float(sum(np.nanmax(part.values[..., setting]) for part in self.parts))
+
+    def kernel_arrays(self) -> TableArrays:
+        """Return the arrays that kernels look up (see `thalweg.kernels.tables`)."""
+        count = len(self.parts)
+        axes = np.full((count, AXES), -1, np.int64)
+        start, inverse = np.zeros((count, AXES)), np.zeros((count, AXES))
+        size = np.ones((count, AXES), np.int64)
+        lengths = [part.values.size for part in self.parts]
+        for p, part in enumerate(self.parts):
+            for k, (axis, grid) in enumerate(zip(part.axes, part.grids)):
+                axes[p, k], start[p, k], size[p, k] = axis, grid[0], len(grid)
+                inverse[p, k] = (len(grid) - 1) / (grid[-1] - grid[0])
+        return TableArrays(
+            part_axes=axes,
+            axis_start=start,
+            axis_inv_step=inverse,
+            axis_size=size,
+            value_offset=np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64),
+            n_settings=len(self.settings),
+            values=np.concatenate([part.values.ravel() for part in self.parts]),
+        )
+
+
+def _locate(axis: int, grid: FloatArray, x: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+    """Return (cell, fraction); the fraction is NaN outside the axis."""
+    last = len(grid) - 1
+    place = (x - grid[0]) * (last / (grid[-1] - grid[0]))
+    if axis == AXIS_DEPTH:
+        place = np.minimum(place, last)
+    inside = (place >= -_EDGE) & (place <= last + _EDGE)
+    clipped = np.clip(np.where(inside, place, 0.0), 0.0, last)
+    cell = np.minimum(clipped.astype(np.intp), last - 1)
+    return cell, np.where(inside, clipped - cell, np.nan)
+
+
+def _bad_part(problem: str) -> InputError:
+    return InputError(
+        f"A part of the performance table {problem}.",
+        "Axes are uniform and ascending, SI; values end with the settings.",
+        "Check how the table was made.",
+    )
+
+
+def table_summary(table: PerformanceTable) -> dict[str, Any]:
+    """Return what a plan keeps of a table: axes, size and error."""
+    return {
+        "axes": sorted(table.axes),
+        "parts": [list(part.values.shape) for part in table.parts],
+        "bytes": table.nbytes,
+        "fingerprint": table.fingerprint,
+        "error": {"mean": table.error.mean, "p99": table.error.p99, "max": table.error.max},
+    }
