@@ -1,1 +1,77 @@
-"""Thalweg: voyage optimisation for ships."""
+"""Thalweg: voyage optimisation for ships, with proof of how good the answer is."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.core.errors import (
+        CoverageError,
+        DatasetError,
+        InputError,
+        ModelRangeError,
+        NoRouteError,
+        ThalwegError,
+    )
+    from thalweg.network import Network, lattice, mesh
+    from thalweg.planning import Plan, Voyage, plan
+    from thalweg.route import Route, Track, evaluate
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+#: Where each public name lives; a room is imported when a name of it is first used.
+_ROOM_OF = {
+    "Chart": "chart",
+    "CoverageError": "core.errors",
+    "DatasetError": "core.errors",
+    "InputError": "core.errors",
+    "ModelRangeError": "core.errors",
+    "Network": "network",
+    "NoRouteError": "core.errors",
+    "Plan": "planning",
+    "Route": "route",
+    "Sea": "sea",
+    "Ship": "ship",
+    "ThalwegError": "core.errors",
+    "Track": "route",
+    "Voyage": "planning",
+    "evaluate": "route",
+    "lattice": "network",
+    "mesh": "network",
+    "plan": "planning",
+}
+
+__all__ = [
+    "Chart",
+    "CoverageError",
+    "DatasetError",
+    "InputError",
+    "ModelRangeError",
+    "Network",
+    "NoRouteError",
+    "Plan",
+    "Route",
+    "Sea",
+    "Ship",
+    "ThalwegError",
+    "Track",
+    "Voyage",
+    "evaluate",
+    "lattice",
+    "mesh",
+    "plan",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ROOM_OF:
+        raise AttributeError(f"module 'thalweg' has no attribute {name!r}")
+    value = getattr(import_module(f"thalweg.{_ROOM_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_ROOM_OF])

@@ -1,1 +1,8 @@
-"""The room planning."""
+"""Planning: the request, the result, and the one place that wires the rooms together."""
+
+from thalweg.planning.networks import NetworkChoice
+from thalweg.planning.plan import Plan, Proof
+from thalweg.planning.planner import plan
+from thalweg.planning.voyage import Voyage
+
+__all__ = ["NetworkChoice", "Plan", "Proof", "Voyage", "plan"]

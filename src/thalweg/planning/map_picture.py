@@ -203,9 +203,7 @@ def _draw_land(axes: Any, chart: Any, box: Box) -> None:
     ]
     if polygons:
         axes.add_collection(
-            PolyCollection(
-                polygons, facecolors=_LAND, edgecolors=_SHORE, linewidths=0.4, zorder=3
-            )
+            PolyCollection(polygons, facecolors=_LAND, edgecolors=_SHORE, linewidths=0.4, zorder=3)
         )
 
 
@@ -232,15 +230,27 @@ def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
     waits = track.wait > 0
     if waits.any():
         axes.plot(
-            box.unwrapped(track.lon[waits]), track.lat[waits], "s", color="#ff8f00", ms=6,
-            zorder=7, label="waits",
+            box.unwrapped(track.lon[waits]),
+            track.lat[waits],
+            "s",
+            color="#ff8f00",
+            ms=6,
+            zorder=7,
+            label="waits",
         )
     for index, name in ((0, plan.provenance.get("from")), (-1, plan.provenance.get("to"))):
         x, y = float(box.unwrapped(track.lon[index : index + 1 or None])[0]), track.lat[index]
         axes.plot(x, y, "o", mfc="white", mec=_ROUTE, mew=1.6, ms=7, zorder=7)
         axes.annotate(
-            str(name or ""), (x, y), xytext=(0, 9), textcoords="offset points", fontsize=8,
-            ha="center", zorder=8, color=_INK, fontweight="bold",
+            str(name or ""),
+            (x, y),
+            xytext=(0, 9),
+            textcoords="offset points",
+            fontsize=8,
+            ha="center",
+            zorder=8,
+            color=_INK,
+            fontweight="bold",
         )
 
 

@@ -12,23 +12,10 @@ from thalweg.core.errors import MissingVariableError, OutsidePeriodError
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.planning.voyage import Voyage
-from thalweg.sea import Sea
+from thalweg.sea import Sea, names
 from thalweg.ship import Ship
 
-CURRENTS = ("eastward_sea_water_velocity", "northward_sea_water_velocity")
-WATER_LEVEL = "sea_surface_height_above_geopotential_datum"
-BED_DEPTH = "sea_floor_depth_below_geoid"
-
-_CHANNEL_OF = {
-    CURRENTS[0]: codes.CURRENT_EAST,
-    CURRENTS[1]: codes.CURRENT_NORTH,
-    "eastward_wind": codes.WIND_EAST,
-    "northward_wind": codes.WIND_NORTH,
-    "sea_surface_wave_significant_height": codes.WAVE_HEIGHT_CH,
-    "sea_surface_wave_to_direction_east": codes.WAVE_EAST,
-    "sea_surface_wave_to_direction_north": codes.WAVE_NORTH,
-    "sea_surface_wave_period_at_variance_spectral_density_maximum": codes.WAVE_PERIOD,
-}
+_CHANNEL_OF = {name: channel for channel, name in names.CHANNEL_VARIABLES.items()}
 
 
 @dataclass(frozen=True)
@@ -62,24 +49,24 @@ def find_needs(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -> Needs:
     _check_variables(ship, sea)
     notes = list(sea.assumptions)
     channels = {_CHANNEL_OF[name] for name in ship.needs if name in _CHANNEL_OF}
-    if all(name in sea.variables for name in CURRENTS):
+    if all(name in sea.variables for name in names.CURRENT.pair):
         channels |= {codes.CURRENT_EAST, codes.CURRENT_NORTH}
     else:
         notes.append("No currents in the data: still water is assumed.")
     required = _required_depth(voyage, ship, sea, chart, notes)
     if math.isfinite(required):
-        if WATER_LEVEL in sea.variables:
+        if names.WATER_LEVEL in sea.variables:
             channels.add(codes.WATER_LEVEL)
         else:
             notes.append("No water levels in the data: depths are taken at chart datum.")
-        if BED_DEPTH in sea.variables:
+        if names.BED_DEPTH in sea.variables:
             channels.add(codes.BED_DEPTH)
     limits = np.array([required, ship.limits.wave_height, ship.limits.wind_speed], float)
     return Needs(tuple(sorted(channels)), limits, tuple(notes))
 
 
 def _check_variables(ship: Ship, sea: Sea) -> None:
-    missing = sorted(name for name in ship.needs if not _supplied(name, sea))
+    missing = sorted(name for name in ship.needs if name not in sea.variables)
     if missing:
         raise MissingVariableError(
             f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not hold.",
@@ -89,14 +76,8 @@ def _check_variables(ship: Ship, sea: Sea) -> None:
         )
 
 
-def _supplied(name: str, sea: Sea) -> bool:
-    return name in sea.variables
-
-
-def _required_depth(
-    voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: list[str]
-) -> float:
-    known = chart.has_depth or BED_DEPTH in sea.variables
+def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: list[str]) -> float:
+    known = chart.has_depth or names.BED_DEPTH in sea.variables
     if voyage.min_ukc_m is not None and not known:
         raise MissingVariableError(
             f"An under-keel clearance of {voyage.min_ukc_m:g} m is asked, but nothing tells depth.",
@@ -117,15 +98,15 @@ def check_period(voyage: Voyage, sea: Sea, needs: Needs) -> float:
     OutsidePeriodError
         If the departure lies outside the data.
     """
-    names = {name for name, channel in _CHANNEL_OF.items() if channel in needs.channels}
-    first, last = -math.inf, math.inf
-    ends: dict[str, list[tuple[float, float]]] = {}
+    needed = {names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
+    periods: dict[str, list[tuple[float, float]]] = {}
     for row in sea.coverage():
-        if row.name in names:
-            ends.setdefault(row.name, []).append((row.start, row.end))
-    for periods in ends.values():
-        first = max(first, min(start for start, _ in periods))
-        last = min(last, max(end for _, end in periods))
+        if row.variable in needed:
+            start = -math.inf if row.start is None else row.start
+            end = math.inf if row.end is None else row.end
+            periods.setdefault(row.variable, []).append((start, end))
+    first = max((min(s for s, _ in rows) for rows in periods.values()), default=-math.inf)
+    last = min((max(e for _, e in rows) for rows in periods.values()), default=math.inf)
     if not first <= voyage.earliest_departure < last or voyage.latest_departure >= last:
         asked = (
             voyage.latest_departure

@@ -62,15 +62,11 @@ def build_network(choice: NetworkChoice, chart: Chart, sea: Sea, start: End, goa
             "Use network='lattice', or open such a file first.",
         )
     if model is not None and (choice.network == "mesh" or _inside(model, ends)):
-        network = mesh(
-            chart, model.lat, model.lon, model.triangles, largest_spacing=choice.spacing
-        )
+        network = mesh(chart, model.lat, model.lon, model.triangles, largest_spacing=choice.spacing)
         return with_endpoints(network, chart, *ends)
     return lattice(chart, *ends, spacing=choice.spacing)
 
 
 def _inside(model: object, ends: tuple[tuple[float, float], ...]) -> bool:
     lat, lon = np.asarray(model.lat), np.asarray(model.lon)  # type: ignore[attr-defined]
-    return all(
-        lat.min() <= a <= lat.max() and lon.min() <= b <= lon.max() for a, b in ends
-    )
+    return all(lat.min() <= a <= lat.max() and lon.min() <= b <= lon.max() for a, b in ends)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,11 +12,13 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance, format_position
 from thalweg.core.time import format_time
+from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.planning.ends import End
 from thalweg.planning.needs import Needs
 from thalweg.planning.networks import NetworkChoice, build_network
+from thalweg.planning.refinement import refine
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, evaluate
 from thalweg.sea import Sea, StationFields
@@ -25,10 +26,13 @@ from thalweg.search import Bound, SearchResult, best_departure, earliest_arrival
 from thalweg.ship import PerformanceTable, Ship
 
 #: Frozen fields larger than this are refused before they are taken [bytes].
-MEMORY_LIMIT = 3_000_000_000
-#: How far ahead the sea is frozen, in multiples of the time the straight way would take.
-_HORIZONS = (2.5, 6.0, 20.0)
-_ONE_TIDE = 14 * 3600.0
+MEMORY_LIMIT = 4_000_000_000
+#: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
+_HORIZONS = (2.5, 8.0, 30.0)
+_TWO_TIDES = 25 * HOUR
+#: Safety margins tried in turn when the referee finds a limit broken between the stations:
+#: on the depth [m], and on the limits of wave height and wind [fraction].
+_MARGINS = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.15))
 
 
 @dataclass(frozen=True)
@@ -46,10 +50,29 @@ class Task:
     choice: NetworkChoice
     tell: Callable[[str], None] = field(default=lambda text: None)
 
+    @property
+    def min_ukc(self) -> float:
+        """The least under-keel clearance asked [m]."""
+        return self.voyage.min_ukc_m or 0.0
+
 
 @dataclass(frozen=True)
 class Passage:
-    """What came of one passage."""
+    """What came of one passage.
+
+    Attributes
+    ----------
+    route : Route
+        The best route, scored by the referee.
+    result : SearchResult
+        What the search on the network found.
+    bound : Bound
+        No route is better than this, in SI.
+    network : Network
+        The network searched.
+    notes : tuple of str
+        What the user must know.
+    """
 
     route: Route
     result: SearchResult
@@ -58,9 +81,15 @@ class Passage:
     notes: tuple[str, ...]
 
 
-def make_passage(
-    task: Task, start: End, goal: End, window: tuple[float, float]
-) -> Passage:
+@dataclass(frozen=True)
+class Frozen:
+    """The sea at the stations of a network, and what it allows at most."""
+
+    stations: StationFields
+    top_speed: float
+
+
+def make_passage(task: Task, start: End, goal: End, window: tuple[float, float]) -> Passage:
     """Find the best route between two ends, departing inside a window of times.
 
     Raises
@@ -70,15 +99,190 @@ def make_passage(
     """
     task.tell(f"building the network from {start.name} to {goal.name}")
     network = build_network(task.choice, task.chart, task.sea, start, goal)
-    for required_margin in (0.0, 0.1, 0.3, 1.0):
-        strict = _with_margin(task, required_margin)
-        fields, result = _search(strict, network, start, goal, window)
-        track = track_of(network, result, task.setting)
-        route = _referee(task, track)
-        route = _improve(strict, task, network, fields, route)
+    frozen, result = _search(task, network, task.needs.limits, window, (start, goal))
+    task.tell("bounding the answer")
+    bound = _bound(task, network, frozen, result)
+    route = _score(task, network, frozen, result, task.needs.limits)
+    for depth, fraction in _MARGINS[1:]:
         if route.feasible:
             break
-    task.tell("bounding the answer")
-    bound = _bound(task, network, fields, result, window)
-    notes = () if route.feasible else ("The referee finds limits broken on this route.",)
+        limits = task.needs.limits * (1 - fraction)
+        limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+        frozen, result = _search(task, network, limits, window, (start, goal))
+        route = _score(task, network, frozen, result, limits)
+    notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
     return Passage(route, result, bound, network, notes)
+
+
+def _score(
+    task: Task, network: Network, frozen: Frozen, result: SearchResult, limits: np.ndarray
+) -> Route:
+    task.tell("refining the route")
+    track = track_of(network, result, task.setting)
+    scored = referee(task, track)
+    return refine(task, track, scored, limits, frozen.top_speed)
+
+
+def referee(task: Task, track: Track) -> Route:
+    """Score a track with the ship, the sea and the limits of a task."""
+    return evaluate(
+        track,
+        ship=task.ship,
+        sea=task.sea,
+        chart=task.chart,
+        min_ukc=task.min_ukc,
+        strict=False,
+    )
+
+
+def track_of(network: Network, result: SearchResult, setting: int) -> Track:
+    """Turn a path on the network into a track with its waits."""
+    path = result.path
+    wait = np.maximum(0.0, result.path_depart - result.path_arrive)
+    wait[-1] = 0.0
+    return Track(
+        network.station_lat[path],
+        network.station_lon[path],
+        float(result.path_arrive[0]),
+        np.where(wait < 1.0, 0.0, wait),
+        np.full(len(path) - 1, setting),
+    )
+
+
+def _search(
+    task: Task,
+    network: Network,
+    limits: np.ndarray,
+    window: tuple[float, float],
+    ends: tuple[End, End],
+) -> tuple[Frozen, SearchResult]:
+    straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
+    usual = straight / float(task.ship.speeds[task.setting])
+    latest = task.last
+    if task.voyage.arrive_by is not None:
+        latest = min(latest, float(task.voyage.arrive_by))  # type: ignore[arg-type]
+    for number, horizon in enumerate(_HORIZONS):
+        end = window[1] + horizon * usual + (_TWO_TIDES if number else 0.0)
+        end = min(end, latest)
+        task.tell(f"freezing the sea until {format_time(end)}")
+        frozen = freeze(task, network, window[0], end)
+        task.tell("searching")
+        result = _run(task, network, frozen, limits, window)
+        if result.found or end >= latest:
+            break
+    if not result.found:
+        raise _no_route(task, network, result, ends)
+    return frozen, result
+
+
+def freeze(task: Task, network: Network, start: float, end: float) -> Frozen:
+    """Freeze the sea at the stations of a network.
+
+    Raises
+    ------
+    InputError
+        If it would take more memory than is allowed.
+    """
+    lat, lon = network.station_lat, network.station_lon
+    steps = len(task.sea.times(start, end))
+    channels = task.needs.channels
+    extra = None
+    if task.ship.speed_field is not None:
+        extra = {codes.SPEED_FIELD: task.ship.speed_field}
+    size = len(lat) * steps * (len(channels) + bool(extra)) * 4
+    if size > MEMORY_LIMIT:
+        raise InputError(
+            f"The sea at {len(lat):,} stations and {steps:,} times takes {size / 1e9:.1f} GB.",
+            f"At most {MEMORY_LIMIT / 1e9:.0f} GB are taken.",
+            "Use a coarser resolution or a shorter window.",
+        )
+    stations = task.sea.freeze_stations(lat, lon, start, end, channels, extra=extra)
+    return Frozen(stations, _top_speed(task, stations))
+
+
+def _top_speed(task: Task, stations: StationFields) -> float:
+    column = stations.channel_index[codes.SPEED_FIELD]
+    if column >= 0:
+        return float(np.nanmax(stations.values[:, :, column], initial=0.0))
+    return float(task.ship.top_speed(task.setting))
+
+
+def _run(
+    task: Task, network: Network, frozen: Frozen, limits: np.ndarray, window: tuple[float, float]
+) -> SearchResult:
+    options = {
+        "start": network.meta.start,
+        "goal": network.meta.goal,
+        "setting": task.setting,
+        "limits": limits,
+        "objective": task.voyage.objective,
+        "wait": task.voyage.wait,
+        "arrive_by": task.voyage.arrive_by,
+        "top_speed": frozen.top_speed,
+    }
+    if window[1] > window[0]:
+        return best_departure(network, frozen.stations, task.table, window=window, **options)  # type: ignore[arg-type]
+    return earliest_arrival(network, frozen.stations, task.table, depart=window[0], **options)  # type: ignore[arg-type]
+
+
+def _bound(task: Task, network: Network, frozen: Frozen, result: SearchResult) -> Bound:
+    return lower_bound(
+        network,
+        frozen.stations,
+        task.table,
+        start=network.meta.start,
+        goal=network.meta.goal,
+        depart=float(result.path_arrive[0]),
+        setting=task.setting,
+        limits=task.needs.limits,
+        objective=task.voyage.objective,
+        top_speed=frozen.top_speed,
+    )
+
+
+def _no_route(
+    task: Task, network: Network, result: SearchResult, ends: tuple[End, End]
+) -> NoRouteError:
+    reasons = {**network.meta.rejected}
+    for reason, count in result.refused.items():
+        reasons[reason] = reasons.get(reason, 0) + count
+    reasons = {reason: count for reason, count in reasons.items() if count}
+    nearest, words = None, "Nothing beyond the start can be reached."
+    if result.nearest_node >= 0:
+        lat = float(network.station_lat[result.nearest_node])
+        lon = float(network.station_lon[result.nearest_node])
+        nearest = (lat, lon)
+        left = float(distance(lat, lon, ends[1].lat, ends[1].lon)) / 1852.0
+        words = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."
+    return NoRouteError(
+        f"No route from {ends[0].name} to {ends[1].name} within the limits, departing "
+        f"{format_time(task.voyage.earliest_departure)}.",
+        words,
+        _advice(reasons, task.last),
+        reasons=reasons,
+        nearest=nearest,
+    )
+
+
+_ADVICE = {
+    codes.DEPTH: "Sail lighter, ask less clearance, or allow waiting for the tide.",
+    codes.WAVE_HEIGHT: "Leave later, or raise the limit of the ship.",
+    codes.WIND_SPEED: "Leave later, or raise the limit of the ship.",
+    codes.NO_DATA: "The data have gaps: add a layer that covers them, or name a filling.",
+    codes.CURRENT: "The current is faster than the ship: leave at another time.",
+    codes.ARRIVE_BY: "Allow a later arrival.",
+}
+
+
+def _advice(reasons: dict[str, int], last: float) -> str:
+    counts = {
+        code: reasons.get(codes.REASONS[code], 0)
+        for code in codes.REASONS
+        if code not in (codes.LAND, codes.OUTSIDE_PERIOD)
+    }
+    code = max(counts, key=lambda c: counts[c])
+    if counts[code]:
+        return _ADVICE.get(code, "Change the limits or the area.")
+    if reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]) and math.isfinite(last):
+        return f"The data end at {format_time(last)}: add later data or leave earlier."
+    return "Try a finer resolution, or check that the places are not enclosed by land."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections import Counter
 from collections.abc import Callable
@@ -93,7 +94,7 @@ def _ends(voyage: Voyage, chart: Chart) -> list[End]:
     places += [(f"via point {i + 1}", place) for i, place in enumerate(voyage.via)]
     places.append(("goal", voyage.goal))
     ends = [find_end(place, chart, what) for what, place in places]
-    for first, second in zip(ends, ends[1:]):
+    for first, second in itertools.pairwise(ends):
         check_apart(first, second)
     return ends
 
@@ -118,7 +119,7 @@ def _setting(voyage: Voyage, ship: Ship) -> int:
 def _make_passages(task: Task, ends: list[End]) -> list[Passage]:
     window = (task.voyage.earliest_departure, task.voyage.latest_departure)
     passages: list[Passage] = []
-    for start, goal in zip(ends, ends[1:]):
+    for start, goal in itertools.pairwise(ends):
         passage = make_passage(task, start, goal, window)
         passages.append(passage)
         window = (passage.route.arrive, passage.route.arrive)

@@ -1,0 +1,196 @@
+"""Bad input gets a clear answer at the door, and nothing is lost."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.errors import (
+    CoverageError,
+    InputError,
+    MissingVariableError,
+    NoRouteError,
+    OutsidePeriodError,
+    ThalwegError,
+)
+
+DEPART = "2026-01-01T00:00Z"
+SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
+WATER = Chart.open_water(50.0, 51.0, 1.0, 3.0)
+SQUARE = {
+    "type": "Polygon",
+    "coordinates": [[[1.8, 50.3], [2.2, 50.3], [2.2, 50.7], [1.8, 50.7], [1.8, 50.3]]],
+}
+
+
+def ask(start=(50.5, 1.2), goal=(50.5, 2.8), *, sea=None, ship=SHIP, chart=WATER, **request):
+    request.setdefault("depart", DEPART)
+    voyage = Voyage(start=start, goal=goal, **request)
+    return plan(voyage, ship=ship, sea=sea or Sea.calm(), chart=chart)
+
+
+def current(east):
+    return Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": east,
+            "northward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
+        }
+    )
+
+
+def ring(outer, inner):
+    """A square of land with a square of water in it."""
+
+    def corners(half):
+        c = [(-half, -half), (half, -half), (half, half), (-half, half), (-half, -half)]
+        return [[2.0 + x, 50.5 + y] for x, y in c]
+
+    return {"type": "Polygon", "coordinates": [corners(outer), corners(inner)[::-1]]}
+
+
+def test_unknown_port_gets_near_matches():
+    with pytest.raises(InputError, match="Rotterdam"):
+        ask(start="Roterdam")
+
+
+def test_start_on_land_says_where_water_is():
+    chart = Chart.from_geojson(land=SQUARE)
+    with pytest.raises(InputError, match=r"nearest navigable water is .* nm away") as caught:
+        ask(start=(50.5, 2.0), chart=chart)
+    assert "land" in str(caught.value)
+
+
+def test_enclosed_goal_is_no_route():
+    chart = Chart.from_geojson(land=ring(0.2, 0.1))
+    with pytest.raises(NoRouteError) as caught:
+        ask(goal=(50.5, 2.0), chart=chart)
+    assert caught.value.reasons["land"] > 0
+    assert caught.value.nearest is not None
+
+
+def test_departure_outside_the_data():
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
+            "northward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
+        },
+        period=("2026-02-01T00:00Z", "2026-02-03T00:00Z"),
+    )
+    with pytest.raises(OutsidePeriodError, match=r"2026-02-01T00:00:00Z to 2026-02-03T00:00:00Z"):
+        ask(sea=sea)
+
+
+def test_missing_variable_is_named():
+    with pytest.raises(MissingVariableError, match="eastward_wind"):
+        ask(ship=Ship.load("handysize-bulker"), sea=current(lambda t, lat, lon: 0.0 * lat))
+
+
+def test_a_gap_right_across_is_no_route_and_says_no_data():
+    sea = current(lambda t, lat, lon: np.where(np.abs(lon - 2.0) < 0.2, np.nan, 0.0))
+    with pytest.raises(NoRouteError) as caught:
+        ask(sea=sea)
+    assert caught.value.reasons["no data"] > 0
+    assert "gap" in caught.value.remedy
+
+
+def test_a_gap_is_sailed_round_never_through():
+    sea = current(lambda t, lat, lon: np.where((np.abs(lon - 2) < 0.2) & (lat < 50.7), np.nan, 0.0))
+    best = ask(sea=sea).best
+    inside = np.abs(best.samples["lon"] - 2.0) < 0.199
+    assert inside.any()
+    assert best.samples["lat"][inside].min() > 50.699
+
+
+def test_a_named_filling_opens_the_gap_and_is_told():
+    sea = current(lambda t, lat, lon: np.where(np.abs(lon - 2.0) < 0.2, np.nan, 0.0))
+    found = ask(sea=sea.filled(currents=0.0))
+    assert any("currents" in note for note in found.notes)
+
+
+def test_draught_deeper_than_any_water():
+    with pytest.raises(NoRouteError) as caught:
+        ask(chart=WATER.with_depth(lambda lat, lon: 4.0 + 0.0 * lat))
+    assert caught.value.reasons["under-keel clearance"] > 0
+    assert "clearance" in caught.value.remedy
+
+
+def test_clearance_without_any_depth():
+    with pytest.raises(MissingVariableError, match="depth"):
+        ask(min_ukc_m=1.0)
+
+
+def test_depth_that_does_not_overlap():
+    def elsewhere(lat, lon):
+        return np.where(lat > 60.0, 100.0, np.nan)
+
+    with pytest.raises(ThalwegError) as caught:
+        ask(chart=WATER.with_depth(elsewhere))
+    assert isinstance(caught.value, (CoverageError, NoRouteError))
+    assert "data" in str(caught.value) or "depth" in str(caught.value)
+
+
+@pytest.mark.parametrize("speed", [0.0, -3.0, float("nan"), float("inf")])
+def test_speeds_that_cannot_be(speed):
+    with pytest.raises(InputError):
+        Ship.simple(speed_kn=speed, draught_m=5.0)
+    with pytest.raises(InputError):
+        Voyage(start=(50, 1), goal=(51, 2), depart=DEPART, speed_kn=speed)
+
+
+def test_a_speed_the_ship_does_not_have():
+    with pytest.raises(InputError, match=r"10\.0"):
+        ask(speed_kn=14.0)
+
+
+def test_swapped_latitude_and_longitude():
+    with pytest.raises(InputError, match="swapped"):
+        Voyage(start=(151.2, -33.9), goal=(50, 1), depart=DEPART)
+
+
+@pytest.mark.parametrize("place", [(float("nan"), 1.0), (50.0,), "", None, (1, 2, 3)])
+def test_places_that_are_none(place):
+    with pytest.raises(InputError):
+        Voyage(start=place, goal=(50, 1), depart=DEPART)
+
+
+def test_same_place():
+    with pytest.raises(InputError, match="same place"):
+        ask(goal=(50.5, 1.2))
+
+
+def test_no_departure_or_two():
+    with pytest.raises(InputError, match="departure"):
+        Voyage(start=(50, 1), goal=(51, 2))
+    with pytest.raises(InputError, match="departure"):
+        Voyage(start=(50, 1), goal=(51, 2), depart=DEPART, depart_window=(DEPART, DEPART))
+
+
+def test_window_the_wrong_way_round():
+    with pytest.raises(InputError, match="before"):
+        Voyage(start=(50, 1), goal=(51, 2), depart_window=("2026-01-02", "2026-01-01"))
+
+
+def test_arrive_by_too_early():
+    with pytest.raises(NoRouteError) as caught:
+        ask(arrive_by="2026-01-01T00:30Z")
+    assert caught.value.reasons
+    with pytest.raises(InputError, match="not after"):
+        ask(arrive_by="2025-12-31T00:00Z")
+
+
+def test_unknown_objective_has_near_matches():
+    with pytest.raises(InputError, match="time"):
+        Voyage(start=(50, 1), goal=(51, 2), depart=DEPART, objective="tiem")
+
+
+def test_output_folder_that_cannot_be(tmp_path):
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(InputError, match="cannot be written"):
+        ask().write(tmp_path / "file" / "out")
+
+
+def test_network_unknown_or_absent():
+    voyage = Voyage(start=(50.5, 1.2), goal=(50.5, 2.8), depart=DEPART)
+    with pytest.raises(InputError, match="lattice"):
+        plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, network="latice")
+    with pytest.raises(InputError, match="no mesh"):
+        plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, network="mesh")
