@@ -1,0 +1,112 @@
+"""The SNNM formula: its special cases, its limits, and the size of a published peak."""
+
+import numpy as np
+import pytest
+
+from thalweg.core.units import GRAVITY
+from thalweg.ship.methods.mean_wave_force import spectral_density
+from thalweg.ship.methods.waves_snnm import (
+    SnnmHull,
+    entrance_length,
+    snnm,
+    snnm_transfer,
+    snnm_validity,
+)
+
+KVLCC2 = SnnmHull(
+    length=320.0,
+    breadth=58.0,
+    draught_fore=20.8,
+    draught_aft=20.8,
+    block_coefficient=0.8098,
+    entrance_length=60.0,
+    run_length=90.0,
+)
+SPEED = 0.142 * np.sqrt(GRAVITY * 320.0)
+UNIT = 1025.0 * GRAVITY * 58.0**2 / 320.0
+
+
+def frequency(length_ratio):
+    return np.sqrt(2.0 * np.pi * GRAVITY / (np.asarray(length_ratio) * 320.0))
+
+
+def test_head_wave_motion_written_out():
+    """Equal draughts, waves from ahead: the formula as printed, term by term."""
+    ratio, fn, block = 1.2, 0.142, 0.8098
+    scale = 2.142 * 0.25 ** (1 / 3) * np.sqrt(1 / ratio) * (block / 0.65) ** 0.17
+    scale *= 1.0 - 0.111 / block * (np.log(58.0 / 20.8) - np.log(2.75))
+    scale *= -1.377 * fn**2 + 1.157 * fn + 0.618
+    b1, d1 = (
+        (11.0, 566.0 * (320.0 * block / 58.0) ** -2.66)
+        if scale < 1.0
+        else (-8.5, -566.0 * (320.0 / 58.0) ** -2.66 * 4.0)
+    )
+    a1 = 60.3 * block**1.34 * (0.87 / block) ** (1.0 + fn) / np.log(58.0 / 20.8)
+    a2 = fn**1.5 * np.exp(-3.5 * fn)
+    expected = 4.0 * UNIT * a1 * a2 * scale**b1 * np.exp(b1 / d1 * (1.0 - scale**d1))
+    motion, _ = snnm_transfer(frequency(ratio), SPEED, 0.0, KVLCC2)
+    assert motion == pytest.approx(expected, rel=1e-9)
+
+
+def test_short_head_waves_are_reflected_by_the_entrance():
+    """Very short waves from ahead: 2.25/2 rho g B sin^2 E1 and its speed term, no draught left."""
+    omega, bow = frequency(0.05), np.arctan(0.495 * 58.0 / 60.0)
+    _, reflection = snnm_transfer(omega, SPEED, 0.0, KVLCC2)
+    inside = np.sin(bow) ** 2 + 2.0 * omega * SPEED / GRAVITY * (1.0 - np.cos(bow) ** 2)
+    front = (0.87 / 0.8098) ** (1.0 + 4.0 * np.sqrt(0.142))
+    expected = 2.0 * 2.25 / 4.0 * 1025.0 * GRAVITY * 58.0 * inside * front
+    assert reflection == pytest.approx(expected, rel=1e-6)
+
+
+def test_nothing_is_reflected_beyond_two_and_a_half_lengths():
+    _, reflection = snnm_transfer(frequency([2.49, 2.5, 4.0]), SPEED, 0.3, KVLCC2)
+    assert reflection[0] > 0.0
+    np.testing.assert_allclose(reflection[1:], 0.0, atol=1e-6 * UNIT)
+
+
+def test_kvlcc2_head_wave_peak_has_the_published_size():
+    """Tank tests of the KVLCC2 at Fr 0.142 peak near lambda/L 1.1 at 6 to 8 rho g a^2 B^2/L."""
+    ratio = np.linspace(0.3, 2.4, 200)
+    total = sum(snnm_transfer(frequency(ratio), SPEED, 0.0, KVLCC2)) / UNIT
+    assert 1.0 < ratio[np.argmax(total)] < 1.25
+    assert 6.0 < total.max() < 8.0
+
+
+def test_following_waves_push_a_ship_that_is_slow_and_hinder_one_that_overtakes_them():
+    omega = frequency(0.9)
+    group = GRAVITY / (2.0 * omega)
+    motion, _ = snnm_transfer(omega, group * np.array([0.0, 0.4, 0.5, 1.0]), np.pi, KVLCC2)
+    assert motion[0] < motion[1] < 0.0
+    assert motion[2] == pytest.approx(0.0, abs=1e-9 * UNIT)
+    assert motion[3] > 0.0
+
+
+@pytest.mark.parametrize("angle_deg", [0.0, 60.0, 90.0, 130.0, 180.0])
+@pytest.mark.parametrize("spectrum", ["bretschneider", "jonswap"])
+def test_quadrature_against_a_fine_one(angle_deg, spectrum):
+    omega = np.linspace(0.05, 15.0, 60001)
+    energy = spectral_density(omega, wave_height=2.0, wave_period=9.0, spectrum=spectrum)
+    force = sum(snnm_transfer(omega, SPEED, np.radians(angle_deg), KVLCC2))
+    fine = 2.0 * np.trapezoid(force * energy, omega)
+    got = snnm(SPEED, 2.0, 9.0, np.radians(angle_deg), KVLCC2, spectrum=spectrum)
+    assert got == pytest.approx(fine, rel=1e-3)
+
+
+def test_entrance_length_gives_back_the_angle():
+    length = entrance_length(58.0, entrance_angle_deg=30.0)
+    assert np.degrees(np.arctan(0.495 * 58.0 / length)) == pytest.approx(30.0)
+
+
+def test_trim_raises_the_motion_part_and_too_much_of_it_is_unknown():
+    def motion(trim):
+        hull = SnnmHull(320.0, 58.0, 20.8 - trim, 20.8, 0.8098, 60.0, 90.0)
+        return snnm_transfer(frequency(0.8), SPEED, 0.0, hull)[0]
+
+    assert motion(1.0) > motion(0.0)
+    assert np.isnan(motion(15.0))
+
+
+def test_validity():
+    assert snnm_validity(SPEED, KVLCC2) == []
+    (note,) = snnm_validity([SPEED, 3.0 * SPEED], KVLCC2)
+    assert note.quantity == "Froude number"

@@ -1,0 +1,103 @@
+"""Wind coefficients of Fujiwara (2006), Blendermann (1994) and the ITTC data set."""
+
+import numpy as np
+import pytest
+
+from thalweg.ship.methods.wind import (
+    BLENDERMANN,
+    ITTC_CURVES,
+    FujiwaraShip,
+    blendermann_1994,
+    fujiwara_2006,
+    ittc_curve,
+    relative_wind,
+    relative_wind_from_vectors,
+    wind_at_height,
+    wind_resistance,
+    yu_2021_area,
+    yu_2021_coefficient,
+)
+
+SHIP = FujiwaraShip(
+    length_overall=178.0,
+    breadth=32.0,
+    frontal_area=800.0,
+    lateral_area=2000.0,
+    deck_area=500.0,
+    superstructure_height=28.0,
+    area_centre_forward=0.0,
+    area_centre_height=8.0,
+)
+
+
+def test_fujiwara_against_an_independent_calculation():
+    got = fujiwara_2006(np.radians([0, 30, 60, 90, 120, 150, 180]), SHIP)
+    expected = [0.744, 0.760, 0.497, 0.093, -0.165, -0.726, -0.745]
+    np.testing.assert_allclose(got, expected, atol=5.1e-4)
+
+
+def test_fujiwara_at_beam_is_the_mean_of_both_sides():
+    sides = fujiwara_2006(np.radians([80.0, 100.0]), SHIP)
+    assert fujiwara_2006(np.pi / 2, SHIP) == pytest.approx(sides.mean(), rel=1e-12)
+
+
+def test_blendermann_tanker_against_an_independent_calculation():
+    angles = np.arange(0.0, 181.0, 15.0)
+    forward = [
+        *(-0.9, -0.89097111, -0.84067181, -0.7048691, -0.4853621, -0.23873499, 0.0),
+        *(0.14740434, 0.30652866, 0.45072204, 0.53092322, 0.55012048, 0.55),
+    ]
+    got = blendermann_1994(
+        np.radians(angles),
+        frontal_area=800.0,
+        lateral_area=2000.0,
+        ship_type=BLENDERMANN["tanker_loaded"],
+    )
+    np.testing.assert_allclose(got, -np.array(forward), atol=1e-8)
+
+
+def test_ittc_tanker_curve_against_a_polynomial_fitted_by_others():
+    coefficients = [
+        *(1.17123499947647e-12, -5.2511115870235e-10, 7.82952986643856e-08),
+        *(-3.56045199257532e-06, -1.00927975153741e-04, -2.71257158080664e-03, 0.969153537514452),
+    ]
+    degrees = np.arange(0.0, 181.0, 10.0)
+    got = ittc_curve(np.radians(degrees))
+    np.testing.assert_allclose(got, ITTC_CURVES["tanker_laden"], rtol=1e-12)
+    np.testing.assert_allclose(got, np.polyval(coefficients, degrees), atol=0.04)
+
+
+def test_relative_wind_of_head_and_following_winds():
+    """Ship at 6 m/s, wind of 10 m/s: 256 and 16 m2/s2 (Yu's program has them exchanged)."""
+    speed, angle = relative_wind(10.0, [0.0, np.pi, np.pi / 2], ship_speed=6.0)
+    np.testing.assert_allclose(speed**2, [256.0, 16.0, 136.0], rtol=1e-12)
+    np.testing.assert_allclose(angle, [0.0, np.pi, np.arctan2(10.0, 6.0)], atol=1e-12)
+
+
+def test_relative_wind_from_vectors_agrees():
+    heading, wind_from = np.radians(230.0), np.radians(300.0)
+    polar = relative_wind(12.0, wind_from - heading, ship_speed=7.0)
+    vectors = relative_wind_from_vectors(
+        -12.0 * np.sin(wind_from),
+        -12.0 * np.cos(wind_from),
+        ship_east=7.0 * np.sin(heading),
+        ship_north=7.0 * np.cos(heading),
+        heading=heading,
+    )
+    np.testing.assert_allclose(polar, vectors, rtol=1e-12)
+
+
+def test_wind_at_height_is_a_power_law():
+    np.testing.assert_allclose(wind_at_height(10.0, height=[10.0, 1280.0]), [10.0, 20.0])
+
+
+def test_wind_resistance_and_calm_air():
+    force = wind_resistance(16.0, 0.8, frontal_area=500.0, density=1.25)
+    assert force == pytest.approx(0.5 * 1.25 * 500.0 * 256.0 * 0.8)
+    still = wind_resistance(6.0, 0.8, frontal_area=500.0, calm_air_coefficient=0.8, ship_speed=6.0)
+    assert still == pytest.approx(0.0, abs=1e-9)
+
+
+def test_yu_rule():
+    assert yu_2021_area(32.0, draught_aft=10.0) == 256.0
+    np.testing.assert_allclose(yu_2021_coefficient([0.0, np.pi]), [0.7, -0.7])
