@@ -36,14 +36,20 @@ _PROBES = 32
 
 
 class RecordingConditions(Conditions):
-    """Conditions that hold a plausible value for any name and remember what was read."""
+    """Conditions that hold plausible values for any name and remember what was read.
 
-    __slots__ = ("_read", "_size")
+    Parameters
+    ----------
+    row : int, optional
+        Give this one of the values as a single number, instead of all as an array.
+    """
 
-    def __init__(self, size: int | None = _PROBES) -> None:
+    __slots__ = ("_read", "_row")
+
+    def __init__(self, row: int | None = None) -> None:
         super().__init__()
         object.__setattr__(self, "_read", set())
-        object.__setattr__(self, "_size", size)
+        object.__setattr__(self, "_row", row)
 
     @property
     def read(self) -> frozenset[str]:
@@ -53,7 +59,7 @@ class RecordingConditions(Conditions):
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of every value."""
-        return () if self._size is None else (self._size,)
+        return (_PROBES,) if self._row is None else ()
 
     def __getitem__(self, name: str) -> FloatArray:
         self._read.add(name)
@@ -62,8 +68,8 @@ class RecordingConditions(Conditions):
             low, high = DEFAULT_AXES[name].start, 0.5 * DEFAULT_AXES[name].stop
         digest = hashlib.sha256(name.encode()).digest()
         draw = np.random.default_rng(int.from_bytes(digest[:8], "little"))
-        values = draw.uniform(low, high, self.shape)
-        return np.asarray(values)
+        values = draw.uniform(low, high, _PROBES)
+        return np.asarray(values if self._row is None else values[self._row])
 
     def __contains__(self, name: object) -> bool:
         return True
@@ -201,15 +207,14 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
     """
     recorder = RecordingConditions()
     try:
-        speed = np.asarray(function(recorder), float)
-    except (TypeError, ValueError) as problem:
-        if isinstance(problem, InputError):
-            raise
-        function, recorder, speed = _elementwise(function, problem)
-    _check_answer(speed, recorder.shape)
-    reads = recorder.read - {"load_factor"}
-    if reads <= AXIS_OF.keys():
+        _check_answer(np.asarray(function(recorder), float), recorder.shape)
         read_all = recorder.read
+    except InputError:
+        raise
+    except (TypeError, ValueError) as problem:
+        function, read_all = _elementwise(function, problem)
+    reads = read_all - {"load_factor"}
+    if reads <= AXIS_OF.keys():
         part, error = _tabulate(function, read_all, 1.0, 0.01)
         top = top_speed if top_speed is not None else _greatest(function, read_all, part)
         return FunctionModel(function, read_all, top, (part, error))
@@ -224,23 +229,25 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
             "Split the world: put place and time into the sea, headings into the ship.",
             reads=sorted(reads),
         )
-    return FunctionModel(function, recorder.read, top_speed, None)
+    return FunctionModel(function, read_all, top_speed, None)
 
 
 def _elementwise(
     function: SpeedFunction, problem: Exception
-) -> tuple[SpeedFunction, RecordingConditions, FloatArray]:
-    """Wrap a function that takes numbers only, so that it takes arrays."""
-    recorder = RecordingConditions(None)
+) -> tuple[SpeedFunction, frozenset[str]]:
+    """Wrap a function that takes numbers only, so that it takes arrays; tell what it reads."""
+    recorders = [RecordingConditions(row) for row in range(_PROBES)]
     try:
-        speed = np.asarray(function(recorder), float)
+        for recorder in recorders:
+            _check_answer(np.asarray(function(recorder), float), ())
     except (TypeError, ValueError):
         raise InputError(
             f"The speed function fails on plausible conditions: {problem}.",
             "It gets one argument with attributes such as wave_height (arrays) and returns [m/s].",
             "Write it with NumPy functions, or for single numbers.",
         ) from problem
-    names = sorted(recorder.read)
+    reads = frozenset().union(*(recorder.read for recorder in recorders))
+    names = sorted(reads)
 
     def elementwise(conditions: Conditions) -> ArrayLike:
         columns = [np.broadcast_to(conditions[n], conditions.shape).ravel() for n in names]
@@ -250,7 +257,7 @@ def _elementwise(
         return np.reshape([float(np.asarray(function(row))) for row in rows], conditions.shape)
 
     elementwise.__name__ = getattr(function, "__name__", "function")
-    return elementwise, recorder, speed
+    return elementwise, reads
 
 
 def _call(function: SpeedFunction, conditions: Conditions) -> FloatArray:

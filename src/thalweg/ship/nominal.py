@@ -171,7 +171,8 @@ class NominalModel:
         low, high = (own[0], own[-1]) if self.law == "table" else (0.0, np.inf)
         if self.law == "none":
             high = own[-1] if len(own) > 1 else np.inf
-        if not ((speeds > 0) & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
+        possible = np.isfinite(speeds) & (speeds > 0)
+        if not (possible & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
             raise _speed_out_of_range(speeds, low, high)
         ratio = float(np.mean(self.speeds_empty / self.speeds_full))
         full = speeds / between(ratio, 1.0, load_factor)

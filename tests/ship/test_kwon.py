@@ -1,0 +1,98 @@
+"""Properties of Kwon's speed loss."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from thalweg.core.errors import InputError
+from thalweg.ship.speed_loss import (
+    GREATEST_LOSS,
+    beaufort_number,
+    kwon_form_coefficient,
+    kwon_speed_coefficient,
+    kwon_speed_loss,
+)
+
+winds = st.floats(0.0, 60.0)
+angles = st.floats(0.0, np.pi)
+blocks = st.floats(0.55, 0.85)
+volumes = st.floats(5e3, 4e5)
+loadings = st.sampled_from(["loaded", "normal", "ballast"])
+
+
+def _loss(wind, angle, block=0.8, volume=27150.0, **more):
+    options = {"speed": 7.0, "length": 152.9, **more}
+    return float(
+        kwon_speed_loss(wind, angle, block_coefficient=block, displacement_volume=volume, **options)
+    )
+
+
+@given(angles, blocks, volumes, loadings)
+def test_no_wind_costs_nothing(angle, block, volume, loading):
+    assert _loss(0.0, angle, block, volume, loading=loading) == 0.0
+
+
+@given(winds, angles, blocks, volumes, loadings)
+def test_the_loss_is_a_share_and_greatest_from_ahead(wind, angle, block, volume, loading):
+    loss = _loss(wind, angle, block, volume, loading=loading)
+    assert 0.0 <= loss <= GREATEST_LOSS
+    assert loss <= _loss(wind, 0.0, block, volume, loading=loading) + 1e-12
+
+
+@given(winds, winds, angles, blocks, volumes)
+def test_more_wind_never_costs_less(first, second, angle, block, volume):
+    low, high = sorted((first, second))
+    assert _loss(low, angle, block, volume) <= _loss(high, angle, block, volume) + 1e-9
+
+
+@given(winds, angles)
+def test_the_loss_has_no_steps(wind, angle):
+    near = _loss(wind + 1e-6, min(angle + 1e-6, np.pi))
+    assert near == pytest.approx(_loss(wind, angle), abs=1e-4)
+
+
+@given(winds, angles, volumes, st.floats(1.0, 2.0))
+def test_a_larger_ship_loses_less(wind, angle, volume, growth):
+    large = _loss(wind, angle, volume=volume * growth)
+    assert large <= _loss(wind, angle, volume=volume) + 1e-9
+
+
+@given(winds, angles)
+def test_arrays_of_displacement_answer_as_numbers_do(wind, angle):
+    volumes_ = np.array([2e4, 5e4, 2e4])
+    found = kwon_speed_loss(
+        wind, angle, speed=7.0, length=150.0, block_coefficient=0.8, displacement_volume=volumes_
+    )
+    expected = [_loss(wind, angle, volume=v, length=150.0) for v in volumes_]
+    assert found == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_hurricane_on_the_beam_costs_nothing_only_as_printed():
+    printed = {"hold": False, "classes": True}
+    assert _loss(40.0, np.pi / 2, volume=3e5, **printed) == 0.0
+    assert _loss(40.0, np.pi / 2, volume=3e5) > 0.05
+
+
+def test_printed_sign_would_push_a_full_ship_forward_and_is_clipped():
+    fast = 15.2 * 1852 / 3600
+    assert _loss(12.0, 0.0, speed=fast, sign="printed") == 0.0
+    assert _loss(12.0, 0.0, speed=fast) > 0.1
+
+
+def test_unknown_stays_unknown():
+    assert np.isnan(_loss(np.nan, 0.0)) and np.isnan(_loss(5.0, np.nan))
+    assert np.isnan(beaufort_number(np.nan, classes=True))
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: kwon_speed_coefficient(0.2, block_coefficient=0.8, loading="full"),
+        lambda: kwon_speed_coefficient(0.2, block_coefficient=0.8, sign="minus"),
+        lambda: kwon_form_coefficient(4.0, displacement_volume=1e4, ship_type="tanker"),
+    ],
+)
+def test_unknown_choices_are_refused(call):
+    with pytest.raises(InputError, match="There is no choice"):
+        call()

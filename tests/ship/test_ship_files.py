@@ -1,0 +1,213 @@
+"""Ship files: what is read, what is refused and with which words."""
+
+import numpy as np
+import pytest
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import DAY, KNOT
+from thalweg.ship import Conditions, Ship, library_names
+
+CALM = Conditions(wind_speed=0.0, wind_angle=0.0)
+GOOD = """
+name: Test ship
+hull: {length_between_perpendiculars_m: 120, breadth_m: 20, draught_m: 7, block_coefficient: 0.7}
+table:
+  - {speed_kn: 12, fuel_t_per_day: 14, power_kw: 3000}
+  - {speed_kn: 10, fuel_t_per_day: 9, power_kw: 1900}
+limits: {max_wind_speed_m_s: 20}
+"""
+
+
+def _write(folder, text):
+    path = folder / "ship.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_table_of_rows_is_read_in_order_of_speed(tmp_path):
+    ship = Ship.load(_write(tmp_path, GOOD))
+    assert (ship.speeds / KNOT).tolist() == pytest.approx([10.0, 12.0])
+    assert (ship.fuel_rate(CALM, [0, 1]) * DAY / 1000).tolist() == pytest.approx([9.0, 14.0])
+    assert ship.power(CALM, [0, 1]).tolist() == pytest.approx([1.9e6, 3.0e6])
+    assert ship.limits.wind_speed == 20.0
+
+
+def test_a_table_of_columns_is_the_same_ship(tmp_path):
+    columns = GOOD.split("table:")[0] + (
+        "table: {speed_kn: [10, 12], fuel_t_per_day: [9, 14], power_kw: [1900, 3000]}\n"
+        "limits: {max_wind_speed_m_s: 20}\n"
+    )
+    other = Ship.load(_write(tmp_path, columns)).fingerprint()
+    assert other == Ship.load(_write(tmp_path, GOOD)).fingerprint()
+
+
+def test_between_rows_of_a_table_fuel_is_interpolated_and_beyond_refused(tmp_path):
+    ship = Ship.load(_write(tmp_path, GOOD))
+    middle = ship.with_speeds(11.0 * KNOT)
+    assert float(middle.fuel_rate(CALM)) * DAY / 1000 == pytest.approx(11.5)
+    with pytest.raises(InputError, match="10 to 12 kn"):
+        ship.with_speeds(13.0 * KNOT)
+
+
+def test_cubic_law_through_a_reference_power():
+    ship = Ship.from_dict(
+        {
+            "name": "cube",
+            "hull": {"draught_m": 6},
+            "speeds_kn": [7, 14],
+            "engine": {
+                "reference_speed_kn": 14,
+                "reference_power_kw": 8000,
+                "sfoc_g_per_kwh": 180,
+            },
+            "models": {"calm_water": "cubic"},
+        }
+    )
+    assert ship.power(CALM, [0, 1]).tolist() == pytest.approx([1.0e6, 8.0e6])
+    assert ship.fuel_rate(CALM, [0, 1]).tolist() == pytest.approx([0.05, 0.4])
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("hull:", "hul:"), "'hul' is not a key of a ship file.*Did you mean 'hull'"),
+        (("breadth_m", "bredth_m"), "'bredth_m' is not a key of 'hull'.*'breadth_m'"),
+        (("speed_kn: 12", "speed_kn: .nan"), "table.speed_kn.*finite"),
+        (("speed_kn: 12", "speed_kn: 0"), "table.speed_kn.*greater than 0"),
+        (("speed_kn: 12", "speed_kn: -12"), "table.speed_kn.*greater than 0"),
+        (("speed_kn: 12", "speed_kn: twelve"), "table.speed_kn.*a number"),
+        (("speed_kn: 12", "speed_kn: true"), "table.speed_kn.*a number"),
+        (("speed_kn: 12", "speed_kn: 10"), "speed is given twice"),
+        (("fuel_t_per_day: 14", "fuel_t_per_day: 8"), "fuel_t_per_day falls from 9 to 8"),
+        (("power_kw: 3000}", "engines: 1}"), "do not all have the same keys"),
+        (("block_coefficient: 0.7", "block_coefficient: 1.2"), "block_coefficient.*at most 1"),
+        (("draught_m: 7", "draught_m: 7, depth_m: 6"), "more than the depth"),
+        (("draught_m: 7", "draught_m: 7, displacement_m3: 90000"), "times the box"),
+        (("draught_m: 7", "draught_m: 7, displacement_m3: 9000"), "does not fit displacement_m3"),
+        (("draught_m: 7", "draught_m: 7, midship_coefficient: 0.6"), "midship coefficient 0.6"),
+        (("draught_m: 7", "draught_m: 7, draught_fore_m: 5, draught_aft_m: 6"), "mean of fore"),
+        (("draught_m: 7, ", ""), "gives no draught"),
+        (("name: Test ship", "description: none"), "has no name"),
+        (("name: Test ship", "name: [1, 2]"), "'name' is a list"),
+        (("max_wind_speed_m_s: 20", "max_wind_speed_m_s: 20, max_wind_speed_kn: 40"), "twice"),
+        (("max_wind_speed_m_s: 20", "max_wind_speed_m_s: -1"), "max_wind_speed_m_s"),
+        (("name: Test ship", "name: Test ship\nspeeds_kn: [10]"), "speeds_kn and table"),
+        (("name: Test ship", "name: Test ship\nname: Other"), "'name' is given twice"),
+        (
+            ("name: Test ship", "name: Test ship\nmodels: {calm_water: tabel}"),
+            "Did you mean 'table'",
+        ),
+        (("limits:", "limits: &a\n  <<: *a\nlimts:"), "references"),
+        (("limits: {", "limits: ["), "cannot be read .line"),
+        (("name: Test ship", "name: !!python/object:os.system x"), "cannot be read .line 2"),
+    ],
+)
+def test_faults_are_named(tmp_path, change, message):
+    assert change[0] in GOOD
+    with pytest.raises(InputError, match=f"(?s){message}"):
+        Ship.load(_write(tmp_path, GOOD.replace(*change)))
+
+
+@pytest.mark.parametrize(
+    ("extra", "missing"),
+    [
+        ({}, "gives no speeds"),
+        ({"models": {"calm_water": "cubic"}, "speeds_kn": [10]}, "no reference point"),
+        ({"models": {"calm_water": "table"}, "speeds_kn": [10]}, "no table"),
+        ({"speeds_kn": []}, "at least one number"),
+        ({"loading": {"speeds_full_kn": [10, 11], "speeds_empty_kn": [12]}}, "2 speeds full and 1"),
+        ({"loading": {"draught_full_m": 4, "draught_empty_m": 5}, "speeds_kn": [10]}, "as deep as"),
+        ({"loading": {"weight_full_t": 4, "weight_empty_t": 5}, "speeds_kn": [10]}, "when empty"),
+        ({"loading": {"load_factor": 1.2}, "speeds_kn": [10]}, "load_factor"),
+        ({"table": {"speed_kn": [9, 10], "fuel_t_per_day": [4]}}, "fuel_t_per_day has another"),
+        ({"engine": 7, "speeds_kn": [10]}, "'engine' holds 7"),
+    ],
+)
+def test_incomplete_ships_are_refused(extra, missing):
+    with pytest.raises(InputError, match=missing):
+        Ship.from_dict({"name": "x", "hull": {"draught_m": 5}, **extra})
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "not keys with values"),
+        ("just words", "not keys with values"),
+        ("- 1\n- 2", "not keys with values"),
+        ("[" * 5000, "cannot be read"),
+        ("name: x\nhull: {a: 2020-13-45}", "is not a key|cannot be read"),
+        ("? {a: b}\n: c\n", "cannot be read|not a key"),
+    ],
+)
+def test_files_that_are_no_ships_are_refused(tmp_path, text, message):
+    with pytest.raises(InputError, match=message):
+        Ship.load(_write(tmp_path, text))
+
+
+def test_binary_and_huge_files_are_refused(tmp_path):
+    path = tmp_path / "ship.yaml"
+    path.write_bytes(b"\xff\xfe\x00\x01")
+    with pytest.raises(InputError, match="UTF-8"):
+        Ship.load(path)
+    path.write_bytes(b"#" * 300_000)
+    with pytest.raises(InputError, match="larger than"):
+        Ship.load(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        Ship.load(tmp_path / "none.yaml")
+    with pytest.raises(InputError, match="cannot be read"):
+        Ship.load(tmp_path)
+
+
+def test_an_unknown_name_gets_near_matches():
+    with pytest.raises(InputError, match="Did you mean 'handysize-bulker'"):
+        Ship.load("handisize-bulker")
+
+
+@pytest.mark.parametrize("name", library_names())
+def test_library_ships_load_tell_their_sources_and_tabulate(name):
+    ship = Ship.load(name)
+    assert ship.data["sources"] and ship.data["description"]
+    table = ship.tabulate()
+    assert table.error.p99 <= 0.01
+    assert table.nbytes < 64e6
+    assert (np.diff(ship.speeds) > 0).all()
+    for setting in range(len(ship.speeds)):
+        assert ship.top_speed(setting) >= table.largest(setting) > 0
+
+
+def test_seurens_bulker_has_table_5_3():
+    ship = Ship.load("handysize-bulker")
+    assert (ship.speeds / KNOT).tolist() == pytest.approx(
+        [8.8, 9.5, 9.9, 10.3, 10.6, 10.8, 14.1, 14.3, 14.5, 14.8, 15.0, 15.2]
+    )
+    fuel = ship.fuel_rate(CALM, np.arange(12)) * DAY / 1000
+    assert fuel.tolist() == pytest.approx(
+        [14.3, 15.5, 16.4, 17.6, 18.9, 20.1, 28.9, 30.3, 32.0, 34.4, 36.8, 39.0]
+    )
+    assert ship.data["fuel"]["eca_price_factor"] == 1.5593
+
+
+def test_seurens_bulker_slows_in_wind_and_keeps_its_fuel():
+    ship = Ship.load("handysize-bulker")
+    wind = Conditions(wind_speed=0.836 * 5**1.5, wind_angle=0.0)  # Beaufort 5, head
+    fn = 15.2 * KNOT / np.sqrt(9.80665 * 152.9)
+    loss = (2.6 - 13.1 * fn + 15.1 * fn**2) * 16.82500255 / 100
+    assert float(ship.speed_through_water(wind, 11) / KNOT) == pytest.approx(15.2 * (1 - loss))
+    assert float(ship.fuel_rate(wind, 11)) == float(ship.fuel_rate(CALM, 11))
+
+
+def test_halems_dredger_between_empty_and_full():
+    full = Ship.load("hopper-dredger")
+    assert full.draught == 6.5 and full.speeds[0] == pytest.approx(10 * KNOT)
+    empty = full.with_load_factor(0.0)
+    assert empty.draught == 3.5 and empty.speeds[0] == pytest.approx(12 * KNOT)
+    half = full.with_load_factor(0.5)
+    assert half.draught == 5.0 and half.speeds[0] == pytest.approx(11 * KNOT)
+    assert half.loading.displacement == pytest.approx(7000 / 1.025)
+    assert half.loading.capacity == 4000
+    mixed = full.speed_through_water(Conditions(load_factor=[0.0, 0.5, 1.0, 1.5]))
+    assert (mixed[:3] / KNOT).tolist() == pytest.approx([12.0, 11.0, 10.0])
+    assert np.isnan(mixed[3])
+    assert half.fingerprint() != full.fingerprint()
+    with pytest.raises(InputError, match="load factor"):
+        full.with_load_factor(1.5)
