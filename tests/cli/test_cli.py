@@ -1,0 +1,167 @@
+"""The command line: results, exit codes, and errors a person can act on."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from thalweg.cli.main import build_parser, main
+
+SHIP = """
+name: tester
+hull: {draught_m: 5.0, length_between_perpendiculars_m: 80.0, block_coefficient: 0.7, breadth_m: 14.0}
+speeds_kn: [8.0, 10.0]
+fuel: {reference_t_per_day: 6.0}
+engine: {reference_speed_kn: 10.0}
+"""
+HERE, THERE = "50.5N 1.2E", "50.5,2.8"
+
+
+@pytest.fixture
+def ship(tmp_path):
+    path = tmp_path / "ship.yaml"
+    path.write_text(SHIP)
+    return str(path)
+
+
+@pytest.fixture
+def currents(tmp_path):
+    """Two days of a steady half-knot easterly set between 50 and 51 north."""
+    times = np.arange("2026-01-01", "2026-01-03", 6, dtype="datetime64[h]").astype("datetime64[ns]")
+    lat, lon = np.linspace(50, 51, 11), np.linspace(1, 3, 21)
+    shape = (len(times), len(lat), len(lon))
+    data = {
+        "uo": (("time", "lat", "lon"), np.full(shape, 0.257), _cf("eastward")),
+        "vo": (("time", "lat", "lon"), np.zeros(shape), _cf("northward")),
+    }
+    path = tmp_path / "currents.nc"
+    coords = {
+        "time": times,
+        "lat": ("lat", lat, {"standard_name": "latitude", "units": "degrees_north"}),
+        "lon": ("lon", lon, {"standard_name": "longitude", "units": "degrees_east"}),
+    }
+    xr.Dataset(data, coords).to_netcdf(path)
+    return str(path)
+
+
+def _cf(way):
+    return {"standard_name": f"{way}_sea_water_velocity", "units": "m s-1"}
+
+
+def run_json(capsys, *arguments):
+    code = main([*arguments, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_plan_prints_one_object_and_writes_files(capsys, tmp_path, ship, currents):
+    out = tmp_path / "out"
+    code, found = run_json(
+        capsys, "plan", HERE, THERE, "--ship", ship, "--sea", currents, "--coast", "none",
+        "--depart", "2026-01-01T00:00Z", "--out", str(out),
+    )  # fmt: skip
+    assert code == 0
+    route = found["routes"][0]
+    assert route["distance_nm"] == pytest.approx(61.2, abs=0.2)
+    assert route["time_h"] == pytest.approx(route["distance_nm"] / 10.5, rel=2e-3)
+    assert route["fuel_t"] == pytest.approx(6.0 * route["time_h"] / 24, rel=1e-3)
+    assert found["lower_bound"] <= route["time_h"]
+    assert 0 <= found["gap"] < 0.05
+    assert {"solver_total", "rejections", "provenance"} <= found.keys()
+    keys = {"lat", "lon", "time", "course_deg", "speed_through_water_kn", "speed_over_ground_kn"}
+    assert keys <= route["waypoints"][0].keys()
+    names = {"plan.json", "route.geojson", "route.gpx", "route.csv", "map.png", "profile.png"}
+    assert {path.name for path in out.iterdir()} == names
+    assert json.loads((out / "plan.json").read_text()) == found
+
+
+def test_a_written_route_can_be_evaluated(capsys, tmp_path, ship, currents):
+    world = ["--ship", ship, "--sea", currents, "--coast", "none"]
+    when = ["--depart", "2026-01-01T00:00Z"]
+    _, found = run_json(capsys, "plan", HERE, THERE, *world, *when, "--out", str(tmp_path / "out"))
+    for name in ("route.gpx", "route.csv", "route.geojson"):
+        code, scored = run_json(capsys, "evaluate", str(tmp_path / "out" / name), *world, *when)
+        assert code == 0
+        assert scored["time_h"] == pytest.approx(found["routes"][0]["time_h"], rel=1e-5)
+
+
+def test_plan_for_a_person(capsys, ship):
+    code = main(
+        ["plan", HERE, THERE, "--ship", ship, "--calm", "--coast", "none", "--speed", "8",
+         "--depart", "2026-01-01T00:00Z"]
+    )  # fmt: skip
+    text = capsys.readouterr().out
+    assert code == 0
+    assert "7.6" in text and "nm" in text and "best possible" in text
+
+
+def test_inspect(capsys, currents):
+    code, found = run_json(capsys, "inspect", currents)
+    assert code == 0
+    text = json.dumps(found)
+    assert "eastward_sea_water_velocity" in text and "uo" in text
+    assert main(["inspect", currents]) == 0
+    assert "eastward_sea_water_velocity" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("extra", "code", "words"),
+    [
+        (["--ship", "handysize-bulke", "--calm"], 2, "handysize-bulker"),
+        (["--ship", "SHIP"], 2, "No sea"),
+        (["--ship", "SHIP", "--calm", "--objective", "tiem"], 2, "time"),
+        (["--ship", "SHIP", "--calm", "--speed", "0"], 2, "speed"),
+        (["--ship", "SHIP", "--calm", "--ukc", "1"], 3, "depth"),
+        (["--ship", "SHIP", "--sea", "CURRENTS", "--depart", "2027-01-01"], 3, "2026-01-02"),
+        (["--ship", "handysize-bulker", "--sea", "CURRENTS"], 3, "eastward_wind"),
+        (["--ship", "SHIP", "--sea", "nowhere.nc"], 2, "nowhere.nc"),
+        (["--ship", "SHIP", "--calm", "--fill", "tea=2"], 2, "currents=0"),
+    ],
+)
+def test_mistakes_have_exit_codes_and_no_traceback(capsys, ship, currents, extra, code, words):
+    extra = [{"SHIP": ship, "CURRENTS": currents}.get(word, word) for word in extra]
+    got = main(["plan", HERE, THERE, "--coast", "none", *extra])
+    captured = capsys.readouterr()
+    assert got == code
+    assert words in captured.err
+    assert "Traceback" not in captured.err
+
+
+def test_errors_as_json(capsys, ship):
+    code, found = run_json(
+        capsys, "plan", "Roterdam", THERE, "--ship", ship, "--calm", "--coast", "none"
+    )
+    assert code == 2
+    assert found["error"] == "InputError"
+    assert "Rotterdam" in found["remedy"] + found["possible"]
+
+
+def test_no_route_has_code_4_and_reasons(capsys, tmp_path, ship, currents):
+    code, found = run_json(
+        capsys, "plan", HERE, THERE, "--ship", ship, "--sea", currents, "--coast", "none",
+        "--depart", "2026-01-01T00:00Z", "--arrive-by", "2026-01-01T02:00Z",
+    )  # fmt: skip
+    assert code == 4
+    assert found["details"]["reasons"]
+
+
+def test_southern_positions_are_not_options(capsys, ship):
+    code, found = run_json(
+        capsys, "plan", "-33.5,152.0", "-33.0,152.5", "--ship", ship, "--calm", "--coast", "none"
+    )
+    assert code == 0
+    assert found["routes"][0]["waypoints"][0]["lat"] == pytest.approx(-33.5)
+
+
+@pytest.mark.parametrize("content", [b"not a file of any kind", b"CDF\x01" + b"\0" * 20, b""])
+def test_corrupt_files(capsys, tmp_path, ship, content):
+    path = tmp_path / "bad.nc"
+    path.write_bytes(content)
+    assert main(["plan", HERE, THERE, "--ship", ship, "--sea", str(path), "--coast", "none"]) == 2
+    assert "bad.nc" in capsys.readouterr().err
+
+
+def test_help_names_every_command():
+    text = build_parser().format_help()
+    for command in ("plan", "evaluate", "inspect", "ship", "demo"):
+        assert command in text
