@@ -57,6 +57,8 @@ def test_port_equals_starboard(height, period, angle, speed):
 def test_long_waves_lift_the_ship_as_they_lift_the_water(angle, speed):
     w = np.array([0.03])
     heave, pitch = seakeeping.jensen_motions(w, speed=speed, wave_angle=angle, hull=HULL)
+    strip = seakeeping.jensen_motions(w, speed=speed, wave_angle=angle, hull=HULL, decay="strip")
+    assert strip[0] == pytest.approx(heave, abs=0.001)
     slope = w**2 / 9.80665 * np.abs(np.cos(angle))
     assert heave == pytest.approx([1.0], abs=0.01)
     assert pitch == pytest.approx(slope, rel=0.01, abs=1e-12)
@@ -64,9 +66,38 @@ def test_long_waves_lift_the_ship_as_they_lift_the_water(angle, speed):
 
 @given(angle=angles, speed=speeds)
 def test_short_waves_do_not_move_the_ship(angle, speed):
-    heave, pitch = seakeeping.jensen_motions([6.0], speed=speed, wave_angle=angle, hull=HULL)
-    assert heave[0] < 0.05
-    assert pitch[0] < 0.005
+    heave, pitch = seakeeping.jensen_motions(
+        [6.0], speed=speed, wave_angle=angle, hull=HULL, decay="strip"
+    )
+    assert heave[0] < 1e-6
+    assert pitch[0] < 1e-6
+
+
+def test_published_decay_does_not_fade_in_beam_seas():
+    """The flaw the notes speak of: heave goes to one half, not to zero."""
+    heave, _ = seakeeping.jensen_motions([20.0], speed=0.0, wave_angle=np.pi / 2, hull=HULL)
+    assert heave[0] == pytest.approx(0.5, abs=0.01)
+
+
+@given(w=st.floats(0.1, 2.0), speed=speeds)
+def test_both_decays_are_one_in_head_seas(w, speed):
+    pairs = [
+        seakeeping.jensen_motions([w], speed=speed, wave_angle=0.0, hull=HULL, decay=decay)
+        for decay in seakeeping.DECAYS
+    ]
+    assert pairs[0][0] == pytest.approx(pairs[1][0])
+    assert pairs[0][1] == pytest.approx(pairs[1][1])
+
+
+def test_acceleration_does_not_hang_on_the_cut_off():
+    """Beam sea: 48 points to 8 peak frequencies against a trapezoid to 16."""
+    got = respond(wave_angle=np.pi / 2, period=7.0, forward=0.0)
+    w = np.linspace(0.2, 16.0 * 2.0 * np.pi / 7.0, 40_001)
+    waves = wave_spectra.bretschneider(w, height=3.0, period=7.0)
+    heave, _ = seakeeping.jensen_motions(
+        w, speed=7.0, wave_angle=np.pi / 2, hull=HULL, decay="strip"
+    )
+    assert got.acceleration.m0 == pytest.approx(np.trapezoid(w**4 * heave**2 * waves, w), rel=0.01)
 
 
 @given(w=st.floats(0.05, 4.0), angle=angles, speed=speeds)

@@ -120,7 +120,7 @@ def test_response_by_brute_force():
         height=4.0, period=9.0, wave_angle=0.4, speed=7.0, hull=S175, forward=80.0
     )
     w = np.linspace(0.2, 5.0, 20_001)
-    heave, pitch = sea.jensen_motions(w, speed=7.0, wave_angle=0.4, hull=S175)
+    heave, pitch = sea.jensen_motions(w, speed=7.0, wave_angle=0.4, hull=S175, decay="strip")
     waves = spectra.jonswap(w, height=4.0, period=9.0)
     met = np.abs(w * sea.encounter_ratio(w, speed=7.0, wave_angle=0.4))
     bow = np.hypot(heave, 80.0 * pitch)
@@ -190,3 +190,8 @@ def test_bad_histories():
         series.wave_components([0.1, 0.2, 0.3], [1.0, np.nan, 1.0], generator=generator)
     with pytest.raises(InputError, match="random"):
         series.wave_components(GRID, SPECTRUM, generator=generator, scheme="randm")
+
+
+def test_unknown_decay():
+    with pytest.raises(InputError, match="strip"):
+        sea.jensen_motions([1.0], speed=1.0, wave_angle=0.0, hull=S175, decay="stripe")

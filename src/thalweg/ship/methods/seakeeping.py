@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.arrays import Floats, floats
 from thalweg.ship.methods.wave_spectra import (
@@ -17,6 +17,9 @@ from thalweg.ship.methods.wave_spectra import (
     most_probable_maximum,
     quadrature,
 )
+
+#: How wave pressure fades with depth in `jensen_motions`.
+DECAYS: Final = ("published", "strip")
 
 #: Published ranges: function -> quantity -> (low, high).
 VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
@@ -95,6 +98,7 @@ def jensen_motions(
     speed: ArrayLike,
     wave_angle: ArrayLike,
     hull: MotionHull,
+    decay: str = "published",
     gravity: float = GRAVITY,
 ) -> tuple[Floats, Floats]:
     """Return the amplitudes of heave and pitch per wave amplitude.
@@ -116,6 +120,9 @@ def jensen_motions(
         Angle between bow and where the waves come from [rad], 0 head to pi following.
     hull : MotionHull
         Hull.
+    decay : str
+        ``published``: exp(-k_e T) as in the paper. ``strip``: exp(-k T), the same in head and
+        following seas; see the notes.
     gravity : float
         [m/s2].
 
@@ -130,11 +137,19 @@ def jensen_motions(
     are removed: with z = k B a^2 / 2 the two damping terms are k B a (sin z / z)^2 exp(-2 k T a^2)
     and a times that. In long waves heave tends to one and pitch to the wave slope k.
 
+    The published decay uses the wave number along the ship. In beam seas that is zero, pressure
+    no longer fades with depth, heave tends to 1/2 (not to 0) in ever shorter waves, and the
+    acceleration in a sea depends on where the spectrum is cut off. Pressure under a wave fades
+    with its own wave number whatever the heading, which is what ``strip`` uses (as strip theory
+    does); this correction is ours.
+
     References
     ----------
     J. J. Jensen, A. E. Mansour, A. S. Olsen, "Estimation of ship motions using closed-form
     expressions", Ocean Engineering 31 (2004).
     """
+    if decay not in DECAYS:
+        raise unknown_name("decay", decay, DECAYS)
     w = floats(frequency)
     k = w**2 / gravity
     a = encounter_ratio(w, speed=speed, wave_angle=wave_angle, gravity=gravity)
@@ -143,7 +158,8 @@ def jensen_motions(
     half = 0.5 * k_e * hull.length
     sway = np.sinc(0.5 * k * box * a**2 / np.pi) * np.exp(-k * hull.draught * a**2)
     damping = k * box * a * sway**2
-    forcing = np.sqrt((1.0 - k * hull.draught) ** 2 + damping**2) * np.exp(-k_e * hull.draught)
+    fading = np.exp(-hull.draught * (k_e if decay == "published" else k))
+    forcing = np.sqrt((1.0 - k * hull.draught) ** 2 + damping**2) * fading
     stiffness = 1.0 - 2.0 * k * hull.draught * a**2
     gain = forcing / np.sqrt(stiffness**2 + (damping * a) ** 2)
     heave = gain * np.abs(np.sinc(half / np.pi))
@@ -236,6 +252,7 @@ def ship_response(
     hull: MotionHull,
     forward: ArrayLike = 0.0,
     peak_factor: ArrayLike | None = None,
+    decay: str = "strip",
     gravity: float = GRAVITY,
 ) -> ShipResponse:
     """Return heave, pitch, vertical motion and acceleration in long-crested JONSWAP seas.
@@ -254,6 +271,9 @@ def ship_response(
         Point on the centre line, ahead of midship [m].
     peak_factor : array_like, optional
         gamma of the spectrum; without it that of DNV-RP-C205.
+    decay : str
+        As in `jensen_motions`. ``strip`` unless asked otherwise, since with ``published`` the
+        accelerations in beam seas depend on where the spectrum is cut off.
     gravity : float
         [m/s2].
 
@@ -274,7 +294,9 @@ def ship_response(
     tp = np.where((hs == 0.0) & ~(tp > 0.0), 10.0, tp)  # a flat sea has no period
     w, weights = quadrature(tp)
     waves = jonswap(w, height=hs, period=tp, peak_factor=peak_factor)
-    heave, pitch = jensen_motions(w, speed=v, wave_angle=angle, hull=hull, gravity=gravity)
+    heave, pitch = jensen_motions(
+        w, speed=v, wave_angle=angle, hull=hull, decay=decay, gravity=gravity
+    )
     meeting = np.abs(w * encounter_ratio(w, speed=v, wave_angle=angle, gravity=gravity))
     point = vertical_motion(heave, pitch, forward=x)
 
