@@ -6,27 +6,30 @@ import numpy as np
 import pytest
 
 from thalweg.ship.methods import hydrostatics as hydro
+from thalweg.ship.methods import loading
 
 
 def test_load_factor_runs_from_empty_to_full():
-    got = hydro.between_empty_and_full([0.0, 0.25, 1.0], empty=4.0, full=8.0)
+    got = loading.between_empty_and_full([0.0, 0.25, 1.0], empty=4.0, full=8.0)
     assert got.tolist() == [4.0, 5.0, 8.0]
-    assert hydro.load_factor_of(5.0, empty=4.0, full=8.0) == 0.25
+    assert loading.load_factor_of(5.0, empty=4.0, full=8.0) == 0.25
 
 
 def test_load_factor_outside_is_unknown():
-    assert np.isnan(hydro.between_empty_and_full([-0.01, 1.01, np.nan], empty=4.0, full=8.0)).all()
-    assert np.isnan(hydro.load_factor_of([3.9, 8.1], empty=4.0, full=8.0)).all()
+    assert np.isnan(
+        loading.between_empty_and_full([-0.01, 1.01, np.nan], empty=4.0, full=8.0)
+    ).all()
+    assert np.isnan(loading.load_factor_of([3.9, 8.1], empty=4.0, full=8.0)).all()
 
 
 def test_a_full_ship_may_be_slower():
-    assert hydro.between_empty_and_full(0.5, empty=14.0, full=12.0) == 13.0
+    assert loading.between_empty_and_full(0.5, empty=14.0, full=12.0) == 13.0
 
 
 def test_volume_and_block_are_inverse():
-    volume = hydro.displacement_volume(200.0, 32.0, draught=10.0, block_coefficient=0.8)
+    volume = loading.displacement_volume(200.0, 32.0, draught=10.0, block_coefficient=0.8)
     assert volume == pytest.approx(51_200.0)
-    back = hydro.block_coefficient_of(volume, length=200.0, breadth=32.0, draught=10.0)
+    back = loading.block_coefficient_of(volume, length=200.0, breadth=32.0, draught=10.0)
     assert back == pytest.approx(0.8)
 
 
@@ -66,13 +69,13 @@ def test_block_from_froude():
 
 
 def test_block_grows_with_draught_and_meets_the_design():
-    blocks = hydro.block_at_draught([6.0, 8.0, 10.0], design_draught=10.0, design_block=0.8)
+    blocks = loading.block_at_draught([6.0, 8.0, 10.0], design_draught=10.0, design_block=0.8)
     assert np.all(np.diff(blocks) > 0.0)
     assert blocks[-1] == pytest.approx(0.8)
 
 
 def test_wall_sided_volume():
-    got = hydro.displacement_at_draught(
+    got = loading.displacement_at_draught(
         [10.0, 9.0, 1.0], design_draught=10.0, design_displacement=50_000.0, waterplane_area=6000.0
     )
     np.testing.assert_allclose(got, [50_000.0, 44_000.0, np.nan])
