@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.sea import freeze, functions
+from thalweg.sea import freeze, functions, storm
 from thalweg.sea import names as nm
 from thalweg.sea.fields import WORLD, Area, Coverage, FloatArray, GridFields, Mesh, StationFields
 from thalweg.sea.layer import Layer, Samples
@@ -117,6 +117,41 @@ class Sea:
         return cls(
             (functions.constant_layer(CALM, "calm"),), ("no wind, waves and currents anywhere",)
         )
+
+    @classmethod
+    def storm(
+        cls,
+        name: str = storm.DEFAULT_STORM,
+        *,
+        start: TimeLike | None = None,
+        ambient: storm.Ambient | None = None,
+        time_step: float = storm.TIME_STEP,
+    ) -> Sea:
+        """Return wind and waves of a real cyclone, **modelled** from its best track.
+
+        The track (6-hourly positions, winds and pressures of Hurricane Danielle, 24 August to
+        8 September 1998, which ran along the lane between New York and the English Channel) is
+        observed; the fields are not: Holland (1980) gradient wind with radius of maximum wind by
+        Willoughby et al. (2006), brought to a 10-min mean at 10 m, turned by Bretschneider's
+        inflow angle, asymmetric by Lin and Chavas (2012); waves by the equivalent fetch of Young
+        and Vinoth (2013), scaled with the local wind and travelling with it. Beyond 1200 km lies a
+        uniform ambient sea. There are no currents and no land: for demonstrations and tests, not
+        for navigation.
+
+        Parameters
+        ----------
+        name : str
+            Name of an embedded storm.
+        start : time, optional
+            When the track shall begin; its true dates by default. Outside the life of the track
+            nothing is known.
+        ambient : Ambient, optional
+            The sea around; by default 5.2 m/s of wind and 1.5 m of waves from the west.
+        time_step : float, optional
+            Step [s] at which kernels get the storm, one hour by default.
+        """
+        layer = storm.storm_layer(name, start=start, ambient=ambient, time_step=time_step)
+        return cls((layer,))
 
     @classmethod
     def layered(cls, *seas: Sea) -> Sea:
@@ -245,8 +280,8 @@ class Sea:
             found += [_edges(x.period, start, end) for x in layers if x.period is not None]
         if not any(f.size for f in found):
             return np.empty(0)
-        times = np.unique(np.round(np.concatenate(found), 3))
-        return times if times.size > 1 else np.array([times[0], times[0] + 1.0])
+        times: FloatArray = np.unique(np.concatenate(found).round(3)).astype(np.float64)
+        return times if times.size > 1 else np.append(times, times + 1.0)
 
     def freeze_stations(
         self,
