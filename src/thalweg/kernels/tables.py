@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import AXES, AXIS_DEPTH
-from thalweg.kernels.jit import jit
+from thalweg.kernels.bare import bare, inlined
 
 _EDGE = 1e-6  # rounding allowed beyond the first and last grid point [grid steps]
 
@@ -41,7 +41,7 @@ class TableArrays(NamedTuple):
     values: np.ndarray
 
 
-@jit
+@bare
 def axes_needed(table):
     """Return a bit mask of the axes that any part of a table has (bit i: axis id i)."""
     mask = 0
@@ -54,7 +54,7 @@ def axes_needed(table):
     return mask
 
 
-@jit
+@inlined
 def _place(table, part, k, axis_values):
     """Return (cell, fraction, ok) of a value on axis k of a part; the deepest depth reaches on."""
     axis = table.part_axes[part, k]
@@ -70,7 +70,7 @@ def _place(table, part, k, axis_values):
     return cell, x - cell, True
 
 
-@jit
+@inlined
 def _line(values, base, stride, f):
     """Interpolate between two values ``stride`` apart; a corner of weight 0 is not read."""
     if f == 0.0:
@@ -80,7 +80,7 @@ def _line(values, base, stride, f):
     return values[base] + f * (values[base + stride] - values[base])
 
 
-@jit
+@inlined
 def _square(values, base, stride0, f0, stride1, f1):
     """Interpolate on a cell of two axes."""
     low = _line(values, base, stride1, f1)
@@ -90,7 +90,7 @@ def _square(values, base, stride0, f0, stride1, f1):
     return high if f0 == 1.0 else low + f0 * (high - low)
 
 
-@jit
+@bare
 def _hypercube(table, part, n_axes, axis_values, setting):
     """Interpolate on three axes and more: corners of the leading axes times a square."""
     size = table.n_settings
@@ -120,7 +120,7 @@ def _hypercube(table, part, n_axes, axis_values, setting):
     return total, ok
 
 
-@jit
+@inlined
 def part_value(table, part, axis_values, setting):
     """Return (value, ok) of one part of a table; see `table_value`."""
     n_axes = 0
@@ -141,7 +141,7 @@ def part_value(table, part, axis_values, setting):
     return _square(table.values, base, n1 * n_settings, f0, n_settings, f1), ok0 & ok1
 
 
-@jit
+@inlined
 def table_value(table, axis_values, setting):
     """Return the value of a table: the sum over its parts of multilinear look-ups.
 

@@ -1,1 +1,20 @@
-"""The room search."""
+"""Exact searches on networks through time-dependent water."""
+
+from thalweg.search.bounds import Bound, direction_factor, lower_bound
+from thalweg.search.departure import best_departure
+from thalweg.search.earliest_arrival import earliest_arrival
+from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
+from thalweg.search.result import SearchResult, SearchWork
+
+__all__ = [
+    "Bound",
+    "FifoReport",
+    "SearchResult",
+    "SearchWork",
+    "best_departure",
+    "direction_factor",
+    "earliest_arrival",
+    "earliest_arrivals_with_waiting",
+    "fifo_report",
+    "lower_bound",
+]

@@ -1,0 +1,362 @@
+"""Sailing one edge of a network through frozen, time-dependent fields."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from thalweg.kernels.bare import bare, inlined
+from thalweg.kernels.codes import (
+    CURRENT,
+    CURRENT_EAST,
+    CURRENT_NORTH,
+    DEPTH,
+    NO_DATA,
+    OK,
+    OUTSIDE_PERIOD,
+    SPEED_FIELD,
+    WAVE_HEIGHT,
+    WIND_SPEED,
+)
+from thalweg.kernels.leg import point_speed_known
+from thalweg.kernels.tables import TableArrays
+
+OPENING_TOLERANCE = 1.0  # an opening is found to this [s]
+
+
+class NetworkArrays(NamedTuple):
+    """The arrays of a network that searches read (meanings as in `thalweg.network.Network`)."""
+
+    indptr: np.ndarray
+    target: np.ndarray
+    length: np.ndarray
+    course: np.ndarray
+    depth: np.ndarray
+    factor: np.ndarray
+    via_ptr: np.ndarray
+    via_a: np.ndarray
+    via_b: np.ndarray
+    via_w: np.ndarray
+    via_s: np.ndarray
+    can_wait: np.ndarray
+
+
+class SeaArrays(NamedTuple):
+    """Fields at stations: ``values[S, T, K]``, the channel id of each of the K columns."""
+
+    times: np.ndarray
+    values: np.ndarray
+    channel_index: np.ndarray
+    channels: np.ndarray
+
+
+class ShipArrays(NamedTuple):
+    """A ship at one setting, with its limits and the axes its table needs."""
+
+    table: TableArrays
+    setting: int
+    limits: np.ndarray
+    needs: int
+
+
+@inlined
+def course_vector(course):
+    """Return the unit vector (east, north) of a course [rad], |course| < 100, within 3e-9."""
+    quarter = math.floor(course * (2.0 / math.pi) + 0.5)
+    r = course - quarter * (0.5 * math.pi)
+    s = r * r
+    sine = 1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s / 362880.0)))
+    sine *= r
+    cosine = -1.0 / 720.0 + s * (1.0 / 40320.0 - s / 3628800.0)
+    cosine = 1.0 + s * (-0.5 + s * (1.0 / 24.0 + s * cosine))
+    turn = int(quarter) & 3
+    if turn == 0:
+        return sine, cosine
+    if turn == 1:
+        return cosine, -sine
+    if turn == 2:
+        return -sine, -cosine
+    return -cosine, sine
+
+
+@bare
+def interval_of(times, t):
+    """Return k with ``times[k] <= t <= times[k + 1]``, or -1 outside the period (or NaN)."""
+    if not times[0] <= t <= times[-1]:
+        return -1
+    low, high = 0, times.shape[0] - 1
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if times[middle] <= t:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@inlined
+def interval_near(times, k, t):
+    """Do as `interval_of`, for a time near interval k."""
+    last = times.shape[0] - 1
+    if not times[0] <= t <= times[last]:
+        return -1
+    while k < last - 1 and times[k + 1] <= t:
+        k += 1
+    while times[k] > t:
+        k -= 1
+    return k
+
+
+@inlined
+def sample_station(sea, station, k, t, out):
+    """Interpolate a station's channels linearly at time t of interval k, into ``out``."""
+    start = sea.times[k]
+    f = (t - start) / (sea.times[k + 1] - start)
+    values = sea.values
+    channels = sea.channels
+    if f <= 0.0:
+        for j in range(channels.shape[0]):
+            out[channels[j]] = values[station, k, j]
+    elif f >= 1.0:
+        for j in range(channels.shape[0]):
+            out[channels[j]] = values[station, k + 1, j]
+    else:
+        for j in range(channels.shape[0]):
+            low = values[station, k, j]
+            out[channels[j]] = low + f * (values[station, k + 1, j] - low)
+
+
+@inlined
+def sample_between(sea, a, b, weight, k, t, out, spare):
+    """Interpolate between two stations: ``(1 - weight) * a + weight * b``, into ``out``."""
+    if weight >= 1.0:
+        sample_station(sea, b, k, t, out)
+        return
+    sample_station(sea, a, k, t, out)
+    if weight <= 0.0:
+        return
+    sample_station(sea, b, k, t, spare)
+    for channel in sea.channels:
+        out[channel] += weight * (spare[channel] - out[channel])
+
+
+@inlined
+def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
+    """Sail one edge: return (arrival, status).
+
+    Parameters
+    ----------
+    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    edge : int
+    k : int
+        Interval of the times that holds the departure.
+    t : float
+        Departure [s].
+    tail : float64[CHANNELS]
+        The sea at the tail of the edge at that time.
+    sample, spare : float64[CHANNELS]
+        Work space.
+
+    Returns
+    -------
+    arrival : float
+        [s]; inf when the status is not `OK`.
+    status : int
+
+    Notes
+    -----
+    The edge is marched over its samples. A piece of length d between two samples takes
+    ``d (1/G0 + 1/G1) / 2`` with the speeds over ground G0 at its start and G1 at its end, that
+    at the time predicted with G0 (Heun's method: second order in the piece). Any blocked sample
+    blocks the edge.
+    """
+    east, north = course_vector(float(network.course[edge]))
+    depth = float(network.depth[edge])
+    table, setting, limits, needs = ship
+    index = sea.channel_index
+    slowness, at, here = 0.0, 0.0, tail
+    first, last = network.via_ptr[edge], network.via_ptr[edge + 1]
+    for p in range(first - 1, last + 1):
+        piece = 0.0
+        if p >= first:
+            to = float(network.via_s[p]) if p < last else 1.0
+            piece = network.length[edge] * (to - at)
+            at = to
+            then = t + piece * slowness
+            k = interval_near(sea.times, k, then)
+            if k < 0:
+                return math.inf, OUTSIDE_PERIOD
+            a = b = network.target[edge]
+            weight = 0.0
+            if p < last:
+                a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
+            sample_between(sea, a, b, weight, k, then, sample, spare)
+            here = sample
+        speed, status = point_speed_known(
+            here, index, east, north, table, setting, depth, limits, needs
+        )
+        if status != OK:
+            return math.inf, status
+        before = slowness
+        slowness = 1.0 / speed
+        t += 0.5 * piece * (before + slowness)
+    if t > sea.times[-1]:
+        return math.inf, OUTSIDE_PERIOD
+    return t, OK
+
+
+@bare
+def _sail_at(network, sea, ship, edge, tail_node, k, t, work):
+    """Sail an edge at any departure of interval k, sampling the tail too."""
+    sample_station(sea, tail_node, k, t, work[1])
+    return sail_edge(network, sea, ship, edge, k, t, work[1], work[2], work[3])
+
+
+@inlined
+def _opens(status):
+    """Whether what blocks an edge changes gradually, so that an opening can be bisected."""
+    return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT)
+
+
+@bare
+def _opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, work):
+    """Return the earliest (departure, arrival) of an edge that opens in (shut, opened]."""
+    while opened - shut > OPENING_TOLERANCE:
+        middle = 0.5 * (shut + opened)
+        then, status = _sail_at(network, sea, ship, edge, tail_node, k, middle, work)
+        if status == OK:
+            opened, arrival = middle, then
+        else:
+            shut = middle
+    return opened, arrival
+
+
+@bare
+def wait_for_edge(
+    network, sea, ship, edge, tail_node, k, t, arrival, status, factor, quickest, enough, work
+):
+    """Find the best departure of an edge for a ship that may wait at its tail since t.
+
+    Parameters
+    ----------
+    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    edge, tail_node : int
+    k : int
+        Interval of the times that holds t.
+    t : float
+        Arrival at the tail [s].
+    arrival, status : float, int
+        What `sail_edge` gives for departing at t.
+    factor : float
+        Weight of the time under way; waiting weighs 1.
+    quickest : float
+        Lower bound of the time under way on this edge [s].
+    enough : float
+        A departure is of use only if waiting plus ``factor`` times sailing is below this [s].
+    work : float64[4, CHANNELS]
+        Work space; the first row is left alone.
+
+    Returns
+    -------
+    departure, arrival : float
+        [s]; arrival is inf if the edge cannot be sailed to any use.
+    status : int
+        `OK`, or why the edge is blocked (at t, when it is blocked throughout).
+
+    Notes
+    -----
+    Candidates are t itself, every later time of the data and, where the edge opens between two of
+    these, the opening (bisection to 1 s): the suffix minimum of arrivals (van Halem 2019, section
+    3.4, corrected for series that start blocked). As the fields are linear between the times of
+    the data, a better departure inside an interval whose ends are both open is not looked for, nor
+    is an opening that closes again within the interval.
+    """
+    departure, best = t, math.inf
+    if status == OK:
+        best = factor * (arrival - t)
+    before, before_status = t, status
+    last = sea.times.shape[0] - 1
+    for j in range(k + 1, last + 1):
+        s = sea.times[j]
+        if s <= t:
+            continue
+        earliest = s if before_status == OK else before
+        if earliest - t + factor * quickest >= min(best, enough):
+            break
+        then, now = _sail_at(network, sea, ship, edge, tail_node, min(j, last - 1), s, work)
+        if now == OUTSIDE_PERIOD:
+            break
+        if now == OK:
+            value = s - t + factor * (then - s)
+            if value < best:
+                departure, arrival, best, status = s, then, value, OK
+            if _opens(before_status):
+                s, then = _opening(
+                    network, sea, ship, edge, tail_node, j - 1, before, s, then, work
+                )
+                value = s - t + factor * (then - s)
+                if value < best:
+                    departure, arrival, best, status = s, then, value, OK
+        before, before_status = sea.times[j], now
+    return departure, arrival, status
+
+
+@bare
+def largest_current(sea):
+    """Return the largest strength of current in the fields [m/s]; 0 when they have none."""
+    i, j = sea.channel_index[CURRENT_EAST], sea.channel_index[CURRENT_NORTH]
+    if i < 0 or j < 0:
+        return 0.0
+    largest = 0.0
+    values = sea.values
+    for s in range(values.shape[0]):
+        for t in range(values.shape[1]):
+            u, v = float(values[s, t, i]), float(values[s, t, j])
+            squared = u * u + v * v
+            if squared > largest:
+                largest = squared
+    return math.sqrt(largest)
+
+
+@bare
+def largest_speed_field(sea):
+    """Return the largest value of the speed field [m/s]; -1 when there is none."""
+    k = sea.channel_index[SPEED_FIELD]
+    largest = -1.0
+    if k >= 0:
+        values = sea.values
+        for s in range(values.shape[0]):
+            for t in range(values.shape[1]):
+                if values[s, t, k] > largest:
+                    largest = float(values[s, t, k])
+    return largest
+
+
+@bare
+def edge_arrivals(network, sea, ship, edges, tails, departures, arrivals, statuses, work):
+    """Sail edges at many departures, without waiting.
+
+    Parameters
+    ----------
+    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    edges, tails : int64[E]
+        Edges and the nodes they leave.
+    departures : float64[D]
+        [s].
+    arrivals : float64[E, D]
+        Filled with arrivals [s], inf where blocked.
+    statuses : int64[E, D]
+        Filled with status codes.
+    work : float64[4, CHANNELS]
+        Work space.
+    """
+    for i in range(edges.shape[0]):
+        for j in range(departures.shape[0]):
+            k = interval_of(sea.times, departures[j])
+            if k < 0:
+                arrivals[i, j] = math.inf
+                statuses[i, j] = OUTSIDE_PERIOD if departures[j] == departures[j] else NO_DATA
+                continue
+            arrivals[i, j], statuses[i, j] = _sail_at(
+                network, sea, ship, edges[i], tails[i], k, departures[j], work
+            )

@@ -1,0 +1,210 @@
+"""From the types that travel between rooms to the arrays that kernels see."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING
+from thalweg.kernels.codes import CHANNELS, LIMITS
+from thalweg.kernels.edges import (
+    NetworkArrays,
+    SeaArrays,
+    ShipArrays,
+    largest_current,
+    largest_speed_field,
+)
+from thalweg.kernels.tables import TableArrays, axes_needed
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+    from thalweg.sea.fields import StationFields
+    from thalweg.ship.table import PerformanceTable
+
+FloatArray = NDArray[np.float64]
+
+# The least radius of curvature of the meridian: a sphere of this radius with the same latitudes and
+# longitudes is nowhere longer than the ellipsoid, so its distances are lower bounds that obey the
+# triangle inequality together with geodesic edge lengths.
+BOUND_RADIUS = EQUATORIAL_RADIUS * (1.0 - FLATTENING) ** 2
+
+SHRINK = 1.0 - 1e-9  # keeps bounds below the truth in floating point
+
+
+class Problem(NamedTuple):
+    """A network, a sea and a ship as kernels see them, with bounds of what the ship can do.
+
+    Attributes
+    ----------
+    network, sea, ship
+        Arrays for `thalweg.kernels.label_setting`.
+    top_speed : float
+        Upper bound of the speed through water [m/s].
+    top_current : float
+        Largest current in the fields [m/s].
+    """
+
+    network: NetworkArrays
+    sea: SeaArrays
+    ship: ShipArrays
+    top_speed: float
+    top_current: float
+
+    @property
+    def fastest(self) -> float:
+        """Upper bound of the speed over ground [m/s]."""
+        return self.top_speed + self.top_current
+
+
+class _Borrowed:
+    """The memory of a read-only array, offered as writable: kernels never write to their input.
+
+    One numba signature then serves frozen and ordinary arrays alike.
+    """
+
+    def __init__(self, array: NDArray[Any]) -> None:
+        self.array = array
+        address = array.__array_interface__["data"][0]
+        self.__array_interface__ = {**array.__array_interface__, "data": (address, False)}
+
+
+def plain(values: ArrayLike, dtype: type) -> NDArray[Any]:
+    """Return values as a C-contiguous array of one type that numba sees as writable."""
+    array: NDArray[Any] = np.ascontiguousarray(values, dtype)
+    return array if array.flags.writeable else np.asarray(_Borrowed(array))
+
+
+def network_arrays(network: Network) -> NetworkArrays:
+    """Return the arrays of a network that searches read."""
+    return NetworkArrays(
+        plain(network.indptr, np.int64),
+        plain(network.target, np.int32),
+        plain(network.length, np.float64),
+        plain(network.course, np.float32),
+        plain(network.depth, np.float32),
+        plain(network.factor, np.float32),
+        plain(network.via_ptr, np.int64),
+        plain(network.via_a, np.int32),
+        plain(network.via_b, np.int32),
+        plain(network.via_w, np.float32),
+        plain(network.via_s, np.float32),
+        plain(network.can_wait, np.bool_),
+    )
+
+
+def sea_arrays(fields: StationFields) -> SeaArrays:
+    """Return frozen fields as kernels see them.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two times, or times that do not increase.
+    """
+    times = plain(fields.times, np.float64)
+    if len(times) < 2 or not np.all(np.diff(times) > 0.0):
+        raise InputError(
+            f"The fields of the sea have {len(times)} times, or times that do not increase.",
+            "A search interpolates between at least two increasing times.",
+            "Freeze the sea over a period, not an instant.",
+        )
+    index = plain(fields.channel_index, np.int64)
+    values = plain(fields.values, np.float32)
+    channels = np.zeros(values.shape[2], np.int64)
+    present = np.flatnonzero(index >= 0)
+    channels[index[present]] = present
+    if len(index) != CHANNELS or len(present) != len(channels) or values.shape[1] != len(times):
+        raise InputError(
+            f"Fields of shape {values.shape} do not go with {len(times)} times and "
+            f"{len(present)} channels.",
+            "Values are stations by times by present channels.",
+            "Build the fields with Sea.freeze_stations.",
+        )
+    return SeaArrays(times, values, index, channels)
+
+
+def ship_arrays(
+    table: PerformanceTable | TableArrays, setting: int, limits: ArrayLike
+) -> ShipArrays:
+    """Return a ship at one setting as kernels see it.
+
+    Raises
+    ------
+    InputError
+        If the setting is not one of the table's.
+    """
+    raw = table if isinstance(table, TableArrays) else table.kernel_arrays()
+    count = int(raw.n_settings)
+    if not 0 <= setting < count:
+        raise InputError(
+            f"The ship has no setting {setting}.", f"It has settings 0 to {count - 1}.", ""
+        )
+    arrays = TableArrays(
+        plain(raw.part_axes, np.int64),
+        plain(raw.axis_start, np.float64),
+        plain(raw.axis_inv_step, np.float64),
+        plain(raw.axis_size, np.int64),
+        plain(raw.value_offset, np.int64),
+        count,
+        plain(raw.values, np.float32),
+    )
+    bounds = plain(limits, np.float64)
+    if bounds.shape != (LIMITS,) or np.any(np.isnan(bounds)):
+        raise InputError(
+            f"The limits {bounds} are not {LIMITS} numbers.",
+            "They are required depth [m], wave height [m] and wind speed [m/s].",
+            "Use -inf or +inf for what is not limited.",
+        )
+    return ShipArrays(arrays, int(setting), bounds, int(axes_needed(arrays)))
+
+
+def problem(
+    network: Network,
+    fields: StationFields,
+    table: PerformanceTable | TableArrays,
+    *,
+    setting: int,
+    limits: ArrayLike,
+    top_speed: float,
+) -> Problem:
+    """Gather what a search reads.
+
+    Raises
+    ------
+    InputError
+        If the parts do not fit together or the ship has no speed.
+    """
+    sea = sea_arrays(fields)
+    stations = len(network.station_lat)
+    if sea.values.shape[0] != stations:
+        raise InputError(
+            f"The fields have {sea.values.shape[0]} stations, the network {stations}.",
+            "Fields belong to the network they were frozen for.",
+            "Freeze the sea at the stations of this network.",
+        )
+    field_top = largest_speed_field(sea)
+    fastest = field_top if field_top >= 0.0 else float(top_speed)
+    if not (np.isfinite(fastest) and fastest > 0.0):
+        raise InputError(
+            f"A ship with a top speed of {fastest} m/s gets nowhere.",
+            "A speed is a positive number.",
+            "Check the ship's speeds.",
+        )
+    ship = ship_arrays(table, setting, limits)
+    return Problem(network_arrays(network), sea, ship, fastest, float(largest_current(sea)))
+
+
+def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float) -> FloatArray:
+    """Return lower bounds of the geodesic distance [m] from positions to one position [deg].
+
+    Great-circle distances on the sphere of the ellipsoid's least radius of curvature: at most
+    0.6 % below the mean-radius sphere, never above the geodesic, and consistent for A*.
+    """
+    phi, to_phi = np.radians(np.asarray(lat, float)), np.radians(to_lat)
+    half_dlon = 0.5 * np.radians(np.asarray(lon, float) - to_lon)
+    square = np.sin(0.5 * (phi - to_phi)) ** 2
+    square += np.cos(phi) * np.cos(to_phi) * np.sin(half_dlon) ** 2
+    bound = 2.0 * BOUND_RADIUS * SHRINK * np.arcsin(np.sqrt(np.minimum(square, 1.0)))
+    return np.asarray(bound)

@@ -1,0 +1,213 @@
+"""The earliest arrival (or the shortest way) on a network through time-dependent water."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels.codes import REASONS
+from thalweg.kernels.label_setting import (
+    RELAXED,
+    SAILED,
+    SETTLED,
+    Labels,
+    Query,
+    Workspace,
+    label_setting,
+    new_labels,
+    new_workspace,
+)
+from thalweg.kernels.tables import TableArrays
+from thalweg.search.arrays import SHRINK, Problem, distance_bounds, problem
+from thalweg.search.result import SearchResult, SearchWork
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+    from thalweg.sea.fields import StationFields
+    from thalweg.ship.table import PerformanceTable
+
+Objective = Literal["time", "distance"]
+Method = Literal["astar", "dijkstra"]
+
+
+def earliest_arrival(
+    network: Network,
+    fields: StationFields,
+    table: PerformanceTable | TableArrays,
+    *,
+    start: int,
+    goal: int | None,
+    depart: float,
+    setting: int,
+    limits: ArrayLike,
+    top_speed: float,
+    objective: Objective = "time",
+    wait: bool = True,
+    arrive_by: float | None = None,
+    method: Method = "astar",
+) -> SearchResult:
+    """Find the way of least time or least distance from one node of a network to another.
+
+    Parameters
+    ----------
+    network : Network
+    fields : StationFields
+        The sea, frozen at the network's stations.
+    table : PerformanceTable or TableArrays
+    start, goal : int
+        Nodes. A goal of None (or -1) settles everything that can be reached.
+    depart : float
+        Time at the start [s].
+    setting : int
+        Setting of the ship.
+    limits : array_like
+        By ``LIMIT_*`` of `thalweg.kernels.codes`: required depth [m], wave height [m], wind speed
+        [m/s].
+    top_speed : float
+        Upper bound of the ship's speed through water at this setting [m/s].
+    objective : {"time", "distance"}
+    wait : bool
+        Whether the ship may wait at nodes that allow it.
+    arrive_by : float, optional
+        No node is reached after this [s].
+    method : {"astar", "dijkstra"}
+        Both give the same cost; A* settles fewer nodes.
+
+    Returns
+    -------
+    SearchResult
+        ``found`` is False when there is no way; ``refused`` then says why.
+
+    Raises
+    ------
+    InputError
+        If a node, the departure or the objective does not exist, or the parts do not fit together.
+
+    Notes
+    -----
+    By time and with penalty factors of 1 the result is exact on the network as long as edges keep
+    order (who departs later arrives later); waiting provides that where it is allowed, to within
+    the sampling of departures named in `thalweg.kernels.edges.wait_for_edge`. Elsewhere
+    `thalweg.search.fifo.fifo_report` measures how far order is broken. By distance, or with other
+    penalty factors, one label per node is exact as long as the time of passage does not decide
+    which edges are open; ties go to the earlier arrival.
+
+    A* uses a lower bound of the geodesic distance to the goal divided by the largest speed over
+    ground (top speed plus largest current in the fields), which obeys the triangle inequality.
+    """
+    given = problem(network, fields, table, setting=setting, limits=limits, top_speed=top_speed)
+    return solve(
+        network,
+        given,
+        start=start,
+        goal=goal,
+        depart=depart,
+        objective=objective,
+        wait=wait,
+        arrive_by=arrive_by,
+        method=method,
+    )
+
+
+def solve(
+    network: Network,
+    given: Problem,
+    *,
+    start: int,
+    goal: int | None,
+    depart: float,
+    objective: Objective = "time",
+    wait: bool = True,
+    arrive_by: float | None = None,
+    method: Method = "astar",
+    shortened: float = 1.0,
+) -> SearchResult:
+    """Do as `earliest_arrival`, for a problem already gathered.
+
+    ``shortened`` is the least ratio of an edge length to the geodesic between its nodes.
+    """
+    n_nodes = len(given.network.indptr) - 1
+    goal = -1 if goal is None else int(goal)
+    _check(n_nodes, start, goal, depart, objective, method)
+    slowness = SHRINK / given.fastest
+    away = np.zeros(n_nodes)
+    lat, lon = network.station_lat, network.station_lon
+    if goal >= 0 and method == "astar":
+        to = float(lat[goal]), float(lon[goal])
+        away = shortened * distance_bounds(lat[:n_nodes], lon[:n_nodes], *to)
+    query = Query(
+        start=int(start),
+        goal=goal,
+        depart=float(depart),
+        horizon=math.inf if arrive_by is None else float(arrive_by),
+        by_distance=objective == "distance",
+        wait=bool(wait),
+        slowness=slowness,
+        per_metre=SHRINK if objective == "distance" else slowness,
+    )
+    labels, memory = new_labels(n_nodes), new_workspace(n_nodes)
+    label_setting(given.network, given.sea, given.ship, query, away, labels, memory)
+    return _result(network, query, labels, memory)
+
+
+def _check(n_nodes: int, start: int, goal: int, depart: float, objective: str, method: str) -> None:
+    if not (0 <= start < n_nodes and -1 <= goal < n_nodes):
+        raise InputError(
+            f"There is no way from node {start} to node {goal} to search for.",
+            f"The network has nodes 0 to {n_nodes - 1}.",
+            "",
+        )
+    if not math.isfinite(depart):
+        raise InputError(f"The departure {depart} is not a time.", "", "Give a departure.")
+    for kind, word, known in (
+        ("objective", objective, ("time", "distance")),
+        ("method", method, ("astar", "dijkstra")),
+    ):
+        if word not in known:
+            raise InputError(f"There is no {kind} {word!r}.", f"Known: {', '.join(known)}.", "")
+
+
+def _result(network: Network, query: Query, labels: Labels, memory: Workspace) -> SearchResult:
+    path = _path(labels, query)
+    arrive = labels.time[path]
+    leave = np.append(labels.departed[path[1:]], arrive[-1:])
+    counts = memory.counts
+    work = SearchWork(
+        settled=int(counts[SETTLED]),
+        relaxed=int(counts[RELAXED]),
+        sailed=int(counts[SAILED]),
+        refused={REASONS[c]: int(n) for c, n in enumerate(memory.refused) if n > 0 and c > 0},
+    )
+    return SearchResult(
+        path=path,
+        path_arrive=arrive,
+        path_depart=leave,
+        cost=float(labels.cost[query.goal]) if len(path) else math.inf,
+        node_arrival=np.where(labels.settled, labels.time, math.inf),
+        nearest_node=_nearest(network, labels, query.goal),
+        work=work,
+    )
+
+
+def _path(labels: Labels, query: Query) -> NDArray[np.int64]:
+    if query.goal < 0 or not labels.settled[query.goal]:
+        return np.empty(0, np.int64)
+    nodes = [query.goal]
+    while nodes[-1] != query.start:
+        nodes.append(int(labels.before[nodes[-1]]))
+    return np.array(nodes[::-1], np.int64)
+
+
+def _nearest(network: Network, labels: Labels, goal: int) -> int:
+    if goal < 0:
+        return -1
+    if labels.settled[goal]:
+        return goal
+    reached = np.flatnonzero(labels.settled)
+    lat, lon = network.station_lat, network.station_lon
+    away = distance_bounds(lat[reached], lon[reached], float(lat[goal]), float(lon[goal]))
+    return int(reached[np.argmin(away)])
