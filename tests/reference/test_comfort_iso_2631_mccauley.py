@@ -69,3 +69,9 @@ def test_weighted_acceleration_of_one_sinusoid():
     """All energy at 0.16 Hz: the factor is 1.006."""
     got = comfort.weighted_acceleration([0.25], [2.0 * np.pi * 0.16])
     assert got == pytest.approx(0.5 * 1.006, abs=3e-4)
+
+
+def test_people_are_sickest_near_one_radian_per_second():
+    w = np.linspace(0.3, 4.0, 371)
+    sick = comfort.sick_percent_ohanlon(0.5, encounter_frequency=w)
+    assert w[np.argmax(sick)] == pytest.approx(1.0, abs=0.02)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from thalweg.core.errors import InputError
 from thalweg.ship.methods import hydrostatics as hydro
 from thalweg.ship.methods import loading
+from thalweg.ship.methods import regressions as reg
 
 
 def test_load_factor_runs_from_empty_to_full():
@@ -36,13 +38,13 @@ def test_volume_and_block_are_inverse():
 def test_denny_mumford_of_yus_ship():
     """172.42 x 32 x 10 m, volume .785 x 169 x 32 x 10: 7176 m2."""
     volume = 0.785 * 169.0 * 32.0 * 10.0
-    got = hydro.wetted_surface_denny_mumford(172.42, draught=10.0, displacement=volume)
+    got = reg.wetted_surface_denny_mumford(172.42, draught=10.0, displacement=volume)
     assert got == pytest.approx(2931.14 + 4245.28, abs=0.01)
 
 
 def test_denny_mumford_of_a_tanker_within_its_error():
     """KVLCC2: 320 m, 20.8 m, 312 622 m3, wetted surface 27 194 m2 (published)."""
-    got = hydro.wetted_surface_denny_mumford(325.5, draught=20.8, displacement=312_622.0)
+    got = reg.wetted_surface_denny_mumford(325.5, draught=20.8, displacement=312_622.0)
     assert got == pytest.approx(27_194.0, rel=0.04)
 
 
@@ -51,21 +53,21 @@ def test_denny_mumford_of_a_tanker_within_its_error():
 )
 def test_coefficients_of_kvlcc2_and_kcs(block, midship, waterplane):
     """Published forms: KVLCC2 C_B .8098, C_M .998; KCS C_B .651, C_M .985."""
-    assert hydro.midship_from_block(block) == pytest.approx(midship, abs=0.012)
-    assert hydro.midship_kerlen(block) == pytest.approx(midship, abs=0.012)
-    assert hydro.waterplane_from_block(block) == pytest.approx(waterplane, abs=0.06)
+    assert reg.midship_from_block(block) == pytest.approx(midship, abs=0.012)
+    assert reg.midship_kerlen(block) == pytest.approx(midship, abs=0.012)
+    assert reg.waterplane_from_block(block) == pytest.approx(waterplane, abs=0.06)
 
 
 def test_lcb_of_kvlcc2_and_kcs():
     """KVLCC2 +3.48 %, KCS -1.48 % of L_PP (published)."""
-    assert hydro.lcb_from_prismatic(0.8098 / 0.998) == pytest.approx(3.48, abs=1.5)
-    assert hydro.lcb_from_prismatic(0.651 / 0.985) == pytest.approx(-1.48, abs=1.5)
+    assert reg.lcb_from_prismatic(0.8098 / 0.998) == pytest.approx(3.48, abs=1.5)
+    assert reg.lcb_from_prismatic(0.651 / 0.985) == pytest.approx(-1.48, abs=1.5)
 
 
 def test_block_from_froude():
     """KCS at Fn .26 has .651; KVLCC2 at .142 lies outside."""
-    assert hydro.block_from_froude(0.26) == pytest.approx(0.651, abs=0.05)
-    assert np.isnan(hydro.block_from_froude([0.142, 0.33])).all()
+    assert reg.block_from_froude(0.26) == pytest.approx(0.651, abs=0.05)
+    assert np.isnan(reg.block_from_froude([0.142, 0.33])).all()
 
 
 def test_block_grows_with_draught_and_meets_the_design():
@@ -87,15 +89,15 @@ SHIP = {
     "breadth_m": 32.0,
     "draught_m": 10.0,
     "displacement_m3": 42_453.0,
-    "block_coefficient": 0.77,
+    "block_coefficient": 0.785,
     "midship_coefficient": 0.995,
     "design_froude": 0.2,
 }
 
 
-@pytest.mark.parametrize("quantity", sorted(hydro.ESTIMATORS))
+@pytest.mark.parametrize("quantity", sorted({**hydro.ESTIMATORS, **hydro.ESTIMATORS_IF_FITTED}))
 def test_every_estimator_runs_on_a_ship_and_names_its_source(quantity):
-    for estimator in hydro.ESTIMATORS[quantity]:
+    for estimator in {**hydro.ESTIMATORS, **hydro.ESTIMATORS_IF_FITTED}[quantity]:
         value = estimator.function(*(SHIP[name] for name in estimator.inputs))
         assert np.isfinite(value)
         assert estimator.source
@@ -106,6 +108,66 @@ def test_every_estimator_runs_on_a_ship_and_names_its_source(quantity):
 
 def test_arrays_equal_scalars():
     blocks = np.array([0.6, 0.7, np.nan, 0.85])
-    got = hydro.midship_from_block(blocks)
+    got = reg.midship_from_block(blocks)
     assert np.isnan(got[2])
-    assert got[3] == hydro.midship_from_block(0.85)
+    assert got[3] == reg.midship_from_block(0.85)
+
+
+def test_kristensen_by_kind_of_ship():
+    """Factors and lines as printed: 1.02, 1.01, 1.035; 0.395 T + 1.30 and so on."""
+    assert reg.waterline_from_perpendiculars(100.0) == pytest.approx(102.0)
+    assert reg.waterline_from_perpendiculars(100.0, kind="container") == pytest.approx(101.0)
+    assert reg.waterline_from_perpendiculars(100.0, kind="ro_ro") == pytest.approx(103.5)
+    assert reg.perpendiculars_from_waterline(103.5, kind="ro_ro") == pytest.approx(100.0)
+    assert reg.propeller_diameter_from_draught(10.0) == pytest.approx(5.25)
+    assert reg.propeller_diameter_from_draught(10.0, kind="container") == pytest.approx(6.07)
+    assert reg.propeller_diameter_from_draught(10.0, kind="ro_ro") == pytest.approx(7.05)
+    with pytest.raises(InputError, match="container"):
+        reg.waterline_from_perpendiculars(100.0, kind="contaner")
+
+
+def test_kristensen_wetted_surface_of_kvlcc2_and_kcs():
+    """27 194 m2 and 9424 m2 (published), within 3 %."""
+    tanker = reg.wetted_surface_kristensen(
+        325.5, breadth=58.0, draught=20.8, design_draught=20.8, design_displacement=312_622.0
+    )
+    assert tanker == pytest.approx(27_194.0, rel=0.03)
+    container = reg.wetted_surface_kristensen(
+        232.5,
+        breadth=32.2,
+        draught=10.8,
+        design_draught=10.8,
+        design_displacement=52_030.0,
+        kind="container",
+    )
+    assert container == pytest.approx(9424.0, rel=0.03)
+
+
+def test_kristensen_wetted_surface_falls_with_draught():
+    """By 2 (L + B) a metre: 763 m2 of KVLCC2's."""
+    full, light = reg.wetted_surface_kristensen(
+        325.5,
+        breadth=58.0,
+        draught=np.array([20.8, 19.8]),
+        design_draught=20.8,
+        design_displacement=312_622.0,
+    )
+    assert full - light == pytest.approx(2.0 * (325.5 + 58.0))
+
+
+def test_waterplane_of_kristensen_is_near_schneekluths():
+    for block in (0.6, 0.7, 0.8):
+        assert reg.waterplane_kristensen(block) == pytest.approx(
+            reg.waterplane_from_block(block), abs=0.09
+        )
+
+
+def test_no_bulb_is_invented():
+    assert not set(hydro.ESTIMATORS) & set(hydro.ESTIMATORS_IF_FITTED)
+    assert "bulb_area_m2" in hydro.ESTIMATORS_IF_FITTED
+
+
+def test_rakke():
+    assert reg.bulb_area_rakke(0.98, breadth=32.0, draught=10.0) == pytest.approx(25.088)
+    assert reg.bulb_height_rakke(10.0) == pytest.approx(4.0)
+    assert reg.transom_area_rakke(0.98, breadth=32.0, draught=10.0) == pytest.approx(15.9936)

@@ -195,3 +195,9 @@ def test_bad_histories():
 def test_unknown_decay():
     with pytest.raises(InputError, match="strip"):
         sea.jensen_motions([1.0], speed=1.0, wave_angle=0.0, hull=S175, decay="stripe")
+
+
+def test_validity():
+    assert sea.motions_validity([0.0, 8.0], S175) == []
+    notes = sea.motions_validity(20.0, sea.MotionHull(40.0, 15.0, 3.0, 0.6))
+    assert [note.quantity for note in notes] == ["Froude number", "length over breadth"]

@@ -109,3 +109,10 @@ def test_later_barrass_form_agrees_within_its_scatter():
 
 def test_clearance_under_way():
     assert squat.clearance_under_way(10.0, 6.5, squat=0.5) == pytest.approx(3.0)
+
+
+def test_validity():
+    inside = squat.squat_validity([8.0, 100.0], draught=6.5, block_coefficient=0.8)
+    assert inside == []
+    notes = squat.squat_validity(6.6, draught=6.5, block_coefficient=0.95)
+    assert [note.quantity for note in notes] == ["block coefficient", "depth over draught"]

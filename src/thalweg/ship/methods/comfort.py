@@ -184,7 +184,7 @@ def sick_percent_mccauley(
     References
     ----------
     M. E. McCauley et al., "Motion sickness incidence", Human Factors Research, TR 1733-2 (1976)
-    (constants from memory of the secondary literature).
+    (constants from memory of the secondary literature, not seen in print).
     """
     a, f, t = floats(rms) / gravity, floats(frequency_hz), floats(duration) / 60.0
     moving = (a > 0.0) & (t > 0.0)
@@ -218,10 +218,16 @@ def sick_percent_ohanlon(
     ndarray
         Percent; 0 without motion.
 
+    Notes
+    -----
+    The frequency is in rad/s: people are sickest near 1 rad/s, 0.16 Hz. A later edition of that
+    toolbox (2025) puts hertz into the same line, which moves the worst motion to 1 Hz.
+
     References
     ----------
-    J. F. O'Hanlon, M. E. McCauley, Aerospace Medicine 45 (1974) (constants from memory of the
-    secondary literature).
+    J. F. O'Hanlon, M. E. McCauley, Aerospace Medicine 45 (1974), as in A. R. J. M. Lloyd,
+    "Seakeeping: ship behaviour in rough weather" (1989); constants checked against the marine
+    systems toolbox of Fossen and Perez.
     """
     a, w = MEAN_ABSOLUTE * floats(rms) / gravity, floats(encounter_frequency)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.arrays import Floats, floats
+from thalweg.ship.methods.notes import RangeNote, range_notes
 from thalweg.ship.methods.wave_spectra import (
     jonswap,
     moment,
@@ -314,4 +315,34 @@ def ship_response(
         acceleration=statistics(meeting**2 * point),
         acceleration_parts=(meeting**2 * point) ** 2 * waves * weights,
         encounter_frequency=meeting,
+    )
+
+
+def motions_validity(
+    speed: ArrayLike, hull: MotionHull, *, gravity: float = GRAVITY
+) -> list[RangeNote]:
+    """Say where `jensen_motions` is used outside the ships it was tried on.
+
+    Parameters
+    ----------
+    speed : array_like
+        [m/s].
+    hull : MotionHull
+        Hull.
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty when all lies inside. The ranges are our judgement of the ships in the paper.
+    """
+    ranges = VALIDITY["jensen_motions"]
+    froude = floats(speed) / np.sqrt(gravity * hull.length)
+    return range_notes(
+        "Jensen-Mansour-Olsen motions",
+        {
+            "Froude number": (froude, *ranges["froude"]),
+            "length over breadth": (hull.length / hull.breadth, *ranges["length_to_breadth"]),
+        },
     )

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.units import GRAVITY, KNOT
 from thalweg.ship.methods.arrays import Floats, floats
+from thalweg.ship.methods.notes import RangeNote, range_notes
 
 #: Width of open water that takes part in the flow, in ship breadths (van Halem 2019).
 OPEN_WATER_BREADTHS: Final = 9.0
@@ -322,3 +323,33 @@ def clearance_under_way(depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLik
         Clearance [m], negative where the ship would touch the bed.
     """
     return floats(depth) - floats(draught) - floats(squat)
+
+
+def squat_validity(
+    depth: ArrayLike, *, draught: ArrayLike, block_coefficient: ArrayLike
+) -> list[RangeNote]:
+    """Say where `barrass_squat` is used outside its published range.
+
+    Deep water is no fault: squat tends to zero there.
+
+    Parameters
+    ----------
+    depth, draught : array_like
+        [m].
+    block_coefficient : array_like
+        [-].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty when all lies inside.
+    """
+    ranges = VALIDITY["barrass_squat"]
+    ratio = floats(depth) / floats(draught)
+    return range_notes(
+        "Barrass squat",
+        {
+            "block coefficient": (block_coefficient, *ranges["block_coefficient"]),
+            "depth over draught": (ratio, ranges["depth_to_draught"][0], np.inf),
+        },
+    )

@@ -166,8 +166,8 @@ def surf_riding_speed(wave_angle: ArrayLike, *, length: ArrayLike, factor: float
 
     References
     ----------
-    MSC.1/Circ.1228, 4.2.1 and figure 2 (the sector and the limits of 4.2.2 were read in the
-    published text, the constants 1.8 and 1.4 stand in a figure and a formula not stored as text).
+    MSC.1/Circ.1228, 4.2.1 and figure 2. The sector and the limits of 4.2.2 were read in the
+    published text; 1.8 agrees in two secondary sources; 1.4 was not seen in print.
     """
     following = -np.cos(floats(wave_angle))
     limit = np.cos(SECTOR)
