@@ -103,3 +103,12 @@ def test_seuren_multiplier():
         2000.0, True, outside=hfo, inside=hfo, price_outside_t=300.0, price_inside_t=300 * 1.5593
     )
     assert got.cost == pytest.approx(2.0 * 300.0 * 1.5593)
+
+
+def test_van_halem_cost():
+    """One hour at 5 m/s costs 7766.67; in still water 4.1667 m/s is cheapest."""
+    assert fuel.halem_cost(3600.0, 5.0) == pytest.approx(7766.67, abs=5e-3)
+    best = fuel.halem_cheapest_speed()
+    assert best == pytest.approx(4.1667, abs=5e-5)
+    speeds = np.linspace(3.0, 6.0, 30_001)
+    assert speeds[np.argmin(fuel.halem_cost(1e5 / speeds, speeds))] == pytest.approx(best, abs=2e-4)

@@ -250,3 +250,55 @@ def switch_in_control_area(
         co2=mass_out * outside.carbon_factor + mass_in * inside.carbon_factor,
         cost=cost,
     )
+
+
+def halem_cost(
+    time: ArrayLike,
+    speed: ArrayLike,
+    *,
+    per_second: float = 700_000.0 / 604_800.0,
+    per_cube: float = 0.008,
+) -> Floats:
+    """Return van Halem's cost of sailing: time cost plus fuel with the cube of speed.
+
+    Parameters
+    ----------
+    time : array_like
+        [s].
+    speed : array_like
+        Speed the ship would make through deep water [m/s].
+    per_second : float
+        Cost of time [currency/s]; 700 000 a week.
+    per_cube : float
+        Cost of fuel [currency s2/m3].
+
+    Returns
+    -------
+    ndarray
+        per_second t + per_cube t V^3 [currency].
+
+    References
+    ----------
+    J. P. van Halem, "Route optimization in dynamic currents", TU Delft (2019), eq. 3.4 (the text
+    points to 3.5).
+    """
+    t = floats(time)
+    return per_second * t + per_cube * t * floats(speed) ** 3
+
+
+def halem_cheapest_speed(
+    *, per_second: float = 700_000.0 / 604_800.0, per_cube: float = 0.008
+) -> float:
+    """Return the cheapest speed per distance in still water for `halem_cost` [m/s].
+
+    Parameters
+    ----------
+    per_second, per_cube : float
+        As in `halem_cost`.
+
+    Returns
+    -------
+    float
+        (per_second / (2 per_cube))^(1/3), where d/dV of cost per distance is zero.
+    """
+    return float((per_second / (2.0 * per_cube)) ** (1.0 / 3.0))
