@@ -1,0 +1,80 @@
+"""Closed rings of positions, edges straight in longitude and latitude."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray
+
+
+@dataclass(frozen=True)
+class Rings:
+    """Many closed rings in flat arrays; outer rings run counter-clockwise, holes clockwise.
+
+    Attributes
+    ----------
+    lat, lon : ndarray of float
+        Positions [deg]; the last of each ring repeats its first. Longitudes are continuous along
+        a ring and may leave [-180, 180].
+    start : ndarray of int
+        Where each ring begins, one more than there are rings.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    start: NDArray[np.int64]
+
+    @classmethod
+    def from_lists(cls, rings: Iterable[tuple[Sequence[tuple[float, float]], bool]]) -> Rings:
+        """Return rings from (positions (lat, lon), is a hole) pairs, closed and turned right."""
+        points: list[NDArray[np.float64]] = []
+        for positions, hole in rings:
+            ring = np.asarray(positions, float).reshape(-1, 2)
+            if not np.array_equal(ring[0], ring[-1]):
+                ring = np.vstack([ring, ring[:1]])
+            if (_doubled_area(ring[:, 0], ring[:, 1]) < 0.0) != hole:
+                ring = ring[::-1]
+            points.append(ring)
+        start = np.concatenate([[0], np.cumsum([len(p) for p in points], dtype=np.int64)])
+        flat = np.vstack(points) if points else np.empty((0, 2))
+        return cls(np.ascontiguousarray(flat[:, 0]), np.ascontiguousarray(flat[:, 1]), start)
+
+    def __len__(self) -> int:
+        return len(self.start) - 1
+
+    def joined(self, other: Rings) -> Rings:
+        """Return these rings and another's."""
+        start = np.concatenate([self.start, other.start[1:] + self.start[-1]])
+        lat, lon = np.concatenate([self.lat, other.lat]), np.concatenate([self.lon, other.lon])
+        return Rings(lat, lon, start)
+
+    def oriented(self) -> Rings:
+        """Return the rings all turned counter-clockwise, for rings without holes."""
+        if not len(self):
+            return self
+        step = self.lon[:-1] * self.lat[1:] - self.lon[1:] * self.lat[:-1]
+        step[self.start[1:-1] - 1] = 0.0
+        clockwise = np.add.reduceat(np.append(step, 0.0), self.start[:-1]) < 0.0
+        counts = np.diff(self.start)
+        within = np.arange(len(self.lat)) - np.repeat(self.start[:-1], counts)
+        last = np.repeat(self.start[1:] - 1, counts)
+        first = np.repeat(self.start[:-1], counts)
+        take = np.where(np.repeat(clockwise, counts), last - within, first + within)
+        return Rings(self.lat[take], self.lon[take], self.start)
+
+    def fingerprint(self) -> str:
+        """Return a short digest of the positions."""
+        digest = hashlib.sha256()
+        for array in (self.lat, self.lon, self.start):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()[:16]
+
+
+def _doubled_area(lat: FloatArray, lon: FloatArray) -> float:
+    east, north = lon - lon[0], lat - lat[0]
+    return float(np.sum(east[:-1] * north[1:] - east[1:] * north[:-1]))
