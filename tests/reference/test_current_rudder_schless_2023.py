@@ -25,7 +25,7 @@ def test_seuren_2020_checks(speed, course, east, north, ground):
 
 
 def test_schless_cross_current():
-    """1 m/s straight across at 5.7797 m/s: 5.693, not 5.695 m/s (her eq. 3.57)."""
+    """1 m/s straight across at 5.7797 m/s: 5.693, not 5.695 m/s (eq. 3.57)."""
     got = triangle(5.7797, 0.0, 1.0, 0.0)
     assert got.speed_over_ground == pytest.approx(5.693, abs=6e-4)
     assert np.degrees(got.crab_angle) == pytest.approx(-9.96, abs=5e-3)
@@ -83,7 +83,7 @@ def test_quadratic_printed_values():
 
 
 def test_coefficients_behind_table_4_5():
-    """Her Table 4.5 implies .0306 to .0869 at 4.3 to 10.0 degrees."""
+    """Table 4.5 implies .0306 to .0869 at 4.3 to 10.0 degrees."""
     got = cur.rudder_drag_coefficient(np.radians([4.3, 10.0]), curve="quadratic")
     assert got == pytest.approx([0.0306, 0.0869], rel=0.012)
 

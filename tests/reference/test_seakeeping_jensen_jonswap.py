@@ -11,8 +11,8 @@ from thalweg.ship.methods import time_series as series
 from thalweg.ship.methods import wave_spectra as spectra
 
 G = 9.81
-#: Prestegardshus (2020) prints 5.058 where (5/16)(2 pi)^4 / g^2 is 5.0609.
-HIS_CONSTANT = np.sqrt(5.058 / (0.3125 * (2.0 * np.pi) ** 4 / G**2))
+#: Prestegårdshus (2020) prints 5.058 where (5/16)(2 pi)^4 / g^2 is 5.0609.
+PRINTED_CONSTANT = np.sqrt(5.058 / (0.3125 * (2.0 * np.pi) ** 4 / G**2))
 
 
 def height_of(hs, tp, frequencies):
@@ -30,13 +30,13 @@ def height_of(hs, tp, frequencies):
         (2.0, 4.0, 5.0, 1.9963, 1.9509),
     ],
 )
-def test_significant_height_with_his_constant(hs, tp, gamma, printed, coarse):
+def test_significant_height_with_the_printed_constant(hs, tp, gamma, printed, coarse):
     assert spectra.dnv_peak_factor(hs, tp) == pytest.approx(gamma, abs=5e-4)
     fine = np.linspace(0.05, 6.0, 20_001)
-    assert HIS_CONSTANT * height_of(hs, tp, fine) == pytest.approx(printed, abs=1.1e-4)
+    assert PRINTED_CONSTANT * height_of(hs, tp, fine) == pytest.approx(printed, abs=1.1e-4)
     grid = np.arange(1, 301) * 0.01
     summed = 0.01 * spectra.jonswap(grid, height=hs, period=tp).sum()
-    assert HIS_CONSTANT * 4.0 * np.sqrt(summed) == pytest.approx(coarse, abs=1.1e-4)
+    assert PRINTED_CONSTANT * 4.0 * np.sqrt(summed) == pytest.approx(coarse, abs=1.1e-4)
 
 
 @pytest.mark.parametrize(("hs", "tp"), [(2.0, 8.0), (6.0, 11.0), (3.0, 6.0), (2.0, 4.0)])

@@ -71,7 +71,7 @@ def current_triangle(
     -----
     Exact vector addition. Schless (2023), eqs. 3.46, 3.57 to 3.64, adds the current along the
     course to the ship's speed before taking the angle, and swaps the components along and across
-    in eqs. 3.61, 3.62, 3.67 and 3.68; that changes her energies by -0.26 to +0.26 %. van Halem
+    in eqs. 3.61, 3.62, 3.67 and 3.68; that changes the energies there by -0.26 to +0.26 %. van Halem
     (2019), eq. 2.4, prints tanh for atan2.
     """
     stw, course_ = floats(speed), floats(course)
@@ -110,7 +110,7 @@ def distance_through_water(
 
     Notes
     -----
-    Schless (2023), eqs. 3.56, 3.60 and 3.64, divides by the cosine of her drift angle as well,
+    Schless (2023), eqs. 3.56, 3.60 and 3.64, divides by the cosine of the drift angle as well,
     which counts the current twice.
     """
     return floats(speed) * floats(distance) / floats(speed_over_ground)
@@ -208,7 +208,7 @@ def rudder_drag(
     through the water: hull and rudder move with the water and feel no oblique flow (Galilean
     invariance). The crab angle is an angle over the ground, not an angle of attack. The 1 to
     1.7 % of speed lost in Table 4.5 of Schless (2023) at 30 to 150 degrees comes from the model,
-    not from the sea. It is here so that her tables can be repeated.
+    not from the sea. It is here so that the tables there can be repeated.
 
     References
     ----------

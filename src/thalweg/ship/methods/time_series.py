@@ -86,7 +86,7 @@ def wave_components(
 
     Notes
     -----
-    Prestegardshus (2020) calls the phase a random integer (it is a real number, even over the
+    Prestegårdshus (2020) calls the phase a random integer (it is a real number, even over the
     circle) and draws the normal amplitudes at each time (they belong to the frequency and stay).
 
     References
@@ -135,7 +135,7 @@ def wave_history(components: WaveComponents, time: ArrayLike) -> WaveHistory:
 
     References
     ----------
-    Prestegardshus (2020), eqs. 3.17 to 3.20.
+    Prestegårdshus (2020), eqs. 3.17 to 3.20.
     """
     t, w = np.atleast_1d(floats(time)), components.frequency
     turning = np.exp(1j * np.multiply.outer(t, w))

@@ -69,7 +69,7 @@ def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> Floats:
 
     References
     ----------
-    DNV-RP-C205 (2010), 3.5.5, as used by Prestegardshus (2020), eq. 3.16.
+    DNV-RP-C205 (2010), 3.5.5, as used by Prestegårdshus (2020), eq. 3.16.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = floats(period) / np.sqrt(floats(height))
@@ -106,7 +106,7 @@ def jonswap(
 
     Notes
     -----
-    Prestegardshus (2020) prints 5.058 for (5/16)(2 pi)^4/g^2 = 5.061 and gives both widths for
+    Prestegårdshus (2020) prints 5.058 for (5/16)(2 pi)^4/g^2 = 5.061 and gives both widths for
     frequencies at and below the peak; the second belongs above it. With the factor
     1 - 0.287 ln gamma the height comes out within 0.2 % for gamma up to 5.
 
