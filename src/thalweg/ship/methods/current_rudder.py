@@ -71,8 +71,8 @@ def current_triangle(
     -----
     Exact vector addition. Schless (2023), eqs. 3.46, 3.57 to 3.64, adds the current along the
     course to the ship's speed before taking the angle, and swaps the components along and across
-    in eqs. 3.61, 3.62, 3.67 and 3.68; that changes the energies there by -0.26 to +0.26 %. van Halem
-    (2019), eq. 2.4, prints tanh for atan2.
+    in eqs. 3.61, 3.62, 3.67 and 3.68; that changes the energies there by -0.26 to +0.26 %.
+    van Halem (2019), eq. 2.4, prints tanh for atan2.
     """
     stw, course_ = floats(speed), floats(course)
     sin, cos = np.sin(course_), np.cos(course_)
