@@ -1,0 +1,87 @@
+"""Routes as files: CSV, GeoJSON (RFC 7946) and GPX 1.1, in and out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import TimeLike
+from thalweg.route.formats.csv_format import parse_csv, write_csv
+from thalweg.route.formats.geojson_format import parse_geojson, write_geojson
+from thalweg.route.formats.gpx_format import parse_gpx, write_gpx
+from thalweg.route.formats.parsed import ParsedTrack, track_of
+from thalweg.route.track import Track
+
+__all__ = ["LARGEST_FILE", "read_track", "write_csv", "write_geojson", "write_gpx"]
+
+LARGEST_FILE = 50_000_000  #: bytes; larger files are refused
+
+_PARSERS: dict[str, Callable[[str], ParsedTrack]] = {
+    ".csv": parse_csv,
+    ".txt": parse_csv,
+    ".geojson": parse_geojson,
+    ".json": parse_geojson,
+    ".gpx": parse_gpx,
+}
+
+
+def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
+    """Read a track from a file, by its suffix.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.csv`` or ``.txt`` (columns lat and lon, perhaps time), ``.geojson`` or ``.json``
+        (LineString, MultiLineString or Points), ``.gpx`` (one route or track).
+    depart : time, optional
+        Departure; by default the first time in the file.
+
+    Returns
+    -------
+    Track
+        At the ship's highest setting, without waits; repeated positions are merged.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, not readable, of another kind, holds fewer than two
+        waypoints or positions that cannot be, or nothing tells the departure.
+    """
+    path = Path(path)
+    parser = _PARSERS.get(path.suffix.lower())
+    if parser is None:
+        raise InputError(
+            f"Routes are not read from files like {path.name!r}.",
+            f"Known endings: {', '.join(_PARSERS)}.",
+            "Convert the file, or give it the right ending.",
+            file=str(path),
+        )
+    return track_of(parser(_text_of(path)), depart, path.name)
+
+
+def _text_of(path: Path) -> str:
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise InputError(
+                f"The route file {path.name!r} has {size / 1e6:.0f} MB.",
+                f"Files up to {LARGEST_FILE / 1e6:.0f} MB are read.",
+                "Cut it to the route.",
+                file=str(path),
+            )
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(
+            f"The route file {path.name!r} is not text (UTF-8).",
+            "",
+            "Save it as UTF-8 text.",
+            file=str(path),
+        ) from None
+    except OSError as error:
+        raise InputError(
+            f"The route file {str(path)!r} cannot be read: {error.strerror}.",
+            "",
+            "Check the path.",
+            file=str(path),
+        ) from None

@@ -1,0 +1,74 @@
+"""Routes as CSV: one row per waypoint, with a header."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import parse_time
+from thalweg.route.formats.parsed import ParsedTrack, position_of
+from thalweg.route.route import Route
+
+_NAMES = {
+    "lat": ("lat", "latitude", "lat_deg", "y"),
+    "lon": ("lon", "long", "lng", "longitude", "lon_deg", "x"),
+    "time": ("time", "datetime", "timestamp", "eta", "date"),
+}
+
+
+def parse_csv(text: str) -> ParsedTrack:
+    """Read CSV text with columns lat and lon (and time), separated by comma, semicolon or tab.
+
+    Raises
+    ------
+    InputError
+        If there is no such header, or a row is not a position.
+    """
+    header_line = text.lstrip().partition("\n")[0]
+    separator = max(",;\t", key=header_line.count)
+    rows = [row for row in csv.reader(io.StringIO(text.lstrip()), delimiter=separator) if row]
+    header = [name.strip().casefold() for name in rows[0]] if rows else []
+    lat, lon = _column(header, "lat"), _column(header, "lon")
+    if lat is None or lon is None:
+        raise InputError(
+            "The CSV has no columns of latitude and longitude.",
+            f"Its first line is {header_line.strip()[:80]!r}; needed are lat and lon (and time).",
+            "Give it a header such as lat,lon,time.",
+        )
+    positions = [_position(row, lat, lon, i) for i, row in enumerate(rows[1:], start=1)]
+    time = _column(header, "time")
+    first = (
+        rows[1][time].strip() if time is not None and len(rows) > 1 and len(rows[1]) > time else ""
+    )
+    return ParsedTrack(positions, parse_time(first) if first else None)
+
+
+def write_csv(route: Route, path: str | Path) -> None:
+    """Write the table of waypoints of a route; unknown values are left empty."""
+    rows = route.waypoints()
+    with Path(path).open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(rows[0])
+        for row in rows:
+            writer.writerow(_cell(value) for value in row.values())
+
+
+def _column(header: list[str], name: str) -> int | None:
+    return next((header.index(n) for n in _NAMES[name] if n in header), None)
+
+
+def _position(row: list[str], lat: int, lon: int, number: int) -> tuple[float, float]:
+    if len(row) <= max(lat, lon):
+        raise InputError(
+            f"Waypoint {number} of the CSV has {len(row)} columns.",
+            f"Latitude and longitude are columns {lat + 1} and {lon + 1}.",
+            "Complete the row.",
+        )
+    return position_of(row[lat].strip(), row[lon].strip(), number)
+
+
+def _cell(value: object) -> object:
+    return "" if value is None or (isinstance(value, float) and math.isnan(value)) else value

@@ -1,0 +1,153 @@
+"""Routes as GeoJSON (RFC 7946): lines cut at the antimeridian, positions as [lon, lat]."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position, along, densify
+from thalweg.core.time import parse_time
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.route.formats.parsed import ParsedTrack, position_of
+from thalweg.route.route import Route
+
+_LINE_SPACING = 20.0 * NAUTICAL_MILE  # legs are geodesics, GeoJSON lines are not: cut them finely
+_KINDS = "LineString, MultiLineString or Points"
+
+
+def parse_geojson(text: str) -> ParsedTrack:
+    """Read the first line of a GeoJSON text, or its points in order.
+
+    Lines cut at the antimeridian are joined again. Where there are both lines and points, the
+    points are taken if there are two or more (they are the waypoints), else the lines.
+
+    Raises
+    ------
+    InputError
+        If it is not GeoJSON or holds no line and no points.
+    """
+    try:
+        data = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise InputError(
+            f"The GeoJSON cannot be read: {error}.", "", "Check that the file is whole."
+        ) from None
+    lines: list[list[Any]] = []
+    points: list[Any] = []
+    first_time = None
+    for geometry, properties in _geometries(data):
+        kind, coordinates = geometry.get("type"), geometry.get("coordinates")
+        if kind == "LineString":
+            lines.append(_listed(coordinates))
+        elif kind == "MultiLineString":
+            lines += [_listed(line) for line in _listed(coordinates)]
+        elif kind in ("Point", "MultiPoint"):
+            points += [coordinates] if kind == "Point" else _listed(coordinates)
+        if first_time is None and properties.get("time", properties.get("depart")):
+            first_time = parse_time(str(properties.get("time", properties.get("depart"))))
+    chosen = points if len(points) > 1 else [position for line in lines for position in line]
+    if not chosen:
+        raise InputError(
+            "The GeoJSON holds no route.", f"A route is a {_KINDS}.", "Export the route as a line."
+        )
+    positions = [_position(item, i) for i, item in enumerate(chosen, start=1)]
+    return ParsedTrack(_without_cuts(positions), first_time)
+
+
+def write_geojson(route: Route, path: str | Path) -> None:
+    """Write a route: one (Multi)LineString with the totals, one Point per waypoint."""
+    totals = {k: v for k, v in route.as_dict().items() if k not in ("waypoints", "violations")}
+    parts = _line_parts(route)
+    line = (
+        {"type": "LineString", "coordinates": parts[0]}
+        if len(parts) == 1
+        else {"type": "MultiLineString", "coordinates": parts}
+    )
+    features = [{"type": "Feature", "geometry": line, "properties": totals}]
+    for row in route.waypoints():
+        place = {"type": "Point", "coordinates": [row["lon"], row["lat"]]}
+        rest = {key: value for key, value in row.items() if key not in ("lat", "lon")}
+        features.append({"type": "Feature", "geometry": place, "properties": rest})
+    text = json.dumps({"type": "FeatureCollection", "features": features}, allow_nan=False)
+    Path(path).write_text(text + "\n", encoding="utf-8")
+
+
+def _geometries(data: Any) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+    """Yield (geometry, properties) of everything in a GeoJSON object."""
+    if not isinstance(data, dict):
+        return
+    kind = data.get("type")
+    if kind == "FeatureCollection":
+        for feature in _listed(data.get("features")):
+            yield from _geometries(feature)
+    elif kind == "Feature":
+        properties = data.get("properties")
+        for geometry, _ in _geometries(data.get("geometry")):
+            yield geometry, properties if isinstance(properties, dict) else {}
+    elif kind == "GeometryCollection":
+        for geometry in _listed(data.get("geometries")):
+            yield from _geometries(geometry)
+    else:
+        yield data, {}
+
+
+def _listed(value: Any) -> list[Any]:
+    if not isinstance(value, list):
+        raise InputError(
+            "The GeoJSON has coordinates or features that are no list.", "", "Check the file."
+        )
+    return value
+
+
+def _position(item: Any, number: int) -> Position:
+    if not isinstance(item, list) or len(item) < 2:
+        raise InputError(
+            f"Waypoint {number} of the GeoJSON is not a position.",
+            "A position is [lon, lat] in degrees.",
+            "Check the file.",
+        )
+    return position_of(item[1], item[0], number)
+
+
+def _without_cuts(positions: list[Position]) -> list[Position]:
+    """Leave out the points where a line was cut at the antimeridian."""
+    kept: list[Position] = []
+    for index, (lat, lon) in enumerate(positions):
+        beside = positions[max(index - 1, 0) : index] + positions[index + 1 : index + 2]
+        inner = 0 < index < len(positions) - 1
+        if inner and abs(lon) == 180.0 and any(p[0] == lat and abs(p[1]) == 180.0 for p in beside):
+            continue
+        kept.append((lat, lon))
+    return kept
+
+
+def _line_parts(route: Route) -> list[list[list[float]]]:
+    """Return the line as lists of [lon, lat], cut where it crosses the antimeridian."""
+    track = route.track
+    lat, lon, _ = densify(track.lat, track.lon, _LINE_SPACING)
+    parts: list[list[list[float]]] = [[[float(lon[0]), float(lat[0])]]]
+    for here, there in zip(zip(lat[:-1], lon[:-1]), zip(lat[1:], lon[1:])):
+        if abs(there[1] - here[1]) > 180.0:
+            crossing = _crossing_latitude(here, there)
+            side = math.copysign(180.0, here[1])
+            parts[-1].append([side, crossing])
+            parts.append([[-side, crossing]])
+        parts[-1].append([float(there[1]), float(there[0])])
+    return parts
+
+
+def _crossing_latitude(here: tuple[float, float], there: tuple[float, float]) -> float:
+    """Return the latitude [deg] where a geodesic crosses the antimeridian, by bisection."""
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        _, lon = along(here[0], here[1], there[0], there[1], middle)
+        if (float(lon) >= 0.0) == (here[1] >= 0.0):
+            low = middle
+        else:
+            high = middle
+    return float(along(here[0], here[1], there[0], there[1], low)[0])

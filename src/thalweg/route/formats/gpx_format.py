@@ -1,0 +1,72 @@
+"""Routes as GPX 1.1; XML is read by defusedxml, so that no file can expand or fetch anything."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import parse_time
+from thalweg.route.formats.parsed import ParsedTrack, position_of
+from thalweg.route.route import Route
+
+_NAMESPACE = "http://www.topografix.com/GPX/1/1"
+
+
+def parse_gpx(text: str) -> ParsedTrack:
+    """Read the first route (``rtept``) of a GPX text, or else its first track (``trkpt``).
+
+    Raises
+    ------
+    InputError
+        If it is not XML, declares entities, or holds neither.
+    """
+    from defusedxml import DefusedXmlException
+    from defusedxml.ElementTree import fromstring
+
+    try:
+        root = fromstring(text)
+    except (ElementTree.ParseError, DefusedXmlException) as error:
+        raise InputError(
+            f"The GPX cannot be read: {error}.", "", "Check that the file is whole."
+        ) from None
+    points = _points(root, "rte", "rtept") or _points(root, "trk", "trkpt")
+    if not points:
+        raise InputError(
+            "The GPX holds no route and no track.",
+            "A route has rtept elements, a track trkpt elements.",
+            "Export the route itself, not only waypoints.",
+        )
+    positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
+    time = next((e.text for e in points[0] if _plain(e.tag) == "time" and e.text), None)
+    return ParsedTrack(positions, parse_time(time) if time else None)
+
+
+def write_gpx(route: Route, path: str | Path) -> None:
+    """Write a route as a GPX 1.1 route with the time of arrival at every waypoint."""
+    root = ElementTree.Element("gpx", {"version": "1.1", "creator": "Thalweg", "xmlns": _NAMESPACE})
+    line = ElementTree.SubElement(root, "rte")
+    ElementTree.SubElement(line, "name").text = "Thalweg route"
+    for number, row in enumerate(route.waypoints(), start=1):
+        place = {"lat": f"{row['lat']:.8f}", "lon": f"{row['lon']:.8f}"}
+        point = ElementTree.SubElement(line, "rtept", place)
+        if row["time"] is not None:
+            ElementTree.SubElement(point, "time").text = row["time"]
+        ElementTree.SubElement(point, "name").text = f"WP{number:03d}"
+    tree = ElementTree.ElementTree(root)
+    ElementTree.indent(tree)
+    tree.write(Path(path), encoding="utf-8", xml_declaration=True)
+
+
+def _points(root: ElementTree.Element, parent: str, name: str) -> list[ElementTree.Element]:
+    """Return the points of the first parent element that has any, of whatever GPX version."""
+    for element in root.iter():
+        if _plain(element.tag) == parent:
+            found = [point for point in element.iter() if _plain(point.tag) == name]
+            if found:
+                return found
+    return []
+
+
+def _plain(tag: object) -> str:
+    return str(tag).rpartition("}")[2]

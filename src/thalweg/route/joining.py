@@ -1,0 +1,77 @@
+"""Joining routes end to end: the passages of a voyage by way of other places."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.route.route import Route
+from thalweg.route.track import Track
+
+_TOUCH = 1e-9  # degrees between the end of a route and the start of the next
+
+
+def join(routes: Sequence[Route]) -> Route:
+    """Return one route from several that follow each other in place and time.
+
+    Parameters
+    ----------
+    routes : sequence of Route
+        Each starts where the one before ends, not before it gets there; time lain in between
+        becomes a wait.
+
+    Raises
+    ------
+    InputError
+        If there are none, or they do not follow each other.
+    """
+    if not routes:
+        raise InputError("There are no routes to join.", "", "Give one or more.")
+    for before, after in itertools.pairwise(routes):
+        _check_joint(before, after)
+    first = np.cumsum([0, *(len(route.legs["length"]) for route in routes)])
+    length = np.cumsum([0.0, *(route.legs["length"].sum() for route in routes)])
+    legs = {name: np.concatenate([route.legs[name] for route in routes]) for name in routes[0].legs}
+    names = [name for name in routes[0].samples if all(name in r.samples for r in routes)]
+    samples = {name: np.concatenate([route.samples[name] for route in routes]) for name in names}
+    sizes = [len(route.samples["leg"]) for route in routes]
+    samples["leg"] = samples["leg"] + np.repeat(first[:-1], sizes)
+    samples["distance"] = samples["distance"] + np.repeat(length[:-1], sizes)
+    return Route(
+        _joined_track(routes),
+        legs,
+        samples,
+        tuple(violation for route in routes for violation in route.violations),
+        sum(route.tolerance_s for route in routes),
+        tuple(dict.fromkeys(text for route in routes for text in route.assumptions)),
+    )
+
+
+def _check_joint(before: Route, after: Route) -> None:
+    a, b = before.track, after.track
+    turn = abs((a.lon[-1] - b.lon[0] + 180.0) % 360.0 - 180.0)
+    if abs(a.lat[-1] - b.lat[0]) > _TOUCH or turn > _TOUCH or not b.depart >= before.arrive - 1e-6:
+        raise InputError(
+            "Two routes do not follow each other.",
+            "Each must start where the one before ends, at or after its arrival.",
+            "Give them in order, each departing when the one before arrives.",
+        )
+
+
+def _joined_track(routes: Sequence[Route]) -> Track:
+    tracks = [route.track for route in routes]
+    wait = [tracks[0].wait]
+    for before, track in zip(routes, tracks[1:]):
+        wait[-1] = wait[-1].copy()
+        wait[-1][-1] = max(track.depart - before.arrive, 0.0) + track.wait[0]
+        wait.append(track.wait[1:])
+    return Track(
+        np.concatenate([tracks[0].lat, *(t.lat[1:] for t in tracks[1:])]),
+        np.concatenate([tracks[0].lon, *(t.lon[1:] for t in tracks[1:])]),
+        tracks[0].depart,
+        np.concatenate(wait),
+        np.concatenate([t.setting for t in tracks]),
+    )

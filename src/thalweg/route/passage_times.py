@@ -1,0 +1,201 @@
+"""When a ship passes each piece of a track: quadrature of time that depends on itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray
+
+#: ``(index of the first point, one past the last, times, speeds through water guessed or None) ->
+#: (slowness [s/m], NaN where it cannot go, speed through water [m/s])`` at the Gauss points
+Slowness = Callable[[int, int, FloatArray, "FloatArray | None"], tuple[FloatArray, FloatArray]]
+
+TIME_TOLERANCE = 1e-5  #: change of any time [s] that ends the iteration
+_ROUNDS = 14  # iterations before a stretch is halved
+_LAST_ROUNDS = 60  # iterations on a single piece
+# Butcher's matrix of the two-stage Gauss method (Hairer, Norsett & Wanner 1993, table II.7.3)
+_GAUSS = np.array([[0.25, 0.25 - math.sqrt(3.0) / 6.0], [0.25 + math.sqrt(3.0) / 6.0, 0.25]])
+
+
+@dataclass
+class Passage:
+    """Times of passage of consecutive pieces, being worked out.
+
+    Attributes
+    ----------
+    step, wait : float64 array (p,)
+        Length of each piece [m] and the wait after it [s].
+    start : float64 array (p + 1,)
+        Departure from the start of each piece, and at last the arrival (after the last wait) [s].
+    inside : float64 array (p, 2)
+        Times at the Gauss points [s].
+    slowness : float64 array (p, 2)
+        Seconds per metre at the Gauss points; guesses from the first bad point on.
+    water : float64 array (p, 2)
+        Speeds through water at the Gauss points [m/s].
+    bad : bool array (p, 2)
+        Where the ship cannot go on, or nothing is known.
+    """
+
+    step: FloatArray
+    wait: FloatArray
+    start: FloatArray
+    inside: FloatArray
+    slowness: FloatArray
+    water: FloatArray
+    bad: NDArray[np.bool_]
+
+    @property
+    def first_bad(self) -> int:
+        """The first piece that cannot be sailed; the number of pieces if all can."""
+        return _first(self.bad)
+
+
+def find_times(
+    slowness: Slowness, *, step: FloatArray, wait: FloatArray, depart: float, guess: FloatArray
+) -> Passage:
+    """Work out when a ship passes each piece.
+
+    Parameters
+    ----------
+    slowness : callable
+        See `Slowness`.
+    step, wait : ndarray, shape (p,)
+        Length of each piece [m] and the wait after it [s].
+    depart : float
+        When the ship leaves the start of the first piece [s].
+    guess : ndarray, shape (p, 2)
+        Slowness to begin with [s/m], finite and positive; also used past a bad point, so that the
+        arithmetic goes on.
+
+    Returns
+    -------
+    Passage
+
+    Notes
+    -----
+    Solves ``dT/ds = 1 / SOG(s, T)`` by the two-stage Gauss method, of order 4 in the length of
+    the pieces where the fields are smooth. All pieces are solved at once: Picard iteration, made
+    quick by the slope of slowness in time, which the last two iterates tell at every point.
+    A stretch that does not settle (a field with jumps in time) is halved, at last to single pieces.
+    """
+    count = len(step)
+    passage = Passage(
+        step,
+        wait,
+        np.empty(count + 1),
+        np.empty((count, 2)),
+        guess.copy(),
+        np.full((count, 2), math.nan),
+        np.zeros((count, 2), dtype=bool),
+    )
+    passage.start[0] = 0.0  # seconds since departure, which round 10^7 times finer
+
+    def look(
+        first: int, last: int, time: FloatArray, water: FloatArray | None
+    ) -> tuple[FloatArray, FloatArray]:
+        return slowness(first, last, depart + time, water)
+
+    waiting = [(0, count)]
+    while waiting:
+        first, last = waiting.pop()
+        if not _settle(passage, look, first, last) and last - first > 1:
+            middle = (first + last) // 2
+            waiting += [(middle, last), (first, middle)]
+    passage.start += depart
+    passage.inside += depart
+    return passage
+
+
+def _settle(passage: Passage, look: Slowness, first: int, last: int) -> bool:
+    """Iterate one stretch of pieces from its known start; tell whether it settled."""
+    part = slice(first, last)
+    step, wait = passage.step[part], passage.wait[part]
+    depart = passage.start[first]
+    held, slope = passage.slowness[part].copy(), np.zeros((last - first, 2))
+    start, inside = _integrate(depart, step, wait, held)
+    seen_at: FloatArray | None = None
+    before = held
+    water: FloatArray | None = (
+        passage.water[part] if np.isfinite(passage.water[part]).all() else None
+    )
+    for turn in range(_LAST_ROUNDS if last - first == 1 else _ROUNDS):
+        found, speed = look(2 * first, 2 * last, inside.reshape(-1), _flat(water))
+        found, water = found.reshape(-1, 2), speed.reshape(-1, 2)
+        bad = ~np.isfinite(found)
+        held = np.where(bad, passage.slowness[part], found)
+        if seen_at is not None:
+            slope = _slope(held - before, inside - seen_at, slope, step)
+        seen_at, before = inside, held
+        if turn > 20:  # a jump inside one piece: creep up on it
+            slope = np.zeros_like(slope)
+            held = 0.5 * (held + passage.slowness[part])
+            passage.slowness[part] = held
+        start, new = _improve(depart, step, wait, held, slope, start)
+        change = np.abs(new - inside).max(axis=1)
+        inside = new
+        sure = _first(bad) + 1
+        if max(change[:sure], default=0.0) < TIME_TOLERANCE:
+            break
+    settled = bool(max(change[:sure], default=0.0) < TIME_TOLERANCE)
+    if settled or last - first == 1:
+        passage.start[first : last + 1] = start
+        passage.inside[part], passage.water[part], passage.bad[part] = inside, water, bad
+        passage.slowness[part] = held
+    return settled
+
+
+def _flat(values: FloatArray | None) -> FloatArray | None:
+    return None if values is None or not np.isfinite(values).all() else values.reshape(-1)
+
+
+def _first(bad: NDArray[np.bool_]) -> int:
+    rows = np.flatnonzero(bad[:, 0] | bad[:, 1])
+    return int(rows[0]) if rows.size else len(bad)
+
+
+def _slope(
+    change: FloatArray, elapsed: FloatArray, old: FloatArray, step: FloatArray
+) -> FloatArray:
+    """Return d slowness / d time at every point, from two iterates; the old one if they agree."""
+    known = np.abs(elapsed) > 1e-4
+    new = np.where(known, change / np.where(known, elapsed, 1.0), old)
+    largest = 0.5 / step[:, None]
+    return np.clip(np.where(np.isfinite(new), new, 0.0), -largest, largest)
+
+
+def _integrate(
+    depart: float, step: FloatArray, wait: FloatArray, slowness: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return (times at the ends of pieces, times at the Gauss points) for given slowness."""
+    elapsed = np.concatenate([[0.0], np.cumsum(step * slowness.mean(axis=1) + wait)])
+    start = depart + elapsed
+    return start, start[:-1, None] + step[:, None] * (slowness @ _GAUSS.T)
+
+
+def _improve(
+    depart: float,
+    step: FloatArray,
+    wait: FloatArray,
+    slowness: FloatArray,
+    slope: FloatArray,
+    start: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return better times: one Newton step for slowness that is linear in time at each point."""
+    mean = step * slowness.mean(axis=1)
+    half = 0.5 * step * slope.mean(axis=1)
+    residual = (start[:-1] + mean + wait - start[1:]).tolist()
+    up, down = (1.0 + half).tolist(), (1.0 / (1.0 - half)).tolist()
+    error = [depart - start[0]]
+    for a, b, r in zip(up, down, residual):
+        error.append((error[-1] * a + r) * b)
+    shift = np.array(error)
+    new = start + shift
+    new[0] = depart
+    better = slowness + slope * (0.5 * (shift[:-1] + shift[1:]))[:, None]
+    return new, new[:-1, None] + step[:, None] * (better @ _GAUSS.T)

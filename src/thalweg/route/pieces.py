@@ -1,0 +1,145 @@
+"""Cutting a track into short pieces along its geodesics."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import WGS84, FloatArray, inverse, wrap_longitude
+from thalweg.route.track import Track
+
+IntArray = NDArray[np.int64]
+
+#: Gauss-Legendre nodes of two points on [0, 1] (Hairer, Norsett & Wanner 1993, table II.7.3)
+GAUSS_NODES = np.array([0.5 - math.sqrt(3.0) / 6.0, 0.5 + math.sqrt(3.0) / 6.0])
+
+
+@dataclass(frozen=True)
+class Points:
+    """Places on a track where a ship is looked at.
+
+    Attributes
+    ----------
+    lat, lon : float64 array (n,)
+        Positions [deg].
+    course : float64 array (n,)
+        Course over ground along the geodesic there, clockwise from north [rad].
+    setting : int64 array (n,)
+        Speed setting of the leg.
+    leg : int64 array (n,)
+        Index of the leg.
+    along : float64 array (n,)
+        Distance from the start of the leg [m].
+    charted : float64 array (n,)
+        Least charted depth of the piece [m below datum]; +inf without a chart of depth.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    course: FloatArray
+    setting: IntArray
+    leg: IntArray
+    along: FloatArray
+    charted: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.lat)
+
+    def part(self, index: slice | IntArray | NDArray[np.bool_]) -> Points:
+        """Return some of the points."""
+        return Points(
+            self.lat[index],
+            self.lon[index],
+            self.course[index],
+            self.setting[index],
+            self.leg[index],
+            self.along[index],
+            self.charted[index],
+        )
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """A track cut into short pieces, with its legs.
+
+    Attributes
+    ----------
+    track : Track
+    length, course : float64 array (legs,)
+        Length [m] and course at the start [rad] of each leg.
+    leg : int64 array (p,)
+        The leg each piece lies on.
+    start : float64 array (p,)
+        Distance of its start from the start of the leg [m].
+    step : float64 array (p,)
+        Its length [m].
+    wait : float64 array (p,)
+        Wait after it [s]: at the end of a leg, else 0.
+    """
+
+    track: Track
+    length: FloatArray
+    course: FloatArray
+    leg: IntArray
+    start: FloatArray
+    step: FloatArray
+    wait: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.leg)
+
+    def points(self, leg: IntArray, along: FloatArray) -> Points:
+        """Return the points at given distances along given legs, without charted depth."""
+        track = self.track
+        lon, lat, back = WGS84.fwd(
+            track.lon[leg], track.lat[leg], np.degrees(self.course[leg]), along
+        )
+        return Points(
+            np.asarray(lat),
+            wrap_longitude(lon),
+            np.radians(np.asarray(back) + 180.0) % (2.0 * math.pi),
+            track.setting[leg],
+            leg,
+            along,
+            np.full(len(leg), math.inf),
+        )
+
+    def gauss_points(self) -> Points:
+        """Return the two Gauss points of every piece, in order."""
+        along = self.start[:, None] + self.step[:, None] * GAUSS_NODES
+        return self.points(np.repeat(self.leg, 2), along.reshape(-1))
+
+    def ends(self) -> Points:
+        """Return the start of every piece, then the end of every leg."""
+        legs = np.arange(len(self.length))
+        return self.points(
+            np.concatenate([self.leg, legs]), np.concatenate([self.start, self.length])
+        )
+
+    def last_of_leg(self) -> NDArray[np.bool_]:
+        """Return which pieces end a leg."""
+        return np.append(self.leg[1:] != self.leg[:-1], True)
+
+
+def cut(track: Track, step: float, least: int) -> Pieces:
+    """Cut every leg into equal pieces.
+
+    Parameters
+    ----------
+    track : Track
+    step : float
+        Greatest length of a piece [m].
+    least : int
+        Least number of pieces of a leg.
+    """
+    length, course, _ = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    count = np.maximum(least, np.ceil(length / step - 1e-9)).astype(np.int64)
+    leg = np.repeat(np.arange(len(length)), count)
+    number = np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)
+    piece = length / count
+    wait = np.zeros(len(leg))
+    wait[np.cumsum(count) - 1] = track.wait[1:]
+    return Pieces(track, length, course, leg, number * piece[leg], piece[leg], wait)

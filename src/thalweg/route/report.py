@@ -1,0 +1,118 @@
+"""Routes as tables for people: one row per waypoint, units in the names."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.time import format_time, to_datetime64
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE, TONNE
+from thalweg.route.route import Route, none_if_nan
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def waypoint_rows(route: Route) -> list[dict[str, Any]]:
+    """Return one plain dictionary per waypoint; None where a value is unknown or not there.
+
+    ``time`` is the arrival at the waypoint; a ship leaves it ``waiting_h`` later. Courses, headings
+    and conditions are those on leaving (at the last waypoint: on arriving); speeds are means over
+    the time of the leg that begins there, ``ukc_m`` the least clearance on it.
+    """
+    columns = waypoint_columns(route)
+    times = columns.pop("time")
+    return [
+        {
+            "lat": float(columns["lat"][i]),
+            "lon": float(columns["lon"][i]),
+            "time": format_time(times[i]) if math.isfinite(times[i]) else None,
+            **{k: none_if_nan(v[i]) for k, v in columns.items() if k not in ("lat", "lon")},
+        }
+        for i in range(len(times))
+    ]
+
+
+def waypoint_frame(route: Route) -> pd.DataFrame:
+    """Return a pandas table with one row per waypoint; see `waypoint_rows`."""
+    import pandas as pd
+
+    columns = waypoint_columns(route)
+    time = columns.pop("time")
+    known = np.isfinite(time)
+    stamps = np.where(known, to_datetime64(np.where(known, time, 0.0)), np.datetime64("NaT", "ns"))
+    return pd.DataFrame({"lat": columns["lat"], "lon": columns["lon"], "time": stamps} | columns)
+
+
+def waypoint_columns(route: Route) -> dict[str, FloatArray]:
+    """Return the columns of the table of waypoints; ``time`` in seconds since 1970."""
+    track, legs, samples = route.track, route.legs, route.samples
+    at = _sample_of_waypoint(samples["leg"])
+    length, sailing = legs["length"], legs["arrive"] - legs["depart"]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        over_ground = np.where(sailing > 0.0, length / sailing, math.nan)
+    fuel = np.concatenate([[0.0], np.cumsum(legs["fuel"])]) / TONNE
+    return {
+        "lat": track.lat,
+        "lon": track.lon,
+        "time": np.concatenate([[track.depart], legs["arrive"]]),
+        "waiting_h": track.wait / HOUR,
+        "distance_nm": np.concatenate([[0.0], np.cumsum(length)]) / NAUTICAL_MILE,
+        "course_deg": np.degrees(samples["course"][at]),
+        "heading_deg": np.degrees(samples["heading"][at]),
+        "speed_through_water_kn": np.append(_mean_over_time(route), math.nan) / KNOT,
+        "speed_over_ground_kn": np.append(over_ground, math.nan) / KNOT,
+        "fuel_t": fuel,
+        **_conditions(route, at),
+        "ukc_m": np.append(legs["under_keel_clearance"], math.nan),
+    }
+
+
+def _sample_of_waypoint(leg: FloatArray) -> np.ndarray:
+    """Return the first sample of every leg and the last sample of all."""
+    first = np.flatnonzero(np.concatenate([[True], leg[1:] != leg[:-1]]))
+    return np.append(first, len(leg) - 1)
+
+
+def _mean_over_time(route: Route) -> FloatArray:
+    """Return the mean speed through water of every leg, weighted by time [m/s]."""
+    samples, count = route.samples, len(route.legs["length"])
+    time, leg, speed = samples["time"], samples["leg"], samples["speed_through_water"]
+    same = leg[1:] == leg[:-1]
+    span = np.where(same, np.diff(time), 0.0)
+    sailed = np.where(same, 0.5 * (speed[1:] + speed[:-1]) * span, 0.0)
+    which = leg[:-1].astype(np.int64)
+    total = np.bincount(which, weights=span, minlength=count)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.bincount(which, weights=sailed, minlength=count) / total
+
+
+def _conditions(route: Route, at: np.ndarray) -> dict[str, FloatArray]:
+    samples = {name: values[at] for name, values in route.samples.items()}
+    found: dict[str, FloatArray] = {}
+    for name, east, north, origin in (
+        ("current", "eastward_sea_water_velocity", "northward_sea_water_velocity", False),
+        ("wind", "eastward_wind", "northward_wind", True),
+    ):
+        if east in samples and north in samples:
+            u, v = samples[east], samples[north]
+            found[f"{name}_speed_kn"] = np.hypot(u, v) / KNOT
+            way = "from" if origin else "towards"
+            found[f"{name}_{way}_deg"] = _bearing(-u, -v) if origin else _bearing(u, v)
+    height, period = "sea_surface_wave_significant_height", "sea_surface_wave_period"
+    for name, values in samples.items():
+        if name == height:
+            found["wave_height_m"] = values
+        elif name.startswith(period):
+            found["wave_period_s"] = values
+    found["depth_m"] = samples["depth"]
+    return found
+
+
+def _bearing(east: FloatArray, north: FloatArray) -> FloatArray:
+    """Return the direction of a vector [deg from north]; NaN for one of no length."""
+    still = (east == 0.0) & (north == 0.0)
+    return np.where(still, math.nan, np.degrees(np.arctan2(east, north)) % 360.0)

@@ -1,0 +1,185 @@
+"""A route: a track as the referee found it, with all its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray, format_position
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, NAUTICAL_MILE, TONNE
+from thalweg.route.track import Track
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One stretch of a route where a limit is broken or the data do not reach.
+
+    Attributes
+    ----------
+    reason : str
+        In the words of `thalweg.kernels.codes.REASONS`; details may follow a colon.
+    time : float
+        When [s since 1970-01-01T00:00Z]; NaN if the route never gets there.
+    lat, lon : float
+        Where [deg]: the worst point of the stretch.
+    value, limit : float
+        What was found there and what is allowed, in SI; NaN where neither is a number.
+    """
+
+    reason: str
+    time: float
+    lat: float
+    lon: float
+    value: float = float("nan")
+    limit: float = float("nan")
+
+    def __str__(self) -> str:
+        text = f"{self.reason} at {format_position(self.lat, self.lon)}, {format_time(self.time)}"
+        if np.isfinite(self.value) and np.isfinite(self.limit):
+            text += f" ({self.value:.2f}, limit {self.limit:.2f})"
+        return text
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the violation as plain data for a JSON answer."""
+        return {
+            "reason": self.reason,
+            "time": format_time(self.time) if np.isfinite(self.time) else None,
+            "lat": self.lat,
+            "lon": self.lon,
+            "value": none_if_nan(self.value),
+            "limit": none_if_nan(self.limit),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A track as re-sailed by the referee; nothing in it changes.
+
+    Attributes
+    ----------
+    track : Track
+        What was sailed; settings are indices from the bottom.
+    legs : mapping of str to ndarray
+        Per leg: ``length`` [m], ``course`` (at its start) [rad], ``depart``, ``arrive`` [s since
+        1970], ``fuel`` [kg] (NaN if unknown), ``under_keel_clearance`` (least) [m].
+    samples : mapping of str to ndarray
+        The fine samples along the route, in order: ``time, leg, lat, lon, distance, course,
+        heading, speed_through_water, speed_over_ground, depth, under_keel_clearance, fuel_rate``
+        and every sampled variable of the sea by its name; SI, NaN where unknown or not asked for.
+    violations : tuple of Violation
+        Where limits are broken; empty for a route that can be sailed.
+    tolerance_s : float
+        Difference of the sailing time between the last two step sizes [s].
+    assumptions : tuple of str
+        What was taken for granted where the data say nothing.
+    """
+
+    track: Track
+    legs: Mapping[str, FloatArray]
+    samples: Mapping[str, FloatArray]
+    violations: tuple[Violation, ...] = ()
+    tolerance_s: float = float("nan")
+    assumptions: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        for name in ("legs", "samples"):
+            columns = {key: np.array(values) for key, values in getattr(self, name).items()}
+            for values in columns.values():
+                values.setflags(write=False)
+            object.__setattr__(self, name, MappingProxyType(columns))
+
+    @property
+    def depart(self) -> float:
+        """Departure [s since 1970-01-01T00:00Z]."""
+        return self.track.depart
+
+    @property
+    def arrive(self) -> float:
+        """Arrival [s since 1970-01-01T00:00Z]; NaN if the route cannot be sailed to its end."""
+        return float(self.legs["arrive"][-1])
+
+    @property
+    def time_h(self) -> float:
+        """Time from departure to arrival, waits included [h]."""
+        return (self.arrive - self.depart) / HOUR
+
+    @property
+    def distance_nm(self) -> float:
+        """Length along the geodesics of its legs [nautical miles]."""
+        return float(self.legs["length"].sum()) / NAUTICAL_MILE
+
+    @property
+    def fuel_t(self) -> float | None:
+        """Fuel burnt [t]; None if the ship has no fuel model or the route is not sailed out."""
+        total = float(self.legs["fuel"].sum()) / TONNE
+        return total if np.isfinite(total) else None
+
+    @property
+    def waiting_h(self) -> float:
+        """Time lain still at waypoints [h]."""
+        return float(self.track.wait.sum()) / HOUR
+
+    @property
+    def min_ukc_m(self) -> float | None:
+        """Least under-keel clearance found [m]; None if no depth is known anywhere."""
+        known = self.legs["under_keel_clearance"]
+        known = known[np.isfinite(known)]
+        return float(known.min()) if known.size else None
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the route can be sailed to its end without breaking any limit."""
+        return not self.violations and bool(np.isfinite(self.arrive))
+
+    def waypoints(self) -> list[dict[str, Any]]:
+        """Return one plain dictionary per waypoint, ready for JSON (None where unknown)."""
+        from thalweg.route.report import waypoint_rows
+
+        return waypoint_rows(self)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return a pandas table with one row per waypoint; ``time`` is datetime64 (UTC)."""
+        from thalweg.route.report import waypoint_frame
+
+        return waypoint_frame(self)
+
+    def sample_frame(self) -> pd.DataFrame:
+        """Return a pandas table of the fine samples, in SI."""
+        import pandas as pd
+
+        return pd.DataFrame(dict(self.samples))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return totals, waypoints and violations as plain data for a JSON answer."""
+        return {
+            "depart": format_time(self.depart),
+            "arrive": format_time(self.arrive) if np.isfinite(self.arrive) else None,
+            "time_h": none_if_nan(self.time_h),
+            "distance_nm": self.distance_nm,
+            "fuel_t": self.fuel_t,
+            "waiting_h": self.waiting_h,
+            "min_ukc_m": self.min_ukc_m,
+            "feasible": self.feasible,
+            "tolerance_s": none_if_nan(self.tolerance_s),
+            "assumptions": list(self.assumptions),
+            "violations": [violation.as_dict() for violation in self.violations],
+            "waypoints": self.waypoints(),
+        }
+
+    def __str__(self) -> str:
+        fuel = "" if self.fuel_t is None else f", {self.fuel_t:.2f} t fuel"
+        state = "" if self.feasible else f", {len(self.violations)} limits broken"
+        return f"Route: {self.time_h:.4f} h, {self.distance_nm:.2f} nm{fuel}{state}"
+
+
+def none_if_nan(value: float) -> float | None:
+    """Return the number, or None for NaN and infinities, which JSON does not have."""
+    return float(value) if np.isfinite(value) else None

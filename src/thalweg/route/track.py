@@ -1,0 +1,173 @@
+"""A track: what to sail, not yet scored."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, Position, check_position, distance, wrap_longitude
+from thalweg.core.time import TimeLike, parse_time
+
+TOP_SETTING = -1  #: the ship's highest speed setting, counted from the end as in Python
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Waypoints joined by geodesics, with waits, a departure and a speed setting for each leg.
+
+    Parameters
+    ----------
+    lat, lon : array_like of float, shape (n,)
+        Waypoints [deg], n >= 2; longitudes are wrapped to [-180, 180).
+    wait : array_like of float, shape (n,), optional
+        Time lain still at each waypoint before leaving it [s], >= 0; the last is 0. None: no waits.
+    depart : float
+        Departure [s since 1970-01-01T00:00Z]. The wait at the first waypoint comes after it.
+    setting : array_like of int, shape (n - 1,), optional
+        Index into the ship's speeds for each leg; negative numbers count from the top as in
+        Python. None: the highest on every leg.
+
+    Raises
+    ------
+    InputError
+        For fewer than two waypoints, unequal lengths, positions or times that are not numbers.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    depart: float
+    wait: FloatArray = None  # type: ignore[assignment]
+    setting: NDArray[np.int64] = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        lat = np.array(self.lat, dtype=float).reshape(-1)
+        lon = np.array(self.lon, dtype=float).reshape(-1)
+        _check_positions(lat, lon)
+        count = len(lat)
+        wait = np.zeros(count) if self.wait is None else np.array(self.wait, dtype=float)
+        if self.setting is None:
+            setting = np.full(count - 1, TOP_SETTING, dtype=np.int64)
+        else:
+            setting = np.array(self.setting, dtype=np.int64)
+        _check_lengths(count, wait, setting)
+        depart = parse_time(self.depart)
+        fields = {"lat": lat, "lon": wrap_longitude(lon), "wait": wait, "setting": setting}
+        for name, values in fields.items():
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
+        object.__setattr__(self, "depart", depart)
+
+    @classmethod
+    def from_positions(
+        cls,
+        positions: Iterable[Sequence[float]],
+        *,
+        depart: TimeLike,
+        setting: int = TOP_SETTING,
+    ) -> Track:
+        """Build a track without waits from (lat, lon) pairs; repeated positions are merged."""
+        pairs = _pairs(positions)
+        keep = [pairs[0], *(b for a, b in itertools.pairwise(pairs) if a != b)] if pairs else []
+        lat, lon = np.array(keep, dtype=float).reshape(-1, 2).T
+        return cls(lat, lon, parse_time(depart), None, np.full(max(len(lat) - 1, 0), setting))  # type: ignore[arg-type]
+
+    def __len__(self) -> int:
+        return len(self.lat)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Track):
+            return NotImplemented
+        return self.depart == other.depart and all(
+            np.array_equal(getattr(self, name), getattr(other, name))
+            for name in ("lat", "lon", "wait", "setting")
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def lengths(self) -> FloatArray:
+        """Geodesic length of each leg [m]."""
+        return distance(self.lat[:-1], self.lon[:-1], self.lat[1:], self.lon[1:])
+
+    @property
+    def positions(self) -> list[Position]:
+        """The waypoints as (lat, lon) pairs [deg]."""
+        return list(zip(self.lat.tolist(), self.lon.tolist()))
+
+    def replaced(self, **changes: Any) -> Track:
+        """Return a copy with some fields changed (``lat, lon, depart, wait, setting``)."""
+        fields = {name: getattr(self, name) for name in ("lat", "lon", "depart", "wait", "setting")}
+        return Track(**{**fields, **changes})
+
+    def kept(self, keep: ArrayLike) -> Track:
+        """Return the track through some of its waypoints.
+
+        Parameters
+        ----------
+        keep : array_like of int
+            Ascending indices of the waypoints to keep, first and last included. A joined leg takes
+            the setting of its first part; waits at dropped waypoints are dropped.
+        """
+        index = np.asarray(keep, dtype=np.int64)
+        return Track(
+            self.lat[index],
+            self.lon[index],
+            self.depart,
+            self.wait[index],
+            self.setting[index[:-1]],
+        )
+
+
+def _pairs(positions: Iterable[Sequence[float]]) -> list[Position]:
+    pairs = []
+    for number, pair in enumerate(positions, start=1):
+        if len(pair) != 2:
+            raise InputError(
+                f"Waypoint {number} has {len(pair)} numbers.",
+                "A waypoint is a pair (lat, lon) in degrees.",
+                "Give pairs.",
+                waypoint=number,
+            )
+        pairs.append(check_position(float(pair[0]), float(pair[1]), f"waypoint {number}"))
+    return pairs
+
+
+def _check_positions(lat: FloatArray, lon: FloatArray) -> None:
+    if len(lat) != len(lon):
+        raise InputError(
+            f"A track has {len(lat)} latitudes and {len(lon)} longitudes.",
+            "Each waypoint has one of each.",
+            "Give two lists of one length.",
+        )
+    if len(lat) < 2:
+        raise InputError(
+            f"A track of {len(lat)} waypoint{'' if len(lat) == 1 else 's'} cannot be sailed.",
+            "A track has at least two different waypoints.",
+            "Give the start and the goal.",
+            waypoints=len(lat),
+        )
+    bad = ~(np.isfinite(lat) & np.isfinite(lon)) | (np.abs(lat) > 90.0) | (np.abs(lon) > 360.0)
+    if bad.any():
+        first = int(np.argmax(bad))
+        check_position(lat[first], lon[first], f"waypoint {first + 1}")
+
+
+def _check_lengths(count: int, wait: FloatArray, setting: NDArray[np.int64]) -> None:
+    if wait.shape != (count,) or setting.shape != (count - 1,):
+        raise InputError(
+            f"A track of {count} waypoints has {wait.size} waits and {setting.size} settings.",
+            f"It needs {count} waits and {count - 1} settings.",
+            "Leave them out, or give one wait per waypoint and one setting per leg.",
+        )
+    if not np.all(wait >= 0.0) or not np.all(np.isfinite(wait)) or wait[-1] != 0.0:
+        raise InputError(
+            "A track has a wait that is negative, not a number, or at its last waypoint.",
+            "Waits are seconds, zero or more, and end before the goal.",
+            "Correct the waits.",
+        )
