@@ -34,6 +34,8 @@ def test_zero_waves_zero_response(period, angle, speed):
 def test_zero_waves_need_no_period():
     assert respond(height=0.0, period=np.nan).heave.m0 == 0.0
     assert respond(height=0.0, period=0.0).acceleration.m0 == 0.0
+    assert respond(height=0.0, period=np.nan, wave_angle=np.nan).pitch.m0 == 0.0
+    assert np.isnan(respond(height=0.0, speed=np.nan).heave.m0)
 
 
 @given(height=heights, period=periods, angle=angles, speed=speeds, factor=st.floats(0.1, 10.0))

@@ -60,6 +60,8 @@ def test_no_motion_nobody_sick_and_unknown_stays_unknown():
     sick = comfort.sick_percent_mccauley([0.0, np.nan], frequency_hz=0.2, duration=3600.0)
     assert sick[0] == 0.0
     assert np.isnan(sick[1])
+    still = comfort.sick_percent_mccauley(1.0, frequency_hz=[0.0, np.nan], duration=3600.0)
+    np.testing.assert_array_equal(still, [0.0, np.nan])
     sick = comfort.sick_percent_ohanlon([0.0, np.nan], encounter_frequency=1.0)
     assert sick[0] == 0.0
     assert np.isnan(sick[1])

@@ -63,6 +63,13 @@ def test_deep_water_gives_the_deep_speed():
     assert 0.999 * 5.0 < deep <= 5.0
 
 
+def test_infinite_depth_is_deep_water():
+    kwargs = {"block_coefficient": 0.8, **HOPPER}
+    assert squat.speed_limit(5.0, np.inf, **kwargs) == pytest.approx(5.0, rel=1e-3)
+    assert squat.barrass_squat(5.0, np.inf, **kwargs) == 0.0
+    assert squat.barrass_2004_squat(5.0, np.inf, **kwargs) == 0.0
+
+
 def test_zero_speed_stays_zero():
     assert squat.critical_speed(0.0, 10.0, **HOPPER) == 0.0
     assert squat.barrass_squat(0.0, 10.0, block_coefficient=0.8, **HOPPER) == 0.0

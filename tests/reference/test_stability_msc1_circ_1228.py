@@ -93,6 +93,8 @@ def test_flat_sea_is_safe_and_unknown_sea_is_not():
     flat = check(speed=40.0 * KNOT, wave_height=0.0, wave_period=np.nan, roll_period=8.0)
     assert flat.safe
     assert flat.margins.surf_riding == np.inf
+    assert check(wave_height=0.0, wave_period=np.nan, wave_angle=np.nan).safe
+    assert not check(wave_height=-1.0).safe
     for name in ("speed", "wave_angle", "wave_height", "wave_period", "length"):
         unknown = check(**{name: np.nan})
         assert not unknown.safe, name

@@ -187,7 +187,7 @@ def sick_percent_mccauley(
     (constants from memory of the secondary literature, not seen in print).
     """
     a, f, t = floats(rms) / gravity, floats(frequency_hz), floats(duration) / 60.0
-    moving = (a > 0.0) & (t > 0.0)
+    moving = (a > 0.0) & (t > 0.0) & (f > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         log_f = np.log10(f)
         z_a = 2.128 * np.log10(a) - 9.277 * log_f - 5.809 * log_f**2 - 1.851

@@ -281,8 +281,8 @@ def ship_response(
     Returns
     -------
     ShipResponse
-        Of the broadcast shape of the conditions. Zero height gives zero, whatever the period;
-        unknown data give NaN.
+        Of the broadcast shape of the conditions. Zero height gives zero, whatever the period
+        and direction; unknown data give NaN.
 
     Notes
     -----
@@ -292,7 +292,9 @@ def ship_response(
     hs, tp, angle, v, x = np.broadcast_arrays(
         *(floats(values) for values in (height, period, wave_angle, speed, forward))
     )
-    tp = np.where((hs == 0.0) & ~(tp > 0.0), 10.0, tp)  # a flat sea has no period
+    flat = hs == 0.0  # a flat sea has neither period nor direction
+    tp = np.where(flat & ~(tp > 0.0), 10.0, tp)
+    angle = np.where(flat & np.isnan(angle), 0.0, angle)
     w, weights = quadrature(tp)
     waves = jonswap(w, height=hs, period=tp, peak_factor=peak_factor)
     heave, pitch = jensen_motions(

@@ -14,6 +14,8 @@ from thalweg.ship.methods.notes import RangeNote, range_notes
 #: Width of open water that takes part in the flow, in ship breadths (van Halem 2019).
 OPEN_WATER_BREADTHS: Final = 9.0
 
+_DEEP: Final = 1e5  # stands for infinite depth [m]
+
 #: Published ranges: method -> quantity -> (low, high).
 VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
     "barrass_squat": {"block_coefficient": (0.5, 0.9), "depth_to_draught": (1.1, 1.5)},
@@ -218,7 +220,7 @@ def critical_speed(
     -------
     ndarray
         Speed through the water [m/s], between 0 and ``deep_speed``; 0 where the ship fills the
-        waterway or the depth is not positive.
+        waterway or the depth is not positive. The depth may be infinite.
 
     Notes
     -----
@@ -229,7 +231,7 @@ def critical_speed(
     O. Schlichting (1934) and L. Landweber (1939) as used by van Oord; van Halem (2019), eq. 2.5,
     where V_max and the root of the tanh are missing and 0.0191 is cut to 0.019.
     """
-    v, h = floats(deep_speed), floats(depth)
+    v, h = floats(deep_speed), np.minimum(floats(depth), _DEEP)
     b, width = floats(breadth), _width(breadth, channel_width)
     section = b * floats(draught)
     free = width * h - section

@@ -221,7 +221,7 @@ def stability_checks(
     Returns
     -------
     StabilityChecks
-        Flags and margins. A flat sea raises no flag.
+        Flags and margins. A flat sea raises no flag, whatever its period and direction.
 
     Notes
     -----
@@ -236,6 +236,7 @@ def stability_checks(
         *(floats(x) for x in (speed, wave_angle, wave_height, wave_period, length))
     )
     rolls = np.full(v.shape, np.nan) if roll_period is None else floats(roll_period)
+    hs = np.where(hs >= 0.0, hs, np.nan)
     flat = hs <= least_height
     met = encounter_period(tw, speed=v, wave_angle=angle)
     surf = surf_riding_speed(angle, length=size) - v
@@ -250,9 +251,8 @@ def stability_checks(
         ]
     )
     once, any_roll = _resonance(met, rolls, roll_tolerance)
-    known = ~np.isnan(v + angle + hs + size) & (flat | ~np.isnan(met))
-    if roll_period is not None:
-        known = known & (flat | ~np.isnan(rolls))
+    seen = ~np.isnan(met) & ((roll_period is None) | ~np.isnan(rolls))
+    known = ~np.isnan(v + hs + size) & (flat | seen)
     calm = [np.where(flat, np.inf, x) for x in (surf, high_waves, once, any_roll)]
     return StabilityChecks(
         encounter_period=met,
