@@ -356,12 +356,12 @@ def operating_point(
         NaN for a negative thrust or speed.
     """
     polynomials = b_series_polynomials(propeller, reynolds=reynolds)
-    size = propeller.diameter
+    size, largest = propeller.diameter, largest_advance(propeller, reynolds=reynolds)
     advance = solve_advance(
         thrust,
         advance_speed,
         polynomial=polynomials[0],
-        largest=largest_advance(propeller, reynolds=reynolds),
+        largest=largest,
         diameter=size,
         density=density,
     )
@@ -369,7 +369,8 @@ def operating_point(
     force, flow = np.asarray(thrust, dtype=float), np.asarray(advance_speed, dtype=float)
     loaded = np.sqrt(np.maximum(force, 0.0) / (density * size**4 * np.where(kt > 0.0, kt, 1.0)))
     moving = flow / (np.where(advance > 0.0, advance, 1.0) * size)
-    rate = np.where(np.isnan(advance), np.nan, np.where(advance > 0.0, moving, loaded))
+    light = advance > 0.5 * largest  # of the two ways to find n, the one that loses no digits
+    rate = np.where(np.isnan(advance), np.nan, np.where(light, moving, loaded))
     torque = kq * density * rate**2 * size**5
     efficiency = advance * kt / (2.0 * np.pi * kq)
     return OperatingPoint(advance, rate, torque, 2.0 * np.pi * rate * torque, efficiency)
