@@ -13,9 +13,16 @@ def bare(function):
     return jit(function, _nrt=False)
 
 
+def inner(function):
+    """Compile as `bare` does, for callers in kernels only: without the door to Python."""
+    return jit(function, _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+
 def inlined(function):
-    """Compile as `bare` does, into the caller: for small functions and those called in one place.
+    """Compile as `inner` does, into the caller: for small functions and those called in one place.
 
     Tuples of arrays are handed over by value, some hundred machine words at every call.
     """
-    return jit(function, _nrt=False, forceinline=True)
+    return jit(
+        function, _nrt=False, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )

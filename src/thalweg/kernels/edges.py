@@ -5,20 +5,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.bare import bare, inlined
+from thalweg.kernels.bare import bare, inlined, inner
 from thalweg.kernels.codes import (
+    BED_DEPTH,
     CURRENT,
     CURRENT_EAST,
     CURRENT_NORTH,
     DEPTH,
+    LIMIT_REQUIRED_DEPTH,
     NO_DATA,
     OK,
     OUTSIDE_PERIOD,
     SPEED_FIELD,
+    WATER_LEVEL,
     WAVE_HEIGHT,
     WIND_SPEED,
 )
-from thalweg.kernels.leg import point_speed_known
+from thalweg.kernels.leg import point_speed_known, water_depth
 from thalweg.kernels.tables import TableArrays
 
 OPENING_TOLERANCE = 1.0  # an opening is found to this [s]
@@ -42,12 +45,29 @@ class NetworkArrays(NamedTuple):
 
 
 class SeaArrays(NamedTuple):
-    """Fields at stations: ``values[S, T, K]``, the channel id of each of the K columns."""
+    """Fields at stations.
+
+    Attributes
+    ----------
+    times : float64[T]
+        Strictly increasing, at least two [s].
+    values : float32[S, T, K]
+        NaN where unknown.
+    channel_index : int64[CHANNELS]
+        Column of each channel, -1 if absent.
+    channels : int64[K]
+        Channel of each column.
+    highest, deepest : float32[S]
+        Highest water level and greatest depth (bed plus level) ever, see `tidal_extremes`; may be
+        empty when no depth is required.
+    """
 
     times: np.ndarray
     values: np.ndarray
     channel_index: np.ndarray
     channels: np.ndarray
+    highest: np.ndarray
+    deepest: np.ndarray
 
 
 class ShipArrays(NamedTuple):
@@ -79,7 +99,7 @@ def course_vector(course):
     return -cosine, sine
 
 
-@bare
+@inner
 def interval_of(times, t):
     """Return k with ``times[k] <= t <= times[k + 1]``, or -1 outside the period (or NaN)."""
     if not times[0] <= t <= times[-1]:
@@ -205,7 +225,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
     return t, OK
 
 
-@bare
+@inner
 def _sail_at(network, sea, ship, edge, tail_node, k, t, work):
     """Sail an edge at any departure of interval k, sampling the tail too."""
     sample_station(sea, tail_node, k, t, work[1])
@@ -218,7 +238,7 @@ def _opens(status):
     return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT)
 
 
-@bare
+@inner
 def _opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, work):
     """Return the earliest (departure, arrival) of an edge that opens in (shut, opened]."""
     while opened - shut > OPENING_TOLERANCE:
@@ -231,9 +251,18 @@ def _opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, work
     return opened, arrival
 
 
-@bare
+@inlined
+def _node_depth(network, node):
+    """Return the least charted depth at a node [m]: it lies on each of the edges that leave it."""
+    depth = -math.inf
+    for edge in range(network.indptr[node], network.indptr[node + 1]):
+        depth = max(depth, float(network.depth[edge]))
+    return depth
+
+
+@inner
 def wait_for_edge(
-    network, sea, ship, edge, tail_node, k, t, arrival, status, factor, quickest, enough, work
+    network, sea, ship, edge, tail_node, k, t, keel, arrival, status, factor, quickest, enough, work
 ):
     """Find the best departure of an edge for a ship that may wait at its tail since t.
 
@@ -245,6 +274,8 @@ def wait_for_edge(
         Interval of the times that holds t.
     t : float
         Arrival at the tail [s].
+    keel : bool
+        Whether the required depth must hold at the tail while waiting.
     arrival, status : float, int
         What `sail_edge` gives for departing at t.
     factor : float
@@ -269,12 +300,15 @@ def wait_for_edge(
     these, the opening (bisection to 1 s): the suffix minimum of arrivals (van Halem 2019, section
     3.4, corrected for series that start blocked). As the fields are linear between the times of
     the data, a better departure inside an interval whose ends are both open is not looked for, nor
-    is an opening that closes again within the interval.
+    is an opening that closes again within the interval. Waiting ends, at a time of the data, where
+    the tide would set the ship aground.
     """
     departure, best = t, math.inf
     if status == OK:
         best = factor * (arrival - t)
     before, before_status = t, status
+    required = ship.limits[LIMIT_REQUIRED_DEPTH] if keel else -math.inf
+    node_depth = _node_depth(network, tail_node) if keel else 0.0
     last = sea.times.shape[0] - 1
     for j in range(k + 1, last + 1):
         s = sea.times[j]
@@ -285,6 +319,8 @@ def wait_for_edge(
             break
         then, now = _sail_at(network, sea, ship, edge, tail_node, min(j, last - 1), s, work)
         if now == OUTSIDE_PERIOD:
+            break
+        if keel and not water_depth(work[1], sea.channel_index, node_depth) >= required:
             break
         if now == OK:
             value = s - t + factor * (then - s)
@@ -299,6 +335,37 @@ def wait_for_edge(
                     departure, arrival, best, status = s, then, value, OK
         before, before_status = sea.times[j], now
     return departure, arrival, status
+
+
+@inlined
+def never_deep_enough(network, sea, edge, required):
+    """Return `OK`, or why no tide in the data makes an edge deep enough."""
+    depth, head = network.depth[edge], network.target[edge]
+    if depth != depth:
+        return NO_DATA
+    enough = required - 1e-4  # the extremes are rounded
+    if depth + sea.highest[head] < enough or sea.deepest[head] < enough:
+        return DEPTH
+    return OK
+
+
+@bare
+def tidal_extremes(sea):
+    """Fill ``sea.highest`` and ``sea.deepest``; NaN in the fields is passed over.
+
+    Without a water level the highest is 0; without a bed depth the deepest is +inf.
+    """
+    i, j = sea.channel_index[WATER_LEVEL], sea.channel_index[BED_DEPTH]
+    for s in range(sea.values.shape[0]):
+        highest, deepest = -math.inf, -math.inf
+        for t in range(sea.values.shape[1]):
+            level = float(sea.values[s, t, i]) if i >= 0 else 0.0
+            if level > highest:
+                highest = level
+            if j >= 0 and sea.values[s, t, j] + level > deepest:
+                deepest = sea.values[s, t, j] + level
+        sea.highest[s] = highest if highest > -math.inf else math.inf
+        sea.deepest[s] = deepest if deepest > -math.inf else math.inf
 
 
 @bare

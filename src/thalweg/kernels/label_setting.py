@@ -7,9 +7,17 @@ import numpy as np
 
 from thalweg.kernels import heap
 from thalweg.kernels.bare import bare, inlined
-from thalweg.kernels.codes import ARRIVE_BY, CHANNELS, COUNT, OK, OUTSIDE_PERIOD
+from thalweg.kernels.codes import (
+    ARRIVE_BY,
+    CHANNELS,
+    COUNT,
+    LIMIT_REQUIRED_DEPTH,
+    OK,
+    OUTSIDE_PERIOD,
+)
 from thalweg.kernels.edges import (
     interval_of,
+    never_deep_enough,
     sail_edge,
     sample_station,
     wait_for_edge,
@@ -138,8 +146,14 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     waiting provides, and every penalty factor is 1. With other factors, and for cost by distance,
     one label per node is exact only as far as being there earlier is never worse and the time
     does not change which edges are open; ties of cost go to the earlier time.
+
+    A ship waits only where it stays afloat (charted and bed depth plus water level at the node),
+    except at the start, where it lies safely. At a node that falls dry, being there earlier can be
+    worse: the node is then as one without waiting.
     """
     nodes, keys, place, work, counts, refused = memory
+    required = ship.limits[LIMIT_REQUIRED_DEPTH]
+    limited = required > -math.inf
     labels.cost[query.start] = 0.0
     labels.time[query.start] = query.depart
     size = heap.put(nodes, keys, place, 0, query.start, 0.0)
@@ -158,6 +172,7 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
             continue
         sample_station(sea, node, k, time, work[0])
         pause = sea.times[k + 1] - time  # until the next time of the data
+        keel = limited and node != query.start
         wait = query.wait and network.can_wait[node]
         for edge in range(first, last):
             to = network.target[edge]
@@ -169,13 +184,19 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
             if enough <= 0.0:
                 continue
             counts[SAILED] += 1
+            if limited:
+                status = never_deep_enough(network, sea, edge, required)
+                if status != OK:
+                    refused[status] += 1
+                    continue
             quickest = length * query.slowness
             weight = 1.0 if query.by_distance else factor
             departure = time
             arrival, status = sail_edge(
                 network, sea, ship, edge, k, time, work[0], work[2], work[3]
             )
-            if wait and (status != OK or pause + weight * quickest < enough):
+            useful = min(enough, weight * (arrival - time))
+            if wait and (status != OK or pause + weight * quickest < useful):
                 departure, arrival, status = wait_for_edge(
                     network,
                     sea,
@@ -184,6 +205,7 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
                     node,
                     k,
                     time,
+                    keel,
                     arrival,
                     status,
                     weight,

@@ -2,6 +2,7 @@
 
 import math
 
+from thalweg.kernels.bare import bare, inlined
 from thalweg.kernels.codes import (
     AXIS_DEPTH,
     AXIS_WAVE_ANGLE,
@@ -31,8 +32,7 @@ from thalweg.kernels.codes import (
     WIND_NORTH,
     WIND_SPEED,
 )
-from thalweg.kernels.bare import bare, inlined
-from thalweg.kernels.tables import axes_needed, table_value
+from thalweg.kernels.tables import axes_needed, sum_of_parts
 
 _WIND_AXES = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
 _WAVE_AXES = (1 << AXIS_WAVE_HEIGHT) | (1 << AXIS_WAVE_ANGLE) | (1 << AXIS_WAVE_PERIOD)
@@ -122,7 +122,7 @@ def _through_water(needs, table, setting, course, across, wind, waves, depth):
             wave_angle = bow_angle(head_east, head_north, waves[1], waves[2])
         axis_values = (wind_speed, wind_angle, waves[0], wave_angle, waves[3], depth)
         before = speed
-        speed, ok = table_value(table, axis_values, setting)
+        speed, ok = sum_of_parts(table, axis_values, setting)
         if not ok:
             return 0.0, False
         if across == 0.0 or not needs & _ANGLE_AXES or speed <= abs(across):

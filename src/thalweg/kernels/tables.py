@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.codes import AXES, AXIS_DEPTH
 from thalweg.kernels.bare import bare, inlined
+from thalweg.kernels.codes import AXES, AXIS_DEPTH
 
+MOST_AXES = 4  # of one part
 _EDGE = 1e-6  # rounding allowed beyond the first and last grid point [grid steps]
 
 
@@ -17,7 +18,7 @@ class TableArrays(NamedTuple):
     ----------
     part_axes : int64[P, 6]
         Axis ids (``AXIS_*`` of `thalweg.kernels.codes`) of each part, in the order of its values;
-        -1 after the last. A part without axes is a constant per setting.
+        -1 after the last, at most 4. A part without axes is a constant per setting.
     axis_start : float64[P, 6]
         First grid point of each axis (SI; angles in radians from the bow, 0 to pi).
     axis_inv_step : float64[P, 6]
@@ -55,22 +56,6 @@ def axes_needed(table):
 
 
 @inlined
-def _place(table, part, k, axis_values):
-    """Return (cell, fraction, ok) of a value on axis k of a part; the deepest depth reaches on."""
-    axis = table.part_axes[part, k]
-    last = table.axis_size[part, k] - 1
-    x = (axis_values[axis] - table.axis_start[part, k]) * table.axis_inv_step[part, k]
-    if axis == AXIS_DEPTH and x > last:
-        x = float(last)
-    ok = (x >= -_EDGE) & (x <= last + _EDGE)
-    if not ok:
-        return 0, 0.0, False
-    x = min(max(x, 0.0), float(last))
-    cell = min(int(x), last - 1)
-    return cell, x - cell, True
-
-
-@inlined
 def _line(values, base, stride, f):
     """Interpolate between two values ``stride`` apart; a corner of weight 0 is not read."""
     if f == 0.0:
@@ -90,58 +75,53 @@ def _square(values, base, stride0, f0, stride1, f1):
     return high if f0 == 1.0 else low + f0 * (high - low)
 
 
-@bare
-def _hypercube(table, part, n_axes, axis_values, setting):
-    """Interpolate on three axes and more: corners of the leading axes times a square."""
-    size = table.n_settings
-    i1, f1, ok1 = _place(table, part, n_axes - 1, axis_values)
-    stride1 = size
-    size *= table.axis_size[part, n_axes - 1]
-    i0, f0, ok0 = _place(table, part, n_axes - 2, axis_values)
-    stride0 = size
-    size *= table.axis_size[part, n_axes - 2]
-    ok = ok0 & ok1
-    total = 0.0
-    for corner in range(1 << (n_axes - 2)):
-        base = table.value_offset[part] + setting + i0 * stride0 + i1 * stride1
-        weight = 1.0
-        stride = size
-        for k in range(n_axes - 3, -1, -1):
-            i, f, inside = _place(table, part, k, axis_values)
-            ok &= inside
-            up = (corner >> k) & 1
-            weight *= f if up else 1.0 - f
-            base += (i + up) * stride
-            stride *= table.axis_size[part, k]
-        if not ok:
-            return 0.0, False
-        if weight > 0.0:
-            total += weight * _square(table.values, base, stride0, f0, stride1, f1)
-    return total, ok
-
-
 @inlined
 def part_value(table, part, axis_values, setting):
     """Return (value, ok) of one part of a table; see `table_value`."""
-    n_axes = 0
-    while n_axes < AXES and table.part_axes[part, n_axes] >= 0:
-        n_axes += 1
-    base = table.value_offset[part] + setting
-    n_settings = table.n_settings
-    if n_axes == 0:
-        return float(table.values[base]), True
-    if n_axes > 2:
-        return _hypercube(table, part, n_axes, axis_values, setting)
-    i0, f0, ok0 = _place(table, part, 0, axis_values)
-    if n_axes == 1:
-        return _line(table.values, base + i0 * n_settings, n_settings, f0), ok0
-    i1, f1, ok1 = _place(table, part, 1, axis_values)
-    n1 = table.axis_size[part, 1]
-    base += (i0 * n1 + i1) * n_settings
-    return _square(table.values, base, n1 * n_settings, f0, n_settings, f1), ok0 & ok1
+    f0, f1, f2, f3 = 0.0, 0.0, 0.0, 0.0  # fractions, the part's last axis first
+    s0, s1, s2, s3 = 0, 0, 0, 0  # strides
+    corners = 1  # of the axes before the last two
+    base, stride = table.value_offset[part] + setting, table.n_settings
+    for k in range(AXES - 1, -1, -1):
+        axis = table.part_axes[part, k]
+        if axis < 0:
+            continue
+        last = table.axis_size[part, k] - 1
+        x = (axis_values[axis] - table.axis_start[part, k]) * table.axis_inv_step[part, k]
+        if axis == AXIS_DEPTH and x > last:
+            x = float(last)
+        if not (x >= -_EDGE and x <= last + _EDGE) or k >= MOST_AXES:
+            return 0.0, False
+        x = min(max(x, 0.0), float(last))
+        cell = min(int(x), last - 1)
+        base += cell * stride
+        f3, f2, f1, f0 = f2, f1, f0, x - cell
+        s3, s2, s1, s0 = s2, s1, s0, stride
+        stride *= table.axis_size[part, k]
+        corners = 4 if k > 1 or corners == 4 else 1
+    total = 0.0
+    for corner in range(corners):
+        up2, up3 = corner & 1, corner >> 1
+        weight = (f2 if up2 else 1.0 - f2) * (f3 if up3 else 1.0 - f3)
+        if weight > 0.0:
+            at = base + up2 * s2 + up3 * s3
+            total += weight * _square(table.values, at, s1, f1, s0, f0)
+    return total, True
 
 
 @inlined
+def sum_of_parts(table, axis_values, setting):
+    """Do as `table_value`, inside kernels."""
+    total = 0.0
+    for part in range(table.part_axes.shape[0]):
+        value, ok = part_value(table, part, axis_values, setting)
+        if not ok:
+            return 0.0, False
+        total += value
+    return total, total == total
+
+
+@bare
 def table_value(table, axis_values, setting):
     """Return the value of a table: the sum over its parts of multilinear look-ups.
 
@@ -161,10 +141,4 @@ def table_value(table, axis_values, setting):
         False outside an axis (no extrapolation; only depth beyond the deepest grid point counts as
         that point), for NaN on an axis and where the table itself holds NaN.
     """
-    total = 0.0
-    for part in range(table.part_axes.shape[0]):
-        value, ok = part_value(table, part, axis_values, setting)
-        if not ok:
-            return 0.0, False
-        total += value
-    return total, total == total
+    return sum_of_parts(table, axis_values, setting)

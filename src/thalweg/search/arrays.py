@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING
-from thalweg.kernels.codes import CHANNELS, LIMITS
+from thalweg.kernels.codes import CHANNELS, LIMIT_REQUIRED_DEPTH, LIMITS
 from thalweg.kernels.edges import (
     NetworkArrays,
     SeaArrays,
     ShipArrays,
     largest_current,
     largest_speed_field,
+    tidal_extremes,
 )
 from thalweg.kernels.tables import TableArrays, axes_needed
 
@@ -95,8 +96,8 @@ def network_arrays(network: Network) -> NetworkArrays:
     )
 
 
-def sea_arrays(fields: StationFields) -> SeaArrays:
-    """Return frozen fields as kernels see them.
+def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
+    """Return frozen fields as kernels see them, with tidal extremes if asked.
 
     Raises
     ------
@@ -122,7 +123,12 @@ def sea_arrays(fields: StationFields) -> SeaArrays:
             "Values are stations by times by present channels.",
             "Build the fields with Sea.freeze_stations.",
         )
-    return SeaArrays(times, values, index, channels)
+    count = values.shape[0] if tides else 0
+    highest, deepest = np.empty(count, np.float32), np.empty(count, np.float32)
+    sea = SeaArrays(times, values, index, channels, highest, deepest)
+    if tides:
+        tidal_extremes(sea)
+    return sea
 
 
 def ship_arrays(
@@ -176,7 +182,8 @@ def problem(
     InputError
         If the parts do not fit together or the ship has no speed.
     """
-    sea = sea_arrays(fields)
+    ship = ship_arrays(table, setting, limits)
+    sea = sea_arrays(fields, tides=ship.limits[LIMIT_REQUIRED_DEPTH] > -np.inf)
     stations = len(network.station_lat)
     if sea.values.shape[0] != stations:
         raise InputError(
@@ -192,7 +199,6 @@ def problem(
             "A speed is a positive number.",
             "Check the ship's speeds.",
         )
-    ship = ship_arrays(table, setting, limits)
     return Problem(network_arrays(network), sea, ship, fastest, float(largest_current(sea)))
 
 
