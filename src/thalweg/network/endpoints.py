@@ -1,0 +1,259 @@
+"""Start, goal and via points as nodes at their exact positions, linked to the nodes around them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.core import geodesy
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import MEAN_RADIUS, Position
+from thalweg.kernels import graph
+from thalweg.network.frame import arc, unit_vectors
+from thalweg.network.network import FloatArray, Int32Array, Network
+from thalweg.network.pairs import (
+    Pairs,
+    Rejected,
+    Samples,
+    Stations,
+    add_counts,
+    assemble,
+    even_samples,
+    free_legs,
+    measure,
+)
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+REACH = 2.6  #: end points are linked to nodes within this many spacings
+_SHORTEST = 1.0  # links shorter than this are left out [m]
+_NEAREST = 24  # always linked, beside the nearest node in every sector and ring
+_SECTORS = 96
+_MOST_LINKS = 400
+
+
+def check_ends(chart: Chart, start: Position, goal: Position) -> tuple[Position, Position]:
+    """Return start and goal, checked: sound positions, not the same, on navigable water.
+
+    Raises
+    ------
+    InputError
+        Otherwise.
+    """
+    start = geodesy.check_position(*start, what="start")
+    goal = geodesy.check_position(*goal, what="goal")
+    if float(geodesy.distance(*start, *goal)) < _SHORTEST:
+        raise InputError(
+            f"Start and goal are the same place, {geodesy.format_position(*start)}.",
+            "A voyage is at least a metre long.",
+            "Give two different positions.",
+            value=(start, goal),
+        )
+    for what, place in (("start", start), ("goal", goal)):
+        check_at_sea(chart, place, what)
+    return start, goal
+
+
+def check_at_sea(chart: Chart, place: Position, what: str) -> None:
+    """Raise `InputError` unless a position is on navigable water."""
+    if not bool(np.all(chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
+        raise InputError(
+            f"The {what} {geodesy.format_position(*place)} is not on navigable water.",
+            "It lies on land, in a no-go zone or outside the chart.",
+            "Move it to open water, or let the plan move it to the nearest navigable water.",
+            field=what,
+            value=place,
+        )
+
+
+def links(
+    chart: Chart, lat: FloatArray, lon: FloatArray, point: int, *, n_nodes: int, reach: float
+) -> tuple[Pairs, Rejected]:
+    """Return allowed links from one position to the nodes within reach.
+
+    Parameters
+    ----------
+    chart : Chart
+        Tests every link exactly.
+    lat, lon : ndarray
+        Positions [deg]; the nodes are the first ``n_nodes``.
+    point : int
+        Index of the position to link.
+    n_nodes : int
+        Number of nodes that may be linked.
+    reach : float
+        Largest length [m]; doubled up to four times until a link is allowed.
+
+    Returns
+    -------
+    pairs : Pairs
+        From the position to nodes: the nearest ones, and the nearest in every sector and ring.
+    rejected : dict
+        Counts of refused links by reason.
+    """
+    vectors = unit_vectors(lat[:n_nodes], lon[:n_nodes])
+    away = arc(vectors, unit_vectors(lat[point], lon[point])) * MEAN_RADIUS
+    rejected: Rejected = {}
+    pairs = _pairs(lat, lon, point, np.empty(0, np.int32))
+    for _ in range(5):
+        near = np.flatnonzero((away <= reach) & (away > _SHORTEST)).astype(np.int32)
+        pairs = _pairs(lat, lon, point, near)
+        free, rejected = free_legs(chart, lat, lon, pairs.first, pairs.second)
+        pairs = _thinned(pairs.where(free))
+        if len(pairs.first):
+            break
+        reach *= 2.0
+    return pairs, rejected
+
+
+def _pairs(lat: FloatArray, lon: FloatArray, point: int, nodes: Int32Array) -> Pairs:
+    return measure(lat, lon, np.full(len(nodes), point, np.int32), nodes)
+
+
+def _thinned(pairs: Pairs) -> Pairs:
+    """Of very many links keep the nearest, and the nearest in every sector and ring."""
+    if len(pairs.first) <= _MOST_LINKS:
+        return pairs
+    order = np.argsort(pairs.length, kind="stable")
+    sector = np.floor(pairs.course[order] * (_SECTORS / (2 * np.pi))).astype(np.int64)
+    ring = np.floor(2.0 * np.log2(pairs.length[order])).astype(np.int64)
+    _, first = np.unique(sector * 1000 + ring, return_index=True)
+    keep = np.zeros(len(order), bool)
+    keep[order[first]] = True
+    keep[order[:_NEAREST]] = True
+    return pairs.where(keep)
+
+
+def with_endpoints(
+    network: Network, chart: Chart, start: Position, goal: Position, *, via: Sequence[Position] = ()
+) -> Network:
+    """Return the network with start, goal and via points as nodes at their exact positions.
+
+    Parameters
+    ----------
+    network : Network
+        Any network.
+    chart : Chart
+        Tests the links.
+    start, goal : (lat, lon)
+        Positions [deg]. They become nodes N and N + 1 (N nodes before), as ``meta`` tells.
+    via : sequence of (lat, lon), optional
+        Via points; they become nodes N + 2, N + 3, ...
+
+    Returns
+    -------
+    Network
+        With the new nodes linked both ways, by exact tested legs, to the nodes around them.
+
+    Raises
+    ------
+    InputError
+        If a position is not on navigable water, or start and goal are the same.
+    NoRouteError
+        If a position cannot be linked to any node.
+    """
+    start, goal = check_ends(chart, start, goal)
+    places = [start, goal]
+    for number, place in enumerate(via, 1):
+        places.append(geodesy.check_position(*place, what=f"via point {number}"))
+        check_at_sea(chart, places[-1], f"via point {number}")
+    old = _insert_nodes(network, places)
+    stations = Stations(old.station_lat, old.station_lon, old.n_nodes)
+    pairs, rejected = _link_all(chart, stations, len(places), network.meta.spacing_m)
+    counts = dict(network.meta.rejected)
+    add_counts(counts, rejected)
+    meta = replace(network.meta, start=network.n_nodes, goal=network.n_nodes + 1, rejected=counts)
+    stations, samples = even_samples(stations, pairs, network.meta.spacing_m)
+    return _merge(old, assemble(chart, stations, pairs, samples, meta=meta))
+
+
+def _link_all(
+    chart: Chart, stations: Stations, count: int, spacing: float
+) -> tuple[Pairs, Rejected]:
+    """Return the links of the last ``count`` nodes to the others, and between close ones."""
+    first = stations.n_nodes - count
+    parts, rejected = [], Rejected()
+    for point in range(first, stations.n_nodes):
+        pairs, refused = links(
+            chart, stations.lat, stations.lon, point, n_nodes=first, reach=REACH * spacing
+        )
+        add_counts(rejected, refused)
+        if len(pairs.first) == 0:
+            place = (float(stations.lat[point]), float(stations.lon[point]))
+            raise NoRouteError(
+                f"{geodesy.format_position(*place)} cannot be linked to the network.",
+                f"Its nodes are about {spacing:.0f} m apart.",
+                "Give a finer network or another position.",
+                reasons=refused,
+                nearest=place,
+            )
+        parts.append(pairs)
+    parts.append(direct_pairs(chart, stations, first, reach=REACH * spacing))
+    return join_pairs(parts), rejected
+
+
+def direct_pairs(chart: Chart, stations: Stations, first: int, *, reach: float) -> Pairs:
+    """Return allowed links within reach [m] between the nodes from ``first`` on."""
+    a, b = np.triu_indices(stations.n_nodes - first, 1)
+    pairs = measure(
+        stations.lat, stations.lon, (a + first).astype(np.int32), (b + first).astype(np.int32)
+    )
+    pairs = pairs.where((pairs.length <= reach) & (pairs.length > _SHORTEST))
+    return pairs.where(free_legs(chart, stations.lat, stations.lon, pairs.first, pairs.second)[0])
+
+
+def join_pairs(parts: Sequence[Pairs]) -> Pairs:
+    """Return several lots of pairs as one."""
+    return Pairs(
+        np.concatenate([p.first for p in parts]),
+        np.concatenate([p.second for p in parts]),
+        np.concatenate([p.length for p in parts]),
+        np.concatenate([p.course for p in parts]),
+    )
+
+
+def _insert_nodes(network: Network, places: Sequence[Position]) -> Network:
+    """Return the network with unlinked nodes put between its nodes and its other stations."""
+    n, count = network.n_nodes, len(places)
+    lat, lon = np.array(places, float).T
+
+    def moved(via: Int32Array) -> Int32Array:
+        return np.where(via >= n, via + count, via).astype(np.int32)
+
+    return replace(
+        network,
+        station_lat=np.concatenate([network.lat, lat, network.station_lat[n:]]),
+        station_lon=np.concatenate([network.lon, lon, network.station_lon[n:]]),
+        n_nodes=n + count,
+        indptr=np.append(network.indptr, np.full(count, network.indptr[-1])),
+        via_a=moved(network.via_a),
+        via_b=moved(network.via_b),
+        can_wait=np.append(network.can_wait, np.ones(count, bool)),
+    )
+
+
+def _merge(old: Network, new: Network) -> Network:
+    """Return the edges of both networks, on the nodes and stations of the second."""
+    tails = np.concatenate([old.tails(), new.tails()])
+    order = np.argsort(tails, kind="stable").astype(np.int32)
+
+    def both(name: str) -> FloatArray:
+        return np.concatenate([getattr(old, name), getattr(new, name)])
+
+    ptr = np.append(old.via_ptr, new.via_ptr[1:] + old.via_ptr[-1])
+    samples = Samples(ptr, *(both(f"via_{c}") for c in "abws"))  # type: ignore[arg-type]
+    via = graph.mirror_vias(
+        order, np.zeros(len(order), bool), ptr, samples.a, samples.b, samples.w, samples.s
+    )
+    columns = {
+        name: both(name)[order]
+        for name in ("target", "length", "course", "depth", "factor", "price")
+    }
+    return replace(
+        new, indptr=old.indptr + new.indptr, can_wait=old.can_wait,
+        via_ptr=via[0], via_a=via[1], via_b=via[2], via_w=via[3], via_s=via[4], **columns,
+    )  # type: ignore[arg-type]  # fmt: skip

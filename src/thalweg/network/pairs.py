@@ -1,0 +1,187 @@
+"""From pairs of nodes to a network: land tests, lengths, depths, zones and the CSR."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core import geodesy
+from thalweg.kernels import codes, graph
+from thalweg.network.network import (
+    BoolArray,
+    Float32Array,
+    FloatArray,
+    Int32Array,
+    IntArray,
+    Network,
+    NetworkMeta,
+)
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+Rejected: TypeAlias = dict[str, int]
+_CHUNK = 1_000_000
+
+
+@dataclass(frozen=True)
+class Stations:
+    """Positions [deg]: the nodes first, then extra samples."""
+
+    lat: FloatArray
+    lon: FloatArray
+    n_nodes: int
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Interior samples of pairs or edges, as in `Network`."""
+
+    ptr: IntArray
+    a: Int32Array
+    b: Int32Array
+    w: Float32Array
+    s: Float32Array
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Pairs of nodes joined both ways: their nodes, length [m] and mid-edge course [rad]."""
+
+    first: Int32Array
+    second: Int32Array
+    length: FloatArray
+    course: Float32Array
+
+    def where(self, keep: BoolArray) -> Pairs:
+        """Return the pairs that are kept."""
+        if keep.all():
+            return self
+        return Pairs(self.first[keep], self.second[keep], self.length[keep], self.course[keep])
+
+
+def free_legs(
+    chart: Chart,
+    lat: FloatArray,
+    lon: FloatArray,
+    first: NDArray[np.integer],
+    second: NDArray[np.integer],
+) -> tuple[BoolArray, Rejected]:
+    """Return which legs between positions the chart allows, and counts of refusals by reason."""
+    free = np.empty(len(first), bool)
+    rejected: Rejected = {}
+    for begin in range(0, len(first), _CHUNK):
+        a, b = first[begin : begin + _CHUNK], second[begin : begin + _CHUNK]
+        status = np.asarray(chart.leg_status(lat[a], lon[a], lat[b], lon[b]))
+        free[begin : begin + _CHUNK] = status == codes.OK
+        add_counts(rejected, count_reasons(status))
+    return free, rejected
+
+
+def count_reasons(status: NDArray[np.integer]) -> Rejected:
+    """Return counts by reason of statuses that are not OK."""
+    values, counts = np.unique(status, return_counts=True)
+    return {
+        codes.REASONS.get(int(value), "outside the chart"): int(count)
+        for value, count in zip(values, counts)
+        if value != codes.OK
+    }
+
+
+def add_counts(total: Rejected, more: Rejected) -> None:
+    """Add counts by reason to a running total."""
+    for reason, count in more.items():
+        total[reason] = total.get(reason, 0) + count
+
+
+def measure(lat: FloatArray, lon: FloatArray, first: Int32Array, second: Int32Array) -> Pairs:
+    """Return pairs with geodesic lengths and mid-edge courses."""
+    length, course = np.empty(len(first)), np.empty(len(first), np.float32)
+    graph.measure(lat, lon, first, second, length, course)
+    for e in np.flatnonzero(np.isnan(length)):  # nearly antipodal: only ever single edges
+        a, b = first[e], second[e]
+        length[e], start, end = geodesy.inverse(lat[a], lon[a], lat[b], lon[b])
+        course[e] = np.angle(np.exp(1j * start) + np.exp(1j * end)) % (2 * np.pi)
+    return Pairs(first, second, length, course)
+
+
+def no_samples(count: int) -> Samples:
+    """Return empty samples for a number of pairs."""
+    empty_int, empty = np.empty(0, np.int32), np.empty(0, np.float32)
+    return Samples(np.zeros(count + 1, np.int64), empty_int, empty_int, empty, empty)
+
+
+def even_samples(
+    stations: Stations, pairs: Pairs, spacing: FloatArray | float
+) -> tuple[Stations, Samples]:
+    """Sample pairs at new stations on their geodesics, at most ``spacing`` [m] apart.
+
+    Returns
+    -------
+    stations : Stations
+        With the new stations appended.
+    samples : Samples
+        Evenly spaced samples of every pair.
+    """
+    pieces = np.maximum(1, np.ceil(pairs.length / spacing - 1e-9)).astype(np.int64)
+    ptr = np.concatenate([[0], np.cumsum(pieces - 1)])
+    of = np.repeat(np.arange(len(pairs.first)), pieces - 1)
+    s = (np.arange(len(of)) - ptr[of] + 1) / pieces[of]
+    a, b = pairs.first[of], pairs.second[of]
+    lat, lon = stations.lat, stations.lon
+    _, course, _ = geodesy.inverse(lat[a], lon[a], lat[b], lon[b])
+    new_lat, new_lon = geodesy.direct(lat[a], lon[a], course, s * pairs.length[of])
+    ids = (len(lat) + np.arange(len(of))).astype(np.int32)
+    samples = Samples(ptr, ids, ids.copy(), np.zeros(len(of), np.float32), s.astype(np.float32))
+    grown = replace(stations, lat=np.append(lat, new_lat), lon=np.append(lon, new_lon))
+    return grown, samples
+
+
+def join_samples(parts: list[Samples]) -> Samples:
+    """Return the samples of consecutive lots of pairs as one."""
+    if len(parts) == 1:
+        return parts[0]
+    shifts = np.cumsum([0] + [part.ptr[-1] for part in parts])
+    ptr = np.concatenate(
+        [[0]] + [part.ptr[1:] + shift for part, shift in zip(parts, shifts)]
+    ).astype(np.int64)
+    columns = [np.concatenate([getattr(part, c) for part in parts]) for c in "abws"]
+    return Samples(ptr, *columns)
+
+
+def assemble(
+    chart: Chart, stations: Stations, pairs: Pairs, samples: Samples, *, meta: NetworkMeta
+) -> Network:
+    """Return the network with an edge each way for every pair; all pairs have been tested."""
+    n = stations.n_nodes
+    depth, factor, price = _along(chart, stations, pairs)
+    indptr, target, pair, back = graph.mirror_pairs(n, pairs.first, pairs.second)
+    via = graph.mirror_vias(pair, back, samples.ptr, samples.a, samples.b, samples.w, samples.s)
+    course = pairs.course[pair]
+    course[back] += np.float32(np.pi)
+    course[course >= 2 * np.pi] -= np.float32(2 * np.pi)
+    return Network(
+        stations.lat, stations.lon, n, indptr, target, pairs.length[pair], course,
+        depth[pair], factor[pair], price[pair], *via,
+        can_wait=np.ones(n, bool), meta=meta,
+    )  # fmt: skip
+
+
+def _along(
+    chart: Chart, stations: Stations, pairs: Pairs
+) -> tuple[Float32Array, Float32Array, Float32Array]:
+    """Return least depth, penalty factor and price factor of pairs."""
+    count = len(pairs.first)
+    depth = np.full(count, np.inf, np.float32)
+    factor, price = np.ones(count, np.float32), np.ones(count, np.float32)
+    for begin in range(0, count, _CHUNK):
+        part = slice(begin, begin + _CHUNK)
+        a, b = pairs.first[part], pairs.second[part]
+        ends = (stations.lat[a], stations.lon[a], stations.lat[b], stations.lon[b])
+        if chart.has_depth:
+            depth[part] = chart.depth_along(*ends)
+        factor[part], price[part] = chart.zone_factor(*ends)
+    return depth, factor, price
