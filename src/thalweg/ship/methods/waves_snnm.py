@@ -129,8 +129,8 @@ def _heading_factors(
     ahead = np.maximum(np.cos(angle), 0.0)
     first = full ** ((1.0 + froude) * ahead) * (1.0 + 2.0 * ahead) / 3.0 * slim
     second = _speed_factor(froude)
-    relative = froude * (1.0 - 1.0 / np.where(group > 0.0, group, np.inf))
     overtakes = group > 1.0
+    relative = froude * (1.0 - 1.0 / np.where(overtakes, group, 1.0))
     power = np.where(overtakes & (relative >= 0.12), 1.0 + relative, 1.0)
     behind_first = full**power * slim
     behind_second = np.where(overtakes, _speed_factor(relative), 0.0072 * (2.0 * group - 1.0))
