@@ -3,18 +3,22 @@
 import numpy as np
 import pytest
 
-from tests.search.small import line, limits, make_fields, steady
-from thalweg.search import earliest_arrival
+from tests.search.small import limits, line, make_fields, steady
+from thalweg.search import best_departure, earliest_arrival
 
 HOUR = 3600.0
+CLOSED, OPEN = -8.0, 0.0  # water level over a bed of 10 m; 5 m are needed
 
 
-def bar(opens: float, step: float = 600.0):
-    """A way of 80 km in pieces of 2 km; the water at 30 km is too low until ``opens``."""
-    network = line(41, 2000.0, depth=10.0)
-    times = np.arange(0.0, 12 * HOUR + 1, step)
-    level = np.zeros((41, len(times)))
-    level[16] = np.where(times < opens, -8.0, 0.0)  # the node beyond the bar's edge at 30 km
+def bar(level_at_30_km, times, *, everywhere=False):
+    """A way of 80 km in pieces of 2 km; the water level on the edge that leaves 30 km."""
+    network = line(41, 2000.0, depth=10.0, pieces=2)
+    level = np.zeros((len(network.station_lat), len(times)))
+    first = int(network.indptr[15])
+    beyond = next(e for e in range(first, network.indptr[16]) if network.target[e] == 16)
+    level[network.via_a[network.via_ptr[beyond]]] = level_at_30_km
+    if everywhere:
+        level[:] = level_at_30_km
     return network, make_fields(network, times, water_level=level)
 
 
@@ -26,14 +30,62 @@ def sail(network, fields, **options):
     return earliest_arrival(network, fields, steady(4.0), **(given | options))
 
 
+def steep(opens, times):
+    """A level that jumps up within a second."""
+    return np.interp(times, [opens - 1.0, opens], [CLOSED, OPEN])
+
+
 @pytest.mark.parametrize(("opens_h", "expected"), [(5.0, 30500.0), (1.0, 20000.0)])
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])
-def test_a_ship_waits_at_a_bar_only_until_it_opens(opens_h, expected, method):
+def test_a_ship_waits_at_a_bar_until_it_opens(opens_h, expected, method):
     opens = opens_h * HOUR
-    network, fields = bar(opens, step=1.0 if opens_h > 1 else 600.0)
+    times = np.unique(np.append(np.arange(0.0, 10 * HOUR, HOUR), [opens - 1.0, opens]))
+    network, fields = bar(steep(opens, times), times)
     result = sail(network, fields, method=method)
-    # The edge onto the bar takes 500 s and is open once the water stands at its end on arrival.
-    early = 500.0 if opens_h > 1 else 0.0
-    assert result.arrive == pytest.approx(expected - early, abs=1.5)
+    half = 250.0  # the middle of the edge is reached that much after leaving 30 km
+    early = half if opens_h > 1 else 0.0
+    assert result.arrive == pytest.approx(expected - early, abs=2.0)
     assert result.path.tolist() == list(range(41))
-    assert result.waiting == pytest.approx(max(0.0, expected - early - 20000.0), abs=1.5)
+    assert result.waiting == pytest.approx(expected - early - 20000.0, abs=2.0)
+    waits = np.flatnonzero(result.path_depart > result.path_arrive + 1.0)
+    assert waits.tolist() == ([15] if opens_h > 1 else [])
+
+
+def test_an_opening_between_two_times_of_the_data_is_found():
+    times = np.arange(0.0, 10 * HOUR, HOUR)
+    level = np.interp(times, [4 * HOUR, 5 * HOUR], [CLOSED, OPEN])
+    network, fields = bar(level, times)
+    opens = 4 * HOUR + HOUR * (-5.0 - CLOSED) / (OPEN - CLOSED)  # when the level is -5 m
+    result = sail(network, fields)
+    assert result.path_depart[15] + 250.0 == pytest.approx(opens, abs=1.5)
+    assert result.arrive == pytest.approx(opens + 50e3 / 4.0 - 250.0, abs=2.0)
+
+
+def test_without_waiting_the_bar_closes_the_way():
+    times = np.arange(0.0, 10 * HOUR, HOUR)
+    network, fields = bar(np.interp(times, [4 * HOUR, 5 * HOUR], [CLOSED, OPEN]), times)
+    result = sail(network, fields, wait=False)
+    assert not result.found
+    assert result.refused == {"under-keel clearance": 1}
+    assert result.nearest_node == 15
+    assert np.isfinite(result.node_arrival).sum() == 16
+
+
+def test_a_bar_that_never_opens_is_refused_whatever_the_time():
+    times = np.arange(0.0, 10 * HOUR, HOUR)
+    network, fields = bar(np.full(len(times), CLOSED), times, everywhere=True)
+    result = sail(network, fields)
+    assert not result.found
+    assert result.refused == {"under-keel clearance": 1}
+
+
+def test_the_best_departure_arrives_as_the_bar_opens():
+    times = np.arange(0.0, 14 * HOUR, HOUR)
+    network, fields = bar(np.interp(times, [4 * HOUR, 5 * HOUR], [CLOSED, OPEN]), times)
+    opens = 4 * HOUR + 0.375 * HOUR
+    result = best_departure(
+        network, fields, steady(4.0), start=0, goal=40, window=(0.0, 6 * HOUR), setting=0,
+        limits=limits(depth=5.0), top_speed=4.0,
+    )  # fmt: skip
+    assert result.duration == pytest.approx(20000.0, abs=2.0)
+    assert result.depart >= opens - 30e3 / 4.0 - 250.0 - 2.0

@@ -359,7 +359,7 @@ def tidal_extremes(sea):
     for s in range(sea.values.shape[0]):
         highest, deepest = -math.inf, -math.inf
         for t in range(sea.values.shape[1]):
-            level = float(sea.values[s, t, i]) if i >= 0 else 0.0
+            level = 1.0 * sea.values[s, t, i] if i >= 0 else 0.0
             if level > highest:
                 highest = level
             if j >= 0 and sea.values[s, t, j] + level > deepest:
@@ -378,7 +378,7 @@ def largest_current(sea):
     values = sea.values
     for s in range(values.shape[0]):
         for t in range(values.shape[1]):
-            u, v = float(values[s, t, i]), float(values[s, t, j])
+            u, v = 1.0 * values[s, t, i], 1.0 * values[s, t, j]  # in double precision
             squared = u * u + v * v
             if squared > largest:
                 largest = squared

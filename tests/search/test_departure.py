@@ -1,0 +1,70 @@
+"""The best departure of a window."""
+
+import numpy as np
+import pytest
+
+from tests.search.small import limits, line, make_fields, steady
+from thalweg.core.errors import InputError
+from thalweg.search import best_departure, earliest_arrival
+
+HOUR = 3600.0
+TIDE = 12.42 * HOUR
+GIVEN = {"start": 0, "goal": 10, "setting": 0, "limits": limits(), "top_speed": 5.0}
+
+
+def tidal(step=HOUR / 4):
+    network = line(11, 2000.0)
+    times = np.arange(0.0, 36 * HOUR, step)
+    stream = 1.5 * np.cos(2 * np.pi * times / TIDE)[None, :] + np.zeros((11, 1))
+    return network, make_fields(network, times, current_east=stream, current_north=0.0)
+
+
+def test_the_best_departure_has_the_stream_with_it():
+    network, fields = tidal()
+    result = best_departure(network, fields, steady(5.0), window=(2 * HOUR, 20 * HOUR), **GIVEN)
+    # by symmetry the passage is centred on the strongest stream
+    assert result.depart + result.duration / 2 == pytest.approx(TIDE, abs=400.0)
+    fine = [
+        earliest_arrival(network, fields, steady(5.0), depart=t, **GIVEN).duration
+        for t in np.arange(2 * HOUR, 20 * HOUR, 120.0)
+    ]
+    assert result.duration <= min(fine) + 0.1
+
+
+def test_equal_departures_go_to_the_earliest():
+    network, _ = tidal()
+    fields = make_fields(network, [0.0, 1e5, 2e5], current_east=1.0, current_north=0.0)
+    result = best_departure(network, fields, steady(5.0), window=(500.0, 9000.0), **GIVEN)
+    assert result.depart == 500.0
+
+
+def test_a_window_of_one_moment():
+    network, fields = tidal()
+    result = best_departure(network, fields, steady(5.0), window=(HOUR, HOUR), **GIVEN)
+    alone = earliest_arrival(network, fields, steady(5.0), depart=HOUR, **GIVEN)
+    assert (result.depart, result.arrive) == (HOUR, alone.arrive)
+
+
+def test_the_best_departure_is_none_if_nothing_succeeds():
+    network, fields = tidal()
+    given = GIVEN | {"top_speed": 1.0}
+    result = best_departure(
+        network, fields, steady(1.0), window=(0.0, 2 * HOUR), arrive_by=2 * HOUR, **given
+    )
+    assert not result.found
+    assert "arrives too late" in result.refused
+
+
+def test_an_own_step_of_departures():
+    network, fields = tidal()
+    coarse = best_departure(
+        network, fields, steady(5.0), window=(2 * HOUR, 20 * HOUR), step=4 * HOUR, **GIVEN
+    )
+    assert coarse.depart + coarse.duration / 2 == pytest.approx(TIDE, abs=400.0)
+
+
+@pytest.mark.parametrize("window", [(2.0, 1.0), (np.nan, 1.0), (0.0, np.inf)])
+def test_empty_windows_are_refused(window):
+    network, fields = tidal()
+    with pytest.raises(InputError, match="window"):
+        best_departure(network, fields, steady(5.0), window=window, **GIVEN)
