@@ -23,6 +23,7 @@ from thalweg.ship.methods.waves import stawave1, stawave2
 from thalweg.ship.methods.waves_snnm import SnnmHull, snnm
 from thalweg.ship.methods.wind import (
     BLENDERMANN,
+    ITTC_CURVES,
     FujiwaraShip,
     blendermann_1994,
     fujiwara_2006,
@@ -88,7 +89,7 @@ WAVES = {
 }
 WIND = {
     "fujiwara": lambda a: fujiwara_2006(a, FUJIWARA),
-    "ittc": ittc_curve,
+    **{f"ittc_{name}": lambda a, name=name: ittc_curve(a, curve=name) for name in ITTC_CURVES},
     "yu": yu_2021_coefficient,
     **{
         f"blendermann_{name}": lambda a, kind=kind: blendermann_1994(

@@ -63,8 +63,34 @@ def test_ittc_tanker_curve_against_a_polynomial_fitted_by_others():
     ]
     degrees = np.arange(0.0, 181.0, 10.0)
     got = ittc_curve(np.radians(degrees))
-    np.testing.assert_allclose(got, ITTC_CURVES["tanker_laden"], rtol=1e-12)
+    np.testing.assert_allclose(got, ITTC_CURVES["tanker_laden"][1], rtol=1e-12)
     np.testing.assert_allclose(got, np.polyval(coefficients, degrees), atol=0.04)
+
+
+@pytest.mark.parametrize(
+    ("curve", "degrees", "digitised"),
+    [
+        (
+            "general_cargo",
+            [0, 10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 120, 140, 150, 160, 170, 180],
+            [
+                *(0.60115, 0.874312, 0.997667, 1.00194, 0.875619, 0.84532, 0.657525, 0.435164),
+                *(0.285782, 0.113352, -0.0667608, -0.461987, -0.822631, -1.34419, -1.44363),
+                *(-1.2934, -0.885803, -0.770147),
+            ],
+        ),
+        (
+            "container_laden_no_boxes",
+            [0, 15, 30, 45, 60, 75, 90, 105, 120, 135, 150, 165, 180],
+            [
+                *(1.03173, 1.1342, 1.13008, 0.966054, 0.744929, 0.466693, 0.135159),
+                *(-0.257283, -0.74872, -1.07264, -1.15671, -1.16464, -0.925114),
+            ],
+        ),
+    ],
+)
+def test_iso_curves_against_a_second_reading_of_the_charts(curve, degrees, digitised):
+    np.testing.assert_allclose(ittc_curve(np.radians(degrees), curve=curve), digitised, atol=0.05)
 
 
 def test_relative_wind_of_head_and_following_winds():

@@ -295,26 +295,72 @@ def blendermann_1994(
     return np.asarray(drag * np.cos(angle) / (1.0 - slack * np.sin(2.0 * angle) ** 2))
 
 
-#: C_AA every ten degrees from 0 to 180. Only the curve that agrees between two independent public
-#: programs is kept; the other curves of the procedure could not be checked.
+_TENS: Final = tuple(range(0, 181, 10))
+_FIFTEENS: Final = tuple(range(0, 181, 15))
+
+#: Angles [deg] and C_AA of the data sets of ISO 15016:2015 and ITTC 7.5-04-01-01.1. The curves
+#: ``tanker_laden``, ``general_cargo`` and ``container_laden_no_boxes`` agree within 0.04 between
+#: two independent transcriptions; ``tanker_ballast`` and ``container_laden`` are one reading of
+#: the printed charts and unverified; the other curves of the standard were not found.
 ITTC_CURVES: Final = MappingProxyType(
     {
         "tanker_laden": (
-            *(0.96, 0.93, 0.85, 0.73, 0.62, 0.47, 0.34, 0.17, 0.06, -0.05),
-            *(-0.14, -0.22, -0.29, -0.40, -0.53, -0.66, -0.75, -0.79, -0.77),
+            _TENS,
+            (
+                *(0.96, 0.93, 0.85, 0.73, 0.62, 0.47, 0.34, 0.17, 0.06, -0.05),
+                *(-0.14, -0.22, -0.29, -0.40, -0.53, -0.66, -0.75, -0.79, -0.77),
+            ),
+        ),
+        "tanker_ballast": (
+            _TENS,
+            (
+                *(0.87, 0.77, 0.63, 0.46, 0.35, 0.22, 0.16, 0.09, 0.09, 0.03),
+                *(-0.03, -0.13, -0.23, -0.30, -0.39, -0.47, -0.51, -0.55, -0.52),
+            ),
+        ),
+        "general_cargo": (
+            (*range(0, 121, 10), *range(140, 181, 10)),
+            (
+                *(0.60, 0.87, 1.00, 1.00, 0.88, 0.85, 0.65, 0.42, 0.27, 0.09),
+                *(-0.09, -0.49, -0.84, -1.39, -1.47, -1.34, -0.92, -0.82),
+            ),
+        ),
+        "container_laden": (
+            _FIFTEENS,
+            (
+                *(0.68, 0.77, 0.67, 0.41, 0.26, 0.22, 0.27),
+                *(0.07, -0.35, -0.67, -0.88, -0.83, -0.65),
+            ),
+        ),
+        "container_laden_no_boxes": (
+            _FIFTEENS,
+            (
+                *(1.01, 1.11, 1.11, 0.95, 0.74, 0.46, 0.13),
+                *(-0.28, -0.77, -1.09, -1.18, -1.19, -0.94),
+            ),
         ),
     }
 )
 
 
 def ittc_curve(wind_angle: ArrayLike, *, curve: str = "tanker_laden") -> FloatArray:
-    """C_AA of the data sets of ITTC 7.5-04-01-01.1 and ISO 15016:2015, linear between 10 degrees.
+    """C_AA of the data sets of ISO 15016:2015 and ITTC 7.5-04-01-01.1, linear between their points.
 
-    ``tanker_laden`` is the tanker of 280 kDWT with a conventional bow.
+    Parameters
+    ----------
+    wind_angle : array_like
+        Angle of the relative wind [rad].
+    curve : str
+        Key of `ITTC_CURVES`: tanker of 280 kDWT with a conventional bow (laden, in ballast),
+        general cargo, and a container ship of 6800 TEU (laden with boxes, and laden without boxes
+        but with lashing bridges).
+
+    Returns
+    -------
+    ndarray
     """
-    values = np.asarray(ITTC_CURVES[curve])
-    angles = np.radians(np.arange(0.0, 181.0, 10.0))
-    return np.asarray(np.interp(folded(wind_angle), angles, values))
+    degrees, values = ITTC_CURVES[curve]
+    return np.asarray(np.interp(folded(wind_angle), np.radians(degrees), values))
 
 
 def yu_2021_area(breadth: ArrayLike, *, draught_aft: ArrayLike) -> FloatArray:
