@@ -101,7 +101,7 @@ def show(plan: Plan) -> None:
     console = Console()
     best = plan.best
     table = Table(title=_title(plan), title_justify="left")
-    columns = ("waypoint", "time (UTC)", "course", "leg nm", "stw kn", "sog kn", "wait h", "ukc m")
+    columns = ("waypoint", "time (UTC)", "course", "nm so far", "stw kn", "sog kn", "wait h", "ukc m")
     for name in columns:
         table.add_column(name, justify="left" if name in ("waypoint", "time (UTC)") else "right")
     for row in best.waypoints():
@@ -141,5 +141,5 @@ def _cells(row: dict[str, Any]) -> list[str]:
         number("speed_through_water_kn", 1),
         number("speed_over_ground_kn", 1),
         number("waiting_h", 2) if row.get("waiting_h") else "",
-        number("min_ukc_m", 1),
+        number("ukc_m", 1),
     ]

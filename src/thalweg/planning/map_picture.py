@@ -66,7 +66,8 @@ def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
     box = _box_of(plan)
     width = 10.0
     shape = (box.north - box.south) * box.aspect / (box.east - box.west)
-    figure = Figure(figsize=(width, min(11.0, max(4.2, width * shape * 0.9 + 1.1))), dpi=130)
+    height = min(11.0, max(3.6, (width - 1.6) * shape + 0.8))
+    figure = Figure(figsize=(width, height), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     axes.set_facecolor("#f4f8fb")
@@ -75,7 +76,6 @@ def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
         _draw_land(axes, plan.surroundings.chart, box)
     _draw_routes(axes, plan, box)
     _finish(axes, plan, box)
-    figure.tight_layout()
     if path is not None:
         figure.savefig(path)
     return figure
@@ -108,7 +108,7 @@ def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box)
     if shown is not None:
         values, label, colours = shown
         filled = axes.contourf(lon, lat, values, levels=14, cmap=colours, alpha=0.85)
-        bar = figure.colorbar(filled, ax=axes, shrink=0.8, pad=0.015)
+        bar = figure.colorbar(filled, ax=axes, shrink=0.9, pad=0.01, aspect=30)
         bar.set_label(label, fontsize=8)
         bar.ax.tick_params(labelsize=7)
     _draw_arrows(axes, world, moment, lat, lon)
@@ -195,16 +195,13 @@ def _draw_isochrones(
 
 
 def _draw_land(axes: Any, chart: Any, box: Box) -> None:
-    from matplotlib.collections import PolyCollection
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
 
-    polygons = [
-        np.column_stack([box.unwrapped_ring(lon) if False else lon, lat])
-        for lat, lon in chart.land_polygons(box.south, box.north, box.west, box.east)
-    ]
-    if polygons:
-        axes.add_collection(
-            PolyCollection(polygons, facecolors=_LAND, edgecolors=_SHORE, linewidths=0.4, zorder=3)
-        )
+    for polygon in chart.land_polygons(box.south, box.north, box.west, box.east):
+        rings = [np.asarray(ring.coords) for ring in (polygon.exterior, *polygon.interiors)]
+        outline = Outline.make_compound_path(*(Outline(ring, closed=True) for ring in rings))
+        axes.add_patch(PathPatch(outline, fc=_LAND, ec=_SHORE, lw=0.4, zorder=3))
 
 
 def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:

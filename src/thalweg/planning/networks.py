@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, unknown_name
-from thalweg.network import Network, check_network, lattice, mesh, with_endpoints
+from thalweg.network import Network, check_network, lattice, with_endpoints
 from thalweg.planning.ends import End
 from thalweg.sea import Sea
 
@@ -62,6 +62,8 @@ def build_network(choice: NetworkChoice, chart: Chart, sea: Sea, start: End, goa
             "Use network='lattice', or open such a file first.",
         )
     if model is not None and (choice.network == "mesh" or _inside(model, ends)):
+        from thalweg.network import mesh
+
         network = mesh(chart, model.lat, model.lon, model.triangles, largest_spacing=choice.spacing)
         return with_endpoints(network, chart, *ends)
     return lattice(chart, *ends, spacing=choice.spacing)

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import distance, format_position
+from thalweg.core.geodesy import along, distance, format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
@@ -23,7 +23,7 @@ from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, evaluate
 from thalweg.sea import Sea, StationFields
 from thalweg.search import Bound, SearchResult, best_departure, earliest_arrival, lower_bound
-from thalweg.ship import PerformanceTable, Ship
+from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 
 #: Frozen fields larger than this are refused before they are taken [bytes].
 MEMORY_LIMIT = 4_000_000_000
@@ -70,6 +70,8 @@ class Passage:
         No route is better than this, in SI.
     network : Network
         The network searched.
+    isochrones : ndarray
+        Earliest arrival at every node [s since 1970], for the map; inf where never reached.
     notes : tuple of str
         What the user must know.
     """
@@ -78,6 +80,7 @@ class Passage:
     result: SearchResult
     bound: Bound
     network: Network
+    isochrones: np.ndarray
     notes: tuple[str, ...]
 
 
@@ -111,7 +114,26 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
         frozen, result = _search(task, network, limits, window, (start, goal))
         route = _score(task, network, frozen, result, limits)
     notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
-    return Passage(route, result, bound, network, notes)
+    isochrones = _isochrones(task, network, frozen, route)
+    return Passage(route, result, bound, network, isochrones, notes)
+
+
+def _isochrones(task: Task, network: Network, frozen: Frozen, route: Route) -> np.ndarray:
+    """Return the earliest arrival everywhere, until half as long again as the route takes."""
+    everywhere = earliest_arrival(
+        network,
+        frozen.stations,
+        task.table,
+        start=network.meta.start,
+        goal=None,
+        depart=route.depart,
+        setting=task.setting,
+        limits=task.needs.limits,
+        wait=task.voyage.wait,
+        arrive_by=route.depart + 1.5 * route.time_h * HOUR if route.feasible else None,
+        top_speed=frozen.top_speed,
+    )
+    return everywhere.node_arrival
 
 
 def _score(
@@ -157,7 +179,7 @@ def _search(
     ends: tuple[End, End],
 ) -> tuple[Frozen, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
-    usual = straight / float(task.ship.speeds[task.setting])
+    usual = straight / _usual_speed(task, ends, window[0])
     latest = task.last
     if task.voyage.arrive_by is not None:
         latest = min(latest, float(task.voyage.arrive_by))  # type: ignore[arg-type]
@@ -173,6 +195,27 @@ def _search(
     if not result.found:
         raise _no_route(task, network, result, ends)
     return frozen, result
+
+
+def _usual_speed(task: Task, ends: tuple[End, End], depart: float) -> float:
+    """Return a speed [m/s] to expect: the setting's, or the mean of a speed field on the way."""
+    if task.ship.speed_field is None:
+        return float(task.ship.speeds[task.setting])
+    start, goal = ends
+    lat, lon = along(start.lat, start.lon, goal.lat, goal.lon, np.linspace(0, 1, 33))
+    time = np.full(lat.shape, depart)
+    names = sorted(task.ship.needs)
+    speed = task.ship.speed_field(task.sea.sample(names, time, lat, lon), time, lat, lon)
+    known = speed[np.isfinite(speed) & (speed > 0)]
+    return float(known.mean()) if known.size else 1.0
+
+
+def table_of(ship: Ship) -> PerformanceTable:
+    """Return the table of a ship; of one whose speed is a field, a table without any say."""
+    if ship.speed_field is None:
+        return ship.tabulate()
+    none = TablePart((), (), np.zeros(len(ship.speeds), np.float32))
+    return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))
 
 
 def freeze(task: Task, network: Network, start: float, end: float) -> Frozen:

@@ -18,7 +18,7 @@ from thalweg.core.units import KNOT
 from thalweg.planning.ends import End, check_apart, find_end
 from thalweg.planning.needs import check_period, find_needs
 from thalweg.planning.networks import Builder, NetworkChoice
-from thalweg.planning.passage import Passage, Task, make_passage
+from thalweg.planning.passage import Passage, Task, make_passage, table_of
 from thalweg.planning.plan import Plan, Proof, Surroundings, in_unit
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
@@ -79,7 +79,7 @@ def plan(
         sea=sea,
         chart=chart,
         needs=needs,
-        table=ship.tabulate(),
+        table=table_of(ship),
         setting=_setting(voyage, ship),
         last=check_period(voyage, sea, needs),
         choice=NetworkChoice(network, resolution),
@@ -162,7 +162,7 @@ def _surroundings(task: Task, passages: list[Passage]) -> Surroundings:
     return Surroundings(
         lat=np.concatenate([p.network.station_lat[:n] for p, n in zip(passages, nodes)]),
         lon=np.concatenate([p.network.station_lon[:n] for p, n in zip(passages, nodes)]),
-        arrival=np.concatenate([p.result.node_arrival[:n] for p, n in zip(passages, nodes)]),
+        arrival=np.concatenate([p.isochrones[:n] for p, n in zip(passages, nodes)]),
         chart=task.chart,
         sea=task.sea,
         ship=task.ship,
@@ -181,9 +181,9 @@ def _provenance(task: Task, ends: list[End], passages: list[Passage]) -> dict[st
         "ship": {
             "name": task.ship.name,
             "fingerprint": task.ship.fingerprint(),
-            "speed_kn": float(task.ship.speeds[task.setting]) / KNOT,
+            "speed_kn": _known(float(task.ship.speeds[task.setting]) / KNOT),
             "draught_m": float(task.ship.draught),
-            "table_error": {k: v if math.isfinite(v) else None for k, v in table_error.items()},
+            "table_error": {k: _known(v) for k, v in table_error.items()},
         },
         "sea": task.sea.provenance() | {"fingerprint": task.sea.fingerprint()},
         "chart": task.chart.fingerprint(),
@@ -201,3 +201,7 @@ def _provenance(task: Task, ends: list[End], passages: list[Passage]) -> dict[st
         ],
         "seed": task.voyage.seed,
     }
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,47 @@
+"""``thalweg demo``: the main job on a real coastline and the embedded storm."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from thalweg.cli import common, plan
+
+
+def add_command(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "demo",
+        help="cross the North Atlantic round the embedded storm",
+        description="Plan Bishop Rock to New York through a modelled storm on its real track.",
+    )
+    parser.add_argument("--out", default="demo", metavar="DIR", help="folder for the result")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Plan the demonstration voyage, and say what the storm costs a ship that ignores it."""
+    from thalweg.chart import Chart
+    from thalweg.planning import plan as make_plan
+    from thalweg.planning.demo import demo_voyage
+    from thalweg.planning.output import check_folder
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+    folder = check_folder(arguments.out)
+    found = make_plan(
+        demo_voyage(),
+        ship=Ship.load("handysize-bulker"),
+        sea=Sea.storm(),
+        chart=Chart.gshhg("i"),
+        progress=common.progress_for(arguments),
+    )
+    files = found.write(folder)
+    if arguments.json:
+        print(found.to_json())
+        return 0
+    plan.show(found)
+    for path in files:
+        print(f"wrote {path}")
+    return 0
