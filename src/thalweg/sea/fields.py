@@ -12,7 +12,7 @@ FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StationFields:
     """The sea at fixed stations, frozen for kernels that interpolate in time only.
 
@@ -31,7 +31,7 @@ class StationFields:
     channel_index: IntArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GridFields:
     """The sea on a regular raster, frozen for kernels that interpolate in space and time.
 
@@ -57,7 +57,7 @@ class GridFields:
     channel_index: IntArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Nodes and triangles of an unstructured grid.
 
@@ -74,7 +74,7 @@ class Mesh:
     triangles: IntArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Area:
     """A box on the sphere.
 
@@ -106,7 +106,7 @@ class Area:
 WORLD = Area(-90.0, 90.0, -180.0, 180.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Coverage:
     """Where and when one variable of one layer is known.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.sea import names as nm
@@ -22,7 +22,7 @@ FEWEST_STEPS = 200  #: automatic steps across a short window
 MOST_STEPS = 2000  #: automatic steps across a long window
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FunctionLayer:
     """A layer whose values are computed when asked for.
 
@@ -84,6 +84,10 @@ class FunctionLayer:
         if self.time_step == 0.0 or end == start:
             return np.array([start, end]) if end > start else np.array([start])
         return automatic_times(start, end, self.time_step)
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return whether positions lie in the area."""
+        return self.area.covers(lat, lon)
 
     def coverage(self) -> list[Coverage]:
         """Return one row per variable."""

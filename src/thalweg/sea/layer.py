@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.sea.fields import Area, Coverage, FloatArray, Mesh
 
@@ -44,6 +45,10 @@ class Layer(Protocol):
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return native times in [start, end] and one beyond each side; empty if it has none."""
+        ...
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return whether positions (N,) lie where the layer may know values."""
         ...
 
     def coverage(self) -> list[Coverage]:

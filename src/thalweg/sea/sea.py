@@ -4,41 +4,26 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.sea import freeze, functions, storm
+from thalweg.sea import freeze, functions, inspection, storm
 from thalweg.sea import names as nm
-from thalweg.sea.fields import WORLD, Area, Coverage, FloatArray, GridFields, Mesh, StationFields
+from thalweg.sea.arguments import area_of, period_of, step_of
+from thalweg.sea.fields import Coverage, FloatArray, GridFields, Mesh, StationFields
+from thalweg.sea.inspection import Inspection
 from thalweg.sea.layer import Layer, Samples
-
-CALM_PERIOD = 8.0  #: [s] placeholder peak period of waves of height zero
-CALM = {
-    nm.EASTWARD_WIND: 0.0,
-    nm.NORTHWARD_WIND: 0.0,
-    nm.EASTWARD_CURRENT: 0.0,
-    nm.NORTHWARD_CURRENT: 0.0,
-    nm.WAVE_HEIGHT: 0.0,
-    nm.WAVE_TO_EAST: 0.0,
-    nm.WAVE_TO_NORTH: 1.0,
-    nm.WAVE_PERIOD: CALM_PERIOD,
-}
-FILLABLE: dict[str, tuple[str, ...]] = {
-    "currents": nm.CURRENT.pair,
-    "wind": nm.WIND.pair,
-    "waves": (nm.WAVE_HEIGHT, *nm.WAVES.pair, nm.WAVE_PERIOD),
-    "water_level": (nm.WATER_LEVEL,),
-    "ice": (nm.ICE,),
-}
+from thalweg.sea.merge import edges, merged, point_reader, series_reader
+from thalweg.sea.policies import CALM, policy_values
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sea:
     """Met-ocean fields from layers by priority; never changed, never guessed.
 
@@ -56,6 +41,54 @@ class Sea:
 
     layers: tuple[Layer, ...]
     assumptions: tuple[str, ...] = ()
+
+    @classmethod
+    def open(
+        cls, *paths: str | os.PathLike[str] | Any, mapping: Mapping[str, str] | None = None
+    ) -> Sea:
+        """Open files of met-ocean data; nothing is loaded until it is asked for.
+
+        Reads NetCDF (classic, netCDF-4), GRIB 1 and 2, and Zarr: regular, rectilinear and
+        curvilinear grids, projected grids, and UGRID meshes with values at nodes or faces. Of
+        files with one layout that follow each other in time one layer is made; otherwise the first
+        file goes before the second. Of vertical levels the one nearest to the surface is taken, of
+        wind the one at 10 m.
+
+        Variables are recognised by CF standard name, else by the spellings of ECMWF, GFS, CMEMS,
+        MET Norway, DHI, 52North, NEMO, COADS and Delft3D-FM; units are converted to SI; speed and
+        direction become components before anything is interpolated; components along a grid are
+        turned to true east and north. NEMO's velocities on cell sides are averaged to the centres
+        where the file has the positions of both, else taken to lie at the positions given.
+
+        Between times values are linear, but a step more than 2.5 times as long as both its
+        neighbours is a hole and stays unknown. A single time holds at that instant only. Fields
+        without a time hold always. Beyond the first and last row and column nothing is known.
+
+        Parameters
+        ----------
+        *paths : path-like or xarray.Dataset
+            Files (or Zarr folders), the most trusted first.
+        mapping : mapping of str to str, optional
+            Where the file does not say it clearly: canonical name to name in the file
+            (``{"sea_surface_wave_from_direction": "p107"}``), for any file that has it. The key
+            "crs" gives the projection of a file that does not name it (``"EPSG:32611"``). Other
+            keys make plain variables that a ship's function may read.
+
+        Returns
+        -------
+        Sea
+
+        Raises
+        ------
+        InputError
+            If a file is missing or the mapping names variables that are in no file.
+        DatasetError
+            If a file is damaged, cut, not data, ambiguous, in impossible units, or laid out in a
+            way that cannot be sailed on (points, lines, climatologies); the message says why.
+        """
+        from thalweg.sea.opening import open_layers
+
+        return cls(tuple(open_layers(paths, mapping)))
 
     @classmethod
     def from_functions(
@@ -101,9 +134,9 @@ class Sea:
         """
         layer = functions.layer_of_functions(
             dict(functions_by_name),
-            area=_area(area),
-            period=_period(period),
-            time_step=_step(time_step),
+            area=area_of(area),
+            period=period_of(period),
+            time_step=step_of(time_step),
         )
         return cls((layer,))
 
@@ -180,7 +213,7 @@ class Sea:
         values: dict[str, float] = {}
         told: list[str] = []
         for policy, value in policies.items():
-            values.update(_policy_values(policy, value))
+            values.update(policy_values(policy, value))
             told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
         layer = functions.constant_layer(values, "filled")
         return Sea((*self.layers, layer), (*self.assumptions, *told))
@@ -197,6 +230,24 @@ class Sea:
     def coverage(self) -> list[Coverage]:
         """Return where and when each variable of each layer is known."""
         return [row for layer in self.layers for row in layer.coverage()]
+
+    def describe(self) -> Inspection:
+        """Return what was recognised in the files, what not and why, coverage and gaps."""
+        return inspection.inspect(self)
+
+    def draw(self, path: str | os.PathLike[str], *, time: TimeLike | None = None) -> None:
+        """Draw a map of each main quantity to a PNG file.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+        time : time, optional
+            When; by default the time of the highest waves, strongest wind or current.
+        """
+        from thalweg.sea.draw import draw
+
+        draw(self, path, time=None if time is None else parse_time(time))
 
     def sample(
         self, names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
@@ -222,8 +273,8 @@ class Sea:
         arrays = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in (time, lat, lon)))
         shape = arrays[0].shape
         flat = [np.ascontiguousarray(a).reshape(-1) for a in arrays]
-        base = self._merge(
-            self._base(names), _point_reader(flat[0], flat[1], flat[2]), flat[0].shape
+        base = merged(
+            self.layers, self._base(names), point_reader(flat[0], flat[1], flat[2]), flat[0].shape
         )
         return {name: self._derive(name, base).reshape(shape) for name in names}
 
@@ -231,8 +282,8 @@ class Sea:
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> dict[str, FloatArray]:
         """Return values (S, T) at stations (S,) for every time (T,); faster than `sample`."""
-        read = _series_reader(times, lat, lon)
-        base = self._merge(self._base(names), read, (lat.size, times.size))
+        read = series_reader(times, lat, lon)
+        base = merged(self.layers, self._base(names), read, (lat.size, times.size))
         return {name: self._derive(name, base) for name in names}
 
     def why_missing(self, name: str, time: float, lat: float, lon: float) -> str:
@@ -241,7 +292,7 @@ class Sea:
         if not holders or not self.knows(name):
             return "variable"
         point = np.array([lat], float), np.array([lon], float)
-        holders = [x for x in holders if x.area.covers(*point)[0]]
+        holders = [x for x in holders if x.inside(*point)[0]]
         if not holders:
             return "area"
         spans = [x.period for x in holders]
@@ -277,7 +328,7 @@ class Sea:
         layers = [x for x in self.layers if sources is None or x.variables & sources]
         found = [layer.times(start, end) for layer in layers]
         if len(layers) > 1:
-            found += [_edges(x.period, start, end) for x in layers if x.period is not None]
+            found += [edges(x.period, start, end) for x in layers if x.period is not None]
         if not any(f.size for f in found):
             return np.empty(0)
         times: FloatArray = np.unique(np.concatenate(found).round(3)).astype(np.float64)
@@ -390,123 +441,3 @@ class Sea:
             return np.asarray(np.hypot(east, north), np.float64)
         sign = 1.0 if part == "towards" else -1.0
         return np.degrees(np.arctan2(sign * east, sign * north)) % 360.0
-
-    def _merge(self, names: Sequence[str], read: Reader, shape: tuple[int, ...]) -> Samples:
-        """Read the variables layer by layer, each layer only where those before knew nothing."""
-        merged: Samples = {}
-        for layer in self.layers:
-            have = [n for n in names if n in layer.variables]
-            rows = _pending(have, merged)
-            if have and (rows is None or rows.size):
-                _take(merged, read(layer, have, rows), rows)
-        for name in names:
-            merged.setdefault(name, np.full(shape, np.nan))
-        return merged
-
-
-Reader = Callable[[Layer, Sequence[str], Any], Samples]
-
-
-def _point_reader(time: FloatArray, lat: FloatArray, lon: FloatArray) -> Reader:
-    def read(layer: Layer, names: Sequence[str], rows: Any) -> Samples:
-        pick = slice(None) if rows is None else rows
-        return layer.sample(names, time[pick], lat[pick], lon[pick])
-
-    return read
-
-
-def _series_reader(times: FloatArray, lat: FloatArray, lon: FloatArray) -> Reader:
-    def read(layer: Layer, names: Sequence[str], rows: Any) -> Samples:
-        pick = slice(None) if rows is None else rows
-        return layer.series(names, times, lat[pick], lon[pick])
-
-    return read
-
-
-def _pending(names: Sequence[str], merged: Samples) -> Any:
-    """Return the rows where some of the variables are still unknown; None for all rows."""
-    if not names or any(name not in merged for name in names):
-        return None
-    unknown = np.zeros(merged[names[0]].shape, bool)
-    for name in names:
-        unknown |= np.isnan(merged[name])
-    return np.flatnonzero(unknown if unknown.ndim == 1 else unknown.any(axis=1))
-
-
-def _take(merged: Samples, found: Samples, rows: Any) -> None:
-    """Put what was found where nothing was known; vectors go as pairs, being NaN as pairs."""
-    for name, value in found.items():
-        if name not in merged:
-            merged[name] = value
-            continue
-        pick = slice(None) if rows is None else rows
-        old = merged[name] = np.array(merged[name])
-        old[pick] = np.where(np.isnan(old[pick]), value, old[pick])
-
-
-def _edges(period: tuple[float, float] | None, start: float, end: float) -> FloatArray:
-    """Return times just outside a layer's period, where another layer takes over."""
-    if period is None:
-        return np.empty(0)
-    edges = np.array([period[0] - 1.0, period[1] + 1.0])
-    return edges[(edges > start) & (edges < end)]
-
-
-def _policy_values(policy: str, value: float | tuple[float, float]) -> dict[str, float]:
-    if policy not in FILLABLE:
-        raise unknown_name("filling policy", policy, FILLABLE)
-    names = FILLABLE[policy]
-    numbers = np.atleast_1d(np.asarray(value, float))
-    is_pair = numbers.size == 2 and len(names) == 2
-    if not np.isfinite(numbers).all() or not (is_pair or numbers.size == 1):
-        raise InputError(
-            f"{policy} cannot be filled with {value!r}.",
-            "Give one finite number, or (east, north) for currents and wind.",
-            f"For example filled({policy}=0.0).",
-        )
-    if is_pair:
-        return dict(zip(names, numbers.tolist()))
-    number = float(numbers[0])
-    if len(names) == 2 and number != 0.0:
-        raise InputError(
-            f"{policy}={number:g} has no direction.",
-            f"{policy} can be 0.0 or (east, north) in m/s.",
-            f"For example filled({policy}=({number:g}, 0.0)).",
-        )
-    if policy == "waves":
-        return {**{n: CALM[n] for n in names}, nm.WAVE_HEIGHT: number}
-    return dict.fromkeys(names, number)
-
-
-def _area(area: tuple[float, float, float, float] | None) -> Area:
-    if area is None:
-        return WORLD
-    south, north, west, east = (float(x) for x in area)
-    if not (-90.0 <= south < north <= 90.0):
-        raise InputError(
-            f"The area {area} has no height.",
-            "An area is (south, north, west, east) in degrees with south < north.",
-            "Check the order of the four numbers.",
-        )
-    return Area(south, north, west, east if east > west else east + 360.0)
-
-
-def _period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:
-    if period is None:
-        return None
-    start, end = parse_time(period[0]), parse_time(period[1])
-    if end < start:
-        raise InputError(
-            "The period ends before it starts.", "A period is (start, end).", "Swap the two times."
-        )
-    return start, end
-
-
-def _step(time_step: float | None) -> float | None:
-    if time_step is not None and not (np.isfinite(time_step) and time_step >= 0.0):
-        raise InputError(
-            f"A time step of {time_step!r} s cannot be used.",
-            "It must be positive, or 0 for fields that never change.",
-            "Leave it out to have one chosen.",
-        )
-    return None if time_step is None else float(time_step)

@@ -9,6 +9,7 @@ from importlib import resources
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.errors import unknown_name
 from thalweg.core.geodesy import MEAN_RADIUS
@@ -29,7 +30,7 @@ DRIFT_STEP: Final = 3.0 * 3600.0  #: [s] half the base over which forward veloci
 PRESENT: Final = frozenset({*nm.WIND.pair, *nm.WAVES.pair, nm.WAVE_HEIGHT, nm.WAVE_PERIOD})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ambient:
     """The calm-ish sea a storm is set in, the same everywhere: an assumption, not data.
 
@@ -78,7 +79,7 @@ class State(NamedTuple):
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Track:
     """A best track.
 
@@ -118,7 +119,7 @@ class Track:
         return (lon2 - lon1) * shrink * scale, (lat2 - lat1) * scale
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StormLayer:
     """A cyclone moving along its track through an ambient sea.
 
@@ -186,6 +187,10 @@ class StormLayer:
             return np.empty(0)
         first = np.ceil(start / self.time_step) * self.time_step
         return np.unique(np.concatenate([[start], np.arange(first, end, self.time_step), [end]]))
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return whether positions lie in the area."""
+        return self.area.covers(lat, lon)
 
     def coverage(self) -> list[Coverage]:
         """Return one row per variable."""

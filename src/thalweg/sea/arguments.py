@@ -1,0 +1,46 @@
+"""Checks of what users give for areas, periods and steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import TimeLike, parse_time
+from thalweg.sea.fields import WORLD, Area
+
+
+def area_of(area: tuple[float, float, float, float] | None) -> Area:
+    """Return the box for (south, north, west, east) [deg]; the world for None."""
+    if area is None:
+        return WORLD
+    south, north, west, east = (float(x) for x in area)
+    if not (-90.0 <= south < north <= 90.0):
+        raise InputError(
+            f"The area {area} has no height.",
+            "An area is (south, north, west, east) in degrees with south < north.",
+            "Check the order of the four numbers.",
+        )
+    return Area(south, north, west, east if east > west else east + 360.0)
+
+
+def period_of(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:
+    """Return (start, end) [s since epoch]."""
+    if period is None:
+        return None
+    start, end = parse_time(period[0]), parse_time(period[1])
+    if end < start:
+        raise InputError(
+            "The period ends before it starts.", "A period is (start, end).", "Swap the two times."
+        )
+    return start, end
+
+
+def step_of(time_step: float | None) -> float | None:
+    """Return a time step [s] that is None, 0 or positive."""
+    if time_step is not None and not (np.isfinite(time_step) and time_step >= 0.0):
+        raise InputError(
+            f"A time step of {time_step!r} s cannot be used.",
+            "It must be positive, or 0 for fields that never change.",
+            "Leave it out to have one chosen.",
+        )
+    return None if time_step is None else float(time_step)

@@ -1,0 +1,431 @@
+"""From opened files to layers: quantities in SI, vectors as true east and north components."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError
+from thalweg.sea import coordinates as co
+from thalweg.sea import names as nm
+from thalweg.sea import spellings as sp
+from thalweg.sea import ugrid
+from thalweg.sea.fields import FloatArray
+from thalweg.sea.gridded import GridLayer, Record, TimeAxis
+from thalweg.sea.inspection import Recognised
+from thalweg.sea.positions import NEMO_U, Placement, placement
+from thalweg.sea.recognise import Chosen, Ignored, recognise
+from thalweg.sea.store import BlockCache, Piece, Quantity, Variable, Window
+
+Combine = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
+NO_TIMES = np.empty(0)
+
+
+class NothingRecognised(DatasetError):
+    """A dataset holds no variable that is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class OpenedFile:
+    """A file that was opened but not read.
+
+    Attributes
+    ----------
+    dataset : xarray.Dataset
+        Lazy.
+    source : str
+        Its name, for messages.
+    facts : mapping
+        Name, size and time of change.
+    """
+
+    dataset: Any
+    source: str
+    facts: Mapping[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Ingredient:
+    """A recognised variable, placed in space and time."""
+
+    chosen: Chosen
+    variable: Variable
+    place: Placement
+    times: FloatArray
+    rotated: bool
+
+
+@dataclass(eq=False)
+class Draft:
+    """Quantities on one grid and one time axis of one file, before files are joined."""
+
+    place: Placement
+    times: FloatArray
+    file: OpenedFile
+    quantities: list[Quantity] = field(default_factory=list)
+    recognised: list[Recognised] = field(default_factory=list)
+
+
+def drafts_of(file: OpenedFile, mapping: Mapping[str, str]) -> tuple[list[Draft], list[Ignored]]:
+    """Return what one file holds, by grid and time axis, and what is ignored in it.
+
+    Raises
+    ------
+    DatasetError
+        If nothing in it is recognised, or something recognised cannot be placed.
+    """
+    skip = _coordinates(file.dataset)
+    chosen, ignored = recognise(file.dataset, mapping=mapping, source=file.source, skip=skip)
+    if not chosen:
+        raise _nothing(file, ignored)
+    meshes = ugrid.mesh_layouts(file.dataset, mapping, file.source)
+    ingredients = {role: _ingredient(file, one, mapping, meshes) for role, one in chosen.items()}
+    cook = Cook(file, ingredients, ignored)
+    cook.all()
+    return cook.drafts, cook.ignored
+
+
+def _coordinates(dataset: Any) -> frozenset[str]:
+    names = {
+        str(n) for n in dataset.variables if str(n) in dataset.coords or str(n) in dataset.dims
+    }
+    for n in dataset.variables:
+        array = dataset[n]
+        if co.is_latitude(array, str(n)) or co.is_longitude(array, str(n)) or co.is_time(array):
+            names.add(str(n))
+        for key in ("bounds", "climatology"):
+            if key in array.attrs:
+                names.add(str(array.attrs[key]))
+    return frozenset(names) | ugrid.auxiliary(dataset)
+
+
+def _nothing(file: OpenedFile, ignored: Sequence[Ignored]) -> NothingRecognised:
+    told = "; ".join(f"{i.variable}: {i.reason}" for i in ignored[:12])
+    return NothingRecognised(
+        f"{file.source}: no wind, waves, currents, level or depth was recognised in it.",
+        f"It holds {told}." if told else "It holds no numeric field.",
+        "Name the variables with mapping={'eastward_wind': 'name in the file', ...}.",
+        file=file.source,
+    )
+
+
+def _ingredient(
+    file: OpenedFile, chosen: Chosen, mapping: Mapping[str, str], meshes: list[ugrid.MeshLayout]
+) -> Ingredient:
+    dataset, source = file.dataset, file.source
+    array = dataset[chosen.variable]
+    clock = co.time_of(dataset, array)
+    if clock is None:
+        _refuse_undated(dataset, array, source)
+    place = placement(dataset, array, mapping, source, meshes)
+    time_dim = str(clock.dims[0]) if clock is not None else ""
+    keep = frozenset((*place.dims, time_dim))
+    array = co.pick_surface(dataset, array, keep, chosen.role, source)
+    has_time = time_dim in array.dims
+    array = array.transpose(*([time_dim] if has_time else []), *place.dims)
+    if place.flipped:
+        array = array.isel({place.dims[1]: slice(None, None, -1)})
+    times = NO_TIMES if clock is None else co.read_times(clock, source)
+    if clock is not None and not has_time and clock.dims[0] != "one_time":
+        times = NO_TIMES
+    piece = Piece(array, max(1, times.size), has_time)
+    is_c_grid = all(n in dataset.variables for n in NEMO_U) and place.dims and "glamt" in place.key
+    shift = (
+        {sp.X_CURRENT: (0, 1), sp.Y_CURRENT: (1, 0)}.get(chosen.role, (0, 0))
+        if is_c_grid
+        else (0, 0)
+    )
+    variable = Variable(
+        chosen.variable, (piece,), times.size > 0, place.mesh is not None, source, shift
+    )
+    rotated = int(array.attrs.get("GRIB_uvRelativeToGrid", 0)) == 1
+    return Ingredient(chosen, variable, place, times, rotated)
+
+
+def _refuse_undated(dataset: Any, array: Any, source: str) -> None:
+    """Raise for variables along a time axis that has no dates."""
+    for dim in array.dims:
+        name = str(dim).lower()
+        if name in ("time", "t", "ocean_time", "time_counter") and array.sizes[dim] >= 1:
+            raise DatasetError(
+                f"{source}: the time axis {dim!r} of {array.name!r} has no dates.",
+                "A time axis needs units such as 'hours since 2026-01-01T00:00Z'.",
+                "Add the units to the file.",
+                file=source,
+                variable=str(array.name),
+            )
+
+
+class Cook:
+    """Makes quantities of ingredients, each in one way, and tells what is left over."""
+
+    def __init__(
+        self, file: OpenedFile, ingredients: dict[str, Ingredient], ignored: list[Ignored]
+    ) -> None:
+        self.file, self.left, self.ignored = file, dict(ingredients), list(ignored)
+        self.drafts: list[Draft] = []
+
+    def all(self) -> None:
+        """Make everything that can be made."""
+        self._vector(nm.WIND, (sp.X_WIND, sp.Y_WIND))
+        self._vector(nm.CURRENT, (sp.X_CURRENT, sp.Y_CURRENT))
+        self._waves()
+        self._bed_and_level()
+        for role in list(self.left):
+            one = self.left.pop(role)
+            told = one.chosen.how
+            if one.times.size == 0 and role not in (nm.BED_DEPTH,):
+                told += "; without dates: holds always"
+            self._add((role,), [one], _same, told)
+
+    def _vector(self, vector: nm.Vector, along_grid: tuple[str, str]) -> None:
+        """Make a vector of components, of components along the grid, or of speed and direction."""
+        if self._both(vector.pair):
+            pair = [self.left.pop(n) for n in vector.pair]
+            turn = pair[0].rotated and pair[0].place.angle is not None
+            self._pair(vector, pair, turn)
+        elif self._both(along_grid):
+            pair = [self.left.pop(n) for n in along_grid]
+            self._pair(vector, pair, pair[0].place.angle is not None)
+        elif self._both((vector.speed, vector.origin)):
+            self._polar(vector, vector.origin)
+        elif self._both((vector.speed, vector.towards)):
+            self._polar(vector, vector.towards)
+        alone = (*vector.pair, *along_grid, vector.origin, vector.towards)
+        made = any(set(vector.pair) <= set(q.names) for d in self.drafts for q in d.quantities)
+        for role in alone if not made else (*alone, vector.speed):
+            if role in self.left:
+                reason = "the vector is made of others" if made else "its partner is missing"
+                self._leave(role, f"{reason} ({role})")
+
+    def _both(self, roles: Sequence[str]) -> bool:
+        """Return whether both roles are there, on one grid and one time axis."""
+        if not all(role in self.left for role in roles):
+            return False
+        a, b = (self.left[role] for role in roles)
+        return a.place.key == b.place.key and np.array_equal(a.times, b.times)
+
+    def _pair(self, vector: nm.Vector, pair: list[Ingredient], turn: bool) -> None:
+        told = pair[0].chosen.how
+        if any(pair[0].variable.shift) or any(pair[1].variable.shift):
+            told += "; averaged from cell sides to centres"
+        if turn:
+            told += "; turned from grid to true east and north"
+        self._add(vector.pair, pair, _same, told, turn=turn)
+
+    def _polar(self, vector: nm.Vector, direction: str) -> None:
+        pair = [self.left.pop(vector.speed), self.left.pop(direction)]
+        sign = -1.0 if direction == vector.origin else 1.0
+        word = "from" if direction == vector.origin else "to"
+        told = f"{pair[0].chosen.how}; speed and direction {word} to components"
+        self._add(vector.pair, pair, _polar(sign), told)
+
+    def _waves(self) -> None:
+        for role, sign in ((nm.WAVES.origin, -1.0), (nm.WAVES.towards, 1.0)):
+            if role not in self.left:
+                continue
+            if any(nm.WAVE_TO_EAST in q.names for d in self.drafts for q in d.quantities):
+                self._leave(role, "another wave direction is used")
+                continue
+            one = self.left.pop(role)
+            word = "from" if sign < 0 else "to"
+            told = f"{one.chosen.how}; direction {word} to unit vector towards"
+            self._add(nm.WAVES.pair, [one], _unit_vector(sign), told)
+
+    def _bed_and_level(self) -> None:
+        """Make bed depth and water level from what there is of depth, bed level and total depth."""
+        level, total = self.left.get(nm.WATER_LEVEL), self.left.pop(nm.TOTAL_DEPTH, None)
+        bed = self.left.pop(nm.BED_DEPTH, None)
+        sign = 1.0
+        if bed is None and sp.BED_LEVEL in self.left:
+            bed = self.left.pop(sp.BED_LEVEL)
+            down = str(bed.variable.pieces[0].array.attrs.get("positive", "up")).lower() == "down"
+            sign = 1.0 if down else -1.0
+        elif sp.BED_LEVEL in self.left:
+            self._leave(sp.BED_LEVEL, "the bed depth is used")
+        if bed is not None:
+            self._add((nm.BED_DEPTH,), [bed], _times(sign), bed.chosen.how + _turned(sign))
+        if total is None:
+            return
+        self.left[nm.TOTAL_DEPTH] = total
+        other = bed if bed is not None else level
+        if other is None:
+            self._add(
+                (nm.BED_DEPTH,), [self.left.pop(nm.TOTAL_DEPTH)], _same, "total depth, no level"
+            )
+        elif bed is None and self._both((nm.TOTAL_DEPTH, nm.WATER_LEVEL)):
+            pair = [self.left.pop(nm.TOTAL_DEPTH), other]
+            self._add((nm.BED_DEPTH,), pair, _minus(1.0), "total depth minus water level")
+        elif level is None and total.place.key == other.place.key:
+            pair = [self.left.pop(nm.TOTAL_DEPTH), other]
+            self._add((nm.WATER_LEVEL,), pair, _minus(sign), "total depth minus bed depth")
+        else:
+            self._leave(nm.TOTAL_DEPTH, "bed depth and water level are used")
+
+    def _leave(self, role: str, reason: str) -> None:
+        self.ignored.append(Ignored(self.left.pop(role).chosen.variable, reason))
+
+    def _add(
+        self,
+        made: tuple[str, ...],
+        parts: list[Ingredient],
+        combine: Combine,
+        told: str,
+        *,
+        turn: bool = False,
+    ) -> None:
+        """Add a quantity to the draft of its grid and time axis."""
+        place = parts[0].place
+        times = next((p.times for p in parts if p.times.size), NO_TIMES)
+        make = _maker([p.chosen.factor for p in parts], combine, place, turn)
+        quantity = Quantity(made, tuple(p.variable for p in parts), make, self.file.source)
+        draft = self._draft(place, times)
+        draft.quantities.append(quantity)
+        units = ", ".join(dict.fromkeys(p.chosen.units or "not said" for p in parts))
+        files = tuple(p.chosen.variable for p in parts)
+        factors = {p.chosen.factor for p in parts} - {1.0}
+        if factors:
+            told += f"; times {', '.join(f'{f:g}' for f in sorted(factors))}"
+        draft.recognised += [Recognised(n, files, units, told, self.file.source) for n in made]
+
+    def _draft(self, place: Placement, times: FloatArray) -> Draft:
+        for draft in self.drafts:
+            if draft.place.key == place.key and np.array_equal(draft.times, times):
+                return draft
+        self.drafts.append(Draft(place, times, self.file))
+        return self.drafts[-1]
+
+
+def _turned(sign: float) -> str:
+    return "; height made depth" if sign < 0 else ""
+
+
+def _same(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
+    return arrays
+
+
+def _times(sign: float) -> Combine:
+    return lambda arrays: [sign * arrays[0]]
+
+
+def _minus(sign: float) -> Combine:
+    return lambda arrays: [arrays[0] - sign * arrays[1]]
+
+
+def _polar(sign: float) -> Combine:
+    def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
+        length, angle = sign * arrays[0], np.radians(arrays[1])
+        return [length * np.sin(angle), length * np.cos(angle)]
+
+    return combine
+
+
+def _unit_vector(sign: float) -> Combine:
+    def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
+        angle = np.radians(arrays[0])
+        return [sign * np.sin(angle), sign * np.cos(angle)]
+
+    return combine
+
+
+def _maker(factors: list[float], combine: Combine, place: Placement, turn: bool) -> Any:
+    """Return what turns raw arrays of a window into canonical ones."""
+    angle = place.angle if turn else None
+
+    def make(raws: Sequence[FloatArray], window: Window) -> Sequence[FloatArray]:
+        scaled = [raw if f == 1.0 else raw * f for raw, f in zip(raws, factors)]
+        made = combine(scaled)
+        if angle is not None:
+            made = _rotate(made[0], made[1], _part(angle, window, place.mesh is not None))
+        if place.mesh is not None and place.mesh.averaging is not None:
+            made = [place.mesh.averaging.with_nodes(value) for value in made]
+        return made
+
+    return make
+
+
+def _part(angle: FloatArray, window: Window, is_mesh: bool) -> FloatArray:
+    if is_mesh:
+        return angle
+    columns = np.arange(window.x0, window.x0 + window.width) % angle.shape[1]
+    return angle[window.y0 : window.y1][:, columns]
+
+
+def _rotate(u: FloatArray, v: FloatArray, angle: FloatArray) -> list[FloatArray]:
+    """Turn components along the grid into true east and north."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return [u * cosine - v * sine, u * sine + v * cosine]
+
+
+def layers_of(drafts: Sequence[Draft], ignored: Mapping[str, list[Ignored]]) -> list[GridLayer]:
+    """Return layers, joining files of the same grid and variables that follow in time."""
+    joined: list[list[Draft]] = []
+    for draft in drafts:
+        home = next((group for group in joined if _follows(group, draft)), None)
+        if home is None:
+            joined.append([draft])
+        else:
+            home.append(draft)
+    return [_layer(sorted(group, key=_first_time), ignored) for group in joined]
+
+
+def _first_time(draft: Draft) -> float:
+    return float(draft.times[0]) if draft.times.size else 0.0
+
+
+def _follows(group: list[Draft], draft: Draft) -> bool:
+    """Return whether a draft has the same layout as a group and times apart from its times."""
+    first = group[0]
+    if draft.times.size == 0 or first.times.size == 0 or draft.file is first.file:
+        return False
+    same = draft.place.key == first.place.key and _signature(draft) == _signature(first)
+    if not (same and _same_grid(draft.place, first.place)):
+        return False
+    return all(d.times[-1] < draft.times[0] or draft.times[-1] < d.times[0] for d in group)
+
+
+def _signature(draft: Draft) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    return sorted((q.names, tuple(v.name for v in q.variables)) for q in draft.quantities)
+
+
+def _same_grid(a: Placement, b: Placement) -> bool:
+    mine, other = a.grid, b.grid
+    return mine.shape == other.shape and bool(
+        np.array_equal(getattr(mine, "lat", 0), getattr(other, "lat", 1), equal_nan=True)
+        and np.array_equal(getattr(mine, "lon", 0), getattr(other, "lon", 1), equal_nan=True)
+    )
+
+
+def _layer(group: list[Draft], ignored: Mapping[str, list[Ignored]]) -> GridLayer:
+    first = group[0]
+    times = np.concatenate([d.times for d in group])
+    source = " + ".join(dict.fromkeys(d.file.source for d in group))
+    quantities = first.quantities
+    for other in group[1:]:
+        quantities = [_joined(q, _named(other, q.names), source) for q in quantities]
+    shape = (max(1, times.size), *first.place.grid.shape)
+    record = Record(
+        tuple(first.recognised),
+        tuple((d.file.source, i.variable, i.reason) for d in group for i in ignored[d.file.source]),
+    )
+    facts = {"files": [dict(d.file.facts) for d in group]}
+    cache = BlockCache(shape, first.place.grid.wraps)
+    return GridLayer(
+        tuple(quantities), first.place.grid, TimeAxis(times), cache, source, facts, record
+    )
+
+
+def _named(draft: Draft, made: tuple[str, ...]) -> Quantity:
+    return next(q for q in draft.quantities if q.names == made)
+
+
+def _joined(a: Quantity, b: Quantity, source: str) -> Quantity:
+    """Return a quantity whose variables go on into a later file."""
+    variables = tuple(
+        replace(v, pieces=(*v.pieces, *w.pieces), source=source) if v.timed else v
+        for v, w in zip(a.variables, b.variables)
+    )
+    return Quantity(a.names, variables, a.make, source)

@@ -1,0 +1,144 @@
+"""GRIB files, decoded in a process of their own.
+
+The decoder (eccodes) brings its own PROJ library, which can crash a process that also uses pyproj,
+and a corrupt message can crash it too. So a worker decodes the file into arrays in a temporary
+folder, which are mapped into memory here; if the worker dies, that is a `DatasetError`. Nothing is
+written beside the data.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import weakref
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError
+
+WORKER: Final = Path(__file__).with_name("grib_worker.py")
+TIME_LIMIT: Final = 1800.0  #: [s] after which a worker is given up
+
+
+def open_grib(path: Path) -> list[Any]:
+    """Return one xarray dataset for each kind of level in a GRIB file.
+
+    Raises
+    ------
+    DatasetError
+        If the file is cut, damaged, or cfgrib is not installed.
+    """
+    check_messages(path)
+    folder = Path(tempfile.mkdtemp(prefix="thalweg-grib-"))
+    try:
+        listing = _decode(path, folder)
+        datasets = [_dataset(folder, part) for part in listing]
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    keeper = _Keeper(len(datasets), folder)
+    for dataset in datasets:
+        weakref.finalize(dataset, keeper.let_go)
+    return datasets
+
+
+class _Keeper:
+    """Removes the temporary folder when the last dataset from it is gone."""
+
+    def __init__(self, users: int, folder: Path) -> None:
+        self.users, self.folder = users, folder
+        self._last = weakref.finalize(self, shutil.rmtree, str(folder), ignore_errors=True)
+
+    def let_go(self) -> None:
+        self.users -= 1
+        if self.users == 0:
+            self._last()
+
+
+def check_messages(path: Path) -> int:
+    """Return the number of messages, or raise `DatasetError` if one is cut or damaged."""
+    size, place, count = path.stat().st_size, 0, 0
+    with path.open("rb") as stream:
+        while place < size:
+            stream.seek(place)
+            head = stream.read(16)
+            if head[:4] != b"GRIB":
+                skipped = (head + stream.read(65536)).find(b"GRIB", 1)
+                if skipped < 0:
+                    break
+                place += skipped
+                continue
+            length = _length(head)
+            if length is None:
+                return count + 1
+            stream.seek(place + length - 4)
+            if place + length > size or stream.read(4) != b"7777":
+                raise _damaged(path, f"message {count + 1} is cut or damaged")
+            place, count = place + length, count + 1
+    if count == 0:
+        raise _damaged(path, "it holds no whole message")
+    return count
+
+
+def _length(head: bytes) -> int | None:
+    """Return the length of a message; None for the over-long edition 1 messages of ECMWF."""
+    if len(head) < 16:
+        return 1 << 62
+    if head[7] == 2:
+        return int.from_bytes(head[8:16], "big")
+    length = int.from_bytes(head[4:7], "big")
+    return None if length & 0x800000 else length
+
+
+def _decode(path: Path, folder: Path) -> list[dict[str, Any]]:
+    command = [sys.executable, str(WORKER), str(path.resolve()), str(folder)]
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=TIME_LIMIT, check=False, cwd=folder
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise _damaged(path, f"the decoder did not finish ({error})") from error
+    answer = folder / "listing.json"
+    if answer.exists():  # written last; a crash while the worker exits does not matter
+        listing: list[dict[str, Any]] = json.loads(answer.read_text("utf-8"))
+        return listing
+    told = (done.stderr.strip().splitlines() or ["no message"])[-1][:300]
+    if "No module named" in told:
+        raise DatasetError(
+            f"{path.name} is a GRIB file, and the GRIB decoder is not installed.",
+            "NetCDF and Zarr can be read without it.",
+            "pip install 'thalweg[grib]'",
+            file=str(path),
+        )
+    raise _damaged(path, f"the decoder failed (exit {done.returncode}: {told})")
+
+
+def _damaged(path: Path, fault: str) -> DatasetError:
+    return DatasetError(
+        f"{path.name} cannot be decoded: {fault}.",
+        "Whole GRIB 1 and GRIB 2 files are read.",
+        "Fetch the file again.",
+        file=str(path),
+    )
+
+
+def _dataset(folder: Path, part: dict[str, Any]) -> Any:
+    """Build a dataset over the arrays the worker left, mapped and not read."""
+    import xarray as xr
+
+    def variable(told: dict[str, Any]) -> Any:
+        data = np.load(folder / told["file"], mmap_mode="r" if told["dims"] else None)
+        if told["is_time"]:
+            data = np.asarray(data).astype("datetime64[ns]")
+        return xr.Variable(told["dims"], data, told["attrs"])
+
+    return xr.Dataset(
+        {n: variable(v) for n, v in part["fields"].items()},
+        coords={n: variable(v) for n, v in part["coords"].items()},
+        attrs=part["attrs"],
+    )

@@ -1,0 +1,82 @@
+"""The process that decodes one GRIB file: ``python grib_worker.py FILE FOLDER``.
+
+It imports nothing of Thalweg and nothing that uses PROJ. It writes one array per variable into the
+folder, and last of all ``listing.json``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+def main(source: str, folder: Path) -> None:
+    """Decode a file into arrays in a folder."""
+    warnings.simplefilter("ignore")
+    import cfgrib
+
+    parts = cfgrib.open_datasets(source, backend_kwargs={"indexpath": "", "errors": "raise"})
+    listing = [describe(part, k, folder) for k, part in enumerate(parts)]
+    (folder / "listing.tmp").write_text(json.dumps(listing), "utf-8")
+    os.replace(folder / "listing.tmp", folder / "listing.json")
+
+
+def describe(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
+    """Write the arrays of a dataset and return what belongs to them."""
+    dataset = dated(dataset)
+    kept: dict[str, Any] = {"fields": {}, "coords": {}, "attrs": plain(dataset.attrs)}
+    for name, array in dataset.variables.items():
+        values = np.asarray(array.values)
+        is_time = values.dtype.kind == "M"
+        if values.dtype.kind == "m":
+            continue
+        if is_time:
+            values = values.astype("datetime64[ns]").astype(np.int64)
+        file = f"{number}-{len(kept['fields']) + len(kept['coords'])}.npy"
+        np.save(folder / file, values)
+        told = {
+            "file": file,
+            "dims": [str(d) for d in array.dims],
+            "attrs": plain(array.attrs),
+            "is_time": is_time,
+        }
+        kept["coords" if name in dataset.coords else "fields"][str(name)] = told
+    return kept
+
+
+def dated(dataset: Any) -> Any:
+    """Return a dataset whose time axis is the time its fields are valid at.
+
+    A run of a forecast has one ``time`` and many ``step``: those become ``valid_time``.
+    """
+    if "step" in dataset.dims and "time" not in dataset.dims:
+        return dataset.swap_dims({"step": "valid_time"}).drop_vars(
+            ["step", "time"], errors="ignore"
+        )
+    if "step" in dataset.dims and "time" in dataset.dims:
+        flat = dataset.stack(when=("time", "step")).reset_index("when", drop=True)
+        flat = flat.swap_dims({"when": "valid_time"})
+        return flat.sortby("valid_time").transpose("valid_time", ...)
+    if "time" in dataset.dims and "valid_time" in dataset.coords and "step" in dataset.coords:
+        return dataset.swap_dims({"time": "valid_time"}).drop_vars("time")
+    return dataset
+
+
+def plain(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Return attributes that JSON can hold."""
+    kept = {}
+    for key, value in attributes.items():
+        value = value.item() if isinstance(value, np.generic) else value
+        if isinstance(value, (str, int, float, bool)):
+            kept[str(key)] = value
+    return kept
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], Path(sys.argv[2]))

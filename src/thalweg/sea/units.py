@@ -1,0 +1,86 @@
+"""Units as files spell them, turned into SI at the door."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from thalweg.core.units import KNOT
+
+#: dimension to (spelling, factor to SI); spellings as `plain` writes them
+_TABLE: Final[dict[str, dict[str, float]]] = {
+    "speed": {
+        "m/s": 1.0, "ms-1": 1.0, "cm/s": 0.01, "cms-1": 0.01, "mm/s": 0.001, "mms-1": 0.001,
+        "km/h": 1.0 / 3.6, "kmh-1": 1.0 / 3.6, "km/hr": 1.0 / 3.6, "kph": 1.0 / 3.6,
+        "kmh": 1.0 / 3.6, "kn": KNOT, "kt": KNOT, "kts": KNOT, "knot": KNOT, "knots": KNOT,
+        "nm/h": KNOT, "mph": 0.44704, "mi/h": 0.44704, "ft/s": 0.3048,
+    },
+    "length": {
+        "m": 1.0, "cm": 0.01, "mm": 0.001, "dm": 0.1, "km": 1000.0,
+        "ft": 0.3048, "feet": 0.3048, "foot": 0.3048, "fathom": 1.8288, "fathoms": 1.8288,
+        "mmsl": 1.0, "gpm": 1.0,
+    },
+    "time": {"s": 1.0, "min": 60.0, "minutes": 60.0, "h": 3600.0, "hour": 3600.0, "hours": 3600.0},
+    "pressure": {
+        "pa": 1.0, "hpa": 100.0, "mb": 100.0, "mbar": 100.0, "millibar": 100.0,
+        "millibars": 100.0, "kpa": 1000.0, "dbar": 1e4, "bar": 1e5,
+    },
+    "fraction": {"1": 1.0, "fraction": 1.0, "-": 1.0, "(0-1)": 1.0, "%": 0.01, "percent": 0.01},
+    "direction": {
+        "degree": 1.0, "degrees": 1.0, "deg": 1.0, "°": 1.0, "rad": 57.29577951308232,
+        "radian": 57.29577951308232, "radians": 57.29577951308232,
+    },
+}  # fmt: skip
+UNSAID: Final = frozenset({"", "~", "unknown", "none", "nan", "n/a", "nondim"})
+_WORDS: Final = (
+    (r"met(re|er)s?", "m"),
+    (r"centim", "cm"),
+    (r"kilom", "km"),
+    (r"seconds?|\bsec\b", "s"),
+    (r"hours?\b", "h"),
+    (r"\s*per\s*", "/"),
+    (r"nautical\s*miles?", "nm"),
+    (r"pascals?", "pa"),
+)
+_TRUE: Final = re.compile(r"(_|\s)*(true|t|clockwise.*|from.*|north|\(.*\))$")
+
+
+def plain(text: str) -> str:
+    """Return a unit in lower case without spaces, powers and long words."""
+    unit = text.strip().lower()
+    for word, short in _WORDS:
+        unit = re.sub(word, short, unit)
+    return re.sub(r"\*\*|\^|[\s.*]", "", unit)
+
+
+def factor(text: str, dimension: str) -> float | None:
+    """Return what values in a unit are multiplied with for SI (degrees for directions).
+
+    Parameters
+    ----------
+    text : str
+        The unit as the file spells it.
+    dimension : str
+        "speed", "length", "time", "pressure", "fraction" or "direction".
+
+    Returns
+    -------
+    float or None
+        None if the unit does not fit the dimension.
+
+    Examples
+    --------
+    >>> factor("m s**-1", "speed"), factor("cm s-1", "speed"), factor("K", "speed")
+    (1.0, 0.01, None)
+    >>> factor("Degree true", "direction")
+    1.0
+    """
+    table = _TABLE[dimension]
+    if dimension == "direction":
+        text = _TRUE.sub("", text.strip().lower())
+    return table.get(plain(text))
+
+
+def is_unsaid(text: str) -> bool:
+    """Return whether a unit says nothing."""
+    return text.strip().lower() in UNSAID
