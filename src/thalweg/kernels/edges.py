@@ -21,7 +21,7 @@ from thalweg.kernels.codes import (
     WAVE_HEIGHT,
     WIND_SPEED,
 )
-from thalweg.kernels.leg import point_speed_known, water_depth
+from thalweg.kernels.leg import guided_point_speed, water_depth
 from thalweg.kernels.tables import TableArrays
 
 OPENING_TOLERANCE = 1.0  # an opening is found to this [s]
@@ -161,7 +161,7 @@ def sample_between(sea, a, b, weight, k, t, out, spare):
 
 
 @inlined
-def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
+def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least):
     """Sail one edge: return (arrival, status).
 
     Parameters
@@ -176,11 +176,15 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
         The sea at the tail of the edge at that time.
     sample, spare : float64[CHANNELS]
         Work space.
+    latest : float
+        An arrival from this time on is of no use [s].
+    least : float
+        Lower bound of the time per metre [s/m].
 
     Returns
     -------
     arrival : float
-        [s]; inf when the status is not `OK`.
+        [s]; inf when the status is not `OK`, or when it is of no use.
     status : int
 
     Notes
@@ -194,7 +198,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
     depth = float(network.depth[edge])
     table, setting, limits, needs = ship
     index = sea.channel_index
-    slowness, at, here = 0.0, 0.0, tail
+    slowness, at, here, guess = 0.0, 0.0, tail, math.inf
     first, last = network.via_ptr[edge], network.via_ptr[edge + 1]
     for p in range(first - 1, last + 1):
         piece = 0.0
@@ -202,6 +206,9 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
             to = float(network.via_s[p]) if p < last else 1.0
             piece = network.length[edge] * (to - at)
             at = to
+            soonest = 0.5 * piece * (slowness + least) + network.length[edge] * (1.0 - to) * least
+            if t + soonest >= latest:
+                return math.inf, OK
             then = t + piece * slowness
             k = interval_near(sea.times, k, then)
             if k < 0:
@@ -212,8 +219,8 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
                 a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
             sample_between(sea, a, b, weight, k, then, sample, spare)
             here = sample
-        speed, status = point_speed_known(
-            here, index, east, north, table, setting, depth, limits, needs
+        speed, status, guess = guided_point_speed(
+            here, index, east, north, table, setting, depth, limits, needs, guess
         )
         if status != OK:
             return math.inf, status
@@ -229,7 +236,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare):
 def _sail_at(network, sea, ship, edge, tail_node, k, t, work):
     """Sail an edge at any departure of interval k, sampling the tail too."""
     sample_station(sea, tail_node, k, t, work[1])
-    return sail_edge(network, sea, ship, edge, k, t, work[1], work[2], work[3])
+    return sail_edge(network, sea, ship, edge, k, t, work[1], work[2], work[3], math.inf, 0.0)
 
 
 @inlined

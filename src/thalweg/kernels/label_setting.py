@@ -192,8 +192,19 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
             quickest = length * query.slowness
             weight = 1.0 if query.by_distance else factor
             departure = time
+            latest = math.inf if query.by_distance else time + enough / factor
             arrival, status = sail_edge(
-                network, sea, ship, edge, k, time, work[0], work[2], work[3]
+                network,
+                sea,
+                ship,
+                edge,
+                k,
+                time,
+                work[0],
+                work[2],
+                work[3],
+                latest,
+                query.slowness,
             )
             useful = min(enough, weight * (arrival - time))
             if wait and (status != OK or pause + weight * quickest < useful):
@@ -215,6 +226,8 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
                 )
             if status != OK:
                 refused[status] += 1
+                continue
+            if arrival == math.inf:
                 continue
             if arrival > query.horizon:
                 refused[ARRIVE_BY] += 1

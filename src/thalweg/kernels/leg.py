@@ -39,7 +39,7 @@ _WAVE_AXES = (1 << AXIS_WAVE_HEIGHT) | (1 << AXIS_WAVE_ANGLE) | (1 << AXIS_WAVE_
 _ANGLE_AXES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
 _DEPTH_AXIS = 1 << AXIS_DEPTH
 _HEADING_TURNS = 6  # corrections of the heading at most
-_HEADING_TOLERANCE = 5e-3  # relative change that ends them; the error left is about its square
+_HEADING_TOLERANCE = 1e-3  # turn of the heading that no further correction is made for [rad]
 
 
 @inlined
@@ -106,15 +106,19 @@ def _waves(sample, channel_index, needs):
 
 
 @inlined
-def _through_water(needs, table, setting, course, across, wind, waves, depth):
+def _through_water(needs, table, setting, course, across, wind, waves, depth, guess):
     """Return (speed through water, ok), the heading corrected for the drift across the course."""
     east, north = course
-    head_east, head_north = east, north
     wind_speed = 0.0
     if needs & _WIND_AXES:
         wind_speed = math.sqrt(wind[0] * wind[0] + wind[1] * wind[1])
-    speed = -1.0
+    turns = across != 0.0 and needs & _ANGLE_AXES
+    speed = guess if guess > abs(across) else math.inf
     for _ in range(_HEADING_TURNS):
+        sine = -across / speed
+        cosine = math.sqrt(1.0 - sine * sine)
+        head_east = east * cosine - north * sine
+        head_north = north * cosine + east * sine
         wind_angle, wave_angle = 0.0, 0.0
         if needs & (1 << AXIS_WIND_ANGLE):
             wind_angle = bow_angle(head_east, head_north, wind[0], wind[1])
@@ -125,29 +129,28 @@ def _through_water(needs, table, setting, course, across, wind, waves, depth):
         speed, ok = sum_of_parts(table, axis_values, setting)
         if not ok:
             return 0.0, False
-        if across == 0.0 or not needs & _ANGLE_AXES or speed <= abs(across):
+        if not turns or speed <= abs(across):
             break
-        if abs(speed - before) <= _HEADING_TOLERANCE * speed:
+        if abs((speed - before) * across) <= _HEADING_TOLERANCE * speed * speed:
             break
-        sine = -across / speed
-        cosine = math.sqrt(1.0 - sine * sine)
-        head_east = east * cosine - north * sine
-        head_north = north * cosine + east * sine
     return speed, True
 
 
 @inlined
-def point_speed_known(
-    sample, channel_index, east, north, table, setting, static_depth, limits, needs
+def guided_point_speed(
+    sample, channel_index, east, north, table, setting, static_depth, limits, needs, guess
 ):
-    """Do as `point_speed` with ``needs = axes_needed(table)`` found beforehand."""
+    """Do as `point_speed_known`, with a guess of the speed through water for the first heading.
+
+    Returns (speed over ground, status, speed through water); a guess of inf is none.
+    """
     current_east, current_north = 0.0, 0.0
     if channel_index[CURRENT_EAST] >= 0 and channel_index[CURRENT_NORTH] >= 0:
         current_east, current_north = sample[CURRENT_EAST], sample[CURRENT_NORTH]
     along = current_east * east + current_north * north
     across = current_north * east - current_east * north  # positive to the left of the course
     if not (along == along and across == across):
-        return 0.0, NO_DATA
+        return 0.0, NO_DATA, 0.0
     field = channel_index[SPEED_FIELD] >= 0
     if field:
         needs = 0
@@ -156,39 +159,59 @@ def point_speed_known(
     if needs & _DEPTH_AXIS or required > -math.inf:
         depth = water_depth(sample, channel_index, static_depth)
         if depth != depth:
-            return 0.0, NO_DATA
+            return 0.0, NO_DATA, 0.0
         if depth < required:
-            return 0.0, DEPTH
+            return 0.0, DEPTH, 0.0
     waves = (0.0, 0.0, 0.0, 0.0)
     if needs & _WAVE_AXES or limits[LIMIT_WAVE_HEIGHT] < math.inf:
         height, wave_east, wave_north, period, known = _waves(sample, channel_index, needs)
         if not known:
-            return 0.0, NO_DATA
+            return 0.0, NO_DATA, 0.0
         if height > limits[LIMIT_WAVE_HEIGHT]:
-            return 0.0, WAVE_HEIGHT
+            return 0.0, WAVE_HEIGHT, 0.0
         waves = (height, wave_east, wave_north, period)
     wind = (0.0, 0.0)
     if needs & _WIND_AXES or limits[LIMIT_WIND_SPEED] < math.inf:
         wind = _wind(sample, channel_index, current_east, current_north)
         squared = wind[0] * wind[0] + wind[1] * wind[1]
         if squared != squared:
-            return 0.0, NO_DATA
+            return 0.0, NO_DATA, 0.0
         if squared > limits[LIMIT_WIND_SPEED] * limits[LIMIT_WIND_SPEED]:
-            return 0.0, WIND_SPEED
+            return 0.0, WIND_SPEED, 0.0
     if field:
         speed = sample[SPEED_FIELD]
         if speed != speed:
-            return 0.0, NO_DATA
+            return 0.0, NO_DATA, 0.0
     else:
         course = (east, north)
-        speed, ok = _through_water(needs, table, setting, course, across, wind, waves, depth)
+        speed, ok = _through_water(needs, table, setting, course, across, wind, waves, depth, guess)
         if not ok:
-            return 0.0, SHIP_RANGE
+            return 0.0, SHIP_RANGE, 0.0
     spare = speed * speed - across * across
     over_ground = along + math.sqrt(max(spare, 0.0))
     if speed <= 0.0 or spare <= 0.0 or over_ground <= 0.0:
-        return 0.0, CURRENT
-    return over_ground, OK
+        return 0.0, CURRENT, 0.0
+    return over_ground, OK, speed
+
+
+@inlined
+def point_speed_known(
+    sample, channel_index, east, north, table, setting, static_depth, limits, needs
+):
+    """Do as `point_speed` with ``needs = axes_needed(table)`` found beforehand."""
+    speed, status, _ = guided_point_speed(
+        sample,
+        channel_index,
+        east,
+        north,
+        table,
+        setting,
+        static_depth,
+        limits,
+        needs,
+        math.inf,
+    )
+    return speed, status
 
 
 @bare
@@ -228,8 +251,7 @@ def point_speed(sample, channel_index, east, north, table, setting, static_depth
     Current triangle (van Halem 2019, section 2.3): with the current's components ``a`` along and
     ``b`` across the course, the speed over ground is ``a + sqrt(V^2 - b^2)``. Wind is relative to
     the moving water; wind and wave angles are from the heading, which is first taken as the course
-    and then corrected by the current triangle until the speed changes by less than 0.5 %: as each
-    correction shrinks the change by that same ratio or more, about 3e-5 of the speed is left.
+    and then corrected by the current triangle until it would turn by less than 0.001 rad.
     """
     return point_speed_known(
         sample, channel_index, east, north, table, setting, static_depth, limits, axes_needed(table)

@@ -1,0 +1,155 @@
+"""Edge relaxations per second of the time-dependent search, on one core.
+
+A regular network of 10^6 nodes and 16 directions with currents, wind, waves and water level in
+eight channels and eight times; every edge is sampled at both ends and, where it is longer than the
+spacing's diagonal, in its middle; a depth limit and a wave limit are checked at every sample; speed
+comes from a table of Kwon's kind on wind speed and wind angle. Everything is made as plain arrays.
+
+    python benchmarks/relaxations.py [--side 1000] [--times 8] [--runs 3]
+
+"Relaxed" counts every edge that leaves a settled node, once. Most of these are dismissed by a
+bound before the sea is sampled; "sailed" counts the others.
+"""
+
+from __future__ import annotations
+
+import argparse
+import resource
+import statistics
+import time
+
+import numpy as np
+
+from thalweg.kernels import codes
+from thalweg.kernels.tables import TableArrays
+from thalweg.network.network import Network, NetworkMeta
+from thalweg.sea.fields import StationFields
+from thalweg.search.arrays import problem
+from thalweg.search.earliest_arrival import solve
+
+SPACING = 2000.0  # [m]
+OFFSETS = [
+    (i, j) for i in range(-2, 3) for j in range(-2, 3) if np.gcd(i, j) == 1
+]  # (rows, columns): 16 directions
+CHANNELS = (
+    codes.CURRENT_EAST,
+    codes.CURRENT_NORTH,
+    codes.WIND_EAST,
+    codes.WIND_NORTH,
+    codes.WAVE_HEIGHT_CH,
+    codes.WAVE_EAST,
+    codes.WAVE_NORTH,
+    codes.WATER_LEVEL,
+)
+SPEED, TOP_LIMITS = 8.0, np.array([8.0, 9.0, np.inf])
+
+
+def regular_network(side: int, offsets=OFFSETS) -> Network:
+    """Return a square network around the equator, rows to the north; lengths as on a plane."""
+    row, column = np.divmod(np.arange(side * side, dtype=np.int32), side)
+    inside = np.empty((side * side, len(offsets)), bool)
+    target = np.empty((side * side, len(offsets)), np.int32)
+    middle = np.empty((2, side * side, len(offsets)), np.int32)
+    for k, (i, j) in enumerate(offsets):
+        inside[:, k] = (row + i >= 0) & (row + i < side) & (column + j >= 0) & (column + j < side)
+        target[:, k] = (row + i) * side + column + j
+        for end, half in enumerate((np.floor, np.ceil)):
+            di, dj = int(half(i / 2)), int(half(j / 2))
+            middle[end, :, k] = (row + di) * side + column + dj
+
+    def each(values, dtype):
+        return np.broadcast_to(np.asarray(values, dtype), inside.shape)[inside]
+
+    length = SPACING * np.hypot(*np.array(offsets).T)
+    long = each(length > 1.5 * SPACING, bool)
+    edges, samples = len(long), int(long.sum())
+    indptr = np.concatenate(([0], np.cumsum(inside.sum(axis=1))))
+    degree = SPACING / 111e3
+    return Network(
+        station_lat=degree * (row - side / 2),
+        station_lon=degree * (column - side / 2),
+        n_nodes=side * side,
+        indptr=indptr.astype(np.int64),
+        target=target[inside],
+        length=each(length, np.float64),
+        course=each([np.arctan2(j, i) % (2 * np.pi) for i, j in offsets], np.float32),
+        depth=np.full(edges, 100.0, np.float32),
+        factor=np.ones(edges, np.float32),
+        price=np.ones(1, np.float32),
+        via_ptr=np.concatenate(([0], np.cumsum(long))).astype(np.int64),
+        via_a=middle[0][inside][long],
+        via_b=middle[1][inside][long],
+        via_w=np.full(samples, 0.5, np.float32),
+        via_s=np.full(samples, 0.5, np.float32),
+        can_wait=np.ones(side * side, bool),
+        meta=NetworkMeta("regular", SPACING, len(offsets), np.arctan(0.5)),
+    )
+
+
+def moving_sea(network: Network, period: float, steps: int) -> StationFields:
+    """Return eddies, travelling weather, waves with it, and a tide."""
+    x, y = network.station_lon / 9.0, network.station_lat / 9.0
+    times = np.linspace(0.0, period, steps)
+    values = np.empty((len(x), steps, len(CHANNELS)), np.float32)
+    for k, t in enumerate(times):
+        phase = 2 * np.pi * t / period
+        veer = 5 * y + phase + x
+        fields = (
+            0.8 * np.sin(30 * x + phase), 0.8 * np.cos(25 * y - phase),
+            12 * np.sin(5 * x + 3 * y + phase), 12 * np.cos(4 * y - 2 * x + phase),
+            3 + 2 * np.sin(4 * x + phase), np.sin(veer), np.cos(veer), np.sin(9 * phase + x),
+        )  # fmt: skip
+        for channel, field in enumerate(fields):
+            values[:, k, channel] = field
+    index = np.full(codes.CHANNELS, -1, np.int64)
+    index[list(CHANNELS)] = np.arange(len(CHANNELS))
+    return StationFields(times, values, index)
+
+
+def speed_table() -> TableArrays:
+    """Return calm-water speed plus a loss by wind speed and angle."""
+    wind, angle = np.linspace(0.0, 40.0, 41), np.linspace(0.0, np.pi, 37)
+    loss = -0.08 * (wind[:, None] / 10.0) ** 2 * (1.0 + np.cos(angle))
+    axes, start, inverse = np.full((2, 6), -1, np.int64), np.zeros((2, 6)), np.ones((2, 6))
+    size = np.full((2, 6), 2, np.int64)
+    axes[1, :2] = codes.AXIS_WIND_SPEED, codes.AXIS_WIND_ANGLE
+    inverse[1, :2] = 1.0 / wind[1], 1.0 / angle[1]
+    size[1, :2] = loss.shape
+    values = np.concatenate(([SPEED], loss.ravel())).astype(np.float32)
+    return TableArrays(axes, start, inverse, size, np.array([0, 1]), 1, values)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--side", type=int, default=1000, help="nodes along each side")
+    parser.add_argument("--times", type=int, default=8, help="times of the fields")
+    parser.add_argument("--runs", type=int, default=3)
+    options = parser.parse_args()
+    side = options.side
+    network = regular_network(side)
+    fields = moving_sea(network, 3.0 * side * SPACING / SPEED, options.times)
+    given = problem(network, fields, speed_table(), setting=0, limits=TOP_LIMITS, top_speed=SPEED)
+    solve(network, given, start=0, goal=1, depart=0.0)  # compile
+    print(f"{network.n_nodes:,} nodes, {network.n_edges:,} edges, {len(network.via_a):,} middles")
+    starts = [0, side * side // 2 + side // 2, side * side - 1, side * side // 4 + 3]
+    relaxed, sailed = [], []
+    for run in range(options.runs):
+        begin = time.process_time()
+        result = solve(network, given, start=starts[run % 4], goal=None, depart=60.0 * run)
+        taken = time.process_time() - begin
+        relaxed.append(result.relaxed / taken / 1e6)
+        sailed.append(result.work.sailed / taken / 1e6)
+        print(
+            f"  all nodes from {starts[run % 4]:>8}: {taken:.2f} s, {result.settled:,} settled, "
+            f"{result.relaxed:,} relaxed, {result.work.sailed:,} sailed, {result.refused}"
+        )
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    print(
+        f"median {statistics.median(relaxed):.1f} million relaxations a second (target 10), of "
+        f"which {statistics.median(sailed):.2f} million sailed; peak memory {memory:.2f} GB "
+        "(target < 2)"
+    )
+
+
+if __name__ == "__main__":
+    main()
