@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
 from thalweg.ship.hull import Hull, require
+from thalweg.ship.hull_estimates import estimate
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.nominal import KwonLoss, NominalModel, check_rising, cubic_law
@@ -101,6 +102,7 @@ def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
     if name == "none":
         return None
     needed = ("length_between_perpendiculars_m", "block_coefficient")
+    hull = estimate(hull, needed)
     length, block = require(hull, needed, "kwon_2008", instead="speed_loss: none")
     if math.isnan(loading.displacement_full):
         require(hull, ("displacement_m3",), "kwon_2008", instead="speed_loss: none")

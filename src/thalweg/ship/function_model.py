@@ -286,12 +286,13 @@ def _tabulate(
     names = sorted(reads & AXIS_OF.keys(), key=AXIS_OF.__getitem__)
 
     def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
-        speed = _call(function, Conditions(where, load_factor=load_factor))
-        shape = next(iter(where.values())).shape if where else (1,)
-        return np.maximum(np.broadcast_to(speed, shape), 0.0)[..., None]
+        whole = dict(zip(where, np.broadcast_arrays(*where.values())))
+        conditions = Conditions(whole, load_factor=load_factor)
+        speed = _call(function, conditions)
+        return np.maximum(np.broadcast_to(speed, conditions.shape), 0.0)[..., None]
 
     if not names:
-        return constant_part(speeds({})[0]), TableError(0.0, 0.0, 0.0, 0)
+        return constant_part(speeds({})), TableError(0.0, 0.0, 0.0, 0)
     return tabulate_dense(speeds, [DEFAULT_AXES[n] for n in names], tolerance=tolerance)
 
 

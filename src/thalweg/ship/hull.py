@@ -85,22 +85,15 @@ def _draughts(values: dict[str, float | str]) -> None:
 
 
 def _length(hull: Hull) -> Hull:
-    """Length between perpendiculars from the waterline's, and the other way round."""
+    """Lengths from the length overall, when it is the only one."""
     lpp, lwl = (hull.number(f"length_{k}_m") for k in ("between_perpendiculars", "waterline"))
-    if lpp is None and lwl is not None:
-        guess = Estimate("length_between_perpendiculars_m", lwl, "taken as the waterline length")
-        return hull.with_estimates(guess)
-    if lwl is None and lpp is not None:
-        guess = Estimate("length_waterline_m", lpp, "taken as the length between perpendiculars")
-        return hull.with_estimates(guess)
     overall = hull.number("length_overall_m")
-    if lpp is None and overall is not None:
-        guess = Estimate(
-            "length_between_perpendiculars_m", 0.96 * overall, "0.96 of length overall"
-        )
-        wet = Estimate("length_waterline_m", 0.98 * overall, "0.98 of length overall")
-        return hull.with_estimates(guess, wet)
-    return hull
+    if lpp is not None or lwl is not None or overall is None:
+        return hull
+    return hull.with_estimates(
+        Estimate("length_between_perpendiculars_m", 0.96 * overall, "0.96 of length overall"),
+        Estimate("length_waterline_m", 0.98 * overall, "0.98 of length overall"),
+    )
 
 
 def _fullness(hull: Hull) -> Hull:

@@ -18,7 +18,7 @@ class Key:
 
     Attributes
     ----------
-    kind : {"number", "numbers", "text", "flag", "word", "count"}
+    kind : {"number", "numbers", "text", "texts", "flag", "word", "word_or_number", "count"}
         What its value is; ``numbers`` is one number or a list of them.
     low, high : float
         Range of a number, both ends allowed.
@@ -69,8 +69,10 @@ _HULL: Final = {
     "transom_area_m2": _not_negative(2000.0),
     "appendage_area_m2": _not_negative(5000.0),
     "appendage_factor": Key(low=1.0, high=10.0),
-    "stern_shape": Key("word", words=("pram", "v", "normal", "u")),
+    "stern_shape": Key("word_or_number", -25.0, 10.0, words=("pram", "v", "normal", "u")),
     "half_entrance_angle_deg": _positive(90.0),
+    "length_entrance_m": _positive(500.0),
+    "length_run_m": _positive(500.0),
     "frontal_area_m2": _positive(1e4),
     "lateral_area_m2": _positive(2e4),
     "superstructure_lateral_area_m2": _not_negative(2e4),
@@ -105,7 +107,7 @@ _PROPULSION: Final = {
 }
 _ENGINE: Final = {
     "count": Key("count", low=1, high=12),
-    "type": Key("word", words=("slow", "medium", "high", "steam", "gas_turbine")),
+    "type": Key("text"),
     "power_kw": _positive(2e5),
     "rpm": _positive(3000.0),
     "sfoc_g_per_kwh": _positive(1000.0),
@@ -276,7 +278,9 @@ def _columns(rows: Any) -> Any:
 
 
 def _check_value(where: str, value: Any, key: Key) -> Any:
-    if key.kind in ("number", "count"):
+    if key.kind in ("number", "count") or (
+        key.kind == "word_or_number" and not isinstance(value, str)
+    ):
         return _number(where, value, key)
     if key.kind == "numbers":
         many = value if isinstance(value, (list, tuple)) else [value]
@@ -294,7 +298,7 @@ def _check_value(where: str, value: Any, key: Key) -> Any:
         return tuple(many)
     if not isinstance(value, str) or not value.strip():
         raise _wrong(where, value, "text")
-    if key.kind == "word" and value not in key.words:
+    if key.words and value not in key.words:
         raise unknown_name(f"{where}", value, key.words)
     return value
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, ModelRangeError
 from thalweg.core.units import KNOT
-from thalweg.ship.build import build_limits, build_loading, build_nominal
+from thalweg.ship.build import build_limits, build_loading
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.hull import complete_hull
@@ -25,6 +25,7 @@ from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.powering import ResistanceModel
 from thalweg.ship.schema import check_ship_data
 from thalweg.ship.ship_file import read_ship
 from thalweg.ship.table import PerformanceTable
@@ -89,16 +90,19 @@ class Ship:
         InputError
             For unknown or missing keys, numbers out of range and hulls that cannot be.
         """
+        from thalweg.ship.compose import build_model
+
         checked = check_ship_data(data, source)
         hull = complete_hull(checked.get("hull", {}))
         loading = build_loading(checked, hull)
+        model = build_model(checked, hull, loading)
         return cls(
             name=checked["name"],
-            model=build_nominal(checked, hull, loading),
+            model=model,
             loading=loading,
             limits=build_limits(checked),
             data=MappingProxyType(checked),
-            estimated=hull.estimated,
+            estimated=getattr(model, "estimated", hull.estimated),
         )
 
     @classmethod
@@ -299,6 +303,47 @@ class Ship:
     def fuel_rate(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
         """Fuel rate [kg/s]; NaN where unknown. Parameters as in `speed_through_water`."""
         return self.model.fuel_rate(self._loaded(conditions), setting)
+
+    def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
+        """Brake power [W] that holds speeds through water [m/s], whatever the engines can give.
+
+        Raises
+        ------
+        InputError
+            If the ship is not made from its resistance.
+        """
+        return self._resistance_model("power").power_at_speed(self._loaded(conditions), speed)
+
+    def resistance(self, conditions: Conditions, speed: ArrayLike) -> dict[str, FloatArray]:
+        """Resistance by component [N] at speeds through water [m/s].
+
+        Parameters
+        ----------
+        conditions : Conditions
+        speed : array_like
+
+        Returns
+        -------
+        dict
+            ``total`` and its terms: ``friction, form_factor, appendage, wave_making, bulb, transom,
+            correlation, residuary`` in deep water, ``shallow`` (what the depth adds), ``waves``,
+            ``wind``, ``rudder``; zero where a method has no such term.
+
+        Raises
+        ------
+        InputError
+            If the ship is not made from its resistance.
+        """
+        return self._resistance_model("resistance").resistance(self._loaded(conditions), speed)
+
+    def _resistance_model(self, what: str) -> ResistanceModel:
+        if not isinstance(self.model, ResistanceModel):
+            raise InputError(
+                f"The {what} of {self.name!r} at a speed is not known.",
+                "Ships with models.calm_water such as holtrop_1984 know it.",
+                "Choose such a ship or model.",
+            )
+        return self.model
 
     def notes(
         self, conditions: Conditions, setting: ArrayLike = 0, *, strict: bool = False

@@ -15,7 +15,7 @@ from thalweg.ship.table import TableError, TablePart
 from thalweg.ship.variables import CONDITION_OF
 
 FloatArray = NDArray[np.float64]
-#: given conditions by name (arrays of one shape), returns values of shape (*shape, settings)
+#: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
 Tabulated = Callable[[Mapping[str, FloatArray]], FloatArray]
 
 FLOOR: Final = 0.1  #: relative errors are not taken to less than this share of the greatest value
@@ -79,38 +79,42 @@ def tabulate_dense(
     *,
     tolerance: float,
     largest: int = LARGEST_TABLE,
-    seed: int = 0,
+    base: FloatArray | float = 0.0,
+    check: Callable[[TablePart], TableError] | None = None,
 ) -> tuple[TablePart, TableError]:
     """Tabulate a function on a full grid, refined until the error meets the tolerance.
 
     Parameters
     ----------
     function : callable
-        Takes conditions by name, arrays of one shape; returns shape ``(*shape, settings)``.
+        Takes conditions by name, arrays that broadcast; returns shape ``(*shape, settings)``.
     axes : sequence of Axis
         Where to begin; at least one.
     tolerance : float
         Relative error that 99 % of random conditions must meet; see `TableError`.
     largest : int
         Bytes the table may take. Refinement stops there; the error says what was reached.
-    seed : int
-        Of the random conditions.
+    base : ndarray
+        What the function is a correction to, per setting; errors are relative to the sum.
+    check : callable, optional
+        Measures the error of a part in its own way.
 
     Returns
     -------
     part : TablePart
     error : TableError
     """
-    points = random_conditions(axes, _SAMPLES, seed)
-    truth = function(points)
+    points = random_conditions(axes, _SAMPLES if check is None else 1, 0)
+    truth = function(points) + base
     axes = _fitting(axes, largest // (4 * truth.shape[-1]))
+    measure = check or (lambda part: table_error(lookup_all(part, points) + base, truth))
     while True:
         values = _on_grid(function, axes)
         part = TablePart(tuple(a.axis for a in axes), tuple(a.grid for a in axes), values)
-        error = table_error(lookup_all(part, points), truth)
+        error = measure(part)
         if error.p99 <= tolerance:
             return part, error
-        worst = _worst_axis(values, axes)
+        worst = _worst_axis(values, axes, base)
         if worst is None or 2 * values.nbytes > largest:
             return part, error
         axes[worst] = axes[worst].refined()
@@ -166,15 +170,20 @@ def _on_grid(function: Tabulated, axes: Sequence[Axis]) -> NDArray[np.float32]:
     grids = [a.grid for a in axes]
     slabs = []
     for first in range(0, axes[0].size, rows):
-        mesh = np.meshgrid(grids[0][first : first + rows], *grids[1:], indexing="ij")
-        slabs.append(function({a.name: m for a, m in zip(axes, mesh)}).astype(np.float32))
+        first_grid = grids[0][first : first + rows]
+        mesh = np.meshgrid(first_grid, *grids[1:], indexing="ij", sparse=True)
+        values = np.asarray(function({a.name: m for a, m in zip(axes, mesh)}), np.float32)
+        shape = (len(first_grid), *(a.size for a in axes[1:]), values.shape[-1])
+        slabs.append(np.broadcast_to(values, shape))
     return np.concatenate(slabs)
 
 
-def _worst_axis(values: NDArray[np.float32], axes: Sequence[Axis]) -> int | None:
+def _worst_axis(
+    values: NDArray[np.float32], axes: Sequence[Axis], base: FloatArray | float
+) -> int | None:
     """Return the axis along which linear interpolation errs most, by second differences."""
-    top = np.nanmax(np.abs(values), initial=0.0)
-    scale = np.maximum(np.abs(values), FLOOR * top) + 1e-12
+    whole = np.abs(values + np.asarray(base, np.float32))
+    scale = np.maximum(whole, FLOOR * np.nanmax(whole, initial=0.0)) + 1e-12
     bends = []
     for k, axis in enumerate(axes):
         if axis.fixed or 2 * axis.size - 1 > _LARGEST_AXIS or axis.size < 3:

@@ -1,0 +1,152 @@
+"""Put a ship together from the parts that its file names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.units import KNOT
+from thalweg.ship.build import build_limits, build_nominal
+from thalweg.ship.calm_parts import CALM_WATER, build_calm_water, check_length_order
+from thalweg.ship.hull import Hull
+from thalweg.ship.hull_estimates import estimate, hull_at
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.powering import Balance, Orders, ResistanceModel
+from thalweg.ship.propulsion_parts import Plant, build_plant, build_propulsion
+from thalweg.ship.weather_parts import build_waves, build_wind
+
+RUDDER = ("none", "schless_2023")
+_FACTS = ("hull", "propulsion", "engine", "loading", "models")
+
+
+def build_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ShipModel:
+    """Return the model a ship file asks for.
+
+    Parameters
+    ----------
+    data : mapping
+        Checked data of the ship file.
+    hull : Hull
+    loading : Loading
+
+    Raises
+    ------
+    InputError
+        For unknown methods (with near matches), methods that do not go together, and missing data.
+    """
+    models = data.get("models", {})
+    calm = models.get("calm_water")
+    if calm in CALM_WATER:
+        return _resistance_model(data, hull, loading)
+    if calm not in (None, "none", "cubic", "table"):
+        raise unknown_name("calm-water model", calm, ("none", "cubic", "table", *CALM_WATER))
+    parts = ("waves", "wind", "shallow_water", "friction", "propulsion", "rudder")
+    idle = [name for name in parts if models.get(name, "none") != "none"]
+    if idle:
+        raise InputError(
+            f"The ship file chooses {', '.join(f'models.{name}' for name in idle)}, but has no "
+            "resistance they could act on.",
+            f"They go with models.calm_water among {', '.join(CALM_WATER)}.",
+            "Choose one of those, or speed_loss: kwon_2008 for a ship with known speeds.",
+            key=f"models.{idle[0]}",
+        )
+    return build_nominal(data, hull, loading)
+
+
+def _resistance_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ResistanceModel:
+    models = data.get("models", {})
+    if models.get("speed_loss", "none") != "none":
+        raise InputError(
+            f"speed_loss: {models['speed_loss']} is for ships with known calm-water speeds.",
+            "Ships with a resistance lose speed by models.waves and models.wind.",
+            "Leave speed_loss out, or choose calm_water: table, cubic or none.",
+            key="models.speed_loss",
+        )
+    if models.get("rudder", "none") not in RUDDER:
+        raise unknown_name("rudder method", models["rudder"], RUDDER)
+    check_length_order(hull)
+    full = estimate(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
+    if full.number("draught_m") is None:
+        deep = loading.draught_full
+        ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
+        full = Hull({**full.values, **ends}, full.estimated)
+    full = _displaced(full, loading)
+
+    def balance_at(load_factor: float) -> Balance:
+        floated = full
+        if loading.draught_full != loading.draught_empty:
+            wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
+            floated = hull_at(estimate(full, wanted), loading, load_factor)
+        return _balance(data, floated)
+
+    plant = build_plant(data)
+    orders, guessed = _orders(data, balance_at(1.0), plant)
+    plant = replace(plant, estimated=(*plant.estimated, *guessed))
+    facts = {name: data[name] for name in _FACTS if name in data}
+    return ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
+
+
+def _displaced(hull: Hull, loading: Loading) -> Hull:
+    """The hull with the full displacement of the loading, when it gives none itself."""
+    volume = loading.displacement_full
+    if hull.number("displacement_m3") is not None or not np.isfinite(volume):
+        return estimate(hull, ("displacement_m3", "block_coefficient"))
+    values = {**hull.values, "displacement_m3": volume}
+    return estimate(Hull(values, hull.estimated), ("block_coefficient",))
+
+
+def _balance(data: Mapping[str, Any], hull: Hull) -> Balance:
+    calm = build_calm_water(data, hull)
+    rudder = data.get("models", {}).get("rudder", "none")
+    return Balance(
+        calm=calm,
+        propulsion=build_propulsion(data, calm.hull),
+        waves=build_waves(data, calm.hull),
+        wind=build_wind(data, calm.hull),
+        rudder_area=(hull.number("rudder_area_m2") or 0.0) if rudder != "none" else 0.0,
+    )
+
+
+def _orders(
+    data: Mapping[str, Any], balance: Balance, plant: Plant
+) -> tuple[Orders, tuple[Estimate, ...]]:
+    """Powers or speeds that can be ordered, and whether they were our guess."""
+    powers, speeds = data.get("powers_kw"), data.get("speeds_kn")
+    if powers is not None and speeds is not None:
+        raise InputError(
+            "The ship file gives both powers_kw and speeds_kn.",
+            "A ship keeps either a power or a speed.",
+            "Keep one of them.",
+            key="powers_kw",
+        )
+    if powers is not None:
+        _check_powers(powers, plant)
+        return Orders("power", tuple(sorted(p * 1000.0 for p in powers))), ()
+    if speeds is not None:
+        return Orders("speed", tuple(sorted(s * KNOT for s in speeds))), ()
+    if np.isfinite(plant.largest_power):
+        powers = tuple(share * plant.largest_power for share in (0.25, 0.4, 0.55, 0.7, 0.85))
+        guess = Estimate("powers_kw", powers[-1] / 1e3, "25 to 85 % of the engine's rating")
+        return Orders("power", powers), (guess,)
+    length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
+    usual = 0.18 * np.sqrt(9.80665 * length)
+    return Orders("speed", (float(usual),)), (
+        Estimate("speeds_kn", float(usual / KNOT), "Froude number 0.18"),
+    )
+
+
+def _check_powers(powers: tuple[float, ...], plant: Plant) -> None:
+    if len(set(powers)) != len(powers):
+        raise InputError("powers_kw has a power twice.", "", "Remove one of them.", key="powers_kw")
+    if max(powers) * 1000.0 > plant.largest_power * (1 + 1e-9):
+        raise InputError(
+            f"powers_kw asks for {max(powers):g} kW.",
+            f"The engines give {plant.largest_power / 1000:g} kW.",
+            "Lower it, or correct engine.power_kw.",
+            key="powers_kw",
+        )

@@ -1,0 +1,344 @@
+"""From resistance to brake power to fuel in a composed ship: propulsion and engines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.ship.calm_parts import stern_shape
+from thalweg.ship.hull import Hull
+from thalweg.ship.hull_estimates import estimated_or_error
+from thalweg.ship.methods.engine import (
+    G_KWH,
+    base_sfoc,
+    fuel_rate,
+    hotel_fuel_rate,
+    plant_fuel_rate,
+)
+from thalweg.ship.methods.friction import ittc_1957, reynolds_number
+from thalweg.ship.methods.fuel import fuel_named
+from thalweg.ship.methods.holtrop_form import HullForm, form_factor_1984, hull_form
+from thalweg.ship.methods.notes import RangeNote, range_notes
+from thalweg.ship.methods.propeller_b_series import Propeller, b_series_validity
+from thalweg.ship.methods.propulsion import (
+    Efficiencies,
+    constant_efficiency_power,
+    propulsion,
+    relative_rotative_single,
+    relative_rotative_twin,
+    thrust_deduction_single,
+    thrust_deduction_twin,
+    viscous_coefficient,
+    wake_fraction_single,
+    wake_fraction_twin,
+)
+from thalweg.ship.model import Estimate
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Propulsion:
+    """What turns resistance into brake power.
+
+    Attributes
+    ----------
+    method : str
+    brake_power : callable
+        [W] from speed [m/s] and resistance [N]; zero where wind or waves push.
+    estimated : tuple of Estimate
+    notes : tuple of RangeNote
+        Where the propeller is outside its series.
+    """
+
+    method: str
+    brake_power: Callable[[FloatArray, FloatArray], FloatArray]
+    estimated: tuple[Estimate, ...] = ()
+    notes: tuple[RangeNote, ...] = ()
+
+
+def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
+    usual = Efficiencies()
+    names = {
+        "open_water_efficiency": usual.open_water,
+        "relative_rotative_efficiency": usual.relative_rotative,
+        "hull_efficiency": usual.hull,
+        "shaft_efficiency": usual.transmission,
+        "gear_efficiency": usual.gear,
+    }
+    if "propulsive_efficiency" in given:
+        names = {key: 1.0 for key in names} | {
+            "open_water_efficiency": given["propulsive_efficiency"],
+            "shaft_efficiency": names["shaft_efficiency"],
+            "gear_efficiency": names["gear_efficiency"],
+        }
+        given = {"open_water_efficiency": given["propulsive_efficiency"], **given}
+    if "wake_fraction" in given and "thrust_deduction" in given:
+        own = (1.0 - given["thrust_deduction"]) / (1.0 - given["wake_fraction"])
+        given = {"hull_efficiency": own, **given}
+    values = {key: float(given.get(key, usual_value)) for key, usual_value in names.items()}
+    chain = Efficiencies(*values.values())
+    guessed = tuple(
+        Estimate(key, values[key], "usual value, Schless (2023)")
+        for key in names
+        if key not in given and not ("propulsive_efficiency" in given and values[key] == 1.0)
+    )
+
+    def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
+        return constant_efficiency_power(speed, resistance, efficiencies=chain)
+
+    return Propulsion("efficiencies", power, guessed)
+
+
+def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
+    keys = (
+        *("propeller_diameter_m", "propeller_pitch_ratio"),
+        *("propeller_area_ratio", "propeller_blades"),
+    )
+    missing = [key for key in keys if key not in given]
+    if missing:
+        raise InputError(
+            f"The B-series propeller needs {', '.join(missing)} under 'propulsion'.",
+            f"It needs {', '.join(keys)}.",
+            "Add them, or choose propulsion: efficiencies.",
+            missing=missing,
+        )
+    screw = Propeller(*(float(given[key]) for key in keys[:3]), int(given["propeller_blades"]))
+    count = int(given.get("propellers", 1))
+    form, hull = _form(hull)
+    factors, guessed = _interaction(hull, form, given, screw, count)
+    losses, lost = _losses(given)
+
+    def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
+        wake, deduction, rotative = factors(speed)
+        state = propulsion(
+            speed,
+            resistance,
+            screw,
+            wake_fraction=wake,
+            thrust_deduction=deduction,
+            relative_rotative=rotative,
+            propellers=count,
+            **losses,
+        )
+        return state.brake_power
+
+    notes = tuple(b_series_validity(screw))
+    return Propulsion("wageningen_b", power, (*guessed, *lost), notes)
+
+
+def _losses(given: Mapping[str, Any]) -> tuple[dict[str, float], tuple[Estimate, ...]]:
+    usual = {"shaft_efficiency": 0.98, "gear_efficiency": 1.0}
+    guessed = tuple(
+        Estimate(key, value, "usual value") for key, value in usual.items() if key not in given
+    )
+    return {key: float(given.get(key, value)) for key, value in usual.items()}, guessed
+
+
+def _form(hull: Hull) -> tuple[HullForm, Hull]:
+    keys = (
+        *("length_waterline_m", "breadth_m", "draught_m", "displacement_m3"),
+        *("midship_coefficient", "waterplane_coefficient", "lcb_percent"),
+    )
+    wanted = (*keys, "wetted_surface_m2")
+    hull = estimated_or_error(hull, wanted, "wageningen_b", instead="propulsion: efficiencies")
+    values = {key: float(hull.values[key]) for key in keys}
+    form = hull_form(
+        length_waterline=values["length_waterline_m"],
+        breadth=values["breadth_m"],
+        draught=values["draught_m"],
+        displacement=values["displacement_m3"],
+        midship_coefficient=values["midship_coefficient"],
+        waterplane_coefficient=values["waterplane_coefficient"],
+        lcb_percent=values["lcb_percent"],
+    )
+    return form, hull
+
+
+def _interaction(
+    hull: Hull, form: HullForm, given: Mapping[str, Any], screw: Propeller, count: int
+) -> tuple[Callable[[FloatArray], tuple[FloatArray, float, float]], tuple[Estimate, ...]]:
+    """Wake fraction by speed, thrust deduction and relative rotative efficiency."""
+    size, stern = screw.diameter, stern_shape(hull)
+    single = count == 1
+    if single:
+        deduction = float(
+            thrust_deduction_single(form, propeller_diameter=size, stern_shape=stern, year=1984)
+        )
+        rotative = float(relative_rotative_single(form, area_ratio=screw.area_ratio))
+    else:
+        deduction = float(thrust_deduction_twin(form, propeller_diameter=size))
+        rotative = float(relative_rotative_twin(form, pitch_ratio=screw.pitch_ratio))
+    guesses = {"thrust_deduction": deduction, "relative_rotative_efficiency": rotative}
+    guessed = [
+        Estimate(key, value, "Holtrop (1984)") for key, value in guesses.items() if key not in given
+    ]
+    deduction = float(given.get("thrust_deduction", deduction))
+    rotative = float(given.get("relative_rotative_efficiency", rotative))
+    if "wake_fraction" in given:
+        fixed = np.asarray(float(given["wake_fraction"]))
+        return lambda speed: (fixed, deduction, rotative), tuple(guessed)
+    wake = _wake(hull, form, size, single=single)
+    typical = 0.2 * np.sqrt(9.81 * float(form.length))
+    guessed.append(
+        Estimate("wake_fraction", float(wake(np.asarray(typical))), "Holtrop (1984), at Fn 0.2")
+    )
+    return lambda speed: (wake(speed), deduction, rotative), tuple(guessed)
+
+
+def _wake(
+    hull: Hull, form: HullForm, size: float, *, single: bool
+) -> Callable[[FloatArray], FloatArray]:
+    """Holtrop's wake fraction by speed, between 0 and 0.6."""
+    stern, aft = stern_shape(hull), float(hull.values["draught_aft_m"])
+    area = float(hull.values["wetted_surface_m2"])
+    factor = form_factor_1984(form, stern_shape=stern)
+
+    def wake(speed: FloatArray) -> FloatArray:
+        line = ittc_1957(reynolds_number(speed, length=form.length))
+        viscous = viscous_coefficient(line, form_factor=factor, correlation=0.0004)
+        if not single:
+            found = wake_fraction_twin(form, propeller_diameter=size, viscous=viscous)
+        else:
+            found = wake_fraction_single(
+                form,
+                draught_aft=aft,
+                propeller_diameter=size,
+                wetted_surface_area=area,
+                viscous=viscous,
+                stern_shape=stern,
+                year=1984,
+            )
+        return np.clip(found, 0.0, 0.6)
+
+    return wake
+
+
+PROPULSION: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], Propulsion]]] = MappingProxyType(
+    {"efficiencies": _efficiencies, "wageningen_b": _b_series}
+)
+
+
+def build_propulsion(data: Mapping[str, Any], hull: Hull) -> Propulsion:
+    """Return the propulsion chosen in a ship file; constant efficiencies when none is named.
+
+    Raises
+    ------
+    InputError
+    """
+    given = data.get("propulsion", {})
+    name = data.get("models", {}).get("propulsion", "efficiencies")
+    if name not in PROPULSION:
+        raise unknown_name("propulsion method", name, PROPULSION)
+    return PROPULSION[name](hull, given)
+
+
+@dataclass(frozen=True)
+class Plant:
+    """Engines: how much power there is, and what it burns.
+
+    Attributes
+    ----------
+    rating : float
+        Maximum continuous rating of one engine [W]; infinite when not given.
+    count : int
+    sfoc : float
+        Least specific consumption [g/kWh]; NaN when unknown.
+    curve : tuple of tuple of float
+        Loads and specific consumptions [g/kWh] of the engine's own curve; empty for the shape of
+        the Fourth IMO GHG Study.
+    hotel_power, hotel_sfoc : float
+        Other power [W] and its consumption [g/kWh].
+    estimated : tuple of Estimate
+    """
+
+    rating: float
+    count: int = 1
+    sfoc: float = float("nan")
+    curve: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    hotel_power: float = 0.0
+    hotel_sfoc: float = 195.0
+    estimated: tuple[Estimate, ...] = ()
+
+    @property
+    def largest_power(self) -> float:
+        """All engines at their rating [W]; infinite when not given."""
+        return self.rating * self.count
+
+    def fuel(self, power: FloatArray) -> FloatArray:
+        """Fuel rate [kg/s] of a brake power [W], hotel load included; NaN when unknown."""
+        hotel = hotel_fuel_rate(self.hotel_power, sfoc_g_kwh=self.hotel_sfoc)
+        return self._engines(np.asarray(power, float)) + hotel
+
+    def _engines(self, power: FloatArray) -> FloatArray:
+        if self.curve[0]:
+            load = power / self.largest_power
+            return power * np.interp(load, *self.curve) * G_KWH
+        if np.isinf(self.rating):
+            return power * self.sfoc * G_KWH
+        if self.count == 1:
+            return fuel_rate(power, self.rating, sfoc_g_kwh=self.sfoc)
+        reachable = np.minimum(power, self.largest_power)
+        return plant_fuel_rate(reachable, self.rating, count=self.count, sfoc_g_kwh=self.sfoc)[0]
+
+    def notes(self, power: FloatArray) -> list[RangeNote]:
+        """Loads above the rating, or below a fifth of one engine's."""
+        if np.isinf(self.rating):
+            return []
+        return [
+            *range_notes("engine", {"load": (power / self.largest_power, 0.0, 1.0 + 1e-6)}),
+            *range_notes("sfoc", {"load of one engine": (power / self.rating, 0.2, np.inf)}),
+        ]
+
+
+def build_plant(data: Mapping[str, Any]) -> Plant:
+    """Return the engines of a ship file.
+
+    Raises
+    ------
+    InputError
+        For unknown engine types or fuels, and curves that do not fit.
+    """
+    given = data.get("engine", {})
+    loads, curve = given.get("sfoc_load", ()), given.get("sfoc_curve_g_per_kwh", ())
+    if len(loads) != len(curve) or (len(loads) and (np.diff(loads) <= 0).any()):
+        raise InputError(
+            f"The engine's curve has {len(loads)} loads and {len(curve)} consumptions.",
+            "sfoc_load rises, and sfoc_curve_g_per_kwh has as many numbers.",
+            "Correct them.",
+            key="engine.sfoc_load",
+        )
+    if len(loads) and "power_kw" not in given:
+        raise InputError(
+            "The engine has a curve over load, but no power_kw.",
+            "Load is power over engine.power_kw times engine.count.",
+            "Add engine.power_kw.",
+            missing=["engine.power_kw"],
+        )
+    sfoc, guessed = _sfoc(data)
+    return Plant(
+        rating=given.get("power_kw", float("inf")) * 1000.0,
+        count=int(given.get("count", 1)),
+        sfoc=sfoc,
+        curve=(tuple(loads), tuple(curve)),
+        hotel_power=given.get("hotel_load_kw", 0.0) * 1000.0,
+        hotel_sfoc=given.get("hotel_sfoc_g_per_kwh", 195.0),
+        estimated=guessed,
+    )
+
+
+def _sfoc(data: Mapping[str, Any]) -> tuple[float, tuple[Estimate, ...]]:
+    given = data.get("engine", {})
+    if "sfoc_g_per_kwh" in given:
+        return float(given["sfoc_g_per_kwh"]), ()
+    if "type" not in given or given.get("sfoc_curve_g_per_kwh"):
+        return float("nan"), ()
+    kind = fuel_named(data.get("fuel", {}).get("type", "hfo")).kind
+    value, record = base_sfoc(given["type"], kind, built=int(given.get("year", 2010)))
+    return value, (Estimate("engine.sfoc_g_per_kwh", value, record.source),)

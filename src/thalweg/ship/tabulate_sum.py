@@ -1,0 +1,236 @@
+"""Tables of resistance-based ships: what wind, waves and depth cost, alone and together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import reduce
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import ModelRangeError
+from thalweg.kernels import codes
+from thalweg.ship.ladder import Ladder
+from thalweg.ship.limits import ShipLimits
+from thalweg.ship.powering import Balance, ResistanceModel
+from thalweg.ship.table import TableError, TablePart
+from thalweg.ship.tabulate import (
+    Axis,
+    constant_part,
+    lookup_all,
+    random_conditions,
+    table_error,
+    tabulate_dense,
+)
+from thalweg.ship.variables import CONDITION_OF
+
+FloatArray = NDArray[np.float64]
+_GROUPS: Final = (
+    ("wind_speed", "wind_angle"),
+    ("wave_height", "wave_angle", "wave_period"),
+    ("depth",),
+)
+#: first grids of the parts of one group, and of the part they share
+_ALONE: Final = {
+    "wind_speed": Axis(codes.AXIS_WIND_SPEED, 0.0, 40.0, 26),
+    "wind_angle": Axis(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 19),
+    "wave_height": Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 12.0, 17),
+    "wave_angle": Axis(codes.AXIS_WAVE_ANGLE, 0.0, np.pi, 25),
+    "wave_period": Axis(codes.AXIS_WAVE_PERIOD, 0.0, 30.0, 31),
+}
+_SHARED: Final = {
+    "wind_speed": (9, 9),
+    "wind_angle": (13, 7),
+    "wave_height": (13, 7),
+    "wave_angle": (13, 7),
+    "wave_period": (17, 9),
+    "depth": (13, 13),
+}  # without and with depth
+_CHECKS: Final = 1500
+_LARGEST_ALONE: Final = 2_000_000  #: bytes
+_LARGEST_SHARED: Final = 12_000_000  #: bytes
+
+
+def tabulate_balance(
+    model: ResistanceModel, load_factor: float, tolerance: float
+) -> tuple[tuple[TablePart, ...], TableError]:
+    """Tabulate the speed through water of every setting as a sum of parts.
+
+    First a constant (calm, deep), one part for wind, one for waves, one for depth, each refined on
+    its own; where their sum misses the tolerance, one part more for wind and waves together, and one
+    for all three.
+
+    Parameters
+    ----------
+    model : ResistanceModel
+    load_factor : float
+    tolerance : float
+        See `thalweg.ship.tabulate.table_error`.
+
+    Returns
+    -------
+    parts : tuple of TablePart
+    error : TableError
+        Against the methods themselves.
+
+    Raises
+    ------
+    ModelRangeError
+        If power does not rise with speed somewhere.
+    """
+    balance = model.balance(load_factor)
+    check_power_rises(model, load_factor)
+    ladder = Ladder.of(model, load_factor)
+    ranges = axes_of(balance, model.limits)
+    groups = [[ranges[n] for n in names if n in ranges] for names in _GROUPS]
+    groups = [group for group in groups if group]
+    calm = model.speeds(load_factor)
+    parts = [constant_part(calm)]
+    for group in groups:
+        part, _ = tabulate_dense(
+            lambda where: ladder(where) - calm,
+            group,
+            tolerance=tolerance / 3,
+            largest=_LARGEST_ALONE,
+            base=calm,
+        )
+        parts.append(part)
+    axes = [axis for group in groups for axis in group]
+    if not axes:
+        return tuple(parts), TableError(0.0, 0.0, 0.0, 0)
+    points = random_conditions(axes, _CHECKS, 7)
+    truth = _speeds(model, balance, load_factor, points)
+    error = table_error(_total(parts, points), truth)
+    if error.p99 > tolerance:
+        for together in _growing(groups):
+            parts.append(_together(ladder, together, parts, tolerance))
+        error = table_error(_total(parts, points), truth)
+    return tuple(parts), error
+
+
+def axes_of(balance: Balance, limits: ShipLimits) -> dict[str, Axis]:
+    """Return the axes a balance has, by condition: up to the limits, from just below the keel."""
+    found = {name: axis for name, axis in _ALONE.items() if name in balance.reads}
+    for name, limit in (("wind_speed", limits.wind_speed), ("wave_height", limits.wave_height)):
+        if name in found:
+            found[name] = replace(found[name], stop=min(found[name].stop, 1.0001 * limit))
+    if "depth" in balance.reads:
+        draught = float(balance.calm.hull.values["draught_m"])
+        length = float(balance.calm.hull.values["length_waterline_m"])
+        stop = draught + 1.1 * length
+        found["depth"] = Axis(codes.AXIS_DEPTH, 1.05 * draught, stop, 129)
+    return found
+
+
+def check_power_rises(model: ResistanceModel, load_factor: float) -> None:
+    """Refuse a ship whose power falls while its speed rises, calm or in weather.
+
+    Raises
+    ------
+    ModelRangeError
+    """
+    balance = model.balance(load_factor)
+    ranges = axes_of(balance, model.limits)
+    top = float(model.speeds(load_factor).max())
+    ladder = np.linspace(0.3, 1.0, 36) * top
+    draws = random_conditions(list(ranges.values()), 24, 3)
+    at = {name: np.repeat(values, ladder.size) for name, values in draws.items()}
+    count = 24 * ladder.size
+    for name in ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth"):
+        at.setdefault(name, np.full(count, _rest(name)))
+    at["wave_height"] = 0.4 * at["wave_height"]
+    power = balance.brake_power(at, np.tile(ladder, 24)).reshape(24, -1)
+    falls = np.argwhere(np.diff(power, axis=1) < -1e-6 * np.nanmax(power))
+    if falls.size:
+        case, step = falls[0]
+        raise ModelRangeError(
+            f"The ship's power falls from {power[case, step] / 1e3:.0f} to "
+            f"{power[case, step + 1] / 1e3:.0f} kW while its speed rises from {ladder[step]:.2f} "
+            f"to {ladder[step + 1]:.2f} m/s.",
+            "A speed at a power can be found only where power rises with speed.",
+            "Choose other methods for calm or shallow water, or a lower range of speeds.",
+        )
+
+
+def greatest_speed(model: ResistanceModel, load_factor: float) -> FloatArray:
+    """Greatest speed of every setting over the table's nodes and random conditions [m/s]."""
+    parts, _ = model.tabulate(load_factor, 0.01)
+    axes = list(axes_of(model.balance(load_factor), model.limits).values())
+    calm = model.speeds(load_factor)
+    if not axes:
+        return calm
+    points = random_conditions(axes, _CHECKS, 11)
+    exact = np.nanmax(_speeds(model, model.balance(load_factor), load_factor, points), axis=0)
+    alone = calm + sum(np.maximum(np.nanmax(_flat(p), axis=0), 0.0) for p in parts[1:])
+    bound = np.minimum(alone, 1.25 * calm) if len(parts) > 1 else calm
+    return np.maximum(bound, exact)
+
+
+def _flat(part: TablePart) -> NDArray[np.float32]:
+    return part.values.reshape(-1, part.values.shape[-1])
+
+
+def _rest(name: str) -> float:
+    """The condition that costs nothing."""
+    return {"wave_period": 10.0, "depth": np.inf}.get(name, 0.0)
+
+
+def _speeds(
+    model: ResistanceModel, balance: Balance, load_factor: float, where: Mapping[str, FloatArray]
+) -> FloatArray:
+    """Speeds of all settings, shape ``(*shape, settings)``."""
+    shape = np.broadcast_shapes(*(np.shape(values) for values in where.values()))
+    count = len(model.orders.values)
+    names = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
+    at = {
+        name: np.repeat(np.broadcast_to(where.get(name, _rest(name)), shape).ravel(), count)
+        for name in names
+    }
+    which = np.tile(np.arange(float(count)), int(np.prod(shape)))
+    return model.speed_of(balance, at, which, load_factor).reshape(*shape, count)
+
+
+def _total(parts: list[TablePart], points: Mapping[str, FloatArray]) -> FloatArray:
+    return reduce(np.add, (lookup_all(part, points) for part in parts))
+
+
+def _together(
+    ladder: Ladder, axes: list[Axis], parts: list[TablePart], tolerance: float
+) -> TablePart:
+    """The part over two groups of axes: what they cost together beyond what each costs alone."""
+    deep = any(axis.name == "depth" for axis in axes)
+    coarse = [_coarse(axis, deep) for axis in axes]
+    points = random_conditions(coarse, 2 * _CHECKS, 5)
+    truth = ladder(points)
+    with_rest = {**_at_rest(parts, points), **points}
+
+    def left(where: Mapping[str, FloatArray]) -> FloatArray:
+        return ladder(where) - _total(parts, {**_at_rest(parts, where), **where})
+
+    part, _ = tabulate_dense(
+        left,
+        coarse,
+        tolerance=0.7 * tolerance,
+        largest=_LARGEST_SHARED,
+        check=lambda part: table_error(_total([*parts, part], with_rest), truth),
+    )
+    return part
+
+
+def _growing(groups: list[list[Axis]]) -> list[list[Axis]]:
+    """The axes of the first two groups, of the first three, ..."""
+    return [[axis for group in groups[:n] for axis in group] for n in range(2, len(groups) + 1)]
+
+
+def _at_rest(parts: list[TablePart], where: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Conditions of other axes, at values that cost nothing."""
+    names = {CONDITION_OF[axis] for part in parts for axis in part.axes}
+    return {name: np.asarray(_rest(name)) for name in names if name not in where}
+
+
+def _coarse(axis: Axis, deep: bool) -> Axis:
+    """First grid of the shared part; depth only where it matters in weather, four draughts deep."""
+    stop = min(axis.stop, 4.0 * axis.start) if axis.name == "depth" else axis.stop
+    return replace(axis, size=_SHARED[axis.name][deep], stop=stop)
