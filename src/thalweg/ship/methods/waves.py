@@ -10,6 +10,7 @@ never push. Use `thalweg.ship.methods.waves_snnm` for every heading.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -31,6 +32,7 @@ from thalweg.ship.methods.notes import RangeNote, range_notes
 
 SECTOR: Final = np.pi / 4.0  #: half width of the sector of STAwave-1 and STAwave-2 [rad]
 _SLOWEST: Final = 1e-3
+_PEAKS: Final = np.linspace(np.log(0.02), np.log(20.0), 2001)  #: where the means are tabulated
 
 
 def in_head_sector(wave_angle: ArrayLike) -> FloatArray:
@@ -94,11 +96,11 @@ def _reflection_speed(
     return np.asarray(0.692 * ratio**0.769 + 1.81 * np.asarray(block_coefficient) ** 6.95)
 
 
-def _motion_shape(frequency: FloatArray, length: float, breadth: float) -> FloatArray:
+def _motion_shape(frequency: FloatArray, slenderness: float) -> FloatArray:
     """w^b1 exp{b1/d1 (1 - w^d1)} of the dimensionless frequency w."""
     slow = frequency < 1.0
     b1 = np.where(slow, 11.0, -8.50)
-    d1 = np.where(slow, 14.0, -566.0 * (length / breadth) ** -2.66)
+    d1 = np.where(slow, 14.0, -566.0 * slenderness**-2.66)
     return np.asarray(frequency**b1 * np.exp(b1 / d1 * (1.0 - frequency**d1)))
 
 
@@ -162,7 +164,38 @@ def stawave2_transfer(
     speed_factor = _reflection_speed(velocity, draught, block_coefficient, gravity)
     reflection = 0.5 * weight * breadth * speed_factor
     shape = _reflection_shape(omega**2 / gravity * np.asarray(draught))
-    return motion * _motion_shape(reduced, length, breadth), reflection * shape
+    return motion * _motion_shape(reduced, length / breadth), reflection * shape
+
+
+@lru_cache(maxsize=32)
+def _motion_mean(slenderness: float, spectrum: Spectrum, gamma: float) -> FloatArray:
+    """Mean of the motion shape over the spectrum, for each dimensionless peak frequency."""
+    frequency = nodes(0.3, 5.0, step=STEP[spectrum])
+    shape = STEP[spectrum] * _motion_shape(frequency, slenderness)
+    return _mean(frequency, shape, spectrum, gamma)
+
+
+@lru_cache(maxsize=32)
+def _reflection_mean(spectrum: Spectrum, gamma: float) -> FloatArray:
+    """Mean of the reflected part over the spectrum, for each w_p sqrt(T / g)."""
+    frequency = nodes(0.02, 120.0, step=REFLECTION_STEP[spectrum])
+    shape = REFLECTION_STEP[spectrum] * _reflection_shape(frequency**2)
+    return _mean(frequency, shape, spectrum, gamma)
+
+
+def _mean(frequency: FloatArray, shape: FloatArray, spectrum: Spectrum, gamma: float) -> FloatArray:
+    def block(peak: FloatArray) -> FloatArray:
+        ratio = frequency / peak[:, None]
+        energy = spectral_shape(ratio, spectrum=spectrum, gamma=gamma)
+        return np.asarray(energy @ shape)
+
+    return in_blocks(block, np.exp(_PEAKS))
+
+
+def _look_up(peak: FloatArray, means: FloatArray) -> FloatArray:
+    """Interpolate between means; beyond the table nothing moves, or all is reflected."""
+    known = np.where(peak > 0.0, peak, np.where(np.isnan(peak), np.nan, 1e-9))
+    return np.asarray(np.interp(np.log(known), _PEAKS, means))
 
 
 def stawave2(
@@ -209,20 +242,13 @@ def stawave2(
 
     Notes
     -----
-    Range: `stawave2_validity`. Two errors of public programs are avoided: the speed in the
-    reflection term is in m/s, and the dimensionless frequency has Fr^-0.143, not Fr.
+    Range: `stawave2_validity`. The mean over the spectrum depends on one dimensionless peak
+    frequency for the motions and one for the reflection; both means are tabulated once for each
+    slenderness and spectrum (relative error about 1e-4). Two errors of public programs are
+    avoided: the speed in the reflection term is in m/s, and the dimensionless frequency has
+    Fr^-0.143, not Fr.
     """
-    length = length_between_perpendiculars
-    step = STEP[spectrum]
-    reduced = nodes(0.3, 5.0, step=step)
-    motion_weights = step * _motion_shape(reduced, length, breadth)
-    depth = nodes(0.01, 12.0, step=REFLECTION_STEP[spectrum])  # sqrt(k T)
-    steps = REFLECTION_STEP[spectrum] * _reflection_shape(depth**2)
-
-    def mean(scale: FloatArray, ratios: FloatArray, weights: FloatArray) -> FloatArray:
-        q = scale[:, None] ** 4 * ratios**-4.0
-        return np.asarray(spectral_shape(q, spectrum=spectrum, gamma=gamma) @ weights)
-
+    length = float(length_between_perpendiculars)
     velocity = ship_speed(speed)
     fn = froude_number(velocity, length=length, gravity=gravity)
     period = np.asarray(wave_period, dtype=float)
@@ -230,10 +256,10 @@ def stawave2(
     height = np.asarray(wave_height, dtype=float)
     deep = np.asarray(draught, dtype=float)
     tuned = peak * _frequency_scale(fn, length, pitch_gyration, gravity)
-    motion = in_blocks(lambda scale: mean(scale, reduced, motion_weights), tuned)
+    motion = _look_up(tuned, _motion_mean(length / float(breadth), spectrum, gamma))
     motion = motion * 4.0 * breadth / length * _motion_speed(fn, block_coefficient)
     tuned = peak * np.sqrt(deep / gravity)
-    reflection = in_blocks(lambda scale: mean(scale, depth, steps), tuned)
+    reflection = _look_up(tuned, _reflection_mean(spectrum, gamma))
     reflection = 0.5 * reflection * _reflection_speed(velocity, deep, block_coefficient, gravity)
     force = 2.0 * density * gravity * breadth * height**2 * (motion + reflection)
     return np.where((height == 0.0) & ~np.isnan(fn), 0.0, force * in_head_sector(wave_angle))
