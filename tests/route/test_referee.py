@@ -158,7 +158,7 @@ def test_a_gap_is_told_with_its_place():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: np.where(o > 0.2, np.nan, 0.5), UN: lambda t, a, o: 0.0 * a}
     )
-    with pytest.raises(CoverageError, match=r"0\.20\d\dE.*eastward_sea_water_velocity"):
+    with pytest.raises(CoverageError, match=r"0\.20\d\dE.*sea_water_velocity \(gap\)"):
         evaluate([(0, 0), (0, 0.4)], ship=ship(5.0), sea=sea, depart=0, step=200.0)
     route = evaluate([(0, 0), (0, 0.1), (0, 0.4)], ship=ship(5.0), sea=sea, depart=0, strict=False)
     assert not route.feasible

@@ -1,18 +1,23 @@
 """Routes: tracks to sail, the referee that scores them, and the formats they travel in."""
 
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
+from thalweg.route.improving import better_route, shorten_waits
 from thalweg.route.joining import join
 from thalweg.route.referee import evaluate
 from thalweg.route.route import Route, Violation
+from thalweg.route.smooth import smooth
 from thalweg.route.track import Track
 
 __all__ = [
     "Route",
     "Track",
     "Violation",
+    "better_route",
     "evaluate",
     "join",
     "read_track",
+    "shorten_waits",
+    "smooth",
     "write_csv",
     "write_geojson",
     "write_gpx",

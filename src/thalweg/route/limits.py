@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +18,28 @@ from thalweg.route.physics import Motion, World
 from thalweg.route.pieces import Points
 from thalweg.route.route import Violation
 from thalweg.route.track import Track
+from thalweg.ship.variables import (
+    EASTWARD_CURRENT,
+    EASTWARD_WIND,
+    NORTHWARD_CURRENT,
+    NORTHWARD_WIND,
+    WAVE_HEIGHT,
+)
 
 BoolArray = NDArray[np.bool_]
 _SLACK = 1e-9  # rounding allowed on every limit, in its own unit
 
 
-def find_violations(
-    world: World, points: Points, time: FloatArray, *, motion: Motion, min_ukc: float | None
+def broken_limits(
+    world: World,
+    points: Points,
+    time: FloatArray,
+    *,
+    sampled: Mapping[str, FloatArray],
+    depth: FloatArray,
+    min_ukc: float | None,
 ) -> list[Violation]:
-    """Return what is wrong at consecutive points, one record for each stretch and reason.
+    """Return the limits broken and the gaps met, one record for each stretch and reason.
 
     Parameters
     ----------
@@ -35,20 +48,20 @@ def find_violations(
         In the order of sailing.
     time : ndarray
         [s since 1970-01-01T00:00Z]; NaN behind a point the ship does not get past.
-    motion : Motion
-        At those points and times.
+    sampled : mapping of str to ndarray
+        The sea there and then.
+    depth : ndarray
+        Water depth there and then [m].
     min_ukc : float or None
         Least under-keel clearance [m]; None: depth is not looked at.
     """
     reached = np.isfinite(time)
-    found: list[tuple[int, Violation]] = []
-    for reason, bad, values, limit in _checks(world, motion, min_ukc):
+    found: list[Violation] = []
+    for reason, bad, values, limit in _checks(world, sampled, depth, min_ukc):
         for first, last in _stretches(bad & reached, points.leg):
-            worst = first + _worst(values[first:last], limit)
-            found.append((first, _record(reason, points, time, worst, float(values[worst]), limit)))
-    found += _gaps(world, points, time, motion, reached)
-    found += _stopped(world, points, time, motion)
-    return [violation for _, violation in sorted(found, key=lambda item: item[0])]
+            worst = first + int(np.argmax(np.abs(values[first:last] - limit)))
+            found.append(_record(reason, points, time, worst, float(values[worst]), limit))
+    return found + _gaps(world, points, time, sampled)
 
 
 def land_violations(world: World, track: Track, times: FloatArray) -> list[Violation]:
@@ -90,71 +103,67 @@ def is_gap(violation: Violation) -> bool:
     return violation.reason.startswith((REASONS[codes.NO_DATA], REASONS[codes.OUTSIDE_PERIOD]))
 
 
+def stops(world: World, points: Points, time: FloatArray, motion: Motion) -> list[Violation]:
+    """Return where and why the ship cannot go on."""
+    stopped = np.isnan(motion.over_ground) & np.isfinite(time)
+    known = ~np.isnan(motion.depth)
+    for values in motion.sampled.values():
+        known &= ~np.isnan(values)
+    out_of_range = stopped & known & ~np.isfinite(motion.through_water)
+    current = stopped & known & ~out_of_range
+    found = []
+    for code, bad in ((codes.SHIP_RANGE, out_of_range), (codes.CURRENT, current)):
+        for first, _ in _stretches(bad, points.leg):
+            speed = float(motion.through_water[first])
+            found.append(_record(REASONS[code], points, time, first, speed, math.nan))
+    return found + _gaps(world, points, np.where(stopped, time, math.nan), motion.sampled)
+
+
 def _checks(
-    world: World, motion: Motion, min_ukc: float | None
+    world: World, sampled: Mapping[str, FloatArray], depth: FloatArray, min_ukc: float | None
 ) -> Iterator[tuple[str, BoolArray, FloatArray, float]]:
     limits, draught = world.ship.limits, world.ship.draught
     with np.errstate(invalid="ignore"):
         if min_ukc is not None and world.has_depth:
-            clearance = motion.depth - draught
+            clearance = depth - draught
             yield REASONS[codes.DEPTH], clearance < min_ukc - _SLACK, clearance, min_ukc
         if math.isfinite(limits.wave_height):
-            height = motion.sampled["sea_surface_wave_significant_height"]
+            height = sampled[WAVE_HEIGHT]
             bad = height > limits.wave_height + _SLACK
             yield REASONS[codes.WAVE_HEIGHT], bad, height, limits.wave_height
         if math.isfinite(limits.wind_speed):
-            wind = relative_wind(motion)
-            yield (
-                REASONS[codes.WIND_SPEED],
-                wind > limits.wind_speed + _SLACK,
-                wind,
-                limits.wind_speed,
-            )
+            wind = _relative_wind(sampled)
+            bad = wind > limits.wind_speed + _SLACK
+            yield REASONS[codes.WIND_SPEED], bad, wind, limits.wind_speed
 
 
-def relative_wind(motion: Motion) -> FloatArray:
+def _relative_wind(sampled: Mapping[str, FloatArray]) -> FloatArray:
     """Return the speed of the wind relative to the moving water [m/s]."""
-    sampled = motion.sampled
-    zero = np.zeros_like(motion.depth)
-    east = sampled["eastward_wind"] - sampled.get("eastward_sea_water_velocity", zero)
-    north = sampled["northward_wind"] - sampled.get("northward_sea_water_velocity", zero)
+    east, north = sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND]
+    still = np.zeros_like(east)
+    east = east - sampled.get(EASTWARD_CURRENT, still)
+    north = north - sampled.get(NORTHWARD_CURRENT, still)
     return np.hypot(east, north)
 
 
 def _gaps(
-    world: World, points: Points, time: FloatArray, motion: Motion, reached: BoolArray
-) -> list[tuple[int, Violation]]:
+    world: World, points: Points, time: FloatArray, sampled: Mapping[str, FloatArray]
+) -> list[Violation]:
+    """Return the stretches where something is not known, each at its first point."""
+    reached = np.isfinite(time)
+    missing = {name: np.isnan(values) for name, values in sampled.items()}
+    if world.charted:
+        missing["charted depth"] = np.isnan(points.charted)
     found = []
-    named = {name: np.isnan(values) for name, values in motion.sampled.items()}
-    if world.has_depth and world.charted:
-        named["charted depth"] = np.isnan(points.charted)
-    for name, missing in named.items():
-        for first, _ in _stretches(missing & reached, points.leg):
+    for name, gone in missing.items():
+        for first, _ in _stretches(gone & reached, points.leg):
             why = ""
-            if name in motion.sampled:
+            if name in sampled:
                 place = (float(time[first]), float(points.lat[first]), float(points.lon[first]))
                 why = f" ({world.sea.why_missing(name, *place)})"
             code = codes.OUTSIDE_PERIOD if why == " (period)" else codes.NO_DATA
             reason = f"{REASONS[code]}: {name}{why}"
-            found.append((first, _record(reason, points, time, first, math.nan, math.nan)))
-    return found
-
-
-def _stopped(
-    world: World, points: Points, time: FloatArray, motion: Motion
-) -> list[tuple[int, Violation]]:
-    """Return why the ship cannot go on although every datum is there."""
-    known = np.ones(len(points), dtype=bool)
-    for values in motion.sampled.values():
-        known &= ~np.isnan(values)
-    known &= ~np.isnan(motion.depth)
-    stopped = np.isnan(motion.over_ground) & known & np.isfinite(time)
-    out_of_range = stopped & ~np.isfinite(motion.through_water)
-    found = []
-    for code, bad in ((codes.SHIP_RANGE, out_of_range), (codes.CURRENT, stopped & ~out_of_range)):
-        for first, _ in _stretches(bad, points.leg):
-            speed = float(motion.through_water[first])
-            found.append((first, _record(REASONS[code], points, time, first, speed, math.nan)))
+            found.append(_record(reason, points, time, first, math.nan, math.nan))
     return found
 
 
@@ -165,10 +174,6 @@ def _stretches(bad: BoolArray, leg: NDArray[np.int64]) -> list[tuple[int, int]]:
     edge = np.flatnonzero((bad[1:] != bad[:-1]) | (leg[1:] != leg[:-1])) + 1
     cuts = np.concatenate([[0], edge, [len(bad)]])
     return [(int(a), int(b)) for a, b in itertools.pairwise(cuts) if bad[a]]
-
-
-def _worst(values: FloatArray, limit: float) -> int:
-    return int(np.argmax(np.abs(values - limit)))
 
 
 def _record(

@@ -19,10 +19,11 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route.limits import (
+    broken_limits,
     coverage_error,
-    find_violations,
     is_gap,
     land_violations,
+    stops,
 )
 from thalweg.route.passage_times import Passage, find_times
 from thalweg.route.physics import Motion, World, conditions_at, look, move, open_world
@@ -40,6 +41,8 @@ Routable: TypeAlias = "Track | Route | str | Path | Iterable[Sequence[float]]"
 LEAST_PIECES = 8  #: of every leg
 LARGEST_STEP = 0.5 * NAUTICAL_MILE  #: [m]
 MOST_PIECES = 4000  #: of a route at the coarser of its two step sizes (besides `LEAST_PIECES`)
+MOST_LOOKS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
+LOOKS_PER_CELL = 8  #: of gridded data
 _METRES_PER_DEGREE = 111_000.0
 _WAIT_LOOKS = 300.0  # longest time between two looks at the depth while waiting [s]
 
@@ -101,7 +104,9 @@ def evaluate(
     -----
     The time of passage solves ``dT/ds = 1 / SOG(s, T)`` by the two-stage Gauss method (order 4 in
     smooth fields, 2 across the kinks of gridded data), first with pieces of ``step``, then of half
-    that; the second is what is told and the difference is its ``tolerance_s``. Wind acts relative
+    that; the second is what is told and the difference is its ``tolerance_s``. Limits are looked at
+    more closely, at up to 10,000 places; for a route that waits, the time between two of them is
+    part of the tolerance, as its waits can be that much too short. Wind acts relative
     to the moving water, weather at angles from the heading. Waiting costs time but no fuel, and
     the ship does not drift (it lies at anchor); only its clearance is checked meanwhile, and
     not at the first waypoint, where it lies at its berth. Without currents in the sea (no such
@@ -182,11 +187,7 @@ def _checked_step(step: float) -> float:
 
 
 def _default_step(world: World, track: Track) -> float:
-    spacings = [
-        row.spacing_deg * _METRES_PER_DEGREE / 4.0
-        for row in world.sea.coverage()
-        if row.variable in world.names and row.spacing_deg
-    ]
+    spacings = _spacings(world, 0.25)
     total = float(track.lengths.sum())
     return max(min([LARGEST_STEP, *spacings]), total / MOST_PIECES, 1e-3)
 
@@ -228,15 +229,21 @@ def _first_guess(world: World, pieces: Pieces, coarse: _Sailed | None) -> FloatA
 
 def _with_charted(world: World, points: Points, pieces: Pieces) -> Points:
     """Return the points with the least charted depth of the piece each lies on."""
-    if not world.charted or world.chart is None:
+    if not world.charted:
         return points
-    low = pieces.points(pieces.leg, pieces.start)
-    high = pieces.points(pieces.leg, pieces.start + pieces.step)
-    depth = np.asarray(world.chart.depth_along(low.lat, low.lon, high.lat, high.lon), float)
+    depth = _charted(world, pieces)
     count = len(pieces)
     if len(points) == 2 * count:
         return replace(points, charted=np.repeat(depth, 2))
     return replace(points, charted=np.concatenate([depth, depth[pieces.last_of_leg()]]))
+
+
+def _charted(world: World, pieces: Pieces) -> FloatArray:
+    """Return the least charted depth along every piece [m below datum]."""
+    low = pieces.points(pieces.leg, pieces.start)
+    high = pieces.points(pieces.leg, pieces.start + pieces.step)
+    depth = world.chart.depth_along(low.lat, low.lon, high.lat, high.lon)  # type: ignore[union-attr]
+    return np.asarray(depth, dtype=np.float64)
 
 
 def _arrival(sailed: _Sailed) -> float:
@@ -252,13 +259,17 @@ def _report(sailed: _Sailed, min_ukc: float | None, tolerance: float) -> Route:
     points, time, order = _all_points(sailed)
     looked_at = np.where(np.isfinite(time), time, track.depart)
     motion = move(world, points, looked_at)
-    violations = find_violations(world, points, time, motion=motion, min_ukc=min_ukc)
+    near, moments = _looks(sailed, points, time)
+    sampled, depth = look(world, near, np.where(np.isfinite(moments), moments, track.depart))
+    violations = broken_limits(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
+    violations += stops(world, points, time, motion)
     violations += _grounded_waits(sailed, min_ukc)
     departs, arrives = _leg_times(sailed)
     violations += land_violations(world, track, departs)
+    violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
     rate = _fuel_rate(world, points, looked_at, motion)
-    clearance = motion.depth - world.ship.draught
-    clearance = np.where(np.isfinite(clearance), clearance, math.nan)
+    clearance = _finite(motion.depth - world.ship.draught)
+    least = _leg_least(near.leg, _finite(depth - world.ship.draught), moments, len(departs))
     fuel = _leg_fuel(pieces, passage, rate[order])
     samples = {
         **motion.sampled,
@@ -271,7 +282,7 @@ def _report(sailed: _Sailed, min_ukc: float | None, tolerance: float) -> Route:
         "heading": motion.heading,
         "speed_through_water": motion.through_water,
         "speed_over_ground": motion.over_ground,
-        "depth": np.where(np.isfinite(motion.depth), motion.depth, math.nan),
+        "depth": _finite(motion.depth),
         "under_keel_clearance": clearance,
         "fuel_rate": rate,
     }
@@ -285,10 +296,10 @@ def _report(sailed: _Sailed, min_ukc: float | None, tolerance: float) -> Route:
         "depart": departs,
         "arrive": arrives,
         "fuel": fuel,
-        "under_keel_clearance": _leg_least(
-            points.leg, samples["under_keel_clearance"], len(departs)
-        ),
+        "under_keel_clearance": least,
     }
+    if np.any(track.wait) and world.has_depth:
+        tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
     return Route(track, legs, samples, tuple(violations), tolerance, world.assumptions)
 
 
@@ -344,12 +355,54 @@ def _leg_fuel(pieces: Pieces, passage: Passage, rate: FloatArray) -> FloatArray:
     return total
 
 
-def _leg_least(leg: IntArray, values: FloatArray, count: int) -> FloatArray:
-    """Return the least known value on each leg; NaN where none is known."""
+def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
+    """Return the least known value on each leg as far as it is sailed; NaN where none is known."""
     least = np.full(count, math.inf)
-    known = np.isfinite(values)
+    known = np.isfinite(values) & np.isfinite(time)
     np.minimum.at(least, leg[known], values[known])
     return np.where(np.isfinite(least), least, math.nan)
+
+
+def _looks(sailed: _Sailed, points: Points, time: FloatArray) -> tuple[Points, FloatArray]:
+    """Return closely spaced points where limits are looked at, and when they are passed."""
+    world, pieces = sailed.world, sailed.pieces
+    spacing = float(pieces.length.sum()) / MOST_LOOKS
+    spacing = max(spacing, min(_spacings(world, 1.0 / LOOKS_PER_CELL), default=0.0))
+    count = np.maximum(np.ceil(pieces.length / max(spacing, 1e-3)).astype(np.int64), 1) + 1
+    leg = np.repeat(np.arange(len(count)), count)
+    share = (np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)) / (count[leg] - 1)
+    near = pieces.points(leg, share * pieces.length[leg])
+    step = np.zeros(len(pieces.length))
+    step[pieces.leg] = pieces.step
+    first = np.searchsorted(pieces.leg, leg)
+    last = np.searchsorted(pieces.leg, leg, side="right") - 1
+    with np.errstate(invalid="ignore", divide="ignore"):
+        number = np.where(step[leg] > 0.0, near.along / step[leg], 0.0).astype(np.int64)
+    if world.charted:
+        charted = _charted(world, pieces)[np.minimum(first + number, last)]
+        near = replace(near, charted=charted)
+    key = _key(points.leg, points.along, pieces.length)
+    return near, np.interp(_key(leg, near.along, pieces.length), key, time)
+
+
+def _key(leg: IntArray, along: FloatArray, length: FloatArray) -> FloatArray:
+    """Return a number that grows along the track, with a step between legs."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(length[leg] > 0.0, along / length[leg], 0.0)
+    return leg * 2.0 + np.clip(share, 0.0, 1.0)
+
+
+def _spacings(world: World, share: float) -> list[float]:
+    """Return a share of the spacing of every source of data that is looked at [m]."""
+    return [
+        row.spacing_deg * _METRES_PER_DEGREE * share
+        for row in world.sea.coverage()
+        if row.variable in world.names and row.spacing_deg
+    ]
+
+
+def _finite(values: FloatArray) -> FloatArray:
+    return np.where(np.isfinite(values), values, math.nan)
 
 
 def _grounded_waits(sailed: _Sailed, min_ukc: float | None) -> list[Violation]:

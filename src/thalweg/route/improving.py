@@ -1,0 +1,194 @@
+"""A better route than a given one, by the referee's own word."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.kernels import codes
+from thalweg.kernels.tables import TableArrays
+from thalweg.route.line import unwrapped
+from thalweg.route.referee import evaluate
+from thalweg.route.route import Route
+from thalweg.route.smooth import smooth
+from thalweg.route.track import Track
+from thalweg.sea.names import CHANNEL_VARIABLES
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import GridFields, Sea
+    from thalweg.ship import PerformanceTable, Ship
+
+LARGEST_RASTER = 4_000_000  #: numbers in the frozen raster of the sea around a track
+_LEAST_ROWS, _MOST_ROWS = 12, 120  # cells along the longer side of the raster
+_MARGINS = (0.0, 0.02, 0.06)  # shares by which limits are tightened when the referee objects
+_WAIT_EXACT = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
+_WAIT_SHARE = 1e-5
+_LONGER = (0.0, 120.0, 600.0, 1800.0)  # seconds by which a wait may grow when the referee objects
+
+Score = Callable[[Track], Route]
+
+
+def better_route(
+    scored: Route,
+    *,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart | None,
+    table: PerformanceTable | TableArrays,
+    limits: ArrayLike,
+    min_ukc: float | None = 0.0,
+    objective: str = "time",
+) -> Route:
+    """Smooth a route and return whichever of the two the referee prefers.
+
+    Parameters
+    ----------
+    scored : Route
+        As the referee found it.
+    ship : Ship
+    sea : Sea
+    chart : Chart or None
+    table : PerformanceTable or TableArrays
+        Of the ship.
+    limits : array_like of float
+        Required depth [m], wave height [m] and wind speed [m/s] for the kernels.
+    min_ukc : float or None
+        As for `evaluate`.
+    objective : {"time", "distance"}
+
+    Returns
+    -------
+    Route
+        Scored by the referee; never worse than the given one, and within every limit if the given
+        one is.
+    """
+
+    def score(track: Track) -> Route:
+        return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
+
+    fields = freeze_around(scored, ship=ship, sea=sea, limits=np.asarray(limits, float))
+    best = scored
+    for margin in _MARGINS:
+        track = smooth(
+            scored.track,
+            table=table,
+            fields=fields,
+            limits=_tightened(limits, margin),
+            chart=chart,
+            objective=objective,
+        )
+        route = shorten_waits(score(track), score) if track != scored.track else scored
+        best = min(best, route, key=lambda item: _rank(item, objective))
+        if route.feasible:
+            break
+    return shorten_waits(best, score)
+
+
+def freeze_around(route: Route, *, ship: Ship, sea: Sea, limits: FloatArray) -> GridFields:
+    """Freeze the sea on a raster around a route, as fine as the data or a size limit allows."""
+    track = route.track
+    lon = unwrapped(track.lon)
+    extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
+    margin = 0.15 * extent
+    south, north = max(track.lat.min() - margin, -89.9), min(track.lat.max() + margin, 89.9)
+    width = min(np.ptp(lon) + 2.0 * margin, 359.0)
+    west = 0.5 * (lon.min() + lon.max() - width)
+    start = track.depart
+    arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
+    end = start + 1.1 * (arrive - start) + 600.0
+    channels = _channels(ship, sea, limits)
+    extra = {codes.SPEED_FIELD: ship.speed_field} if ship.speed_field is not None else None
+    numbers = max(len(sea.times(start, end)), 2) * max(len(channels) + bool(extra), 1)
+    finest = math.sqrt((north - south) * width * numbers / LARGEST_RASTER)
+    native = [r.spacing_deg for r in sea.coverage() if r.spacing_deg]
+    spacing = max(min([extent / _MOST_ROWS, *native]), finest, extent / 400.0)
+    spacing = min(spacing, extent / _LEAST_ROWS)
+    return sea.freeze_grid(
+        south, north, west, west + width, start, end, channels, spacing_deg=spacing, extra=extra
+    )
+
+
+def shorten_waits(route: Route, score: Score) -> Route:
+    """Return the route with every wait as short as the referee allows, to half a second.
+
+    Frozen fields blur the moment at which a bar opens by up to one of their time steps; the
+    referee knows it. A wait that turns out too short is made longer first.
+    """
+    waiting = np.flatnonzero(route.track.wait)
+    if not waiting.size:
+        return route
+    if not route.feasible:
+        for longer in _LONGER[1:]:
+            later = score(_with_wait(route.track, int(waiting[-1]), longer))
+            if later.feasible:
+                route = later
+                break
+        else:
+            return route
+    for index in waiting:
+        route = _shorten(route, int(index), score)
+    return route
+
+
+def _shorten(route: Route, index: int, score: Score) -> Route:
+    """Halve the interval between a wait that is too short and one that is long enough."""
+    long_enough = float(route.track.wait[index])
+    none = score(_with_wait(route.track, index, -long_enough))
+    if none.feasible:
+        return none if none.arrive <= route.arrive else route
+    best, track, too_short = route, route.track, 0.0
+    exact = min(_WAIT_EXACT, _WAIT_SHARE * (route.arrive - route.depart))
+    while long_enough - too_short > exact:
+        tried = 0.5 * (too_short + long_enough)
+        shorter = score(_with_wait(track, index, tried - float(track.wait[index])))
+        if shorter.feasible and shorter.arrive <= best.arrive:
+            best, long_enough = shorter, tried
+        else:
+            too_short = tried
+    return best
+
+
+def _with_wait(track: Track, index: int, change: float) -> Track:
+    """Return the track with one wait changed and the next one still ending when it did."""
+    wait = np.array(track.wait)
+    wait[index] = max(wait[index] + change, 0.0)
+    later = np.flatnonzero(wait[index + 1 :])
+    if later.size:
+        following = index + 1 + int(later[0])
+        wait[following] = max(wait[following] - change, 0.0)
+    return track.replaced(wait=wait)
+
+
+def _rank(route: Route, objective: str) -> tuple[bool, float, float]:
+    """Return what routes are compared by: limits kept first, then the objective."""
+    time = route.arrive if math.isfinite(route.arrive) else math.inf
+    first = route.distance_nm if objective == "distance" else time
+    return (not route.feasible, first if math.isfinite(time) else math.inf, time)
+
+
+def _tightened(limits: ArrayLike, margin: float) -> FloatArray:
+    tight = np.array(limits, dtype=float)
+    tight[codes.LIMIT_REQUIRED_DEPTH] *= 1.0 + margin
+    tight[codes.LIMIT_WAVE_HEIGHT] *= 1.0 - margin
+    tight[codes.LIMIT_WIND_SPEED] *= 1.0 - margin
+    return tight
+
+
+def _usual(route: Route, ship: Ship) -> float:
+    speeds = ship.speeds[np.isfinite(ship.speeds)]
+    return float(route.legs["length"].sum()) / float(speeds[-1] if speeds.size else 5.0)
+
+
+def _channels(ship: Ship, sea: Sea, limits: FloatArray) -> list[int]:
+    """Return the channels the kernels look at."""
+    names = {CHANNEL_VARIABLES[codes.CURRENT_EAST], CHANNEL_VARIABLES[codes.CURRENT_NORTH]}
+    names |= ship.needs
+    if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]) or "depth" in ship.reads:
+        names |= {CHANNEL_VARIABLES[codes.WATER_LEVEL], CHANNEL_VARIABLES[codes.BED_DEPTH]}
+    return [c for c, name in CHANNEL_VARIABLES.items() if name in names and name in sea.variables]

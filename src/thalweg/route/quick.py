@@ -1,0 +1,184 @@
+"""The quick sailor: many tracks at once through a frozen raster, for refinement to compare."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.kernels import codes
+from thalweg.kernels.sail import Lines, RasterArrays, sail_lines
+from thalweg.kernels.tables import TableArrays
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import GridFields
+    from thalweg.ship import PerformanceTable
+
+IntArray = NDArray[np.int64]
+_METRES_PER_DEGREE = 111_195.0
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Polylines of one number of points.
+
+    Attributes
+    ----------
+    lat, lon : float64 array (L, n)
+        Points [deg].
+    leave : float64 array (L, n)
+        The ship leaves a point no earlier [s after the origin]; -inf where it does not wait.
+    setting : int64 array (L, n - 1)
+    depart : float64 array (L,)
+        [s after the origin].
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    leave: FloatArray
+    setting: IntArray
+    depart: FloatArray
+
+
+@dataclass(frozen=True)
+class Sailor:
+    """Everything that stays the same while a track is refined.
+
+    Attributes
+    ----------
+    raster : RasterArrays
+        Times are seconds after ``origin``.
+    table : TableArrays
+    chart : Chart or None
+    limits : float64 array
+    origin : float
+        [s since 1970-01-01T00:00Z].
+    by_length : bool
+        Whether tracks compare by length instead of time.
+    spacing : float
+        Longest piece [m].
+    """
+
+    raster: RasterArrays
+    table: TableArrays
+    chart: Chart | None
+    limits: FloatArray
+    origin: float
+    by_length: bool
+    spacing: float
+
+    def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
+        """Return how many pieces each leg of polylines (..., n) is cut into."""
+        return np.maximum(2, np.ceil(rough_lengths(lat, lon) / self.spacing)).astype(np.int64)
+
+    def sail(
+        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    ) -> tuple[FloatArray, FloatArray]:
+        """Sail polylines.
+
+        Parameters
+        ----------
+        bundle : Bundle
+        pieces : int64 array (L, n - 1), optional
+            Pieces of each leg; the same for lines whose times are to be differenced.
+        check : bool
+            Look at land, zones and charted depth too.
+
+        Returns
+        -------
+        arrive : float64 array (L, n)
+            Arrival at every point [s after the origin]; +inf from the first leg that cannot be
+            sailed.
+        cost : float64 array (L,)
+            What is compared: last arrival [s], or length [m]; +inf if it cannot be sailed.
+        """
+        count, size = bundle.lat.shape
+        shape = (count, size - 1)
+        pieces = self.pieces(bundle.lat, bundle.lon) if pieces is None else pieces
+        blocked, charted = self.look(bundle.lat, bundle.lon) if check else (None, None)
+        lines = Lines(
+            np.arange(count + 1, dtype=np.int64) * size,
+            _flat(bundle.lat, np.float64),
+            _flat(bundle.lon, np.float64),
+            _flat(bundle.leave, np.float64),
+            _flat(_padded(bundle.setting, shape), np.int64),
+            _flat(_padded(np.broadcast_to(pieces, shape), shape), np.int64),
+            _flat(_padded(np.full(shape, math.inf) if charted is None else charted, shape), float),
+            _flat(bundle.depart, np.float64),
+        )
+        arrive, length = np.empty(count * size), np.empty(count)
+        status = np.empty(count, dtype=np.int64)
+        sail_lines(lines, self.raster, self.table, self.limits, arrive, length, status)
+        arrive = arrive.reshape(count, size)
+        cost = length.copy() if self.by_length else arrive[:, -1].copy()
+        cost[status != codes.OK] = math.inf
+        if blocked is not None:
+            over = np.logical_or.accumulate(blocked, axis=1)
+            arrive[:, 1:][over] = math.inf
+            cost[over[:, -1]] = math.inf
+        return arrive, cost
+
+    def look(
+        self, lat: FloatArray, lon: FloatArray
+    ) -> tuple[NDArray[np.bool_] | None, FloatArray | None]:
+        """Return (blocked, least charted depth) of the legs of polylines; None: not known."""
+        if self.chart is None:
+            return None, None
+        ends = (lat[:, :-1].ravel(), lon[:, :-1].ravel(), lat[:, 1:].ravel(), lon[:, 1:].ravel())
+        shape = (lat.shape[0], lat.shape[1] - 1)
+        blocked = np.asarray(self.chart.legs_blocked(*ends)).reshape(shape)
+        required = self.limits[codes.LIMIT_REQUIRED_DEPTH]
+        if not (self.chart.has_depth and math.isfinite(required)):
+            return blocked, None
+        charted: FloatArray = np.asarray(self.chart.depth_along(*ends), dtype=np.float64)
+        return blocked, charted.reshape(shape)
+
+
+def make_sailor(
+    *,
+    table: PerformanceTable | TableArrays,
+    chart: Chart | None,
+    fields: GridFields,
+    limits: ArrayLike,
+    origin: float,
+    by_length: bool,
+    total: float,
+) -> Sailor:
+    """Put a sailor together; ``total`` is the rough length of the track [m].
+
+    Pieces are half a cell of the raster, at least a 400th of the track.
+    """
+    raster = RasterArrays(
+        np.asarray(fields.times, np.float64) - origin,
+        np.array([fields.lat0, fields.dlat, fields.lon0, fields.dlon], np.float64),
+        np.ascontiguousarray(fields.values, dtype=np.float32),
+        np.asarray(fields.channel_index, np.int64),
+    )
+    arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
+    spacing = max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0)
+    return Sailor(raster, arrays, chart, np.asarray(limits, np.float64), origin, by_length, spacing)
+
+
+def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return lengths of legs (..., n - 1) on the sphere [m], good to 0.5 %."""
+    a, b = np.radians(lat[..., :-1]), np.radians(lat[..., 1:])
+    half = 0.5 * np.radians(np.diff(lon, axis=-1))
+    h = np.sin(0.5 * (b - a)) ** 2 + np.cos(a) * np.cos(b) * np.sin(half) ** 2
+    lengths: FloatArray = 2.0 * 6371008.8 * np.arcsin(np.sqrt(np.minimum(h, 1.0)))
+    return lengths
+
+
+def _flat(values: ArrayLike, kind: type) -> NDArray:
+    return np.ascontiguousarray(values, dtype=kind).reshape(-1)
+
+
+def _padded(values: NDArray, shape: tuple[int, int]) -> NDArray:
+    """Return values per leg (L, n - 1) with a column for the last points, which is not read."""
+    return np.concatenate(
+        [np.broadcast_to(values, shape), np.ones((shape[0], 1), values.dtype)], axis=1
+    )

@@ -1,0 +1,198 @@
+"""From the staircase of a network to a route: pulled taut, then bent to the sea."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.kernels.tables import TableArrays
+from thalweg.route.bending import bend
+from thalweg.route.feeling import feel
+from thalweg.route.line import Line, line_of, track_of_line
+from thalweg.route.pulling import pull
+from thalweg.route.quick import Sailor, make_sailor, rough_lengths
+from thalweg.route.track import Track
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import GridFields
+    from thalweg.ship import PerformanceTable
+
+FINEST = 48  #: legs are split until they are shorter than the track divided by this
+THINNING = 5e-5  #: share of the cost that may be lost by leaving waypoints out at the end
+_SETTLED = 1e-5  # relative gain of a level below which no finer one is tried
+_WAITS_TRIED = 48
+
+
+def smooth(
+    track: Track,
+    *,
+    table: PerformanceTable | TableArrays,
+    fields: GridFields,
+    limits: ArrayLike,
+    chart: Chart | None = None,
+    objective: str = "time",
+    finest: int = FINEST,
+) -> Track:
+    """Return a better track than a given one, in the same water.
+
+    Parameters
+    ----------
+    track : Track
+        One that can be sailed, such as a path on a network; its waits may shrink, never grow.
+    table : PerformanceTable or TableArrays
+        Speed through water.
+    fields : GridFields
+        The sea frozen around the track.
+    limits : array_like of float
+        Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
+    chart : Chart, optional
+        Land, zones and charted depth to keep clear of.
+    objective : {"time", "distance"}
+    finest : int
+        Legs are split until they are shorter than the track divided by this.
+
+    Returns
+    -------
+    Track
+        The given track if nothing better is found or it cannot be sailed through these fields. It
+        was compared on frozen fields: let the referee score both (see `better_route`).
+
+    Notes
+    -----
+    String pulling over the waypoints; then, level by level, legs are halved and the waypoints
+    bent sideways by Newton's method, feeling their way where obstacles bind. At last
+    waypoints that bring less than a 5e-5 share of the cost together are left out.
+    """
+    sailor = make_sailor(
+        table=table,
+        chart=chart,
+        fields=fields,
+        limits=limits,
+        origin=track.depart,
+        by_length=objective == "distance",
+        total=float(track.lengths.sum()),
+    )
+    first = line_of(track, sailor)
+    if not math.isfinite(_cost(first, sailor)):
+        first = _settled_waits(first, sailor, longer=3600.0)
+        if not math.isfinite(_cost(first, sailor)):
+            return track
+    line = _settled_waits(pull(first, sailor), sailor)
+    lines = [_levels(start, sailor, finest) for start in _starts(first, line, sailor)]
+    best = min(lines, key=lambda item: _cost(item, sailor))
+    if not _cost(best, sailor) <= _cost(first, sailor):
+        return track
+    return track_of_line(best, sailor)
+
+
+def _starts(first: Line, pulled: Line, sailor: Sailor) -> list[Line]:
+    """Return the lines to refine: the pulled one, and a coarse resampling if it can be sailed."""
+    starts = [pulled]
+    if len(pulled) > 6 and not np.isfinite(first.leave).any():
+        coarse = _resampled(first, 5)
+        if math.isfinite(_cost(coarse, sailor)):
+            starts.append(coarse)
+    return starts
+
+
+def _resampled(line: Line, count: int) -> Line:
+    """Return points at equal shares of the length of a line without waits."""
+    along = np.concatenate([[0.0], np.cumsum(rough_lengths(line.lat, line.lon))])
+    at = np.linspace(0.0, along[-1], count)
+    index = np.minimum(np.searchsorted(along, at[:-1], side="right") - 1, len(line.setting) - 1)
+    lat, lon = np.interp(at, along, line.lat), np.interp(at, along, line.lon)
+    return Line(lat, lon, np.full(count, -math.inf), line.setting[index], line.depart)
+
+
+def _levels(line: Line, sailor: Sailor, finest: int) -> Line:
+    """Refine a line level by level, and thin it at the end."""
+    total = float(rough_lengths(line.lat, line.lon).sum())
+    longest, idle = total / 2.0, 0
+    line = _refined(line, sailor)
+    while longest > total / finest and (idle < 2 or longest > total / 16.0):
+        before = _spent(line, sailor)
+        finer = line.split(longest)
+        if len(finer) > len(line):
+            finer = _settled_waits(_refined(finer, sailor), sailor)
+            if _spent(finer, sailor) < before:
+                line = finer
+            gained = before - _spent(finer, sailor)
+            idle = idle + 1 if gained < _SETTLED * before else 0
+        longest *= 0.5
+    return _thinned(line, sailor)
+
+
+def _refined(line: Line, sailor: Sailor) -> Line:
+    """Bend a line, and feel along obstacles where they bind."""
+    bent = bend(line, sailor)
+    if not _is_bound(bent, sailor):
+        return bent
+    smallest = max(1.0, 1e-6 * float(rough_lengths(line.lat, line.lon).sum()))
+    return bend(feel(bent, sailor, smallest=smallest), sailor, rounds=3)
+
+
+def _is_bound(line: Line, sailor: Sailor) -> bool:
+    """Return whether any obstacle could bind a line: land on the chart, or limits of any kind."""
+    limited = np.isfinite(sailor.limits).any()
+    return bool(limited) or sailor.chart is not None
+
+
+def _thinned(line: Line, sailor: Sailor) -> Line:
+    """Leave out waypoints that bring almost nothing, and bend what is left once more."""
+    spent = _spent(line, sailor)
+    if not math.isfinite(spent) or len(line) < 3:
+        return line
+    thin = pull(line, sailor, penalty=THINNING * spent / len(line))
+    thin = bend(thin, sailor, rounds=3)
+    return thin if _spent(thin, sailor) <= spent * (1.0 + 2.0 * THINNING) else line
+
+
+def _settled_waits(line: Line, sailor: Sailor, *, longer: float = 0.0) -> Line:
+    """Return the line with every moment of leaving as early as serves the arrival best.
+
+    Parameters
+    ----------
+    longer : float
+        How much longer [s] than now a wait may become.
+    """
+    for index in np.flatnonzero(np.isfinite(line.leave)):
+        arrive, _ = sailor.sail(line.bundle(), check=False)
+        low, high = float(arrive[0, index]), float(line.leave[index]) + longer
+        if not math.isfinite(low):
+            break
+        if high <= low:
+            continue
+        for _ in range(3):
+            tried = np.linspace(low, high, _WAITS_TRIED)
+            bundle = line.bundle(
+                np.repeat(line.lat[None], _WAITS_TRIED, 0),
+                np.repeat(line.lon[None], _WAITS_TRIED, 0),
+            )
+            leave = np.array(bundle.leave)
+            leave[:, index] = tried
+            ends, cost = sailor.sail(replace(bundle, leave=leave))
+            score = (
+                ends[:, -1] if not sailor.by_length else np.where(np.isfinite(cost), tried, cost)
+            )
+            if not np.isfinite(score).any():
+                break
+            pick = int(np.argmin(score))
+            chosen = line.leave.copy()
+            chosen[index] = tried[pick]
+            line = replace(line, leave=chosen)
+            low, high = tried[max(pick - 1, 0)], tried[pick]
+    return line
+
+
+def _cost(line: Line, sailor: Sailor) -> float:
+    return float(sailor.sail(line.bundle())[1][0])
+
+
+def _spent(line: Line, sailor: Sailor) -> float:
+    """Return the cost from departure: seconds or metres."""
+    return _cost(line, sailor) - (0.0 if sailor.by_length else line.depart)
