@@ -19,11 +19,12 @@ Coast edges are straight in longitude and latitude, cut so that the arc between 
 never more than `BULGE` beside them; where that matters an edge is cut finer.
 """
 
-from math import atan, atan2, ceil, cos, hypot, sin, sqrt, tan
+from math import asin, atan, atan2, ceil, cos, hypot, sin, sqrt, tan
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from thalweg.kernels.bare import bare
 from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OK
 from thalweg.kernels.cube import (
     BULGE,
@@ -39,13 +40,12 @@ from thalweg.kernels.cube import (
     on_face,
     unit_vector,
 )
-from thalweg.kernels.jit import jit
 
 REACH: Final = 3.0e-5  # a cell answers for points this far outside it, on the face
 LONGEST_ARC: Final = 0.125  # longer legs are cut into such arcs [rad]
 SHORTEST_ARC: Final = 1.0e-9  # shorter legs are points [rad]
-SURE_ARC: Final = 0.025  # shorter legs are never unsure [rad]
-LONGEST_LEG: Final = 1.4  # longer legs are always unsure [rad]
+SURE_CHORD: Final = 0.025  # legs below 159 km are never unsure
+LONGEST_CHORD: Final = 1.2  # legs above 8,200 km always are
 
 
 class CoastArrays(NamedTuple):
@@ -60,14 +60,14 @@ class CoastArrays(NamedTuple):
     area: np.ndarray
 
 
-@jit
+@bare
 def _offset(k, mz, ez, half, tan_half, t):
     """Return how far the geodesic lies beside the plane at the angle t from its middle."""
     s, c = sin(t), cos(t)
     return k * (mz * (t * s - half * tan_half * c) + ez * (half * s / tan_half - t * c))
 
 
-@jit
+@bare
 def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
     """Test an edge near the leg in fine pieces: 0 clear, 1 touched, 2 unsure."""
     plat, plon = latitude_longitude(p[0], p[1], p[2])
@@ -96,9 +96,10 @@ def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
     return answer
 
 
-@jit
-def _edge_touched(p, q, m, e, n, k, half, tan_half, unsure):
+@bare
+def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
     """Test one edge that lies near the leg's plane: 0 clear, 1 touched, 2 unsure."""
+    half = atan(tan_half)
     t0 = atan2(p[0] * e[0] + p[1] * e[1] + p[2] * e[2], p[0] * m[0] + p[1] * m[1] + p[2] * m[2])
     t1 = atan2(q[0] * e[0] + q[1] * e[1] + q[2] * e[2], q[0] * m[0] + q[1] * m[1] + q[2] * m[2])
     if min(t0, t1) > half + BULGE or max(t0, t1) < -half - BULGE:
@@ -119,8 +120,8 @@ def _edge_touched(p, q, m, e, n, k, half, tan_half, unsure):
     return _edge_cut(p, q, m, e, n, k, half, tan_half, unsure)
 
 
-@jit
-def _row_touched(index, row, m, e, n, k, half, tan_half, near, unsure):
+@bare
+def _row_touched(index, row, m, e, n, k, tan_half, near, unsure):
     """Test the edges of one cell: 0 clear, 1 touched, 2 unsure."""
     xyz, first = index.xyz, index.first
     nx, ny, nz = n
@@ -131,7 +132,7 @@ def _row_touched(index, row, m, e, n, k, half, tan_half, near, unsure):
         if not ((s0 > near and s1 > near) or (s0 < -near and s1 < -near)) and first[i] == 0:
             p = (xyz[i - 1, 0], xyz[i - 1, 1], xyz[i - 1, 2])
             q = (xyz[i, 0], xyz[i, 1], xyz[i, 2])
-            touched = _edge_touched(p, q, m, e, n, k, half, tan_half, unsure)
+            touched = _edge_touched(p, q, m, e, n, k, tan_half, unsure)
             if touched == 1:
                 return 1
             answer = max(answer, touched)
@@ -139,26 +140,26 @@ def _row_touched(index, row, m, e, n, k, half, tan_half, near, unsure):
     return answer
 
 
-@jit
-def _way_out(u, direction, side, column, mu, eu, mw, ew):
-    """Return where the leg leaves a column of cells, as the tangent of the angle."""
+@bare
+def _way_out(direction, side, column, mu, eu, mw, ew, tau):
+    """Return where the leg leaves a column of cells, as the tangent of the angle; or infinity."""
+    if direction == 0.0:
+        return np.inf
     if direction > 0.0:
         border = 2.0 * (column + 1) / side - 1.0 + REACH
-    elif direction < 0.0:
-        border = 2.0 * column / side - 1.0 - REACH
     else:
-        return np.inf
-    return (border * mw - mu) / (eu - border * ew)
+        border = 2.0 * column / side - 1.0 - REACH
+    out = (border * mw - mu) / (eu - border * ew)
+    return out if out > tau else np.inf  # not above tau: it lies behind the back of the cube
 
 
-@jit
+@bare
 def _arc_touched(index, m, e, tan_half, unsure):
     """Walk an arc of at most `LONGEST_ARC`: 0 clear, 1 touched, 2 unsure."""
     side, cell = index.side, index.cell
     n = (m[1] * e[2] - m[2] * e[1], m[2] * e[0] - m[0] * e[2], m[0] * e[1] - m[1] * e[0])
-    half = atan(tan_half)
     k = -FLATTENING * n[2]
-    near = abs(k) * half * half * (1.01 * abs(m[2]) + 0.4 * half) + BULGE + unsure
+    near = abs(k) * tan_half * tan_half * (1.01 * abs(m[2]) + 0.4 * tan_half) + BULGE + unsure
     big = min(3.0 / side, 0.1)
     answer = 0
     tau = -tan_half
@@ -175,58 +176,73 @@ def _arc_touched(index, m, e, tan_half, unsure):
             if value > FIRST_ROW:
                 return 1
             row = int(FIRST_ROW - value)
-            touched = _row_touched(index, row, m, e, n, k, half, tan_half, near, unsure)
+            touched = _row_touched(index, row, m, e, n, k, tan_half, near, unsure)
             if touched == 1:
                 return 1
             answer = max(answer, touched)
         mu, mv, mw = on_face(m[0], m[1], m[2], face)
         eu, ev, ew = on_face(e[0], e[1], e[2], face)
-        out_u = _way_out(u, eu * mw - mu * ew, side, i, mu, eu, mw, ew)
-        out_v = _way_out(v, ev * mw - mv * ew, side, j, mv, ev, mw, ew)
+        out_u = _way_out(eu * mw - mu * ew, side, i, mu, eu, mw, ew, tau)
+        out_v = _way_out(ev * mw - mv * ew, side, j, mv, ev, mw, ew, tau)
         tau = min(out_u, out_v)
     return answer
 
 
-@jit
-def in_area(area, lat1, lon1, lat2, lon2):
-    """Return whether the geodesic between two positions stays in an area (see `CoastArrays`)."""
-    south, north, width = area[0], area[1], area[3]
-    if not (south <= lat1 <= north and south <= lat2 <= north):
+@bare
+def _is_world(area):
+    return area[0] <= -90.0 and area[1] >= 90.0 and area[3] >= 360.0
+
+
+@bare
+def _position_in_area(area, lat, lon):
+    """Return whether a position [deg] lies in an area, borders included."""
+    east = (lon - area[2]) % 360.0
+    return area[0] <= lat <= area[1] and (east <= area[3] or east >= 360.0 - 1e-9)
+
+
+@bare
+def leg_in_area(area, lat1, lon1, lat2, lon2):
+    """Return whether the geodesic between two positions [deg] stays in an area.
+
+    It may not run round the back of a wide area, nor bulge over its northern or southern border.
+    """
+    if not (_position_in_area(area, lat1, lon1) and _position_in_area(area, lat2, lon2)):
         return False
-    if width < 360.0:
-        start = (lon1 - area[2]) % 360.0
-        if start > width:
-            if start < 360.0 - 1e-9:
-                return False
-            start -= 360.0
-        end = start + (lon2 - lon1 + 540.0) % 360.0 - 180.0
-        if not (-1e-9 <= end <= width + 1e-9):
-            return False
+    start = (lon1 - area[2] + 1e-9) % 360.0
+    end = start + (lon2 - lon1 + 540.0) % 360.0 - 180.0
+    if area[3] < 360.0 and not 0.0 <= end <= area[3] + 2e-9:
+        return False
     ax, ay, az = unit_vector(lat1, lon1)
     bx, by, bz = unit_vector(lat2, lon2)
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-    # towards the pole of the plane's highest point: is it between a and b?
-    rise_a, rise_b = nx * ay - ny * ax, nx * by - ny * bx
-    if rise_a * rise_b >= 0.0:
+    if (nx * ay - ny * ax) * (nx * by - ny * bx) >= 0.0:  # no highest point between a and b
         return True
     top = atan2(hypot(nx, ny), POLAR * abs(nz)) / DEGREE
-    return top <= north if az + bz > 0.0 else -top >= south
+    return top <= area[1] if az + bz > 0.0 else -top >= area[0]
 
 
-@jit
+@bare
+def _vector_code(coast, lat, lon, x, y, z):
+    """Return OK, LAND or NO_GO for a position given both ways."""
+    if inside(coast.land, x, y, z):
+        return LAND
+    if not _is_world(coast.area) and not _position_in_area(coast.area, lat, lon):
+        return NO_GO
+    if coast.zones.side > 1 and inside(coast.zones, x, y, z):
+        return NO_GO
+    return OK
+
+
+@bare
 def point_code(coast, lat, lon):
     """Return OK, LAND or NO_GO (a no-go zone or outside the area) for a position [deg]."""
     if not (abs(lat) <= 90.0 and abs(lon) < 1e6):
         return NO_DATA
     x, y, z = unit_vector(lat, lon)
-    if inside(coast.land, x, y, z):
-        return LAND
-    if not in_area(coast.area, lat, lon, lat, lon) or inside(coast.zones, x, y, z):
-        return NO_GO
-    return OK
+    return _vector_code(coast, lat, lon, x, y, z)
 
 
-@jit
+@bare
 def _geodesic_point(a, b, share):
     """Return the unit vector at a share of the leg's angle, on the geodesic to first order."""
     mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]
@@ -243,7 +259,7 @@ def _geodesic_point(a, b, share):
     return x / length, y / length, z / length
 
 
-@jit
+@bare
 def _between(a, b):
     """Return the middle direction, the direction along and the tangent of half the angle."""
     mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]
@@ -252,10 +268,13 @@ def _between(a, b):
     return (mx / lm, my / lm, mz / lm), (ex / le, ey / le, ez / le), le / lm
 
 
-@jit
-def _touched(index, a, b, angle, unsure):
+@bare
+def _touched(index, a, b, chord, unsure):
     """Walk the leg from a to b in arcs: 0 clear, 1 touched, 2 unsure."""
-    arcs = int(ceil(angle / LONGEST_ARC))
+    if chord < LONGEST_ARC:
+        m, e, tan_half = _between(a, b)
+        return _arc_touched(index, m, e, tan_half, unsure)
+    arcs = ceil(2.0 * asin(min(0.5 * chord, 1.0)) / LONGEST_ARC)
     answer = 0
     p = a
     for i in range(arcs):
@@ -269,7 +288,7 @@ def _touched(index, a, b, angle, unsure):
     return answer
 
 
-@jit
+@bare
 def leg_code(coast, lat1, lon1, lat2, lon2):
     """Return why a geodesic leg may not be sailed, and whether that is unsure.
 
@@ -277,7 +296,7 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
     ----------
     coast : CoastArrays
     lat1, lon1, lat2, lon2 : float
-        Ends of the leg [deg]. Legs above 8,900 km are better cut first: they are always unsure.
+        Ends of the leg [deg]. Legs above 8,000 km are better cut first: they are always unsure.
 
     Returns
     -------
@@ -287,46 +306,46 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
         The leg passes so near that the first-order geodesic cannot tell; ``code`` is then the
         blocked one.
     """
-    code = point_code(coast, lat1, lon1)
-    if code != OK:
-        return code, False
-    if not (abs(lat2) <= 90.0 and abs(lon2) < 1e6):
+    if not (abs(lat1) <= 90.0 and abs(lon1) < 1e6 and abs(lat2) <= 90.0 and abs(lon2) < 1e6):
         return NO_DATA, False
     a, b = unit_vector(lat1, lon1), unit_vector(lat2, lon2)
-    chord = hypot(hypot(b[0] - a[0], b[1] - a[1]), b[2] - a[2])
+    code = _vector_code(coast, lat1, lon1, a[0], a[1], a[2])
+    if code != OK:
+        return code, False
+    x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    chord = sqrt(x * x + y * y + z * z)
     if chord < SHORTEST_ARC:
-        return point_code(coast, lat2, lon2), False
-    angle = 2.0 * atan2(chord, hypot(hypot(b[0] + a[0], b[1] + a[1]), b[2] + a[2]))
+        return _vector_code(coast, lat2, lon2, b[0], b[1], b[2]), False
+    far = chord > LONGEST_CHORD
     unsure = 0.0
-    if angle > SURE_ARC:
-        unsure = 0.25 * (FLATTENING * angle) ** 2
-    far = angle > LONGEST_LEG
-    land = _touched(coast.land, a, b, angle, unsure)
+    if chord > SURE_CHORD:
+        unsure = 0.3 * (FLATTENING * chord) ** 2
+    land = _touched(coast.land, a, b, chord, unsure)
     if land > 0:
         return LAND, far or land == 2
-    if not in_area(coast.area, lat1, lon1, lat2, lon2):
+    if not _is_world(coast.area) and not leg_in_area(coast.area, lat1, lon1, lat2, lon2):
         return NO_GO, False
     if coast.zones.side > 1:
-        zone = _touched(coast.zones, a, b, angle, unsure)
+        zone = _touched(coast.zones, a, b, chord, unsure)
         if zone > 0:
             return NO_GO, far or zone == 2
     return OK, far
 
 
-@jit
+@bare
 def leg_blocked(coast, lat1, lon1, lat2, lon2):
     """Return whether a geodesic leg [deg] touches land or a no-go zone or leaves the area."""
     return leg_code(coast, lat1, lon1, lat2, lon2)[0] != OK
 
 
-@jit
+@bare
 def leg_codes(coast, lat1, lon1, lat2, lon2, code, unsure):
     """Fill ``code`` (int8) and ``unsure`` (bool) for many legs; see `leg_code`."""
     for i in range(len(code)):
         code[i], unsure[i] = leg_code(coast, lat1[i], lon1[i], lat2[i], lon2[i])
 
 
-@jit
+@bare
 def point_codes(coast, lat, lon, code):
     """Fill ``code`` (int8) for many positions [deg]; see `point_code`."""
     for i in range(len(code)):

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.jit import jit
+from thalweg.kernels.bare import bare
 
 FLATTENING: Final = 1.0 / 298.257223563  # WGS 84
 POLAR: Final = (1.0 - FLATTENING) ** 2  # tan(geocentric latitude) / tan(latitude)
@@ -50,7 +50,7 @@ class IndexArrays(NamedTuple):
     first: np.ndarray
 
 
-@jit
+@bare
 def unit_vector(lat, lon):
     """Return the unit vector of the geocentric direction of a position [deg]."""
     c, s = cos(lat * DEGREE), POLAR * sin(lat * DEGREE)
@@ -59,7 +59,7 @@ def unit_vector(lat, lon):
     return c * cos(lon * DEGREE), c * sin(lon * DEGREE), s * scale
 
 
-@jit
+@bare
 def on_face(x, y, z, face):
     """Return a vector's components (u, v, w) on a face: w outward, u and v across."""
     if face == 0:
@@ -75,7 +75,7 @@ def on_face(x, y, z, face):
     return x, y, -z
 
 
-@jit
+@bare
 def off_face(u, v, w, face):
     """Return the vector whose components on a face are (u, v, w)."""
     if face == 0:
@@ -91,7 +91,7 @@ def off_face(u, v, w, face):
     return u, v, -w
 
 
-@jit
+@bare
 def face_of(x, y, z):
     """Return the face of the cube that a vector points through."""
     ax, ay, az = abs(x), abs(y), abs(z)
@@ -102,18 +102,19 @@ def face_of(x, y, z):
     return 4 if z > 0.0 else 5
 
 
-@jit
+@bare
 def column_of(u, side):
+    """Return which of a face's columns holds u in [-1, 1]."""
     return min(max(int((u + 1.0) * 0.5 * side), 0), side - 1)
 
 
-@jit
+@bare
 def latitude_longitude(x, y, z):
     """Return the position [deg] of a geocentric direction."""
     return atan2(z, POLAR * hypot(x, y)) / DEGREE, atan2(y, x) / DEGREE
 
 
-@jit
+@bare
 def _lonlat_side(px, py, pz, qx, qy, qz, x, y, z):
     """Return on which side of the edge p, q, straight in lon and lat, a near point lies."""
     plat, plon = latitude_longitude(px, py, pz)
@@ -124,7 +125,7 @@ def _lonlat_side(px, py, pz, qx, qy, qz, x, y, z):
     return east * (lat - plat) - here * (qlat - plat)
 
 
-@jit
+@bare
 def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
     """Return the winding number at a, given that at b; both lie in the row's cell."""
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
@@ -146,13 +147,13 @@ def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
     return winding
 
 
-@jit
+@bare
 def cell_middle(face, i, j, side):
     """Return the direction (not of unit length) of the middle of a cell; halves are allowed."""
     return off_face((2.0 * i + 1.0) / side - 1.0, (2.0 * j + 1.0) / side - 1.0, 1.0, face)
 
 
-@jit
+@bare
 def inside(index, x, y, z):
     """Return whether a direction lies inside the polygons of an index."""
     side = index.side

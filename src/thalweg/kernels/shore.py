@@ -4,6 +4,7 @@ from math import asin, sqrt
 
 import numpy as np
 
+from thalweg.kernels.bare import bare
 from thalweg.kernels.cube import (
     FIRST_ROW,
     RADIUS,
@@ -13,10 +14,9 @@ from thalweg.kernels.cube import (
     on_face,
     unit_vector,
 )
-from thalweg.kernels.jit import jit
 
 
-@jit
+@bare
 def _squared_distance(x, y, z, p, q):
     """Return the squared chord from a point to an edge between two vertices."""
     ex, ey, ez = q[0] - p[0], q[1] - p[1], q[2] - p[2]
@@ -28,7 +28,7 @@ def _squared_distance(x, y, z, p, q):
     return ax * ax + ay * ay + az * az
 
 
-@jit
+@bare
 def _nearest_in_row(index, row, x, y, z, best):
     for k in range(index.start[row], index.start[row + 1]):
         if index.first[k] == 0:
@@ -36,7 +36,7 @@ def _nearest_in_row(index, row, x, y, z, best):
     return best
 
 
-@jit
+@bare
 def _nearest_within(index, x, y, z, radius):
     """Return the squared chord to the nearest edge in cells touched by a disc [rad]."""
     best = np.inf
@@ -57,7 +57,7 @@ def _nearest_within(index, x, y, z, radius):
     return best
 
 
-@jit
+@bare
 def shore_distances(index, lat, lon, cap, distance):
     """Fill ``distance`` [m] with a lower bound of the way to the nearest edge of an index.
 
