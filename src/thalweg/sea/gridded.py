@@ -156,15 +156,13 @@ class GridLayer:
         if not known.any():
             return samples
         wanted = self._window(located, moments, known)
-        for name, values, window in self._blocks(names, wanted):
-            sampling.gather_points(
-                values,
-                _local(located.corner, window, self.grid.shape[1]),
-                located.weight,
-                np.where(moments.level >= 0, moments.level - window.t0, -1),
-                moments.fraction,
-                samples[name],
-            )
+        for window, blocks in self._blocks(names, wanted):
+            corner = _local(located.corner, window, self.grid.shape[1])
+            level = np.where(moments.level >= 0, moments.level - window.t0, -1)
+            for name, values in blocks.items():
+                sampling.gather_points(
+                    values, corner, located.weight, level, moments.fraction, samples[name]
+                )
         return nan_pairs(samples, [v.pair for v in nm.VECTORS])
 
     def series(
@@ -178,16 +176,14 @@ class GridLayer:
             return {name: np.full(shape, np.nan) for name in names}
         wanted = self._window(located, moments, inside, when)
         samples = {}
-        for name, values, window in self._blocks(names, wanted):
-            samples[name] = np.empty(shape)
-            sampling.gather_series(
-                values,
-                _local(located.corner, window, self.grid.shape[1]),
-                located.weight,
-                np.where(when, moments.level - window.t0, -1),
-                moments.fraction,
-                samples[name],
-            )
+        for window, blocks in self._blocks(names, wanted):
+            corner = _local(located.corner, window, self.grid.shape[1])
+            level = np.where(when, moments.level - window.t0, -1)
+            for name, values in blocks.items():
+                samples[name] = np.empty(shape)
+                sampling.gather_series(
+                    values, corner, located.weight, level, moments.fraction, samples[name]
+                )
         return nan_pairs(samples, [v.pair for v in nm.VECTORS])
 
     def times(self, start: float, end: float) -> FloatArray:
@@ -220,14 +216,16 @@ class GridLayer:
 
     def _blocks(
         self, names: Sequence[str], wanted: Window
-    ) -> list[tuple[str, NDArray[Any], Window]]:
-        found = []
+    ) -> list[tuple[Window, dict[str, NDArray[Any]]]]:
+        """Return the values that are needed, by the window they were read for."""
+        found: dict[Window, dict[str, NDArray[Any]]] = {}
         for quantity in self.quantities:
             mine = [name for name in quantity.names if name in names]
             if mine:
                 block = self.cache.block(quantity, wanted)
-                found += [(name, block.values[name], block.window) for name in mine]
-        return found
+                group = found.setdefault(block.window, {})
+                group.update((name, block.values[name]) for name in mine)
+        return list(found.items())
 
     def _window(
         self,

@@ -235,19 +235,33 @@ class Sea:
         """Return what was recognised in the files, what not and why, coverage and gaps."""
         return inspection.inspect(self)
 
-    def draw(self, path: str | os.PathLike[str], *, time: TimeLike | None = None) -> None:
-        """Draw a map of each main quantity to a PNG file.
+    def draw(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        time: TimeLike | None = None,
+        area: tuple[float, float, float, float] | None = None,
+        coastline: Sequence[tuple[ArrayLike, ArrayLike]] = (),
+    ) -> None:
+        """Draw a map of each main quantity to one PNG file.
 
         Parameters
         ----------
         path : path-like
             File to write.
         time : time, optional
-            When; by default the time of the highest waves, strongest wind or current.
+            When; by default when the waves (else the wind, the current) are largest.
+        area : tuple of float, optional
+            (south, north, west, east) [deg]; by default that of the smallest layer of files.
+        coastline : sequence of (lat, lon), optional
+            Lines [deg] drawn on top.
         """
         from thalweg.sea.draw import draw
 
-        draw(self, path, time=None if time is None else parse_time(time))
+        when = None if time is None else parse_time(time)
+        box = None if area is None else area_of(area)
+        lines = [(np.asarray(a, np.float64), np.asarray(o, np.float64)) for a, o in coastline]
+        draw(self, path, time=when, area=box, coastline=lines)
 
     def sample(
         self, names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike

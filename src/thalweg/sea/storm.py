@@ -219,7 +219,11 @@ class StormLayer:
     def _fields(
         self, dot: FloatArray, into: tuple[FloatArray, FloatArray], state: State, column: Any
     ) -> Samples:
-        """Return all fields: the ambient sea, and the vortex where it reaches."""
+        """Return all fields: the ambient sea, and the vortex where it reaches.
+
+        Waves are those of the local wind over the equivalent fetch; within the radius of maximum
+        wind they keep the height they have at it, for seas do not fall in the eye as wind does.
+        """
         values = self._ambient_fields(dot.shape)
         reach = dot > np.cos(OUTER_RADIUS / MEAN_RADIUS)
         if not reach.any():
@@ -228,7 +232,8 @@ class StormLayer:
         sine = np.sqrt(np.maximum(1.0 - dot[reach] ** 2, 1e-18))
         inward = into[0][reach] / sine, into[1][reach] / sine
         radius = MEAN_RADIUS * np.arctan2(sine, dot[reach])
-        wind, share, height_wind = vortex_wind(radius, inward, local)
+        wind, share = vortex_wind(radius, inward, local)
+        height_wind = np.hypot(*vortex_wind(np.maximum(radius, local.radius), inward, local)[0])
         background = self.ambient.wind
         u = wind[0] + (1.0 - share) * background[0]
         v = wind[1] + (1.0 - share) * background[1]
@@ -331,7 +336,7 @@ def vortex(track: Track, time: FloatArray) -> State:
 
 def vortex_wind(
     radius: FloatArray, inward: tuple[FloatArray, FloatArray], state: State
-) -> tuple[tuple[FloatArray, FloatArray], FloatArray, FloatArray]:
+) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
     """Return the storm's part of the 10 m wind.
 
     Parameters
@@ -349,8 +354,6 @@ def vortex_wind(
         (east, north) towards [m/s].
     share : float64 array
         Local over maximum symmetric wind, 0 to 1: where it is 1 no ambient wind is left.
-    speed : float64 array
-        Length of ``wind`` [m/s].
     """
     coriolis = models.coriolis_parameter(state.lat)
     gradient = models.holland_gradient_wind(
@@ -368,7 +371,7 @@ def vortex_wind(
     across, along = speed * np.cos(angle) * spin, speed * np.sin(angle)
     u = across * inward[1] + along * inward[0] + share * state.added[0]
     v = -across * inward[0] + along * inward[1] + share * state.added[1]
-    return (u, v), share, np.hypot(u, v)
+    return (u, v), share
 
 
 def _fade(radius: FloatArray) -> FloatArray:
