@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -173,11 +173,11 @@ def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
     return lengths
 
 
-def _flat(values: ArrayLike, kind: type) -> NDArray:
+def _flat(values: ArrayLike, kind: type) -> NDArray[Any]:
     return np.ascontiguousarray(values, dtype=kind).reshape(-1)
 
 
-def _padded(values: NDArray, shape: tuple[int, int]) -> NDArray:
+def _padded(values: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any]:
     """Return values per leg (L, n - 1) with a column for the last points, which is not read."""
     return np.concatenate(
         [np.broadcast_to(values, shape), np.ones((shape[0], 1), values.dtype)], axis=1

@@ -40,7 +40,7 @@ Routable: TypeAlias = "Track | Route | str | Path | Iterable[Sequence[float]]"
 
 LEAST_PIECES = 8  #: of every leg
 LARGEST_STEP = 0.5 * NAUTICAL_MILE  #: [m]
-MOST_PIECES = 4000  #: of a route at the coarser of its two step sizes (besides `LEAST_PIECES`)
+MOST_PIECES = 2000  #: of a route at the coarser of its two step sizes (besides `LEAST_PIECES`)
 MOST_LOOKS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
 LOOKS_PER_CELL = 8  #: of gridded data
 _METRES_PER_DEGREE = 111_000.0
@@ -77,7 +77,7 @@ def evaluate(
         None: not checked.
     step : float, optional
         Length of a piece [m]. By default the least of an eighth of the leg, half a nautical mile
-        and a quarter of the spacing of the data, but not below 1/4000 of the route.
+        and a quarter of the spacing of the data, but not below 1/2000 of the route.
     load_factor : float, optional
         0 empty to 1 full; by default as the ship is loaded.
     speed_kn : float, optional
@@ -271,10 +271,10 @@ def _report(sailed: _Sailed, min_ukc: float | None, tolerance: float) -> Route:
     clearance = _finite(motion.depth - world.ship.draught)
     least = _leg_least(near.leg, _finite(depth - world.ship.draught), moments, len(departs))
     fuel = _leg_fuel(pieces, passage, rate[order])
-    samples = {
+    samples: dict[str, FloatArray] = {
         **motion.sampled,
         "time": time,
-        "leg": points.leg,
+        "leg": points.leg,  # type: ignore[dict-item]
         "lat": points.lat,
         "lon": points.lon,
         "distance": np.concatenate([[0.0], np.cumsum(pieces.length)])[points.leg] + points.along,

@@ -15,6 +15,7 @@ from thalweg.route.feeling import feel
 from thalweg.route.line import Line, line_of, track_of_line
 from thalweg.route.pulling import pull
 from thalweg.route.quick import Sailor, make_sailor, rough_lengths
+from thalweg.route.tightening import tighten
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -82,9 +83,15 @@ def smooth(
         first = _settled_waits(first, sailor, longer=3600.0)
         if not math.isfinite(_cost(first, sailor)):
             return track
-    line = _settled_waits(pull(first, sailor), sailor)
-    lines = [_levels(start, sailor, finest) for start in _starts(first, line, sailor)]
-    best = min(lines, key=lambda item: _cost(item, sailor))
+    line = pull(first, sailor)
+    if _is_bound(line, sailor):
+        line = tighten(line, sailor)
+    line = _settled_waits(line, sailor)
+    if sailor.by_length:  # a taut line cannot be bent any shorter
+        best = _thinned(feel(line, sailor), sailor)
+    else:
+        lines = [_levels(start, sailor, finest) for start in _starts(first, line, sailor)]
+        best = min(lines, key=lambda item: _cost(item, sailor))
     if not _cost(best, sailor) <= _cost(first, sailor):
         return track
     return track_of_line(best, sailor)
