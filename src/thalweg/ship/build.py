@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
 from thalweg.ship.hull import Hull, require
-from thalweg.ship.hull_estimates import estimate
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
+from thalweg.ship.model import ShipModel
 from thalweg.ship.nominal import KwonLoss, NominalModel, check_rising, cubic_law
 
 FloatArray = NDArray[np.float64]
@@ -78,6 +78,23 @@ def _volume(
     return otherwise if hull_volume is None else hull_volume
 
 
+def build_model(data: Data, hull: Hull, loading: Loading) -> ShipModel:
+    """Return the model a ship file asks for.
+
+    Raises
+    ------
+    InputError
+        For unknown methods, methods that do not go together, and missing data.
+    """
+    models = data.get("models", {})
+    acting = [name for name in FORCES if models.get(name, "none") != "none"]
+    if models.get("calm_water", "none") in _LAWS and not acting:
+        return build_nominal(data, hull, loading)
+    from thalweg.ship.compose import compose_model  # the physics is needed from here on
+
+    return compose_model(data, hull, loading)
+
+
 def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
     """Return the model of a ship that gives its calm-water speeds.
 
@@ -102,7 +119,10 @@ def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
     if name == "none":
         return None
     needed = ("length_between_perpendiculars_m", "block_coefficient")
-    hull = estimate(hull, needed)
+    if any(hull.number(key) is None for key in needed):
+        from thalweg.ship.hull_estimates import estimate  # reads many regressions
+
+        hull = estimate(hull, needed)
     length, block = require(hull, needed, "kwon_2008", instead="speed_loss: none")
     if math.isnan(loading.displacement_full):
         require(hull, ("displacement_m3",), "kwon_2008", instead="speed_loss: none")
@@ -228,4 +248,6 @@ _LAWS: Final[dict[str, Callable[[Data, FloatArray], tuple[FloatArray, FloatArray
     "cubic": _cubic,
     "table": _table,
 }
+#: models that act on a resistance
+FORCES: Final = ("waves", "wind", "shallow_water", "friction", "propulsion", "rudder")
 SPEED_LOSSES: Final = ("none", "kwon_2008")

@@ -10,12 +10,12 @@ import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import KNOT
-from thalweg.ship.build import build_limits, build_nominal
+from thalweg.ship.build import FORCES, build_limits
 from thalweg.ship.calm_parts import CALM_WATER, build_calm_water, check_length_order
 from thalweg.ship.hull import Hull
 from thalweg.ship.hull_estimates import estimate, hull_at
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.model import Estimate
 from thalweg.ship.powering import Balance, Orders, ResistanceModel
 from thalweg.ship.propulsion_parts import Plant, build_plant, build_propulsion
 from thalweg.ship.weather_parts import build_waves, build_wind
@@ -24,8 +24,8 @@ RUDDER = ("none", "schless_2023")
 _FACTS = ("hull", "propulsion", "engine", "loading", "models")
 
 
-def build_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ShipModel:
-    """Return the model a ship file asks for.
+def compose_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ResistanceModel:
+    """Return the model of a ship file that chooses a calm-water resistance.
 
     Parameters
     ----------
@@ -40,22 +40,19 @@ def build_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ShipMo
         For unknown methods (with near matches), methods that do not go together, and missing data.
     """
     models = data.get("models", {})
-    calm = models.get("calm_water")
+    calm = models.get("calm_water", "none")
     if calm in CALM_WATER:
         return _resistance_model(data, hull, loading)
-    if calm not in (None, "none", "cubic", "table"):
+    if calm not in ("none", "cubic", "table"):
         raise unknown_name("calm-water model", calm, ("none", "cubic", "table", *CALM_WATER))
-    parts = ("waves", "wind", "shallow_water", "friction", "propulsion", "rudder")
-    idle = [name for name in parts if models.get(name, "none") != "none"]
-    if idle:
-        raise InputError(
-            f"The ship file chooses {', '.join(f'models.{name}' for name in idle)}, but has no "
-            "resistance they could act on.",
-            f"They go with models.calm_water among {', '.join(CALM_WATER)}.",
-            "Choose one of those, or speed_loss: kwon_2008 for a ship with known speeds.",
-            key=f"models.{idle[0]}",
-        )
-    return build_nominal(data, hull, loading)
+    idle = [name for name in FORCES if models.get(name, "none") != "none"]
+    raise InputError(
+        f"The ship file chooses {', '.join(f'models.{name}' for name in idle)}, but has no "
+        "resistance they could act on.",
+        f"They go with models.calm_water among {', '.join(CALM_WATER)}.",
+        "Choose one of those, or speed_loss: kwon_2008 for a ship with known speeds.",
+        key=f"models.{idle[0]}",
+    )
 
 
 def _resistance_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ResistanceModel:

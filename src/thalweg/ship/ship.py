@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, ModelRangeError
 from thalweg.core.units import KNOT
-from thalweg.ship.build import build_limits, build_loading
+from thalweg.ship.build import build_limits, build_loading, build_model
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.hull import complete_hull
@@ -25,7 +25,6 @@ from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import Estimate, ShipModel
-from thalweg.ship.powering import ResistanceModel
 from thalweg.ship.schema import check_ship_data
 from thalweg.ship.ship_file import read_ship
 from thalweg.ship.table import PerformanceTable
@@ -90,8 +89,6 @@ class Ship:
         InputError
             For unknown or missing keys, numbers out of range and hulls that cannot be.
         """
-        from thalweg.ship.compose import build_model
-
         checked = check_ship_data(data, source)
         hull = complete_hull(checked.get("hull", {}))
         loading = build_loading(checked, hull)
@@ -336,8 +333,8 @@ class Ship:
         """
         return self._resistance_model("resistance").resistance(self._loaded(conditions), speed)
 
-    def _resistance_model(self, what: str) -> ResistanceModel:
-        if not isinstance(self.model, ResistanceModel):
+    def _resistance_model(self, what: str) -> Any:
+        if not hasattr(self.model, "power_at_speed"):
             raise InputError(
                 f"The {what} of {self.name!r} at a speed is not known.",
                 "Ships with models.calm_water such as holtrop_1984 know it.",

@@ -59,8 +59,8 @@ def tabulate_balance(
     """Tabulate the speed through water of every setting as a sum of parts.
 
     First a constant (calm, deep), one part for wind, one for waves, one for depth, each refined on
-    its own; where their sum misses the tolerance, one part more for wind and waves together, and one
-    for all three.
+    its own; where their sum misses the tolerance, one part more for wind and waves together, and
+    one for all three.
 
     Parameters
     ----------

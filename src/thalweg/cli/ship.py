@@ -1,0 +1,202 @@
+"""``thalweg ship``: resistance, power, fuel and emissions of a ship, as table, JSON or pictures."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from thalweg.core.errors import InputError
+
+
+def add_ship_command(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "ship",
+        help="show what a ship needs at each speed",
+        description="Resistance by component, power, fuel and CO2 of a ship in given weather.",
+    )
+    parser.add_argument("ship", nargs="?", metavar="NAME|FILE", help="library ship or YAML file")
+    parser.add_argument("--list", action="store_true", help="list the ships of the library")
+    parser.add_argument("--speed", metavar="KN", help="8:16, 8:16:0.5 or 10,12,14")
+    parser.add_argument("--hs", type=float, metavar="M", help="significant wave height")
+    parser.add_argument("--tp", type=float, metavar="S", help="peak wave period")
+    parser.add_argument("--wave-from", type=float, metavar="DEG", help="off the bow, 0 from ahead")
+    parser.add_argument("--wind", type=float, metavar="M/S", help="true wind at 10 m")
+    parser.add_argument("--wind-from", type=float, metavar="DEG", help="off the bow, 0 from ahead")
+    parser.add_argument("--water-depth", type=float, metavar="M", help="depth of the water")
+    parser.add_argument("--load-factor", type=float, metavar="0..1", help="0 empty, 1 full")
+    parser.add_argument("--strict", action="store_true", help="refuse methods outside their range")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--out", metavar="DIR", help="folder for ship.json and the pictures")
+    parser.set_defaults(run=run_ship)
+
+
+def run_ship(arguments: argparse.Namespace) -> int:
+    """Compute, print and draw."""
+    from thalweg.ship import Ship, library_names
+    from thalweg.ship.sheet import performance_sheet
+
+    if arguments.list:
+        print("\n".join(library_names()))
+        return 0
+    if arguments.ship is None:
+        raise InputError(
+            "No ship is named.",
+            f"Library: {', '.join(library_names())}.",
+            "Give a name or a ship file.",
+        )
+    ship = Ship.load(arguments.ship)
+    if arguments.load_factor is not None:
+        ship = ship.with_load_factor(arguments.load_factor)
+    speeds = parse_speeds(arguments.speed) if arguments.speed else []
+    weather = _weather(arguments)
+    sheet = performance_sheet(ship, weather, speeds_kn=speeds)
+    _refuse(sheet, arguments.strict)
+    pictures = _draw(ship, sheet, weather, arguments.out) if arguments.out else []
+    if arguments.json:
+        print(json.dumps(sheet, indent=2, allow_nan=False))
+        return 0
+    show_sheet(sheet)
+    for path in pictures:
+        print(f"wrote {path}")
+    return 0
+
+
+add_command, run = add_ship_command, run_ship
+
+
+def parse_speeds(text: str) -> list[float]:
+    """Read ``8:16``, ``8:16:0.5`` or ``10,12,14`` as speeds [kn].
+
+    Raises
+    ------
+    InputError
+    """
+    wrong = InputError(
+        f"{text!r} are not speeds.",
+        "Speeds are knots: a list 10,12,14, a range 8:16, or a range with a step 8:16:0.5.",
+        "Write them that way.",
+        value=text,
+    )
+    try:
+        numbers = [float(part) for part in text.replace(":", ",").split(",")]
+    except ValueError:
+        raise wrong from None
+    if not all(math.isfinite(n) and n > 0 for n in numbers):
+        raise wrong
+    if ":" not in text:
+        return numbers
+    if len(numbers) not in (2, 3) or "," in text or numbers[1] < numbers[0]:
+        raise wrong
+    step = numbers[2] if len(numbers) == 3 else 1.0
+    count = math.floor((numbers[1] - numbers[0]) / step + 1e-9) + 1
+    if count > 1000:
+        raise wrong
+    return [numbers[0] + k * step for k in range(count)]
+
+
+def _weather(arguments: argparse.Namespace) -> dict[str, float]:
+    given = {
+        "wave_height": arguments.hs,
+        "wave_period": arguments.tp,
+        "wind_speed": arguments.wind,
+        "depth": arguments.water_depth,
+    }
+    found = {name: value for name, value in given.items() if value is not None}
+    for name, value in found.items():
+        if not (math.isfinite(value) and value >= 0.0):
+            raise InputError(f"{name} is {value:g}.", "It is at least 0.", "Correct it.")
+    for name, degrees in (("wave_angle", arguments.wave_from), ("wind_angle", arguments.wind_from)):
+        if degrees is not None:
+            if not math.isfinite(degrees):
+                raise InputError(f"{name} is {degrees:g}.", "It is in degrees.", "Correct it.")
+            found[name] = math.radians(abs((degrees + 180.0) % 360.0 - 180.0))
+    return found
+
+
+def _refuse(sheet: dict[str, Any], strict: bool) -> None:
+    from thalweg.core.errors import ModelRangeError
+
+    notes = sorted({note for row in sheet["conditions"] for note in row["warnings"]})
+    if strict and notes:
+        raise ModelRangeError(
+            "; ".join(notes) + ".",
+            "Each method holds in the range it was fitted for.",
+            "Choose other methods or speeds, or leave --strict out.",
+            notes=notes,
+        )
+
+
+def show_sheet(sheet: dict[str, Any]) -> None:
+    """Print the sheet for a person."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    console.print(f"[bold]{sheet['name']}[/bold], draught {sheet['draught_m']:.2f} m")
+    table = Table(box=box.SIMPLE, pad_edge=False)
+    composed = any(row["resistance_n"] for row in sheet["conditions"])
+    heads = ["speed\nkn"]
+    if composed:
+        heads += ["resistance\nkN", "waves\nkN", "wind\nkN"]
+    heads += ["power\nkW", "fuel\nkg/h", "fuel\nkg/nm", "CO2\nkg/h", "CII\ng/(t nm)"]
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=True)
+    for row in sheet["conditions"]:
+        forces = row["resistance_n"]
+        cells = [_text(row["speed_kn"], 2)]
+        if composed:
+            cells += [_text(_kilo(forces[name]), 1) for name in ("total", "waves", "wind")]
+        cii = row["cii"]
+        cells += [
+            _text(row["brake_power_kw"], 0),
+            _text(row["fuel_kg_per_h"], 0),
+            _text(row["fuel_kg_per_nm"], 1),
+            _text(row["co2_kg_per_h"], 0),
+            f"{cii['attained_g_per_t_nm']:.2f} {cii['rating_2026'] or ''}" if cii else "-",
+        ]
+        table.add_row(*cells)
+    console.print(table)
+    _show_notes(console, sheet)
+
+
+def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
+    for note in dict.fromkeys(n for row in sheet["conditions"] for n in row["warnings"]):
+        console.print(f"[yellow]outside range:[/yellow] {note}", highlight=False)
+    if sheet["estimated"]:
+        console.print("Estimated, not given:")
+        for one in sheet["estimated"]:
+            console.print(
+                f"  {one['key']} = {one['value']:.5g}  ({one['method']})", highlight=False
+            )
+    for source in sheet["sources"]:
+        console.print(f"Source: {source}", highlight=False)
+
+
+def _draw(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str) -> list[Path]:
+    from thalweg.cli.ship_pictures import draw_ship
+
+    folder = Path(out)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "ship.json").write_text(json.dumps(sheet, indent=2, allow_nan=False) + "\n")
+    except OSError as problem:
+        raise InputError(
+            f"The folder {folder} cannot be written: {problem.strerror or problem}.",
+            "",
+            "Give another folder with --out.",
+            folder=str(folder),
+        ) from None
+    return [folder / "ship.json", *draw_ship(ship, sheet, weather, folder)]
+
+
+def _kilo(value: float | None) -> float | None:
+    return None if value is None else value / 1000.0
+
+
+def _text(value: float | None, digits: int) -> str:
+    return "-" if value is None else f"{value:,.{digits}f}"

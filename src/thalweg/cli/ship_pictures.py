@@ -1,0 +1,164 @@
+"""Pictures of a ship: resistance by component, power and fuel, speed loss over the heading."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.units import KNOT
+from thalweg.ship import Conditions, Ship
+
+_LABELS = {
+    "friction": "friction",
+    "form_factor": "form",
+    "appendage": "appendages",
+    "residuary": "residuary",
+    "wave_making": "wave making",
+    "bulb": "bulb",
+    "transom": "transom",
+    "correlation": "correlation",
+    "shallow": "shallow water",
+    "waves": "waves",
+    "wind": "wind",
+    "rudder": "rudder",
+}
+
+
+def draw_ship(
+    ship: Ship, sheet: Mapping[str, Any], weather: Mapping[str, float], folder: Path
+) -> list[Path]:
+    """Draw what is known of a ship and return the files written.
+
+    Parameters
+    ----------
+    ship : Ship
+    sheet : mapping
+        From `thalweg.ship.sheet.performance_sheet`.
+    weather : mapping
+        Conditions by name, SI.
+    folder : Path
+        Exists.
+    """
+    drawings: list[tuple[str, Callable[[Any], bool]]] = [
+        ("resistance.png", lambda axes: _resistance(axes, sheet)),
+        ("power.png", lambda axes: _power(axes, sheet)),
+        ("fuel.png", lambda axes: _fuel(axes, sheet)),
+    ]
+    written = [folder / name for name, draw in drawings if _save(folder / name, draw)]
+    polar = folder / "speed_loss.png"
+    if _save(polar, lambda axes: _polar(axes, ship, weather), projection="polar"):
+        written.append(polar)
+    return written
+
+
+def _save(path: Path, draw: Callable[[Any], bool], **subplot: Any) -> bool:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.2, 4.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot(**subplot)
+    if not draw(axes):
+        return False
+    figure.savefig(path, dpi=130)
+    return True
+
+
+def _column(sheet: Mapping[str, Any], name: str) -> np.ndarray:
+    return np.array([np.nan if r[name] is None else r[name] for r in sheet["conditions"]], float)
+
+
+def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
+    rows = sheet["conditions"]
+    if len(rows) < 2 or rows[0]["resistance_n"] is None:
+        return False
+    speed = _column(sheet, "speed_kn")
+    parts = {
+        name: np.array([row["resistance_n"][name] or 0.0 for row in rows]) / 1000.0
+        for name in _LABELS
+    }
+    shown = [name for name in _LABELS if np.abs(parts[name]).max() > 0.0]
+    up = [np.maximum(parts[name], 0.0) for name in shown]
+    down = [np.minimum(parts[name], 0.0) for name in shown]
+    colours = _colours(len(shown))
+    axes.stackplot(speed, up, labels=[_LABELS[n] for n in shown], colors=colours)
+    if any((d < 0).any() for d in down):
+        axes.stackplot(speed, down, colors=colours)
+    total = sum(parts[name] for name in shown)
+    axes.plot(speed, total, color="black", linewidth=1.5, label="total")
+    handles, labels = axes.get_legend_handles_labels()
+    axes.legend(handles[::-1], labels[::-1], loc="upper left", frameon=False, fontsize=8)
+    axes.set(xlabel="speed through water [kn]", ylabel="resistance [kN]", title=sheet["name"])
+    axes.margins(x=0)
+    return True
+
+
+def _colours(count: int) -> list[Any]:
+    import matplotlib
+
+    palette = matplotlib.colormaps["tab20"]
+    return [palette(k % 20) for k in range(count)]
+
+
+def _power(axes: Any, sheet: Mapping[str, Any]) -> bool:
+    speed, power = _column(sheet, "speed_kn"), _column(sheet, "brake_power_kw")
+    effective = _column(sheet, "effective_power_kw")
+    if len(speed) < 2 or np.isnan(power).all():
+        return False
+    axes.plot(speed, power, color="#1b5e8c", label="brake power")
+    if not np.isnan(effective).all():
+        axes.plot(speed, effective, color="#7fb2d6", label="effective power")
+    axes.legend(frameon=False)
+    axes.set(xlabel="speed through water [kn]", ylabel="power [kW]", title=sheet["name"])
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    return True
+
+
+def _fuel(axes: Any, sheet: Mapping[str, Any]) -> bool:
+    speed, fuel = _column(sheet, "speed_kn"), _column(sheet, "fuel_kg_per_nm")
+    if len(speed) < 2 or np.isnan(fuel).all():
+        return False
+    axes.plot(speed, fuel, color="#b5482a", marker="o", markersize=3)
+    axes.set(xlabel="speed through water [kn]", ylabel="fuel [kg/nm]", title=sheet["name"])
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    return True
+
+
+def _polar(axes: Any, ship: Ship, weather: Mapping[str, float]) -> bool:
+    """Speed attained over the direction of wind and waves, in three strengths."""
+    if ship.speed_field is not None or not ship.reads & {"wind_angle", "wave_angle"}:
+        return False
+    angle = np.linspace(0.0, np.pi, 181)
+    both = np.concatenate([angle, -angle[::-1]])
+    for label, wind, waves, colour in _strengths(weather):
+        at = {"depth": np.inf, "wave_period": 10.0, **weather}
+        at |= {"wind_speed": wind, "wave_height": waves}
+        conditions = Conditions({**at, "wind_angle": angle, "wave_angle": angle})
+        speed = ship.speed_through_water(conditions, len(ship.speeds) - 1) / KNOT
+        axes.plot(both, np.concatenate([speed, speed[::-1]]), color=colour, label=label)
+    axes.set_theta_zero_location("N")
+    axes.set_theta_direction(-1)
+    axes.set_ylim(bottom=0.0)
+    axes.set_title(f"{ship.name}\nspeed [kn] by where wind and waves come from (0 = ahead)", size=9)
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.35, -0.05), frameon=False, fontsize=8)
+    return True
+
+
+def _strengths(weather: Mapping[str, float]) -> list[tuple[str, float, float, str]]:
+    wind, waves = weather.get("wind_speed", 0.0), weather.get("wave_height", 0.0)
+    if wind or waves:
+        return [
+            ("calm", 0.0, 0.0, "#9aa5ad"),
+            (f"wind {wind:g} m/s, waves {waves:g} m", wind, waves, "#1b5e8c"),
+        ]
+    return [
+        ("calm", 0.0, 0.0, "#9aa5ad"),
+        ("wind 8 m/s, waves 1.5 m", 8.0, 1.5, "#7fb2d6"),
+        ("wind 12 m/s, waves 3 m", 12.0, 3.0, "#1b5e8c"),
+        ("wind 16 m/s, waves 5 m", 16.0, 5.0, "#0b2c46"),
+    ]

@@ -1,0 +1,186 @@
+"""The performance sheet of a ship: resistance, power, fuel and emissions, speed by speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import HOUR, KNOT
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.methods.fuel import fuel_named
+from thalweg.ship.methods.indicators import attained_cii, cii_rating, cii_ship_type
+from thalweg.ship.ship import Ship
+
+FloatArray = NDArray[np.float64]
+COMPONENTS = (
+    *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
+    *("correlation", "residuary", "waves", "wind", "shallow", "rudder"),
+)
+
+
+def performance_sheet(
+    ship: Ship, weather: Mapping[str, float] | None = None, *, speeds_kn: Sequence[float] = ()
+) -> dict[str, Any]:
+    """Return resistance, power, fuel and CO2 of a ship at speeds through water.
+
+    Parameters
+    ----------
+    ship : Ship
+    weather : mapping, optional
+        Conditions by name, SI; calm and deep where not given.
+    speeds_kn : sequence of float, optional
+        Speeds through water [kn]; the ship's settings when not given.
+
+    Returns
+    -------
+    dict
+        Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component,
+        ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
+        ``fuel_kg_per_nm``, ``cii``, ``warnings``), ``settings[]`` (what each setting attains in
+        this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
+
+    Raises
+    ------
+    InputError
+        For speeds the ship cannot be asked for.
+    """
+    conditions = _conditions(ship, weather or {})
+    composed = hasattr(ship.model, "power_at_speed")
+    speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _usual_speeds(ship)
+    if speeds.size == 0 or not (np.isfinite(speeds) & (speeds > 0)).all():
+        raise InputError(
+            "The speeds asked for are not all positive numbers.",
+            "Speeds are in knots, such as 8:16 or 10,12,14.",
+            "Correct them.",
+        )
+    rows = _composed_rows if composed else _nominal_rows
+    return {
+        "name": ship.name,
+        "draught_m": ship.draught,
+        "load_factor": ship.loading.load_factor,
+        "weather": {name: _number(value) for name, value in (weather or {}).items()},
+        "conditions": rows(ship, conditions, speeds),
+        "settings": _settings(ship, conditions),
+        "estimated": [{"key": e.key, "value": e.value, "method": e.method} for e in ship.estimated],
+        "sources": list(ship.data.get("sources", ())),
+        "description": ship.data.get("description", ""),
+        "fingerprint": ship.fingerprint(),
+    }
+
+
+def _conditions(ship: Ship, weather: Mapping[str, float]) -> Conditions:
+    calm = {name: 0.0 for name in ("wind_speed", "wind_angle", "wave_height", "wave_angle")}
+    return Conditions({**calm, "wave_period": 10.0, "depth": np.inf, **weather})
+
+
+def _usual_speeds(ship: Ship) -> FloatArray:
+    own = ship.speeds
+    if not hasattr(ship.model, "power_at_speed") or len(own) > 4:
+        return own
+    return np.linspace(0.6, 1.1, 6) * own.max()
+
+
+def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> list[dict[str, Any]]:
+    parts = ship.resistance(conditions, speeds)
+    power = ship.power_at_speed(conditions, speeds)
+    plant = ship.model.plant  # type: ignore[attr-defined]
+    balance = ship.model.balance(ship.loading.load_factor)  # type: ignore[attr-defined]
+    fuel = np.where(power <= plant.largest_power, plant.fuel(power), np.nan)
+    rows = []
+    for k, speed in enumerate(speeds):
+        at = {n: np.array([float(np.asarray(conditions[n]))]) for n in _FLAT}
+        notes = [str(n) for n in balance.notes(at, speeds[k : k + 1])]
+        notes += [str(n) for n in plant.notes(power[k : k + 1])]
+        if power[k] > plant.largest_power:
+            notes.append(f"the engines give {plant.largest_power / 1e3:.0f} kW: not reached")
+        rows.append(
+            {
+                **_row(ship, speed, fuel[k]),
+                "resistance_n": {name: _number(parts[name][k]) for name in COMPONENTS},
+                "effective_power_kw": _number(parts["total"][k] * speed / 1e3),
+                "brake_power_kw": _number(power[k] / 1e3),
+                "warnings": notes,
+            }
+        )
+    return rows
+
+
+_FLAT = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
+
+
+def _nominal_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> list[dict[str, Any]]:
+    ordered = ship if np.array_equal(speeds, ship.speeds) else ship.with_speeds(speeds)
+    rows = []
+    for k, speed in enumerate(np.unique(speeds)):
+        attained = float(ordered.speed_through_water(conditions, k))
+        fuel = float(ordered.fuel_rate(conditions, k))
+        power = float(ordered.power(conditions, k))
+        rows.append(
+            {
+                **_row(ship, attained, fuel),
+                "ordered_speed_kn": _number(speed / KNOT),
+                "resistance_n": None,
+                "effective_power_kw": None,
+                "brake_power_kw": _number(power / 1e3),
+                "warnings": [str(n) for n in ordered.notes(conditions, k)],
+            }
+        )
+    return rows
+
+
+def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
+    co2 = fuel * _carbon_factor(ship)
+    return {
+        "speed_kn": _number(round(speed / KNOT, 9)),
+        "fuel_kg_per_h": _number(fuel * HOUR),
+        "fuel_kg_per_nm": _number(fuel * 1852.0 / speed if speed > 0 else np.nan),
+        "co2_kg_per_h": _number(co2 * HOUR),
+        "cii": _cii(ship, speed, co2),
+    }
+
+
+def _carbon_factor(ship: Ship) -> float:
+    fuel = ship.data.get("fuel", {})
+    if "carbon_factor" in fuel:
+        return float(fuel["carbon_factor"])
+    return fuel_named(fuel["type"]).carbon_factor if "type" in fuel else float("nan")
+
+
+def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
+    """Carbon intensity of sailing at this speed all the time, and its rating in 2026."""
+    hull = ship.data.get("hull", {})
+    deadweight, kind = hull.get("deadweight_t"), str(hull.get("type", "")).replace(" ", "_")
+    if deadweight is None or not (speed > 0 and np.isfinite(co2)):
+        return None
+    attained = float(attained_cii(co2, capacity=deadweight, distance_nm=speed / 1852.0))
+    try:
+        cii_ship_type(kind)
+    except InputError:
+        return {"attained_g_per_t_nm": attained, "rating_2026": None}
+    rating = cii_rating(attained, ship_type=kind, capacity=deadweight, year=2026)
+    return {"attained_g_per_t_nm": attained, "rating_2026": str(rating)}
+
+
+def _settings(ship: Ship, conditions: Conditions) -> list[dict[str, Any]]:
+    if ship.speed_field is not None:
+        return []
+    rows = []
+    for k, calm in enumerate(ship.speeds):
+        rows.append(
+            {
+                "calm_speed_kn": _number(calm / KNOT),
+                "speed_kn": _number(float(ship.speed_through_water(conditions, k)) / KNOT),
+                "brake_power_kw": _number(float(ship.power(conditions, k)) / 1e3),
+                "fuel_kg_per_h": _number(float(ship.fuel_rate(conditions, k)) * HOUR),
+            }
+        )
+    return rows
+
+
+def _number(value: Any) -> float | None:
+    number = float(value)
+    return number if np.isfinite(number) else None
