@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -15,10 +15,10 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.directions import half_offsets, largest_gap
 from thalweg.network.draft import Draft, make_draft, nearest_reached, reached_sides
 from thalweg.network.endpoints import check_ends
-from thalweg.network.frame import Frame, great_circle_frame, mercator_frame
+from thalweg.network.frame import Frame, great_circle_frame, mercator_frame, unit_vectors
 from thalweg.network.levels import Ground, TooManyPoints
-from thalweg.network.network import FloatArray, Network, NetworkMeta
-from thalweg.network.region import Box, Region
+from thalweg.network.network import FloatArray, IntArray, Network, NetworkMeta
+from thalweg.network.region import Box, Corridor, Region
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -28,6 +28,9 @@ _BUDGET = 60_000
 _HARD_BUDGET = 6_000_000
 _GROWTH = 1.6
 _MOST_EXTRA = 2
+_WORTH_REFINING = 0.45  # of the budget: a level more would go beyond it again
+
+_Offsets: TypeAlias = tuple[IntArray, IntArray]
 
 
 @dataclass(frozen=True)
@@ -100,9 +103,7 @@ def lattice(
     _check(spacing, coast_levels, orientation, slack)
     wish = _wish(chart, start, goal, distance, spacing, coast_levels, orientation, area)
     slack = _default_slack(distance) if slack is None else slack
-    notes: list[str] = []
-    ground, draft = _connected(wish, di, dj, distance, slack, notes)
-    draft = _pruned(ground, draft, slack)
+    ground, draft, notes = _connected(wish, (di, dj), distance, slack)
     meta = NetworkMeta(
         kind=f"lattice/{orientation}",
         spacing_m=ground.frame.largest_unit * ground.step(0),
@@ -158,19 +159,19 @@ def _wish(
 
 
 def _connected(
-    wish: _Wish, di: FloatArray, dj: FloatArray, distance: float, slack: float, notes: list[str]
-) -> tuple[Ground, Draft]:
+    wish: _Wish, offsets: _Offsets, distance: float, slack: float
+) -> tuple[Ground, Draft, list[str]]:
     """Grow and refine until start and goal connect and the slack fits; return the last lattice."""
     factor, extra = 1.01 * (1.0 + slack), 0
     while True:
-        ground, draft = _drawn(wish, di, dj, factor * distance, extra, notes)
+        ground, draft, notes = _drawn(wish, offsets, factor * distance, extra)
         to_start, to_goal = draft.distances()
         length = to_start[draft.goal]
         whole = ground.region.global_
         if math.isfinite(length):
             needed = (1.0 + slack) * float(length) / distance
             if whole or needed <= 1.005 * factor:
-                return ground, draft
+                return _refined(wish, offsets, (ground, draft, notes), slack, extra)
             factor = 1.01 * needed
             continue
         start_side, goal_side = reached_sides(ground, draft, to_start, to_goal)
@@ -182,29 +183,51 @@ def _connected(
             raise _no_route(wish, draft, to_start)
 
 
+def _refined(
+    wish: _Wish,
+    offsets: _Offsets,
+    coarse: tuple[Ground, Draft, list[str]],
+    slack: float,
+    extra: int,
+) -> tuple[Ground, Draft, list[str]]:
+    """Prune; draw a lattice that had to be coarse again, finer, along the ways it found."""
+    ground, draft, notes = coarse
+    draft = _pruned(ground, draft, slack)
+    if not notes or draft.stations.n_nodes > _WORTH_REFINING * ground.budget:
+        return ground, draft, notes
+    corridor = Corridor.around(
+        ground.frame, ground.step(0), unit_vectors(draft.stations.lat, draft.stations.lon)
+    )
+    finer = _drawn(wish, offsets, ground.region.limit, extra, corridor)
+    if not math.isfinite(finer[1].distances()[0][finer[1].goal]):
+        return ground, draft, notes
+    return finer[0], _pruned(finer[0], finer[1], slack), finer[2]
+
+
 def _drawn(
-    wish: _Wish, di: FloatArray, dj: FloatArray, limit: float, extra: int, notes: list[str]
-) -> tuple[Ground, Draft]:
+    wish: _Wish, offsets: _Offsets, limit: float, extra: int, corridor: Corridor | None = None
+) -> tuple[Ground, Draft, list[str]]:
     """Draw the lattice for a region, coarsening it while it is over its budget."""
-    region = Region(wish.start, wish.goal, limit, wish.area, _box(wish.chart))
-    spacing, coast = wish.spacing, wish.coast_levels + extra
+    region = Region(wish.start, wish.goal, limit, wish.area, _box(wish.chart), corridor)
+    spacing, coast, ends = wish.spacing, wish.coast_levels + max(extra - 1, 0), 2 * extra
+    budget = wish.budget * (1 + 2 * extra)
+    notes: list[str] = []
     while True:
-        frame = _frame(wish, region, spacing).refined(coast + 2 * extra)
-        budget = wish.budget * (1 + 2 * extra)
-        ground = Ground(wish.chart, frame, region, coast, 2 * extra, budget)
+        frame = _frame(wish, region, spacing).refined(coast + ends)
+        ground = Ground(wish.chart, frame, region, coast, ends, budget)
         try:
-            return ground, make_draft(ground, di, dj, wish.start, wish.goal)
+            return ground, make_draft(ground, *offsets, wish.start, wish.goal), notes
         except TooManyPoints as refusal:
             _refuse_if_asked(wish, refusal)
             if 1 < refusal.level <= coast:
                 coast = refusal.level - 1
             else:
-                spacing *= 1.5
+                spacing *= 2.0 if refusal.level == 0 and region.global_ else 1.4
                 coast = max(coast, 1)
-            notes.append(
-                f"coarsened to {spacing / NAUTICAL_MILE:.3g} nm and {coast} coast levels: "
-                f"more than {budget} nodes"
-            )
+            notes = [
+                f"coarsened to {spacing / NAUTICAL_MILE:.3g} nm and {coast} coast levels "
+                f"to keep to {budget} nodes"
+            ]
 
 
 def _refuse_if_asked(wish: _Wish, refusal: TooManyPoints) -> None:

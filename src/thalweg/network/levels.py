@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 COAST_WIDTH = 3.0  #: a level reaches this many of its spacings off the coast
-_END_REACH = 12.0  # levels finer than the coast's reach this many spacings round start and goal
+_END_REACH = 24.0  # levels finer than the coast's reach this many spacings round start and goal
 _BLOCK = 2_000_000
 _FLOOD_STEPS = 48
 _LARGEST_CAP = 250_000.0  # [m] the chart's own limit on shore distances

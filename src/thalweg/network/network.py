@@ -263,13 +263,12 @@ def _geometry_faults(net: Network, sample: int) -> Iterator[str]:
     edge = np.unique(np.linspace(0, net.n_edges - 1, min(sample, net.n_edges)).astype(np.int64))
     tail, head = net.tails()[edge], net.target[edge]
     lat, lon = net.station_lat, net.station_lon
-    length, first, last = geodesy.inverse(lat[tail], lon[tail], lat[head], lon[head])
+    length, first, _ = geodesy.inverse(lat[tail], lon[tail], lat[head], lon[head])
     if np.any(np.abs(net.length[edge] - length) > 1e-6 * length):
         yield "a length is not that of the geodesic"
-    mean = np.angle(np.exp(1j * first) + np.exp(1j * last))
-    turn = np.abs(np.angle(np.exp(1j * (last - first))))
-    wrong = np.abs(np.angle(np.exp(1j * (net.course[edge] - mean))))
-    if np.any(wrong > 1e-4 + 0.25 * turn):
+    half = geodesy.direct(lat[tail], lon[tail], first, 0.5 * length)
+    middle = geodesy.inverse(*half, lat[head], lon[head])[1]
+    if np.any(np.abs(np.angle(np.exp(1j * (net.course[edge] - middle)))) > 1e-3):
         yield "a course is not that of the geodesic at mid-edge"
     yield from _position_faults(net, edge, tail, length, first)
 

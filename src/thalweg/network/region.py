@@ -9,12 +9,60 @@ import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS, Position
 from thalweg.network.frame import Frame, arc, great_circle_frame, unit_vectors
-from thalweg.network.network import BoolArray, FloatArray
+from thalweg.network.network import BoolArray, FloatArray, IntArray
 
 Box: TypeAlias = tuple[float, float, float, float]
 
 _LARGEST_LATITUDE = np.radians(84.0)  # of the frame; beyond it Mercator lattices grow too fine
 _LARGEST_ELLIPSE = 2.4  # [rad] sum of distances above which the whole globe is taken
+
+
+@dataclass(frozen=True)
+class Corridor:
+    """Cells of a coarse lattice that ways worth looking at pass.
+
+    Parameters
+    ----------
+    frame : Frame
+        Frame of the coarse lattice.
+    step : float
+        Its spacing in units of the frame.
+    cells : bool ndarray (I, J)
+        Which cells; the first is centred at ``corner`` steps.
+    corner : (int, int)
+        Coordinates in steps of the first cell.
+    """
+
+    frame: Frame
+    step: float
+    cells: BoolArray
+    corner: tuple[int, int]
+
+    @classmethod
+    def around(cls, frame: Frame, step: float, vectors: FloatArray) -> Corridor:
+        """Return the cells of places, and two cells on every side of them."""
+        i, j = _cells(frame, step, vectors)
+        corner = (int(i.min()) - 2, int(j.min()) - 2)
+        cells = np.zeros((int(i.max()) - corner[0] + 3, int(j.max()) - corner[1] + 3), bool)
+        for di in range(-2, 3):
+            for dj in range(-2, 3):
+                cells[i - corner[0] + di, j - corner[1] + dj] = True
+        return cls(frame, step, cells, corner)
+
+    def contains(self, vectors: FloatArray) -> BoolArray:
+        """Return which unit vectors lie in one of the cells."""
+        i, j = _cells(self.frame, self.step, vectors)
+        i, j = i - self.corner[0], j - self.corner[1]
+        turn = round(2.0 * np.pi / self.frame.unit / self.step)
+        i = np.where(i >= self.cells.shape[0], i - turn, np.where(i < 0, i + turn, i))
+        inside = (i >= 0) & (i < self.cells.shape[0]) & (j >= 0) & (j < self.cells.shape[1])
+        inside[inside] = self.cells[i[inside], j[inside]]
+        return inside
+
+
+def _cells(frame: Frame, step: float, vectors: FloatArray) -> tuple[IntArray, IntArray]:
+    x, y = frame.from_vectors(vectors)
+    return np.rint(x / step).astype(np.int64), np.rint(y / step).astype(np.int64)
 
 
 @dataclass(frozen=True)
@@ -31,6 +79,8 @@ class Region:
         Box [deg] the nodes are confined to; east may be less than west or above 180.
     chart_area : (south, north, west, east), optional
         Box [deg] of the chart; only bounds the search for nodes, the chart itself tests them.
+    corridor : Corridor, optional
+        Confines the region further.
     """
 
     start: Position
@@ -38,6 +88,7 @@ class Region:
     limit: float
     area: Box | None = None
     chart_area: Box | None = None
+    corridor: Corridor | None = None
 
     @property
     def global_(self) -> bool:
@@ -50,10 +101,13 @@ class Region:
         return np.asarray(self.limit - total * MEAN_RADIUS)
 
     def contains(self, vectors: FloatArray) -> BoolArray:
-        """Return which unit vectors lie inside the ellipse."""
-        if self.global_:
-            return np.ones(vectors.shape[:-1], bool)
-        return np.asarray(self.slack(vectors) >= 0.0)
+        """Return which unit vectors (n, 3) lie inside the ellipse and the corridor."""
+        inside = np.ones(len(vectors), bool)
+        if not self.global_:
+            inside = np.asarray(self.slack(vectors) >= 0.0)
+        if self.corridor is not None:
+            inside[inside] = self.corridor.contains(vectors[inside])
+        return inside
 
     def in_box(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
         """Return which positions [deg] lie in the box."""
