@@ -101,7 +101,7 @@ def show(plan: Plan) -> None:
     console = Console()
     best = plan.best
     table = Table(title=_title(plan), title_justify="left")
-    columns = ("waypoint", "time (UTC)", "course", "nm so far", "stw kn", "sog kn", "wait h", "ukc m")
+    columns = ("waypoint", "time (UTC)", "course", "nm so far", "stw", "sog", "wait h", "ukc m")
     for name in columns:
         table.add_column(name, justify="left" if name in ("waypoint", "time (UTC)") else "right")
     for row in best.waypoints():

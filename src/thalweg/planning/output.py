@@ -7,12 +7,17 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from thalweg.core.errors import InputError
+from thalweg.core.time import TimeLike
 from thalweg.planning.profile_picture import draw_profile
 from thalweg.route import Route, write_csv, write_geojson, write_gpx
 
 if TYPE_CHECKING:
+    from thalweg.chart import Chart
     from thalweg.planning.plan import Plan
+    from thalweg.sea import Sea
 
 
 def check_folder(folder: str | Path) -> Path:
@@ -58,6 +63,27 @@ def write_route(route: Route, folder: str | Path) -> list[Path]:
     files = [folder / "route.json", *_write_formats(route, folder)]
     draw_profile(route, folder / "profile.png")
     return [*files, folder / "profile.png"]
+
+
+def draw_sea(sea: Sea, path: str | Path, *, time: TimeLike | None = None) -> Path:
+    """Draw a map of each main quantity of a sea over the coastline; return the picture's path."""
+    from thalweg.chart import Chart
+
+    path = Path(path)
+    sea.draw(path, time=time, coastline=_coast_of(sea, Chart.gshhg("i")))
+    return path
+
+
+def _coast_of(sea: Sea, chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the rims of the land inside what a sea covers, as (lat, lon)."""
+    rows = sea.coverage()
+    south, north = min(row.south for row in rows), max(row.north for row in rows)
+    west, east = min(row.west for row in rows), max(row.east for row in rows)
+    rims = []
+    for polygon in chart.land_polygons(south, north, west, east):
+        lon, lat = np.asarray(polygon.exterior.coords).T
+        rims.append((lat, lon))
+    return rims
 
 
 def _write_formats(route: Route, folder: Path) -> list[Path]:

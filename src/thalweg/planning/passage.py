@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,9 +18,8 @@ from thalweg.network import Network
 from thalweg.planning.ends import End
 from thalweg.planning.needs import Needs
 from thalweg.planning.networks import NetworkChoice, build_network
-from thalweg.planning.refinement import refine
 from thalweg.planning.voyage import Voyage
-from thalweg.route import Route, Track, evaluate
+from thalweg.route import Route, Track, better_route, evaluate
 from thalweg.sea import Sea, StationFields
 from thalweg.search import Bound, SearchResult, best_departure, earliest_arrival, lower_bound
 from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
@@ -30,9 +29,16 @@ MEMORY_LIMIT = 4_000_000_000
 #: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
 _HORIZONS = (2.5, 8.0, 30.0)
 _TWO_TIDES = 25 * HOUR
-#: Safety margins tried in turn when the referee finds a limit broken between the stations:
-#: on the depth [m], and on the limits of wave height and wind [fraction].
-_MARGINS = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.15))
+#: What is tried in turn while the referee finds a limit broken between the stations: how much finer
+#: the network, the margin on the depth [m], and on the limits of wave height and wind [fraction].
+_ATTEMPTS = (
+    (1, 0.0, 0.0),
+    (1, 0.1, 0.02),
+    (2, 0.0, 0.0),
+    (2, 0.3, 0.05),
+    (4, 0.0, 0.0),
+    (4, 1.0, 0.1),
+)
 
 
 @dataclass(frozen=True)
@@ -100,22 +106,49 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
     NoRouteError
         If no route exists within the limits and the data.
     """
-    task.tell(f"building the network from {start.name} to {goal.name}")
-    network = build_network(task.choice, task.chart, task.sea, start, goal)
-    frozen, result = _search(task, network, task.needs.limits, window, (start, goal))
+    networks: dict[int, Network] = {}
+    passage: Passage | None = None
+    for finer, depth, fraction in _ATTEMPTS:
+        if finer not in networks:
+            networks[finer] = _network(task, (start, goal), finer, networks.get(1))
+        limits = task.needs.limits * (1.0 - fraction)
+        limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+        try:
+            tried = _attempt(task, networks[finer], (start, goal), window, limits)
+        except NoRouteError:
+            if passage is None:
+                raise
+            continue
+        if passage is None or tried.route.feasible:
+            passage = tried
+        if passage.route.feasible:
+            break
+    assert passage is not None  # the first attempt either made one or raised
+    return passage
+
+
+def _network(task: Task, ends: tuple[End, End], finer: int, first: Network | None) -> Network:
+    task.tell(f"building the network from {ends[0].name} to {ends[1].name}")
+    choice = task.choice
+    if first is not None:
+        choice = replace(choice, spacing=first.meta.spacing_m / finer)
+    return build_network(choice, task.chart, task.sea, *ends)
+
+
+def _attempt(
+    task: Task,
+    network: Network,
+    ends: tuple[End, End],
+    window: tuple[float, float],
+    limits: np.ndarray,
+) -> Passage:
+    """Search, refine and bound once."""
+    frozen, result = _search(task, network, limits, window, ends)
+    route = _score(task, network, result, limits)
     task.tell("bounding the answer")
     bound = _bound(task, network, frozen, result)
-    route = _score(task, network, frozen, result, task.needs.limits)
-    for depth, fraction in _MARGINS[1:]:
-        if route.feasible:
-            break
-        limits = task.needs.limits * (1 - fraction)
-        limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
-        frozen, result = _search(task, network, limits, window, (start, goal))
-        route = _score(task, network, frozen, result, limits)
     notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
-    isochrones = _isochrones(task, network, frozen, route)
-    return Passage(route, result, bound, network, isochrones, notes)
+    return Passage(route, result, bound, network, _isochrones(task, network, frozen, route), notes)
 
 
 def _isochrones(task: Task, network: Network, frozen: Frozen, route: Route) -> np.ndarray:
@@ -136,24 +169,26 @@ def _isochrones(task: Task, network: Network, frozen: Frozen, route: Route) -> n
     return everywhere.node_arrival
 
 
-def _score(
-    task: Task, network: Network, frozen: Frozen, result: SearchResult, limits: np.ndarray
-) -> Route:
+def _score(task: Task, network: Network, result: SearchResult, limits: np.ndarray) -> Route:
+    """Let the referee score the path, refine it, and return the better route."""
     task.tell("refining the route")
-    track = track_of(network, result, task.setting)
-    scored = referee(task, track)
-    return refine(task, track, scored, limits, frozen.top_speed)
-
-
-def referee(task: Task, track: Track) -> Route:
-    """Score a track with the ship, the sea and the limits of a task."""
-    return evaluate(
-        track,
+    scored = evaluate(
+        track_of(network, result, task.setting),
         ship=task.ship,
         sea=task.sea,
         chart=task.chart,
         min_ukc=task.min_ukc,
         strict=False,
+    )
+    return better_route(
+        scored,
+        ship=task.ship,
+        sea=task.sea,
+        chart=task.chart,
+        table=task.table,
+        limits=limits,
+        min_ukc=task.min_ukc,
+        objective=task.voyage.objective,
     )
 
 
