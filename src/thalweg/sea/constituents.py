@@ -232,9 +232,7 @@ def phasors(
     return np.asarray(np.exp(2j * np.pi * angle) * _nodal(names, when, latitude, convention))
 
 
-def _nodal(
-    names: tuple[str, ...], times: FloatArray, latitude: float, convention: str
-) -> Complex:
+def _nodal(names: tuple[str, ...], times: FloatArray, latitude: float, convention: str) -> Complex:
     day = np.floor(times / STEADY)
     days, place = np.unique(np.concatenate([day, day + 1.0]), return_inverse=True)
     if convention == "foreman":

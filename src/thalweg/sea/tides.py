@@ -8,6 +8,7 @@ all nodes at once, because nodes that are known at the same times share their eq
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -160,7 +161,7 @@ def _fit(
     whole = design.T @ design
     _check_condition(whole)
     needed = max(least_known * design.shape[0], design.shape[1] + 1)
-    with ThreadPoolExecutor(max_workers=2) as pool:
+    with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
         for first in range(0, nodes, NODES_AT_ONCE):
             part = slice(first, min(first + NODES_AT_ONCE, nodes))
             block = np.asarray(values[part], np.float64)

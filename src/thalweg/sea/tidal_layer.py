@@ -1,0 +1,365 @@
+"""The sea from tidal constituents: currents and water level at any date."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from thalweg.core.cache import cache_folder
+from thalweg.core.errors import InputError
+from thalweg.sea import names as nm
+from thalweg.sea import tides
+from thalweg.sea.constituents import Complex, Constituents, phasors, tide
+from thalweg.sea.fields import WORLD, Area, Coverage, FloatArray, Mesh
+from thalweg.sea.functions import automatic_times
+from thalweg.sea.gridded import GridLayer
+from thalweg.sea.grids import Grid, Located, TriangleGrid
+from thalweg.sea.layer import Samples, nan_pairs
+from thalweg.sea.store import Window
+
+if TYPE_CHECKING:
+    from thalweg.sea.sea import Sea
+
+TIDAL: Final = (nm.EASTWARD_CURRENT, nm.NORTHWARD_CURRENT, nm.WATER_LEVEL)
+TIME_STEP: Final = 600.0  #: [s] step at which kernels get the tide
+BLOCK: Final = 1 << 13  #: points predicted at once
+VERSION: Final = 1  #: of the cached analyses
+
+
+@dataclass(frozen=True, eq=False)
+class TidalLayer:
+    """Constituents on a grid: linear in space between nodes, exact at any time.
+
+    Attributes
+    ----------
+    constituents : Constituents
+        Constants at the places of the grid.
+    grid : Grid or None
+        Where the nodes lie; None for one node that holds for a whole area.
+    box : Area
+        The area, if there is no grid.
+    time_step : float
+        Step [s] at which kernels get the tide.
+    source : str
+        A word for where the constants come from.
+    facts : mapping
+        Further plain facts for the provenance.
+    """
+
+    constituents: Constituents
+    grid: Grid | None
+    box: Area = WORLD
+    time_step: float = TIME_STEP
+    source: str = "tidal constituents"
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Canonical names of what is predicted."""
+        return self.constituents.variables
+
+    @property
+    def area(self) -> Area:
+        """The box around the nodes."""
+        return self.box if self.grid is None else self.grid.area
+
+    @property
+    def period(self) -> tuple[float, float] | None:
+        """The tide holds always."""
+        return None
+
+    @cached_property
+    def _waves(self) -> dict[str, Complex]:
+        """Coefficients (N, C) by variable."""
+        return {
+            n: np.ascontiguousarray(self.constituents.coefficients(n).T) for n in self.variables
+        }
+
+    def sample(
+        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values at points (N,); NaN outside the grid and where nodes have no tide."""
+        result = {name: np.full(time.shape, np.nan) for name in names}
+        for first in range(0, time.size, BLOCK):
+            part = slice(first, first + BLOCK)
+            moments, which = np.unique(time[part], return_inverse=True)
+            wave = self._phasors(moments)[which.ravel()]
+            located = self._locate(lat[part], lon[part])
+            for name in names:
+                mean, coefficient = self._at(name, located)
+                turned = coefficient.real * wave.real - coefficient.imag * wave.imag
+                result[name][part] = mean + turned.sum(axis=1)
+        return nan_pairs(result, [v.pair for v in nm.VECTORS])
+
+    def series(
+        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values (S, T) at stations for all times."""
+        result = {name: np.empty((lat.size, times.size)) for name in names}
+        located = self._locate(lat, lon)
+        held = {name: self._at(name, located) for name in names}
+        for first in range(0, times.size, BLOCK):
+            part = slice(first, first + BLOCK)
+            wave = self._phasors(times[part]).T
+            for name, (mean, coefficient) in held.items():
+                result[name][:, part] = mean[:, None] + tide(coefficient, wave)
+        return nan_pairs(result, [v.pair for v in nm.VECTORS])
+
+    def times(self, start: float, end: float) -> FloatArray:
+        """Return the times at which the tide is frozen over a window."""
+        return automatic_times(start, end, self.time_step) if end > start else np.array([start])
+
+    def coverage(self) -> list[Coverage]:
+        """Return one row per variable; the tide is known always."""
+        a = self.area
+        spacing = self.grid.spacing if self.grid is not None else None
+        return [
+            Coverage(n, a.south, a.north, a.west, a.east, None, None, None, spacing, self.source)
+            for n in sorted(self.variables)
+        ]
+
+    def mesh(self) -> Mesh | None:
+        """Return the mesh, if the grid is one."""
+        return None if self.grid is None else self.grid.mesh()
+
+    def provenance(self) -> Mapping[str, Any]:
+        """Return the constituents, a hash of their values, and where they come from."""
+        constants = self.constituents
+        digest = hashlib.sha256()
+        for name in sorted(self.variables):
+            for part in (constants.amplitude, constants.phase, constants.mean):
+                digest.update(np.ascontiguousarray(part[name]).tobytes())
+        return {
+            "kind": "tide",
+            "source": self.source,
+            "variables": sorted(self.variables),
+            "constituents": list(constants.names),
+            "convention": constants.convention,
+            "values": digest.hexdigest()[:32],
+            "time_step": self.time_step,
+            **self.facts,
+        }
+
+    def _phasors(self, times: FloatArray) -> Complex:
+        constants = self.constituents
+        known = np.where(np.isfinite(times), times, 0.0)
+        wave = phasors(constants.names, known, constants.latitude, constants.convention)
+        wave[~np.isfinite(times)] = np.nan
+        return wave
+
+    def _locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+        if self.grid is not None:
+            return self.grid.locate(lat, lon)
+        inside = np.where(self.box.covers(lat, lon), 0, -1).astype(np.int64)
+        return Located(inside[:, None], np.ones((lat.size, 1)))
+
+    def _at(self, name: str, located: Located) -> tuple[FloatArray, Complex]:
+        """Return mean (N,) and coefficients (N, C) at located points; NaN outside."""
+        corner, weight = located.corner, located.weight
+        mean, wave = self.constituents.mean[name], self._waves[name]
+        level = np.zeros(corner.shape[0])
+        coefficient = np.zeros((corner.shape[0], wave.shape[1]), np.complex128)
+        for k in range(corner.shape[1]):
+            node, share = np.maximum(corner[:, k], 0), weight[:, k]
+            used = share != 0.0
+            level[used] += share[used] * mean[node[used]]
+            coefficient[used] += share[used, None] * wave[node[used]]
+        level[corner[:, 0] < 0] = np.nan
+        return level, coefficient
+
+
+def tidal_sea(
+    source: Sea | Constituents | tides.TideAnalysis,
+    *,
+    constituents: Sequence[str] | None = None,
+    area: tuple[float, float, float, float] | None = None,
+    rayleigh: float = tides.RAYLEIGH,
+    progress: tides.Progress | None = None,
+    cache: bool = True,
+) -> Sea:
+    """Return a sea of tides; see `Sea.from_tides`."""
+    from thalweg.sea.sea import Sea as SeaClass
+
+    if isinstance(source, tides.TideAnalysis):
+        source = source.constituents
+    if isinstance(source, Constituents):
+        return SeaClass((_of_constituents(source, area),))
+    layers: list[Any] = []
+    for layer in source.layers:
+        if isinstance(layer, GridLayer) and set(TIDAL) & layer.variables and layer.period:
+            layers.append(_of_layer(layer, constituents, rayleigh, progress, cache))
+        elif layer.period is None:
+            layers.append(layer)
+    if not any(isinstance(layer, TidalLayer) for layer in layers):
+        raise InputError(
+            "The sea holds no currents or water levels on a grid or mesh over time.",
+            "Tides are analysed at the nodes of files opened with Sea.open.",
+            "Open the model run, or give Constituents.",
+        )
+    return SeaClass(tuple(layers), source.assumptions)
+
+
+def _of_layer(
+    layer: GridLayer,
+    constituents: Sequence[str] | None,
+    rayleigh: float,
+    progress: tides.Progress | None,
+    cache: bool,
+) -> TidalLayer:
+    analysis = analyse_layer(
+        layer, constituents=constituents, rayleigh=rayleigh, progress=progress, cache=cache
+    )
+    shares = {n: round(analysis.share(n), 4) for n in analysis.variance}
+    facts = {
+        "analysed": dict(layer.provenance()),
+        "tidal_share": shares,
+        "record": [analysis.start, analysis.end],
+    }
+    return TidalLayer(
+        analysis.constituents, layer.grid, source=f"tide of {layer.source}", facts=facts
+    )
+
+
+def analyse_layer(
+    layer: GridLayer,
+    *,
+    constituents: Sequence[str] | None = None,
+    rayleigh: float = tides.RAYLEIGH,
+    progress: tides.Progress | None = None,
+    cache: bool = True,
+) -> tides.TideAnalysis:
+    """Return the tides of currents and water level at every place of a layer, kept on disk."""
+    times = layer.axis.times
+    names = tides.chosen_constituents(times, constituents, rayleigh)
+    rows, columns = layer.grid.shape
+    lat, lon = _positions(layer.grid)
+    path = _cache_path(layer, names) if cache else None
+    kept = _read_cache(path, lat, lon) if path else None
+    if kept is not None:
+        return kept
+    window = Window(0, times.size, 0, rows, 0, columns)
+    series: dict[str, Any] = {}
+    for quantity in layer.quantities:
+        if set(quantity.names) & set(TIDAL):
+            values = quantity.read(window, columns)
+            series.update({n: values[n].T for n in quantity.names if n in TIDAL})
+    analysis = tides.analyse(
+        times, series, lat=lat, lon=lon, constituents=names, rayleigh=rayleigh, progress=progress
+    )
+    if path is not None:
+        _write_cache(path, analysis)
+    return analysis
+
+
+def _positions(grid: Grid) -> tuple[FloatArray, FloatArray]:
+    """Return the position of every place, flat."""
+    lat, lon = np.asarray(grid.lat, float), np.asarray(grid.lon, float)  # type: ignore[attr-defined]
+    rows, columns = grid.shape
+    if lat.size == rows * columns and lon.size == rows * columns:
+        return lat.ravel(), lon.ravel()
+    return np.repeat(lat, columns), np.tile(lon, rows)
+
+
+def _of_constituents(
+    constants: Constituents, area: tuple[float, float, float, float] | None
+) -> TidalLayer:
+    facts = dict(constants.facts)
+    source = str(facts.get("source", "tidal constituents"))
+    pair = nm.CURRENT.pair
+    if len(constants.variables & set(pair)) == 1:
+        raise InputError(
+            "Constituents of one component of the current are given without the other.",
+            "A current needs east and north.",
+            f"Give both {pair[0]} and {pair[1]}.",
+        )
+    if constants.lat.size == 1:
+        if area is None:
+            raise InputError(
+                "One station does not tell where its tide holds.",
+                "It can be taken for a whole area, on your word.",
+                "Give area=(south, north, west, east) in degrees.",
+            )
+        from thalweg.sea.sea import Sea as SeaClass
+
+        box = SeaClass.from_functions({}, area=area).layers[0].area
+        return TidalLayer(constants, None, box, source=source, facts=facts)
+    grid = _triangulated(constants.lat, constants.lon)
+    return TidalLayer(constants, grid, source=source, facts=facts)
+
+
+def _triangulated(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
+    """Return a mesh over scattered nodes."""
+    from scipy.spatial import Delaunay, QhullError
+
+    try:
+        if not (np.isfinite(lat).all() and np.isfinite(lon).all()):
+            raise ValueError
+        centre = float(np.cos(np.radians(lat.mean())))
+        east = (lon - lon[0] + 180.0) % 360.0 - 180.0
+        triangles = Delaunay(np.column_stack([east * centre, lat])).simplices
+    except (QhullError, ValueError):
+        raise InputError(
+            f"{lat.size} nodes make no triangles: too few, in one line, or without positions.",
+            "Between three or more nodes the tide is linear.",
+            "Give more nodes, or one station with an area.",
+        ) from None
+    triangles = np.ascontiguousarray(triangles, np.int64)
+    return TriangleGrid(lat, lon, triangles, (1, lat.size), Mesh(lat, lon, triangles))
+
+
+def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:
+    key = [VERSION, dict(layer.provenance()), list(names), tides.LEAST_KNOWN]
+    text = json.dumps(key, sort_keys=True, default=str)
+    return cache_folder("tides") / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
+
+
+def _write_cache(path: Path, analysis: tides.TideAnalysis) -> None:
+    constants = analysis.constituents
+    arrays: dict[str, Any] = {
+        "names": np.array(constants.names),
+        "record": np.array([analysis.start, analysis.end]),
+    }
+    for name in constants.variables:
+        arrays[f"amplitude:{name}"] = constants.amplitude[name]
+        arrays[f"phase:{name}"] = constants.phase[name]
+        arrays[f"mean:{name}"] = constants.mean[name]
+        arrays[f"share:{name}"] = analysis.tidal_share[name]
+        arrays[f"variance:{name}"] = analysis.variance[name]
+    partial = path.with_name(f"{path.stem}.{os.getpid()}.part.npz")
+    try:
+        np.savez(partial, **arrays)
+        os.replace(partial, path)
+    except OSError:
+        partial.unlink(missing_ok=True)
+
+
+def _read_cache(path: Path, lat: FloatArray, lon: FloatArray) -> tides.TideAnalysis | None:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            held = {key: file[key] for key in file.files}
+        parts: dict[str, dict[str, FloatArray]] = {}
+        for key, value in held.items():
+            kind, _, name = key.partition(":")
+            parts.setdefault(kind, {})[name] = value
+        constants = Constituents(
+            tuple(str(n) for n in held["names"]),
+            parts["amplitude"],
+            parts["phase"],
+            parts["mean"],
+            lat,
+            lon,
+            "foreman",
+        )
+        start, end = (float(x) for x in held["record"])
+        return tides.TideAnalysis(constants, parts["share"], parts["variance"], start, end)
+    except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
+        return None
