@@ -79,6 +79,22 @@ def test_a_bar_that_never_opens_is_refused_whatever_the_time():
     assert result.refused == {"under-keel clearance": 1}
 
 
+def test_a_ship_does_not_wait_where_it_would_fall_dry():
+    times = np.arange(0.0, 12 * HOUR, 0.5 * HOUR)
+    network, fields = bar(np.interp(times, [5 * HOUR, 6 * HOUR], [CLOSED, OPEN]), times)
+    afloat = sail(network, fields)
+    assert np.flatnonzero(afloat.path_depart > afloat.path_arrive + 1.0).tolist() == [15]
+    dry = (times > 3 * HOUR) & (times < 4 * HOUR)  # at 30 km, while the bar beyond is shut
+    fields.values[15, dry, 0] = CLOSED
+    result = sail(network, fields)
+    # Reaching 30 km first (after 2.1 h) is too early: the ship comes there on the next tide.
+    assert result.arrive == pytest.approx(afloat.arrive, abs=2.0)
+    assert result.path_arrive[15] > 3.5 * HOUR
+    assert result.path_depart[14] > result.path_arrive[14] + HOUR
+    assert result.node_arrival[15] == pytest.approx(30e3 / 4.0, abs=1.0)
+    assert not sail(network, fields, arrive_by=6 * HOUR).found
+
+
 def test_the_best_departure_arrives_as_the_bar_opens():
     times = np.arange(0.0, 14 * HOUR, HOUR)
     network, fields = bar(np.interp(times, [4 * HOUR, 5 * HOUR], [CLOSED, OPEN]), times)

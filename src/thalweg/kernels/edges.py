@@ -7,28 +7,35 @@ import numpy as np
 
 from thalweg.kernels.bare import bare, inlined, inner
 from thalweg.kernels.codes import (
-    BED_DEPTH,
     CURRENT,
-    CURRENT_EAST,
-    CURRENT_NORTH,
     DEPTH,
-    LIMIT_REQUIRED_DEPTH,
     NO_DATA,
     OK,
     OUTSIDE_PERIOD,
-    SPEED_FIELD,
-    WATER_LEVEL,
     WAVE_HEIGHT,
     WIND_SPEED,
 )
-from thalweg.kernels.leg import guided_point_speed, water_depth
+from thalweg.kernels.leg import guided_point_speed
 from thalweg.kernels.tables import TableArrays
 
 OPENING_TOLERANCE = 1.0  # an opening is found to this [s]
 
 
 class NetworkArrays(NamedTuple):
-    """The arrays of a network that searches read (meanings as in `thalweg.network.Network`)."""
+    """The arrays of a network that searches read (meanings as in `thalweg.network.Network`).
+
+    A node that falls dry between tides is several states here, one for each time it is afloat: the
+    indices of ``indptr``, ``target``, ``can_wait`` and of the following are states.
+
+    Attributes
+    ----------
+    station : int32[M]
+        Station (and node) of each state.
+    opens, closes : float64[M]
+        An arrival belongs to the state if ``opens <= arrival < closes`` [s].
+    until : float64[M]
+        A ship may wait until then [s].
+    """
 
     indptr: np.ndarray
     target: np.ndarray
@@ -42,6 +49,10 @@ class NetworkArrays(NamedTuple):
     via_w: np.ndarray
     via_s: np.ndarray
     can_wait: np.ndarray
+    station: np.ndarray
+    opens: np.ndarray
+    closes: np.ndarray
+    until: np.ndarray
 
 
 class SeaArrays(NamedTuple):
@@ -213,7 +224,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
             k = interval_near(sea.times, k, then)
             if k < 0:
                 return math.inf, OUTSIDE_PERIOD
-            a = b = network.target[edge]
+            a = b = network.station[network.target[edge]]
             weight = 0.0
             if p < last:
                 a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
@@ -229,6 +240,9 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
         t += 0.5 * piece * (before + slowness)
     if t > sea.times[-1]:
         return math.inf, OUTSIDE_PERIOD
+    head = network.target[edge]
+    if not network.opens[head] <= t < network.closes[head]:
+        return math.inf, DEPTH  # afloat there, but at another tide
     return t, OK
 
 
@@ -258,31 +272,23 @@ def _opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, work
     return opened, arrival
 
 
-@inlined
-def _node_depth(network, node):
-    """Return the least charted depth at a node [m]: it lies on each of the edges that leave it."""
-    depth = -math.inf
-    for edge in range(network.indptr[node], network.indptr[node + 1]):
-        depth = max(depth, float(network.depth[edge]))
-    return depth
-
-
 @inner
 def wait_for_edge(
-    network, sea, ship, edge, tail_node, k, t, keel, arrival, status, factor, quickest, enough, work
+    network, sea, ship, edge, tail, k, t, until, arrival, status, factor, quickest, enough, work
 ):
     """Find the best departure of an edge for a ship that may wait at its tail since t.
 
     Parameters
     ----------
     network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
-    edge, tail_node : int
+    edge, tail : int
+        The edge and the station it leaves.
     k : int
         Interval of the times that holds t.
     t : float
         Arrival at the tail [s].
-    keel : bool
-        Whether the required depth must hold at the tail while waiting.
+    until : float
+        How long the ship may wait there [s].
     arrival, status : float, int
         What `sail_edge` gives for departing at t.
     factor : float
@@ -307,103 +313,38 @@ def wait_for_edge(
     these, the opening (bisection to 1 s): the suffix minimum of arrivals (van Halem 2019, section
     3.4, corrected for series that start blocked). As the fields are linear between the times of
     the data, a better departure inside an interval whose ends are both open is not looked for, nor
-    is an opening that closes again within the interval. Waiting ends, at a time of the data, where
-    the tide would set the ship aground.
+    is an opening that closes again within the interval.
     """
     departure, best = t, math.inf
     if status == OK:
         best = factor * (arrival - t)
     before, before_status = t, status
-    required = ship.limits[LIMIT_REQUIRED_DEPTH] if keel else -math.inf
-    node_depth = _node_depth(network, tail_node) if keel else 0.0
     last = sea.times.shape[0] - 1
     for j in range(k + 1, last + 1):
-        s = sea.times[j]
-        if s <= t:
-            continue
+        s, interval = min(sea.times[j], until), min(j, last - 1)
+        if s < sea.times[j]:
+            interval = j - 1
+        if s <= before:
+            if s < until:
+                continue
+            break
         earliest = s if before_status == OK else before
         if earliest - t + factor * quickest >= min(best, enough):
             break
-        then, now = _sail_at(network, sea, ship, edge, tail_node, min(j, last - 1), s, work)
+        then, now = _sail_at(network, sea, ship, edge, tail, interval, s, work)
         if now == OUTSIDE_PERIOD:
-            break
-        if keel and not water_depth(work[1], sea.channel_index, node_depth) >= required:
             break
         if now == OK:
             value = s - t + factor * (then - s)
             if value < best:
                 departure, arrival, best, status = s, then, value, OK
             if _opens(before_status):
-                s, then = _opening(
-                    network, sea, ship, edge, tail_node, j - 1, before, s, then, work
-                )
-                value = s - t + factor * (then - s)
+                start, then = _opening(network, sea, ship, edge, tail, j - 1, before, s, then, work)
+                value = start - t + factor * (then - start)
                 if value < best:
-                    departure, arrival, best, status = s, then, value, OK
-        before, before_status = sea.times[j], now
+                    departure, arrival, best, status = start, then, value, OK
+        before, before_status = s, now
     return departure, arrival, status
-
-
-@inlined
-def never_deep_enough(network, sea, edge, required):
-    """Return `OK`, or why no tide in the data makes an edge deep enough."""
-    depth, head = network.depth[edge], network.target[edge]
-    if depth != depth:
-        return NO_DATA
-    enough = required - 1e-4  # the extremes are rounded
-    if depth + sea.highest[head] < enough or sea.deepest[head] < enough:
-        return DEPTH
-    return OK
-
-
-@bare
-def tidal_extremes(sea):
-    """Fill ``sea.highest`` and ``sea.deepest``; NaN in the fields is passed over.
-
-    Without a water level the highest is 0; without a bed depth the deepest is +inf.
-    """
-    i, j = sea.channel_index[WATER_LEVEL], sea.channel_index[BED_DEPTH]
-    for s in range(sea.values.shape[0]):
-        highest, deepest = -math.inf, -math.inf
-        for t in range(sea.values.shape[1]):
-            level = 1.0 * sea.values[s, t, i] if i >= 0 else 0.0
-            if level > highest:
-                highest = level
-            if j >= 0 and sea.values[s, t, j] + level > deepest:
-                deepest = sea.values[s, t, j] + level
-        sea.highest[s] = highest if highest > -math.inf else math.inf
-        sea.deepest[s] = deepest if deepest > -math.inf else math.inf
-
-
-@bare
-def largest_current(sea):
-    """Return the largest strength of current in the fields [m/s]; 0 when they have none."""
-    i, j = sea.channel_index[CURRENT_EAST], sea.channel_index[CURRENT_NORTH]
-    if i < 0 or j < 0:
-        return 0.0
-    largest = 0.0
-    values = sea.values
-    for s in range(values.shape[0]):
-        for t in range(values.shape[1]):
-            u, v = 1.0 * values[s, t, i], 1.0 * values[s, t, j]  # in double precision
-            squared = u * u + v * v
-            if squared > largest:
-                largest = squared
-    return math.sqrt(largest)
-
-
-@bare
-def largest_speed_field(sea):
-    """Return the largest value of the speed field [m/s]; -1 when there is none."""
-    k = sea.channel_index[SPEED_FIELD]
-    largest = -1.0
-    if k >= 0:
-        values = sea.values
-        for s in range(values.shape[0]):
-            for t in range(values.shape[1]):
-                if values[s, t, k] > largest:
-                    largest = float(values[s, t, k])
-    return largest
 
 
 @bare

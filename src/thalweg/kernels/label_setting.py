@@ -17,11 +17,11 @@ from thalweg.kernels.codes import (
 )
 from thalweg.kernels.edges import (
     interval_of,
-    never_deep_enough,
     sail_edge,
     sample_station,
     wait_for_edge,
 )
+from thalweg.kernels.extremes import never_deep_enough
 
 
 class Query(NamedTuple):
@@ -30,7 +30,7 @@ class Query(NamedTuple):
     Attributes
     ----------
     start, goal : int
-        Nodes; goal -1 reaches everything.
+        States; goal -1 reaches everything.
     depart : float
         [s].
     horizon : float
@@ -130,8 +130,8 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     ----------
     network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
     query : Query
-    distances : float64[N]
-        Lower bound of the distance from each node to the goal [m], obeying the triangle
+    distances : float64[M]
+        Lower bound of the distance from each state to the goal [m], obeying the triangle
         inequality with the edge lengths; zeros make the search Dijkstra's.
     labels : Labels
         Filled; nothing may be reached before.
@@ -147,9 +147,8 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     one label per node is exact only as far as being there earlier is never worse and the time
     does not change which edges are open; ties of cost go to the earlier time.
 
-    A ship waits only where it stays afloat (charted and bed depth plus water level at the node),
-    except at the start, where it lies safely. At a node that falls dry, being there earlier can be
-    worse: the node is then as one without waiting.
+    A ship waits only while it stays afloat; a node that falls dry is one state for each time it is
+    afloat, so that arriving at a later tide is not lost to arriving at an earlier one.
     """
     nodes, keys, place, work, counts, refused = memory
     required = ship.limits[LIMIT_REQUIRED_DEPTH]
@@ -163,6 +162,7 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
         counts[SETTLED] += 1
         if node == query.goal:
             break
+        station = network.station[node]
         cost, time = labels.cost[node], labels.time[node]
         first, last = network.indptr[node], network.indptr[node + 1]
         counts[RELAXED] += last - first
@@ -170,9 +170,8 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
         if k < 0:
             refused[OUTSIDE_PERIOD] += last - first
             continue
-        sample_station(sea, node, k, time, work[0])
+        sample_station(sea, station, k, time, work[0])
         pause = sea.times[k + 1] - time  # until the next time of the data
-        keel = limited and node != query.start
         wait = query.wait and network.can_wait[node]
         for edge in range(first, last):
             to = network.target[edge]
@@ -213,10 +212,10 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
                     sea,
                     ship,
                     edge,
-                    node,
+                    station,
                     k,
                     time,
-                    keel,
+                    network.until[node],
                     arrival,
                     status,
                     weight,

@@ -10,15 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING
 from thalweg.kernels.codes import CHANNELS, LIMIT_REQUIRED_DEPTH, LIMITS
-from thalweg.kernels.edges import (
-    NetworkArrays,
-    SeaArrays,
-    ShipArrays,
-    largest_current,
-    largest_speed_field,
-    tidal_extremes,
-)
+from thalweg.kernels.edges import NetworkArrays, SeaArrays, ShipArrays
+from thalweg.kernels.extremes import largest_current, largest_speed_field, tidal_extremes
 from thalweg.kernels.tables import TableArrays, axes_needed
+from thalweg.search.tides import tidal_states
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
@@ -80,6 +75,7 @@ def plain(values: ArrayLike, dtype: type) -> NDArray[Any]:
 
 def network_arrays(network: Network) -> NetworkArrays:
     """Return the arrays of a network that searches read."""
+    count = len(network.can_wait)
     return NetworkArrays(
         plain(network.indptr, np.int64),
         plain(network.target, np.int32),
@@ -93,6 +89,10 @@ def network_arrays(network: Network) -> NetworkArrays:
         plain(network.via_w, np.float32),
         plain(network.via_s, np.float32),
         plain(network.can_wait, np.bool_),
+        np.arange(count, dtype=np.int32),
+        np.full(count, -np.inf),
+        np.full(count, np.inf),
+        np.full(count, np.inf),
     )
 
 
@@ -174,8 +174,11 @@ def problem(
     setting: int,
     limits: ArrayLike,
     top_speed: float,
+    ends: tuple[int, int | None] | None = None,
 ) -> Problem:
     """Gather what a search reads.
+
+    With ``ends`` (start and goal) the nodes between them that fall dry become several states.
 
     Raises
     ------
@@ -199,7 +202,11 @@ def problem(
             "A speed is a positive number.",
             "Check the ship's speeds.",
         )
-    return Problem(network_arrays(network), sea, ship, fastest, float(largest_current(sea)))
+    arrays = network_arrays(network)
+    if ends is not None:
+        keep = ends[0], -1 if ends[1] is None else ends[1]
+        arrays = tidal_states(arrays, sea, ship.limits, keep)
+    return Problem(arrays, sea, ship, fastest, float(largest_current(sea)))
 
 
 def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float) -> FloatArray:

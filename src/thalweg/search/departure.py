@@ -83,7 +83,15 @@ def best_departure(
             "It ends no earlier than it begins.",
             "Exchange the two times.",
         )
-    given = problem(network, fields, table, setting=setting, limits=limits, top_speed=top_speed)
+    given = problem(
+        network,
+        fields,
+        table,
+        setting=setting,
+        limits=limits,
+        top_speed=top_speed,
+        ends=(start, goal) if wait else None,
+    )
 
     def sail(depart: float) -> SearchResult:
         return solve(

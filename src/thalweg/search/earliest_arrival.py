@@ -96,10 +96,23 @@ def earliest_arrival(
     penalty factors, one label per node is exact as long as the time of passage does not decide
     which edges are open; ties go to the earlier arrival.
 
+    A ship waits only while it stays afloat at the required depth, except at the start; a node that
+    falls dry has a label for each time it is afloat (`thalweg.search.tides`).
+
     A* uses a lower bound of the geodesic distance to the goal divided by the largest speed over
     ground (top speed plus largest current in the fields), which obeys the triangle inequality.
     """
-    given = problem(network, fields, table, setting=setting, limits=limits, top_speed=top_speed)
+    goal = -1 if goal is None else int(goal)
+    _check(network.n_nodes, start, goal, depart, objective, method)
+    given = problem(
+        network,
+        fields,
+        table,
+        setting=setting,
+        limits=limits,
+        top_speed=top_speed,
+        ends=(start, goal) if wait else None,
+    )
     return solve(
         network,
         given,
@@ -130,15 +143,15 @@ def solve(
 
     ``shortened`` is the least ratio of an edge length to the geodesic between its nodes.
     """
-    n_nodes = len(given.network.indptr) - 1
     goal = -1 if goal is None else int(goal)
-    _check(n_nodes, start, goal, depart, objective, method)
+    _check(network.n_nodes, start, goal, depart, objective, method)
+    station = given.network.station
     slowness = SHRINK / given.fastest
-    away = np.zeros(n_nodes)
+    away = np.zeros(len(station))
     lat, lon = network.station_lat, network.station_lon
     if goal >= 0 and method == "astar":
         to = float(lat[goal]), float(lon[goal])
-        away = shortened * distance_bounds(lat[:n_nodes], lon[:n_nodes], *to)
+        away = shortened * distance_bounds(network.lat, network.lon, *to)[station]
     query = Query(
         start=int(start),
         goal=goal,
@@ -149,9 +162,9 @@ def solve(
         slowness=slowness,
         per_metre=SHRINK if objective == "distance" else slowness,
     )
-    labels, memory = new_labels(n_nodes), new_workspace(n_nodes)
+    labels, memory = new_labels(len(station)), new_workspace(len(station))
     label_setting(given.network, given.sea, given.ship, query, away, labels, memory)
-    return _result(network, query, labels, memory)
+    return _result(network, station, query, labels, memory)
 
 
 def _check(n_nodes: int, start: int, goal: int, depart: float, objective: str, method: str) -> None:
@@ -171,10 +184,14 @@ def _check(n_nodes: int, start: int, goal: int, depart: float, objective: str, m
             raise InputError(f"There is no {kind} {word!r}.", f"Known: {', '.join(known)}.", "")
 
 
-def _result(network: Network, query: Query, labels: Labels, memory: Workspace) -> SearchResult:
-    path = _path(labels, query)
+def _result(
+    network: Network, station: NDArray[np.int32], query: Query, labels: Labels, memory: Workspace
+) -> SearchResult:
+    path = _path(labels, query)  # of states
     arrive = labels.time[path]
     leave = np.append(labels.departed[path[1:]], arrive[-1:])
+    node_arrival = np.full(network.n_nodes, math.inf)
+    np.minimum.at(node_arrival, station[labels.settled], labels.time[labels.settled])
     counts = memory.counts
     work = SearchWork(
         settled=int(counts[SETTLED]),
@@ -183,12 +200,12 @@ def _result(network: Network, query: Query, labels: Labels, memory: Workspace) -
         refused={REASONS[c]: int(n) for c, n in enumerate(memory.refused) if n > 0 and c > 0},
     )
     return SearchResult(
-        path=path,
+        path=station[path].astype(np.int64),
         path_arrive=arrive,
         path_depart=leave,
         cost=float(labels.cost[query.goal]) if len(path) else math.inf,
-        node_arrival=np.where(labels.settled, labels.time, math.inf),
-        nearest_node=_nearest(network, labels, query.goal),
+        node_arrival=node_arrival,
+        nearest_node=_nearest(network, node_arrival, query.goal),
         work=work,
     )
 
@@ -202,12 +219,10 @@ def _path(labels: Labels, query: Query) -> NDArray[np.int64]:
     return np.array(nodes[::-1], np.int64)
 
 
-def _nearest(network: Network, labels: Labels, goal: int) -> int:
+def _nearest(network: Network, node_arrival: NDArray[np.float64], goal: int) -> int:
     if goal < 0:
         return -1
-    if labels.settled[goal]:
-        return goal
-    reached = np.flatnonzero(labels.settled)
-    lat, lon = network.station_lat, network.station_lon
+    reached = np.flatnonzero(np.isfinite(node_arrival))
+    lat, lon = network.lat, network.lon
     away = distance_bounds(lat[reached], lon[reached], float(lat[goal]), float(lon[goal]))
     return int(reached[np.argmin(away)])
