@@ -62,8 +62,14 @@ def simple_ship(speed: float, **more) -> Ship:
     return Ship.simple(speed_kn=speed / KNOT, draught_m=more.pop("draught_m", 5.0), **more)
 
 
-def assert_optimal(found: Plan, optimum_s: float, within: float = 1e-3) -> None:
-    """The refereed route is the optimum: never below it by more than the referee's tolerance."""
+def assert_optimal(
+    found: Plan, optimum_s: float, within: float = 1e-3, solver_within: float = 5e-3
+) -> None:
+    """The refereed route is the optimum: never below it by more than the referee's tolerance.
+
+    The solver's own total may lie below by ``solver_within``: its sea is linear between stations
+    and between time steps, which opens a bar that opens at once up to one step too early.
+    """
     best = found.best
     seconds = best.time_h * 3600.0
     assert best.feasible, best.violations
@@ -71,4 +77,4 @@ def assert_optimal(found: Plan, optimum_s: float, within: float = 1e-3) -> None:
     assert seconds >= optimum_s * (1 - 1e-4) - best.tolerance_s
     assert found.lower_bound <= best.time_h
     assert found.lower_bound * 3600.0 <= optimum_s * (1 + 1e-4)
-    assert found.solver_total * 3600.0 >= optimum_s * (1 - 5e-3)
+    assert found.solver_total * 3600.0 >= optimum_s * (1 - solver_within)

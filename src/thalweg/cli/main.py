@@ -12,7 +12,13 @@ from thalweg.cli import demo, evaluate, inspect, plan, ship
 from thalweg.cli.exits import report
 from thalweg.core.errors import ThalwegError, ThalwegWarning
 
-_COMMANDS = (plan, evaluate, inspect, ship, demo)
+_COMMANDS = (
+    plan.add_command,
+    evaluate.add_command,
+    inspect.add_command,
+    ship.add_ship_command,
+    demo.add_command,
+)
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -23,8 +29,8 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"thalweg {_version()}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for module in _COMMANDS:
-        module.add_command(commands)
+    for add_command in _COMMANDS:
+        add_command(commands)
     for sub in commands.choices.values():
         # A position such as -33.9,151.2 is an argument, not an option.
         sub._negative_number_matcher = re.compile(r"^-\d[\d.]*([,;\s].*)?$")
