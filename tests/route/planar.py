@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
 from thalweg.core.units import KNOT
 from thalweg.sea import Sea
@@ -51,3 +52,28 @@ class Plane:
 def ship(speed: float, draught: float = 5.0) -> Ship:
     """A ship that always makes ``speed`` m/s through the water."""
     return Ship.simple(speed_kn=speed / KNOT, draught_m=draught)
+
+
+class Islands:
+    """A chart of polygons near the equator, where geodesics are straight in degrees.
+
+    It stands in for a Chart: the same questions, answered by shapely.
+    """
+
+    has_depth = False
+
+    def __init__(self, *polygons):
+        self.land = shapely.union_all(list(polygons))
+        shapely.prepare(self.land)
+
+    def legs_blocked(self, lat1, lon1, lat2, lon2):
+        ends = np.stack([np.stack([lon1, lat1], -1), np.stack([lon2, lat2], -1)], -2)
+        return shapely.intersects(self.land, shapely.linestrings(ends))
+
+    def leg_status(self, lat1, lon1, lat2, lon2):
+        return self.legs_blocked(lat1, lon1, lat2, lon2).astype(np.int8)
+
+
+def rectangle(plane: Plane, x0: float, y0: float, x1: float, y1: float):
+    (south, west), (north, east) = plane.place(x0, y0), plane.place(x1, y1)
+    return shapely.box(west, south, east, north)

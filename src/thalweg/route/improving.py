@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 LARGEST_RASTER = 4_000_000  #: numbers in the frozen raster of the sea around a track
 _LEAST_ROWS, _MOST_ROWS = 12, 120  # cells along the longer side of the raster
+_ROOM = (0.2, 0.4, 0.6)  # room around the track, as a share of its box; more when it is used up
+_RIM = 0.04  # nearness to the rim of the raster at which it counts as used up
 _MARGINS = (0.0, 0.02, 0.06)  # shares by which limits are tightened when the referee objects
 _WAIT_EXACT = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
 _WAIT_SHARE = 1e-5
@@ -72,17 +74,21 @@ def better_route(
     def score(track: Track) -> Route:
         return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
 
-    fields = freeze_around(scored, ship=ship, sea=sea, limits=np.asarray(limits, float))
     best = scored
     for margin in _MARGINS:
-        track = smooth(
-            scored.track,
-            table=table,
-            fields=fields,
-            limits=_tightened(limits, margin),
-            chart=chart,
-            objective=objective,
-        )
+        track = scored.track
+        for room in _ROOM:
+            fields = freeze_around(scored, track, room, ship=ship, sea=sea, limits=limits)
+            track = smooth(
+                track,
+                table=table,
+                fields=fields,
+                limits=_tightened(limits, margin),
+                chart=chart,
+                objective=objective,
+            )
+            if objective == "distance" or not _touches_rim(track, fields):
+                break
         route = shorten_waits(score(track), score) if track != scored.track else scored
         best = min(best, route, key=lambda item: _rank(item, objective))
         if route.feasible:
@@ -90,19 +96,29 @@ def better_route(
     return shorten_waits(best, score)
 
 
-def freeze_around(route: Route, *, ship: Ship, sea: Sea, limits: FloatArray) -> GridFields:
-    """Freeze the sea on a raster around a route, as fine as the data or a size limit allows."""
-    track = route.track
+def freeze_around(
+    route: Route, track: Track, room: float, *, ship: Ship, sea: Sea, limits: ArrayLike
+) -> GridFields:
+    """Freeze the sea on a raster around a track, as fine as the data or a size limit allows.
+
+    Parameters
+    ----------
+    route : Route
+        Tells how long the voyage takes.
+    track : Track
+    room : float
+        Room on all sides, as a share of the longer side of the track's box.
+    """
     lon = unwrapped(track.lon)
     extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
-    margin = 0.15 * extent
+    margin = room * extent
     south, north = max(track.lat.min() - margin, -89.9), min(track.lat.max() + margin, 89.9)
     width = min(np.ptp(lon) + 2.0 * margin, 359.0)
     west = 0.5 * (lon.min() + lon.max() - width)
     start = track.depart
     arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
     end = start + 1.1 * (arrive - start) + 600.0
-    channels = _channels(ship, sea, limits)
+    channels = _channels(ship, sea, np.asarray(limits, float))
     extra = {codes.SPEED_FIELD: ship.speed_field} if ship.speed_field is not None else None
     numbers = max(len(sea.times(start, end)), 2) * max(len(channels) + bool(extra), 1)
     finest = math.sqrt((north - south) * width * numbers / LARGEST_RASTER)
@@ -112,6 +128,14 @@ def freeze_around(route: Route, *, ship: Ship, sea: Sea, limits: FloatArray) -> 
     return sea.freeze_grid(
         south, north, west, west + width, start, end, channels, spacing_deg=spacing, extra=extra
     )
+
+
+def _touches_rim(track: Track, fields: GridFields) -> bool:
+    """Return whether a track comes so near to the rim of a raster that it may have been held up."""
+    rows, columns = fields.values.shape[1:3]
+    y = (track.lat - fields.lat0) / (fields.dlat * (rows - 1))
+    x = ((track.lon - fields.lon0) % 360.0) / (fields.dlon * (columns - 1))
+    return bool(min(y.min(), x.min(), 1.0 - y.max(), 1.0 - x.max()) < _RIM)
 
 
 def shorten_waits(route: Route, score: Score) -> Route:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 IntArray = NDArray[np.int64]
 _METRES_PER_DEGREE = 111_195.0
+_LONGEST_PIECE = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,7 @@ def make_sailor(
 ) -> Sailor:
     """Put a sailor together; ``total`` is the rough length of the track [m].
 
-    Pieces are half a cell of the raster, at least a 400th of the track.
+    Pieces are half a cell of the raster, at least a 400th of the track, at most 100 km.
     """
     raster = RasterArrays(
         np.asarray(fields.times, np.float64) - origin,
@@ -160,7 +161,7 @@ def make_sailor(
         np.asarray(fields.channel_index, np.int64),
     )
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
-    spacing = max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0)
+    spacing = min(max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0), _LONGEST_PIECE)
     return Sailor(raster, arrays, chart, np.asarray(limits, np.float64), origin, by_length, spacing)
 
 

@@ -351,8 +351,8 @@ def _leg_fuel(pieces: Pieces, passage: Passage, rate: FloatArray) -> FloatArray:
     burnt = 0.5 * pieces.step * (rate.reshape(-1, 2) * passage.slowness).sum(axis=1)
     if passage.first_bad < len(pieces):
         burnt[passage.first_bad :] = math.nan
-    total: FloatArray = np.bincount(pieces.leg, weights=burnt, minlength=len(pieces.length))
-    return total
+    total = np.bincount(pieces.leg, weights=burnt, minlength=len(pieces.length))
+    return total.astype(np.float64)
 
 
 def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
