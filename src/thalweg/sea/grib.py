@@ -37,27 +37,31 @@ def open_grib(path: Path) -> list[Any]:
     folder = Path(tempfile.mkdtemp(prefix="thalweg-grib-"))
     try:
         listing = _decode(path, folder)
-        datasets = [_dataset(folder, part) for part in listing]
+        keeper = _Keeper(folder)
+        return [_dataset(folder, part, keeper) for part in listing]
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    keeper = _Keeper(len(datasets), folder)
-    for dataset in datasets:
-        weakref.finalize(dataset, keeper.let_go)
-    return datasets
 
 
 class _Keeper:
-    """Removes the temporary folder when the last dataset from it is gone."""
+    """Removes the temporary folder when the last array mapped from it is gone."""
 
-    def __init__(self, users: int, folder: Path) -> None:
-        self.users, self.folder = users, folder
-        self._last = weakref.finalize(self, shutil.rmtree, str(folder), ignore_errors=True)
+    def __init__(self, folder: Path) -> None:
+        self.users = 0
+        self._remove = weakref.finalize(self, shutil.rmtree, str(folder), ignore_errors=True)
 
-    def let_go(self) -> None:
+    def load(self, path: Path) -> Any:
+        """Return an array mapped from a file of the folder."""
+        array = np.load(path, mmap_mode="r")
+        self.users += 1
+        weakref.finalize(array, self._let_go)
+        return array
+
+    def _let_go(self) -> None:
         self.users -= 1
         if self.users == 0:
-            self._last()
+            self._remove()
 
 
 def check_messages(path: Path) -> int:
@@ -96,7 +100,8 @@ def _length(head: bytes) -> int | None:
 
 
 def _decode(path: Path, folder: Path) -> list[dict[str, Any]]:
-    command = [sys.executable, str(WORKER), str(path.resolve()), str(folder)]
+    # -P keeps this folder off the module path, where its names could hide other packages
+    command = [sys.executable, "-P", str(WORKER), str(path.resolve()), str(folder)]
     try:
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=TIME_LIMIT, check=False, cwd=folder
@@ -127,14 +132,15 @@ def _damaged(path: Path, fault: str) -> DatasetError:
     )
 
 
-def _dataset(folder: Path, part: dict[str, Any]) -> Any:
+def _dataset(folder: Path, part: dict[str, Any], keeper: _Keeper) -> Any:
     """Build a dataset over the arrays the worker left, mapped and not read."""
     import xarray as xr
 
     def variable(told: dict[str, Any]) -> Any:
-        data = np.load(folder / told["file"], mmap_mode="r" if told["dims"] else None)
+        file = folder / told["file"]
+        data = keeper.load(file) if len(told["dims"]) > 1 else np.load(file)
         if told["is_time"]:
-            data = np.asarray(data).astype("datetime64[ns]")
+            data = data.astype("datetime64[ns]")
         return xr.Variable(told["dims"], data, told["attrs"])
 
     return xr.Dataset(

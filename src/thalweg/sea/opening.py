@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -160,7 +161,9 @@ def _open_zarr(path: Path) -> OpenedFile:
     import xarray as xr
 
     def opener(engine: str) -> Any:
-        return xr.open_dataset(path, engine=engine, decode_timedelta=False, chunks=None)  # type: ignore[arg-type]
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Failed to open Zarr store with consolidated")
+            return xr.open_dataset(path, engine=engine, chunks=None, **UNDATED)
 
     dataset = _opened(path, ("zarr",), opener)
     stamps = [p.stat() for p in path.rglob("*") if p.is_file()]

@@ -1,0 +1,177 @@
+"""Files that cannot be used get a clear answer in three parts, and nothing is invented."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.sea.worlds import HS, T0, clock, regular, value
+from thalweg.core.errors import DatasetError, InputError, ThalwegError
+from thalweg.sea import Sea
+
+
+def refused(match: str, *args, **kwargs) -> ThalwegError:
+    with pytest.raises((DatasetError, InputError), match=match) as caught:
+        Sea.open(*args, **kwargs)
+    assert caught.value.asked
+    assert caught.value.possible
+    assert caught.value.remedy
+    return caught.value
+
+
+@pytest.mark.parametrize("format_", ["NETCDF3_CLASSIC", "NETCDF3_64BIT", "NETCDF4"])
+@pytest.mark.parametrize("share", [0.02, 0.3, 0.8, 0.99])
+def test_truncated_netcdf(tmp_path, format_, share) -> None:
+    whole = tmp_path / "whole.nc"
+    regular(hours=np.arange(30.0), lat=np.arange(20.0)).to_netcdf(
+        whole, format=format_, unlimited_dims=["time"]
+    )
+    cut = tmp_path / "cut.nc"
+    data = whole.read_bytes()
+    Sea.open(whole)
+    cut.write_bytes(data[: int(len(data) * share)])
+    refused("cut.nc", cut)
+
+
+def test_corrupt_compressed_chunk(tmp_path) -> None:
+    path = tmp_path / "bad.nc"
+    rng = np.random.default_rng(1)
+    dataset = regular(hours=np.arange(8.0), lat=np.arange(30.0), lon=np.arange(30.0))
+    dataset["swh"] = dataset.swh * 0 + rng.uniform(0, 5, dataset.swh.shape)
+    dataset.to_netcdf(path, encoding={"swh": {"zlib": True, "chunksizes": (1, 30, 30)}})
+    data = bytearray(path.read_bytes())
+    for k in range(len(data) // 3, len(data) - 200, 400):
+        data[k : k + 40] = bytes(40)
+    path.write_bytes(bytes(data))
+    with pytest.raises(DatasetError, match=r"bad\.nc"):
+        sea = Sea.open(path)
+        sea.freeze_stations([10.0], [10.0], T0, T0 + 7 * 3600, [4])
+
+
+def test_not_data_empty_and_missing(tmp_path) -> None:
+    text = tmp_path / "notes.nc"
+    text.write_text("dear diary, " * 100)
+    refused("notes.nc does not begin", text)
+    empty = tmp_path / "empty.nc"
+    empty.touch()
+    refused("is empty", empty)
+    refused("no file", tmp_path / "absent.nc")
+    assert "notes.nc" in refused("no file", tmp_path / "note.nc").remedy
+    (tmp_path / "folder").mkdir()
+    refused("not a Zarr store", tmp_path / "folder")
+    with pytest.raises(InputError, match="No file"):
+        Sea.open()
+
+
+@pytest.mark.parametrize(
+    ("hours", "match"),
+    [([0.0, 2.0, 1.0], "earlier"), ([0.0, 1.0, 1.0], "twice"), ([2.0, 1.0, 0.0], "earlier")],
+)
+def test_times_that_do_not_increase(hours, match) -> None:
+    refused(match, regular(hours=hours))
+
+
+def test_times_without_dates_and_strange_calendars() -> None:
+    plain = regular()
+    plain["time"] = ("time", [0.0, 1.0, 2.0])
+    refused("no dates", plain)
+    noleap = regular()
+    noleap["time"] = (
+        "time",
+        [0.0, 1.0, 2.0],
+        {"units": "days since 2001-02-27", "calendar": "360_day"},
+    )
+    refused("360_day", noleap)
+
+
+def test_two_candidates_are_listed_and_can_be_chosen() -> None:
+    attrs = {"standard_name": HS, "units": "m"}
+    dataset = regular(fields={"hs_model_a": attrs, "hs_model_b": attrs})
+    dataset["hs_model_b"] = dataset.hs_model_b * 2.0
+    dataset.hs_model_b.attrs = attrs
+    error = refused("hs_model_a, hs_model_b", dataset)
+    assert error.details["candidates"] == ["hs_model_a", "hs_model_b"]
+    one = Sea.open(dataset, mapping={HS: "hs_model_a"})
+    two = Sea.open(dataset, mapping={HS: "hs_model_b"})
+    assert value(two, HS, T0, 11.0, 21.0) == pytest.approx(2.0 * value(one, HS, T0, 11.0, 21.0))
+    refused("in none of the files", dataset, mapping={HS: "hs_model_c"})
+
+
+def test_spellings_of_two_sources_are_ambiguous_and_of_one_source_are_not() -> None:
+    refused("could be any of", regular(fields={"swh": {"units": "m"}, "vhm0": {"units": "m"}}))
+    cmems = regular(
+        fields={n: {"units": "m/s"} for n in ("utotal", "vtotal")},
+        field=lambda t, y, x: 0.5 + 0 * (t + y + x),
+    )
+    assert "eastward_sea_water_velocity" in Sea.open(cmems).variables
+
+
+def test_impossible_units_and_values() -> None:
+    refused("units are 'K'", regular(fields={"swh": {"units": "K"}}))
+    refused("wrong units", regular(field=lambda t, y, x: 300.0 + 0 * (t + y + x)))
+    refused(
+        "wrong units",
+        regular(
+            fields={"u10": {"units": "m/s"}, "v10": {"units": "m/s"}},
+            field=lambda t, y, x: -9999.0 + 0 * (t + y + x),
+        ),
+    )
+    refused(
+        "wrong units",
+        regular(fields={"msl": {"units": "Pa"}}, field=lambda t, y, x: 1013.0 + 0 * (t + y + x)),
+    )
+
+
+def test_implausible_values_away_from_the_first_look_show_when_read() -> None:
+    dataset = regular(hours=np.arange(6.0))
+    dataset.swh[5] = 1e6
+    sea = Sea.open(dataset)
+    with pytest.raises(DatasetError, match="wrong units"):
+        sea.sample([HS], T0 + 5 * 3600.0, 11.0, 21.0)
+
+
+def test_layouts_that_are_no_fields() -> None:
+    series = xr.Dataset(
+        {"Hm0": (("time",), np.ones(5), {"standard_name": HS, "units": "m"})},
+        coords={"time": clock(np.arange(5.0)), "x": 4.0, "y": 52.0},
+    )
+    refused("no positions", series)
+    points = xr.Dataset(
+        {"swh": (("time", "station"), np.ones((5, 3)), {"units": "m"})},
+        coords={
+            "time": clock(np.arange(5.0)),
+            "lat": ("station", [1.0, 2.0, 3.0]),
+            "lon": ("station", [1.0, 2.0, 3.0]),
+        },
+    )
+    refused("single points", points)
+    months = regular().rename(time="month").drop_vars("month").assign_coords(month=[1, 2, 3])
+    refused("climatology", months)
+    members = regular().expand_dims(number=[0, 1])
+    refused("ensemble", members)
+    winds = regular(
+        fields={"u10": {"units": "m/s"}, "v10": {"units": "m/s"}},
+        field=lambda t, y, x: 1.0 + 0 * (t + y + x),
+    )
+    high = winds.expand_dims(
+        height=xr.DataArray([80.0, 100.0], dims="height", attrs={"units": "m"})
+    )
+    refused("not at 10 m", high)
+
+
+def test_nothing_recognised_tells_what_there_is() -> None:
+    error = refused("no wind, waves", regular(fields={"chlorophyll": {"units": "mg m-3"}}))
+    assert "chlorophyll" in error.possible
+
+
+def test_positions_that_cannot_be() -> None:
+    refused("reaches 95 degrees", regular(lat=[80.0, 85.0, 95.0]))
+    refused("one way|neither", regular(lat=[10.0, 12.0, 11.0]))
+
+
+def test_data_folder_is_left_alone(tmp_path) -> None:
+    regular().to_netcdf(tmp_path / "a.nc")
+    before = sorted(p.name for p in tmp_path.iterdir())
+    Sea.open(tmp_path / "a.nc").sample([HS], T0, 11.0, 21.0)
+    assert sorted(p.name for p in tmp_path.iterdir()) == before
