@@ -1,0 +1,148 @@
+"""Routes through files and back, and files that cannot be routes."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.route.planar import ship
+from thalweg.core.errors import InputError
+from thalweg.route import evaluate, read_track, write_csv, write_geojson, write_gpx
+from thalweg.sea import Sea
+
+WRITERS = {"csv": write_csv, "geojson": write_geojson, "gpx": write_gpx}
+DEPART = "2026-03-01T06:00:00Z"
+
+
+def route_along(positions):
+    return evaluate(positions, ship=ship(5.0), sea=Sea.calm(), depart=DEPART)
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize(
+    "positions",
+    [
+        [(52.0, 4.1), (53.25, 3.0), (55.0, -1.5)],
+        [(10.0, 170.0), (20.0, -170.0), (30.0, -150.0)],
+        [(-35.123456, 179.5), (-36.0, 180.0), (-37.0, -179.25)],
+    ],
+)
+def test_round_trip(tmp_path, suffix, positions):
+    path = tmp_path / f"route.{suffix}"
+    WRITERS[suffix](route_along(positions), path)
+    track = read_track(path)
+    expected = route_along(positions).track
+    np.testing.assert_allclose(track.lat, expected.lat, atol=1e-8)
+    turn = (track.lon - expected.lon + 180.0) % 360.0 - 180.0
+    np.testing.assert_allclose(turn, 0.0, atol=1e-8)
+    assert track.depart == expected.depart
+    again = evaluate(path, ship=ship(5.0), sea=Sea.calm())
+    assert again.time_h == pytest.approx(route_along(positions).time_h, rel=1e-9)
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(-70, 70), st.floats(-180, 179.9)), min_size=2, max_size=6, unique=True
+    )
+)
+def test_csv_text_round_trip_for_any_positions(positions):
+    from thalweg.route.formats.csv_format import parse_csv
+
+    text = "Latitude;Longitude\n" + "\n".join(f"{a!r};{b!r}" for a, b in positions)
+    parsed = parse_csv(text).positions
+    np.testing.assert_allclose(np.array(parsed), np.array(positions), atol=1e-12)
+
+
+def test_geojson_line_is_cut_at_the_antimeridian_where_the_geodesic_crosses(tmp_path):
+    path = tmp_path / "route.geojson"
+    write_geojson(route_along([(10.0, 170.0), (20.0, -170.0)]), path)
+    line = json.loads(path.read_text())["features"][0]
+    assert line["geometry"]["type"] == "MultiLineString"
+    first, second = line["geometry"]["coordinates"]
+    assert first[-1][0] == 180.0
+    assert second[0][0] == -180.0
+    assert first[-1][1] == second[0][1] == pytest.approx(15.341, abs=0.02)
+    for part in (first, second):
+        assert max(abs(np.diff([lon for lon, _ in part]))) < 5.0
+    assert line["properties"]["distance_nm"] > 0
+
+
+def test_gpx_tracks_and_times_are_read(tmp_path):
+    path = tmp_path / "a.gpx"
+    path.write_text(
+        '<gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>'
+        '<trkpt lat="52" lon="4"><time>2026-01-02T03:04:05Z</time></trkpt>'
+        '<trkpt lat="53" lon="5"/></trkseg></trk></gpx>'
+    )
+    track = read_track(path)
+    assert track.positions == [(52.0, 4.0), (53.0, 5.0)]
+    assert track.depart == 1767323045.0
+
+
+def test_gpx_without_namespace_prefers_the_route(tmp_path):
+    path = tmp_path / "a.gpx"
+    path.write_text(
+        '<gpx><trk><trkpt lat="1" lon="1"/><trkpt lat="2" lon="2"/></trk>'
+        '<rte><rtept lat="3" lon="3"/><rtept lat="4" lon="4"/></rte></gpx>'
+    )
+    assert read_track(path, depart=0).positions == [(3.0, 3.0), (4.0, 4.0)]
+
+
+def test_geojson_points_and_plain_lines(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text('{"type": "LineString", "coordinates": [[4, 52], [5, 53, 10]]}')
+    assert read_track(path, depart=0).positions == [(52.0, 4.0), (53.0, 5.0)]
+    point = {"type": "Feature", "properties": None, "geometry": {"type": "Point"}}
+    features = [
+        {**point, "geometry": {"type": "Point", "coordinates": [lon, 50]}} for lon in (1, 2, 3)
+    ]
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    assert read_track(path, depart=0).lon.tolist() == [1.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.csv", "", "no columns"),
+        ("a.csv", "foo,bar\n1,2\n", "no columns"),
+        ("a.csv", "lat,lon\n1,2\n", "1 waypoint"),
+        ("a.csv", "lat,lon\n1,2\nx,3\n", "not a number"),
+        ("a.csv", "lat,lon\n1,2\nnan,3\n", "not a number"),
+        ("a.csv", "lat,lon\n1,2\n3\n", "1 columns"),
+        ("a.csv", "lat,lon\n120.5,30\n121,31\n", "swapped"),
+        ("a.csv", "lat,lon,time\n1,2,yesterday\n3,4,\n", "not a time"),
+        ("a.csv", "lat,lon\n1,2\n3,4\n", "no departure"),
+        ("a.geojson", "{", "cannot be read"),
+        ("a.geojson", "[]", "no route"),
+        ("a.geojson", '{"type": "Polygon", "coordinates": []}', "no route"),
+        ("a.geojson", '{"type": "LineString", "coordinates": 3}', "no list"),
+        ("a.geojson", '{"type": "LineString", "coordinates": [[1], [2, 3]]}', "not a position"),
+        ("a.gpx", "<gpx", "cannot be read"),
+        ("a.gpx", "<gpx><wpt lat='1' lon='2'/></gpx>", "no route and no track"),
+        (
+            "a.gpx",
+            '<!DOCTYPE a [<!ENTITY x "y">]><gpx><rte><rtept lat="1" lon="&x;"/></rte></gpx>',
+            "cannot be read",
+        ),
+        ("a.xlsx", "", "not read from files like"),
+    ],
+)
+def test_what_is_no_route_is_refused_with_a_reason(tmp_path, name, text, message):
+    path = tmp_path / name
+    path.write_text(text)
+    with pytest.raises(InputError, match=message):
+        read_track(path)
+
+
+def test_missing_binary_and_huge_files_are_refused(tmp_path, monkeypatch):
+    with pytest.raises(InputError, match="cannot be read"):
+        read_track(tmp_path / "nowhere.csv", depart=0)
+    (tmp_path / "b.csv").write_bytes(b"\xff\xfe\x00\x81")
+    with pytest.raises(InputError, match="UTF-8"):
+        read_track(tmp_path / "b.csv", depart=0)
+    monkeypatch.setattr("thalweg.route.formats.LARGEST_FILE", 10)
+    (tmp_path / "c.csv").write_text("lat,lon\n1,2\n3,4\n")
+    with pytest.raises(InputError, match="MB"):
+        read_track(tmp_path / "c.csv", depart=0)
