@@ -321,3 +321,45 @@ def _sift_down(heap, place, distance, size, node):
         at = below
     heap[at] = node
     place[node] = at
+
+
+@jit
+def thin_points(x, y, spacing, keep):
+    """Keep points in order when they lie farther than their spacing from every point kept before.
+
+    Parameters
+    ----------
+    x, y : float64[N]
+        Positions in a plane.
+    spacing : float64[N]
+        A point is kept if and only if its nearest kept point is farther away (strictly).
+    keep : bool[N]
+        Filled.
+    """
+    n = x.shape[0]
+    cell = max(spacing.max(), 1e-300)
+    x0 = x.min()
+    y0 = y.min()
+    wide = np.int64((x.max() - x0) / cell) + 1
+    high = np.int64((y.max() - y0) / cell) + 1
+    while wide * high > 4 * n + 1024:  # very sparse: larger cells only cost time
+        cell *= 2.0
+        wide = np.int64((x.max() - x0) / cell) + 1
+        high = np.int64((y.max() - y0) / cell) + 1
+    last = np.full(wide * high, -1, np.int64)
+    before = np.full(n, -1, np.int64)
+    for p in range(n):
+        i = np.int64((x[p] - x0) / cell)
+        j = np.int64((y[p] - y0) / cell)
+        limit = spacing[p] * spacing[p]
+        keep[p] = True
+        for ci in range(max(0, i - 1), min(wide, i + 2)):
+            for cj in range(max(0, j - 1), min(high, j + 2)):
+                q = last[ci * high + cj]
+                while q >= 0 and keep[p]:
+                    if (x[q] - x[p]) ** 2 + (y[q] - y[p]) ** 2 <= limit:
+                        keep[p] = False
+                    q = before[q]
+        if keep[p]:
+            before[p] = last[i * high + j]
+            last[i * high + j] = p

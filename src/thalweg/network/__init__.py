@@ -2,7 +2,9 @@
 
 from thalweg.network.endpoints import with_endpoints
 from thalweg.network.lattice import default_spacing, lattice
+from thalweg.network.mesh import mesh
 from thalweg.network.network import Network, NetworkMeta, check_network, shortest
+from thalweg.network.pruning import spacing_fraction
 
 __all__ = [
     "Network",
@@ -10,6 +12,8 @@ __all__ = [
     "check_network",
     "default_spacing",
     "lattice",
+    "mesh",
     "shortest",
+    "spacing_fraction",
     "with_endpoints",
 ]
