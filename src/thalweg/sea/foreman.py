@@ -87,7 +87,7 @@ def tables() -> Tables:
 
 def _constants() -> Any:
     try:
-        from utide._ut_constants import ut_constants
+        from utide._ut_constants import ut_constants  # type: ignore[import-untyped]
     except ImportError:
         raise InputError(
             "Harmonic analysis needs the package utide, which is not installed.",

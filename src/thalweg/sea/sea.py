@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,6 +21,10 @@ from thalweg.sea.inspection import Inspection
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.merge import edges, merged, point_reader, series_reader
 from thalweg.sea.policies import CALM, policy_values
+
+if TYPE_CHECKING:
+    from thalweg.sea.constituents import Constituents
+    from thalweg.sea.tides import TideAnalysis
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +189,52 @@ class Sea:
         """
         layer = storm.storm_layer(name, start=start, ambient=ambient, time_step=time_step)
         return cls((layer,))
+
+    @classmethod
+    def from_tides(
+        cls,
+        source: Sea | Constituents | TideAnalysis,
+        *,
+        constituents: Sequence[str] | None = None,
+        area: tuple[float, float, float, float] | None = None,
+        rayleigh: float = 1.0,
+        progress: Callable[[int, int], None] | None = None,
+        cache: bool = True,
+    ) -> Sea:
+        """Return currents and water level of the tide, at any date, on the nodes of the source.
+
+        Parameters
+        ----------
+        source : Sea, Constituents or TideAnalysis
+            A sea opened from a model run, analysed at every node (what never changes, such as the
+            depth, is kept); or constants at three nodes or more, or at one that holds for ``area``.
+        constituents : sequence of str, optional
+            Names to analyse; by default all that the length of the run can tell apart.
+        area : tuple of float, optional
+            (south, north, west, east) [deg] for a single station.
+        rayleigh : float
+            How many cycles two constituents must part over the run.
+        progress : callable, optional
+            Called with nodes done and nodes in all.
+        cache : bool
+            Whether the analysis is kept on disk and taken from there.
+
+        Raises
+        ------
+        InputError
+            If the run is too short for the constituents (it says which need how long), or has no
+            currents and levels over time.
+        """
+        from thalweg.sea.tidal_layer import tidal_sea
+
+        return tidal_sea(
+            source,
+            constituents=constituents,
+            area=None if area is None else area_of(area),
+            rayleigh=rayleigh,
+            progress=progress,
+            cache=cache,
+        )
 
     @classmethod
     def layered(cls, *seas: Sea) -> Sea:

@@ -22,7 +22,7 @@ from thalweg.sea.constituents import Complex, Constituents, phasors, tide
 from thalweg.sea.fields import WORLD, Area, Coverage, FloatArray, Mesh
 from thalweg.sea.functions import automatic_times
 from thalweg.sea.gridded import GridLayer
-from thalweg.sea.grids import Grid, Located, TriangleGrid
+from thalweg.sea.grids import Grid, Located, RectilinearGrid, TriangleGrid
 from thalweg.sea.layer import Samples, nan_pairs
 from thalweg.sea.store import Window
 
@@ -181,7 +181,7 @@ def tidal_sea(
     source: Sea | Constituents | tides.TideAnalysis,
     *,
     constituents: Sequence[str] | None = None,
-    area: tuple[float, float, float, float] | None = None,
+    area: Area | None = None,
     rayleigh: float = tides.RAYLEIGH,
     progress: tides.Progress | None = None,
     cache: bool = True,
@@ -260,18 +260,16 @@ def analyse_layer(
     return analysis
 
 
-def _positions(grid: Grid) -> tuple[FloatArray, FloatArray]:
+def _positions(grid: Any) -> tuple[FloatArray, FloatArray]:
     """Return the position of every place, flat."""
-    lat, lon = np.asarray(grid.lat, float), np.asarray(grid.lon, float)  # type: ignore[attr-defined]
+    lat, lon = np.array(grid.lat, np.float64), np.array(grid.lon, np.float64)
     rows, columns = grid.shape
-    if lat.size == rows * columns and lon.size == rows * columns:
-        return lat.ravel(), lon.ravel()
-    return np.repeat(lat, columns), np.tile(lon, rows)
+    if isinstance(grid, RectilinearGrid):
+        return lat.repeat(columns), np.tile(lon, rows)
+    return lat.ravel(), lon.ravel()
 
 
-def _of_constituents(
-    constants: Constituents, area: tuple[float, float, float, float] | None
-) -> TidalLayer:
+def _of_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
     facts = dict(constants.facts)
     source = str(facts.get("source", "tidal constituents"))
     pair = nm.CURRENT.pair
@@ -288,10 +286,7 @@ def _of_constituents(
                 "It can be taken for a whole area, on your word.",
                 "Give area=(south, north, west, east) in degrees.",
             )
-        from thalweg.sea.sea import Sea as SeaClass
-
-        box = SeaClass.from_functions({}, area=area).layers[0].area
-        return TidalLayer(constants, None, box, source=source, facts=facts)
+        return TidalLayer(constants, None, area, source=source, facts=facts)
     grid = _triangulated(constants.lat, constants.lon)
     return TidalLayer(constants, grid, source=source, facts=facts)
 

@@ -155,17 +155,17 @@ def _station(data: Mapping[str, Any], source: str) -> Constituents:
         "license": str(data.get("license", "")),
         "left_out": left_out,
     }
-    place = {"lat": float(data["lat"]), "lon": float(data["lon"])}
+    lat, lon = float(data["lat"]), float(data["lon"])
     if is_current:
-        return _current(data["current"], table, facts, place)
-    return Constituents.single(nm.WATER_LEVEL, table, facts=facts, **place)
+        return _current(data["current"], table, facts, (lat, lon))
+    return Constituents.single(nm.WATER_LEVEL, table, lat=lat, lon=lon, facts=facts)
 
 
 def _current(
     current: Mapping[str, Any],
     table: Mapping[str, tuple[float, float]],
     facts: Mapping[str, Any],
-    place: Mapping[str, float],
+    place: tuple[float, float],
 ) -> Constituents:
     """Turn a tidal current along the direction of flood [kn] into east and north [m/s]."""
     flood = math.radians(float(current["flood_direction"]))
@@ -178,8 +178,8 @@ def _current(
         {n: size * abs(part) for n, part in parts.items()},
         {n: (phase + (180.0 if part < 0.0 else 0.0)) % 360.0 for n, part in parts.items()},
         {n: np.array([mean * part]) for n, part in parts.items()},
-        np.array([place["lat"]]),
-        np.array([place["lon"]]),
+        np.array([place[0]]),
+        np.array([place[1]]),
         "schureman",
         dict(facts),
     )

@@ -12,6 +12,8 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -167,7 +169,8 @@ def _fit(
             block = np.asarray(values[part], np.float64)
             known = np.isfinite(block)
             groups = list(_groups(known, needed))
-            tasks = pool.map(lambda g: _solve(design, whole, block, known, g), groups)
+            solve = partial(_solve, design, whole, block, known)
+            tasks = pool.map(solve, groups)
             for rows, (x, s, v) in zip(groups, tasks):
                 solution[:, first + rows], share[first + rows], variance[first + rows] = x, s, v
             tell(part.stop)
@@ -250,7 +253,7 @@ def check_rayleigh(names: Sequence[str], length_h: float, rayleigh: float = RAYL
     known = [(n, foreman.frequency(n)) for n in names]
     known = sorted([("the mean", 0.0), *known], key=lambda pair: pair[1])
     close = []
-    for (a, fa), (b, fb) in zip(known, known[1:]):
+    for (a, fa), (b, fb) in pairwise(known):
         if (fb - fa) * length_h < rayleigh * (1.0 - 1e-6):
             close.append((a, b, rayleigh / (fb - fa) if fb > fa else np.inf))
     if not close:
