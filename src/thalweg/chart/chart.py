@@ -6,21 +6,32 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.chart import geojson
+from thalweg.chart.depth import Depths, warning_depth
+from thalweg.chart.drawing import coastline_lines, land_polygons
 from thalweg.chart.gshhg import read_land
-from thalweg.chart.index import empty_index
+from thalweg.chart.index import build_index, empty_index
 from thalweg.chart.legs import leg_status, point_status
+from thalweg.chart.ports import PORTS, Port, Ports
 from thalweg.chart.rings import Rings
+from thalweg.chart.snapping import nearest_navigable
+from thalweg.chart.soundings import Float32Array, make_layer
 from thalweg.chart.store import gshhg_index
+from thalweg.chart.zones import Zones
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.kernels.coast import CoastArrays
 from thalweg.kernels.codes import OK
 from thalweg.kernels.cube import IndexArrays
 from thalweg.kernels.shore import shore_distances
+from thalweg.kernels.soundings import DepthArrays
+
+SIDE: Final = 512  # cells along a face of the index of land from GeoJSON
 
 
 @dataclass(frozen=True)
@@ -81,6 +92,8 @@ class Chart:
 
     land: Land
     area: Area = WORLD
+    zones: Zones = Zones()
+    depths: Depths = Depths()
 
     @classmethod
     def gshhg(cls, resolution: str = "i") -> Chart:
@@ -112,13 +125,75 @@ class Chart:
         land = Land("open water", empty_index(), lambda: none)
         return cls(land, Area(float(south), float(north), float(west), float(east)))
 
+    @classmethod
+    def from_geojson(cls, land: geojson.Source) -> Chart:
+        """Return a chart whose land is the areas of a GeoJSON file or plain data.
+
+        Holes in them are water. Edges are straight in longitude and latitude.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, or holds anything but areas.
+        """
+        rings = geojson.read_land(land)
+        index = build_index(rings, SIDE)
+        return cls(Land(f"GeoJSON {rings.fingerprint()}", index, lambda: rings))
+
+    def with_depth(
+        self,
+        source: Any,
+        *,
+        variable: str | None = None,
+        positive: str | None = None,
+        spacing_deg: float | None = None,
+    ) -> Chart:
+        """Return this chart with a layer of depth, below those it has.
+
+        Parameters
+        ----------
+        source : path, xarray.DataArray, xarray.Dataset or function
+            A grid on latitude and longitude (GEBCO, ETOPO, EMODnet, ...), opened read-only and
+            read only where needed, or a function of (lat, lon) [deg] to depth [m below datum,
+            positive down; NaN unknown].
+        variable : str, optional
+            Which variable of the file, if that is not clear.
+        positive : {'up', 'down'}, optional
+            Whether values are elevations or depths, if that is not clear.
+        spacing_deg : float, optional
+            How densely a function must be sampled along legs (1/600 degree).
+
+        Raises
+        ------
+        InputError, DatasetError
+            If the file cannot be read or its depth is not clear.
+        """
+        layer = make_layer(source, variable=variable, positive=positive, spacing_deg=spacing_deg)
+        return replace(self, depths=Depths((*self.depths.layers, layer)))
+
+    def with_zones(self, zones: geojson.Source) -> Chart:
+        """Return this chart with zones added.
+
+        Parameters
+        ----------
+        zones : path, dict or list
+            GeoJSON areas with the property ``kind``: "no-go", "penalty" (with ``factor`` >= 1)
+            or "price" (with ``factor`` > 0). Where zones of a kind overlap the largest counts.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, or a kind or factor makes no sense.
+        """
+        return replace(self, zones=self.zones.joined(Zones.read(zones)))
+
     def within(self, south: float, north: float, west: float, east: float) -> Chart:
         """Return this chart cut to a box that no leg may leave [deg]."""
         return replace(self, area=Area(float(south), float(north), float(west), float(east)))
 
     @cached_property
     def _coast(self) -> CoastArrays:
-        return CoastArrays(self.land.index, empty_index(), self.area.array())
+        return CoastArrays(self.land.index, self.zones.index, self.area.array())
 
     def kernel(self) -> CoastArrays:
         """Return the arrays for `thalweg.kernels.coast.leg_blocked` and its kin."""
@@ -168,9 +243,76 @@ class Chart:
         )
         return distance.reshape(a.shape)
 
+    @property
+    def has_depth(self) -> bool:
+        """Whether the chart has any layer of depth."""
+        return bool(self.depths.layers)
+
+    def depth_at(self, lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+        """Return charted depth [m below datum] at positions [deg]; NaN where it is unknown."""
+        return self.depths.at(lat, lon)
+
+    def depth_along(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> Float32Array:
+        """Return the least charted depth [m below datum] on each geodesic leg [deg].
+
+        Samples lie no farther apart than half a grid step and each counts the least of the four
+        soundings round it. +inf when the chart has no depth; NaN when it is unknown on the leg.
+        """
+        return self.depths.along(lat1, lon1, lat2, lon2)
+
+    def depth_kernel(self, south: float, north: float, west: float, east: float) -> DepthArrays:
+        """Return the depth of a box [deg] for `thalweg.kernels.soundings.least_depth`.
+
+        Empty arrays when the chart has no depth; a function is laid on a grid of 1000 steps.
+        """
+        return self.depths.arrays((south, north, west, east if east > west else east + 360.0))
+
+    def warning_depth_at(self, lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+        """Return coarse depth of the world [m], to warn with; never a proof of clearance.
+
+        Every 30th point of ETOPO1: half a degree apart, shoals between them are not in it.
+        """
+        return warning_depth(lat, lon)
+
+    def zone_factor(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the penalty and price factors of legs [deg], weighted by length (1 outside)."""
+        return self.zones.factors(lat1, lon1, lat2, lon2)
+
+    def nearest_navigable(
+        self, lat: float, lon: float, *, largest: float = 50_000.0
+    ) -> tuple[float, float, float] | None:
+        """Return the nearest water joined to the open sea: lat, lon [deg], distance [m].
+
+        None when there is none within ``largest`` [m].
+        """
+        return nearest_navigable(self, float(lat), float(lon), largest=float(largest))
+
+    @property
+    def ports(self) -> Ports:
+        """The ports of the World Port Index."""
+        return PORTS
+
+    def port(self, name: str) -> Port:
+        """Return a port by name or UN/LOCODE; see `Ports.lookup`."""
+        return PORTS.lookup(name)
+
+    def coastline_lines(self, south: float, north: float, west: float, east: float) -> list[Any]:
+        """Return the outlines of land in a box [deg] as (lat, lon) arrays, for drawing."""
+        return coastline_lines(self, south, north, west, east)
+
+    def land_polygons(self, south: float, north: float, west: float, east: float) -> list[Any]:
+        """Return the land in a box [deg] as shapely polygons (x lon, y lat), for drawing."""
+        return land_polygons(self, south, north, west, east)
+
     def fingerprint(self) -> str:
         """Return a short digest of everything on the chart."""
         digest = hashlib.sha256(self.land.name.encode())
         for array in (*self.land.index[1:], self.area.array()):
             digest.update(np.ascontiguousarray(array).tobytes())
+        for text in (*self.zones.texts(), *(layer.name for layer in self.depths.layers)):
+            digest.update(text.encode())
         return digest.hexdigest()[:16]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.chart.rings import Rings
+from thalweg.core.geodesy import FloatArray
 
 if TYPE_CHECKING:
     from thalweg.chart.chart import Chart
@@ -66,3 +67,20 @@ def _cut(rings: Rings, chosen: Any, shift: float, box: Any) -> list[Any]:
     inside = shapely.intersection(land[~shapely.is_empty(land)], box)
     parts = shapely.get_parts(shapely.get_parts(inside))
     return [part for part in parts if part.geom_type == "Polygon" and not part.is_empty]
+
+
+def coastline_lines(
+    chart: Chart, south: float, north: float, west: float, east: float
+) -> list[tuple[FloatArray, FloatArray]]:
+    """Return the outlines of land in a box as (lat, lon) arrays, without the box's own sides."""
+    import shapely
+
+    if east <= west:
+        east += 360.0
+    inner = shapely.box(west, south, east, north).buffer(-1e-9)
+    lines: list[tuple[FloatArray, FloatArray]] = []
+    for polygon in land_polygons(chart, south, north, west, east):
+        for part in shapely.get_parts(shapely.intersection(polygon.boundary, inner)):
+            xy = shapely.get_coordinates(part)
+            lines.append((xy[:, 1], xy[:, 0]))
+    return lines

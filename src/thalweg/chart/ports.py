@@ -1,0 +1,110 @@
+"""Ports of the World Port Index (NGA Pub. 150, public domain), by name or UN/LOCODE."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import io
+import unicodedata
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+
+from thalweg.core.errors import InputError, near_matches
+
+
+@dataclass(frozen=True)
+class Port:
+    """A port: name, ISO country code, UN/LOCODE ('' if it has none) and position [deg]."""
+
+    name: str
+    country_code: str
+    locode: str
+    lat: float
+    lon: float
+
+    def __str__(self) -> str:
+        return f"{self.name}, {self.country_code}" + (f" ({self.locode})" if self.locode else "")
+
+
+@dataclass(frozen=True)
+class Ports:
+    """All ports, read when first asked."""
+
+    @cached_property
+    def all(self) -> tuple[Port, ...]:
+        """Every port of the index, in the order of the file."""
+        packed = resources.files("thalweg.chart").joinpath("data/world_port_index.csv.gz")
+        text = gzip.decompress(packed.read_bytes()).decode("utf-8")
+        return tuple(
+            Port(
+                row["name"],
+                row["country_code"],
+                row["unlocode"].replace(" ", "").upper(),
+                float(row["lat"]),
+                float(row["lon"]),
+            )
+            for row in csv.DictReader(io.StringIO(text))
+        )
+
+    def lookup(self, text: str) -> Port:
+        """Return the port of a name ('Rotterdam', 'Rotterdam, NL') or UN/LOCODE ('NLRTM').
+
+        Case and accents do not matter.
+
+        Raises
+        ------
+        InputError
+            If there is no such port (with near matches), or several (with their LOCODEs).
+        """
+        wanted = folded(text)
+        found = [port for port in self.all if port.locode and folded(port.locode) == wanted]
+        found = found[:1] or self._named(text)
+        if len(found) == 1:
+            return found[0]
+        if not found:
+            raise self._unknown(text)
+        raise InputError(
+            f"There are {len(found)} ports named {text!r}.",
+            "They are " + "; ".join(str(port) for port in found[:10]) + ".",
+            "Give the UN/LOCODE, or add the country: " + _with_country(found[0]) + ".",
+            value=text,
+            near=[port.locode or _with_country(port) for port in found],
+        )
+
+    def _named(self, text: str) -> list[Port]:
+        wanted = folded(text)
+        found = [port for port in self.all if folded(port.name) == wanted]
+        if found or "," not in text:
+            return found
+        name, _, country = text.rpartition(",")
+        wanted, code = folded(name), country.strip().upper()
+        return [p for p in self.all if folded(p.name) == wanted and p.country_code == code]
+
+    def _unknown(self, text: str) -> InputError:
+        wanted = folded(text.split(",")[0])
+        by_name = {folded(port.name): port for port in self.all}
+        within = [n for n in by_name if len(wanted) >= 3 and wanted in n.split()]
+        near = list(dict.fromkeys([*near_matches(wanted, by_name, 4), *within]))[:5]
+        listed = "; ".join(str(by_name[name]) for name in near)
+        return InputError(
+            f"There is no port named {text!r} in the World Port Index.",
+            f"Nearest in spelling: {listed}." if near else "",
+            "Give one of these, its UN/LOCODE, or a position such as 52.0N 4.1E.",
+            value=text,
+            near=[by_name[name].name for name in near],
+        )
+
+
+def folded(text: str) -> str:
+    """Return text without case, accents, punctuation and double spaces, for comparing."""
+    plain = unicodedata.normalize("NFKD", text.casefold())
+    kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
+    return " ".join("".join(kept).split())
+
+
+def _with_country(port: Port) -> str:
+    return f"'{port.name}, {port.country_code}'"
+
+
+PORTS = Ports()

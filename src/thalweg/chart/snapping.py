@@ -1,0 +1,76 @@
+"""From a place on charted land to the nearest water that is joined to the open sea."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core import geodesy
+from thalweg.core.geodesy import FloatArray
+
+if TYPE_CHECKING:
+    from thalweg.chart.chart import Chart
+
+METRES_PER_DEGREE: Final = 111_195.0
+REACH: Final = 40_000.0  # water that goes on this far beyond the search is the open sea [m]
+STEPS: Final = 90  # half the points along a side of the search grid
+
+
+def nearest_navigable(
+    chart: Chart, lat: float, lon: float, *, largest: float
+) -> tuple[float, float, float] | None:
+    """Return the nearest navigable place joined to the open sea, and the distance to it [m].
+
+    Grids of 2 x 90 points a side are laid round the place, ever wider: 0.25, 0.6 and at last
+    ``largest`` and 40 km more in 90 steps. Neighbouring points are joined by exact legs. Water
+    counts as open sea when it reaches the border of the grid; when none does, the largest
+    connected water counts.
+    """
+    for radius in (min(r, largest) for r in (5_000.0, 20_000.0, largest)):
+        lats, lons = _grid(lat, lon, radius + min(REACH, 3.0 * radius))
+        free = chart.is_navigable(lats, lons)
+        if free.any():
+            open_sea = _open_sea(chart, lats, lons, free)
+            k = np.flatnonzero(open_sea)
+            away = geodesy.distance(lat, lon, lats.ravel()[k], lons.ravel()[k])
+            best = int(np.argmin(away))
+            if away[best] <= radius:
+                place = lats.ravel()[k[best]], float(geodesy.wrap_longitude(lons.ravel()[k[best]]))
+                return float(place[0]), place[1], float(away[best])
+    return None
+
+
+def _grid(lat: float, lon: float, half: float) -> tuple[FloatArray, FloatArray]:
+    share = np.arange(-STEPS, STEPS + 1) / STEPS * half / METRES_PER_DEGREE
+    north = np.clip(lat + share, -90.0, 90.0)
+    east = share / max(np.cos(np.radians(lat)), 0.02)
+    lats, lons = np.meshgrid(north, lon + np.clip(east, -179.0, 179.0), indexing="ij")
+    return lats, lons
+
+
+def _open_sea(
+    chart: Chart, lats: FloatArray, lons: FloatArray, free: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return (flat) which free points are joined to the border, or form the largest water."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    number = np.arange(free.size).reshape(free.shape)
+    pairs = []
+    for a, b in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
+        both = free[a] & free[b]
+        p, q = number[a][both], number[b][both]
+        y, x = lats.ravel(), lons.ravel()
+        clear = ~chart.legs_blocked(y[p], x[p], y[q], x[q])
+        pairs.append((p[clear], q[clear]))
+    p, q = (np.concatenate(side) for side in zip(*pairs))
+    graph = coo_matrix((np.ones(len(p), bool), (p, q)), shape=(free.size, free.size))
+    labels = connected_components(graph, directed=False)[1].reshape(free.shape)
+    border = np.ones(free.shape, bool)
+    border[1:-1, 1:-1] = False
+    joined = np.unique(labels[border & free])
+    if not len(joined):
+        joined = np.array([np.bincount(labels[free]).argmax()])
+    return np.asarray((np.isin(labels, joined) & free).ravel())

@@ -1,0 +1,196 @@
+"""Zones: where a ship may not go, where a mile counts for more, where fuel has another price.
+
+A GeoJSON feature has the properties ``kind`` ("no-go", "penalty" or "price") and, for the last
+two, ``factor``. Where zones of one kind overlap, the largest factor counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.chart import geojson
+from thalweg.chart.index import build_index, empty_index
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, direct, inverse, wrap_longitude
+from thalweg.kernels.cube import IndexArrays
+
+SIDE: Final = 128  # cells along a face of the index of no-go zones
+PIECE: Final = 50_000.0  # legs are cut into pieces of at most this for factors [m]
+KINDS: Final = {
+    "nogo": "no-go",
+    "forbidden": "no-go",
+    "avoid": "no-go",
+    "exclusion": "no-go",
+    "penalty": "penalty",
+    "price": "price",
+    "eca": "price",
+}
+
+
+@dataclass(frozen=True)
+class Zones:
+    """Zones of a chart: shapely polygons, and (polygon, factor) pairs that do not overlap."""
+
+    no_go: tuple[Any, ...] = ()
+    penalty: tuple[tuple[Any, float], ...] = ()
+    price: tuple[tuple[Any, float], ...] = ()
+
+    @classmethod
+    def read(cls, source: geojson.Source) -> Zones:
+        """Read zones from a GeoJSON file or plain data.
+
+        Raises
+        ------
+        InputError
+            If it is not GeoJSON of areas, or a kind or factor is missing or makes no sense.
+        """
+        found: dict[str, list[tuple[Any, float]]] = {"no-go": [], "penalty": [], "price": []}
+        for geometry, properties in geojson.read(source, "zones"):
+            kind = _kind(properties)
+            factor = 1.0 if kind == "no-go" else _factor(kind, properties)
+            found[kind] += [(shape, factor) for shape in geojson.polygons(geometry, "zones")]
+        no_go = tuple(shape for shape, _ in found["no-go"])
+        return cls(no_go, _apart(found["penalty"]), _apart(found["price"]))
+
+    def joined(self, other: Zones) -> Zones:
+        """Return these zones and another chart's."""
+        return Zones(
+            self.no_go + other.no_go,
+            _apart([*self.penalty, *other.penalty]),
+            _apart([*self.price, *other.price]),
+        )
+
+    @cached_property
+    def index(self) -> IndexArrays:
+        """The grid of the edges of the no-go zones."""
+        if not self.no_go:
+            return empty_index()
+        return build_index(geojson.rings_of(list(self.no_go)), SIDE)
+
+    @cached_property
+    def _trees(self) -> tuple[tuple[Any, FloatArray], ...]:
+        """For penalty and price: a tree of the polygons on three turns, and their factors."""
+        import shapely
+
+        trees = []
+        for zones in (self.penalty, self.price):
+            shapes, factors = [], []
+            for shape, factor in zones:
+                for turn in (-360.0, 0.0, 360.0):
+                    moved = shapely.transform(shape, lambda xy, t=turn: xy + np.array([t, 0.0]))
+                    shapely.prepare(moved)
+                    shapes.append(moved)
+                    factors.append(factor)
+            trees.append((shapely.STRtree(shapes), np.array(factors)))
+        return tuple(trees)
+
+    def factors(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the penalty and the price factor of legs [deg], weighted by length."""
+        ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+        shape = ends[0].shape
+        if not (self.penalty or self.price):
+            return np.ones(shape), np.ones(shape)
+        legs = [np.ascontiguousarray(x).ravel() for x in ends]
+        lines, leg, pieces = _lines(*legs)
+        answers = []
+        for tree, factors in self._trees:
+            excess = np.zeros(len(legs[0]))
+            if len(factors):
+                np.add.at(excess, leg, _excess(lines, tree, factors))
+            answers.append((1.0 + excess / pieces).reshape(shape))
+        return answers[0], answers[1]
+
+    def texts(self) -> list[str]:
+        """Return everything as text, for a fingerprint."""
+        pairs = [*self.penalty, ("price", 0.0), *self.price]
+        return [shape.wkb_hex for shape in self.no_go] + [
+            f"{getattr(shape, 'wkb_hex', shape)}*{factor}" for shape, factor in pairs
+        ]
+
+
+def _kind(properties: Mapping[str, Any]) -> str:
+    written = str(properties.get("kind") or properties.get("type") or "")
+    plain = "".join(c for c in written.casefold() if c.isalnum())
+    for ending in ("zone", "area", "factor"):
+        plain = plain.removesuffix(ending)
+    if plain not in KINDS:
+        raise InputError(
+            f"A zone has the kind {written!r}." if written else "A zone has no kind.",
+            "Kinds are 'no-go', 'penalty' and 'price'.",
+            "Give every feature the property kind.",
+            value=written,
+        )
+    return KINDS[plain]
+
+
+def _factor(kind: str, properties: Mapping[str, Any]) -> float:
+    written = properties.get("factor", properties.get(f"{kind}_factor"))
+    try:
+        factor = float(written)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        factor = float("nan")
+    least = "at least 1" if kind == "penalty" else "above 0"
+    if not (np.isfinite(factor) and factor > 0.0 and (kind == "price" or factor >= 1.0)):
+        raise InputError(
+            f"A {kind} zone has the factor {written!r}.",
+            f"The factor of a {kind} zone is a number {least}.",
+            "Give the feature such a property factor.",
+            value=written,
+        )
+    return factor
+
+
+def _apart(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float], ...]:
+    """Return zones cut so that none overlap; the largest factor keeps the common part."""
+    import shapely
+
+    kept: list[tuple[Any, float]] = []
+    for shape, factor in sorted(zones, key=lambda zone: -zone[1]):
+        rest = shape
+        for other, _ in kept:
+            if shapely.intersects(rest, other):
+                rest = shapely.difference(rest, other)
+        if not shapely.is_empty(rest):
+            kept.append((rest, factor))
+    return tuple(kept)
+
+
+def _lines(
+    lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> tuple[Any, NDArray[np.int64], FloatArray]:
+    """Return pieces of the geodesics as lines, the leg of each, and each leg's count."""
+    import shapely
+
+    length, course, _ = inverse(lat1, lon1, lat2, lon2)
+    pieces = np.maximum(np.ceil(length / PIECE), 1.0).astype(np.int64)
+    leg = np.repeat(np.arange(len(pieces)), pieces)
+    number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    sides = []
+    for share in (number / pieces[leg], (number + 1) / pieces[leg]):
+        lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
+        sides.append((lon, lat))
+    (x0, y0), (x1, y1) = sides
+    x1 = x0 + wrap_longitude(x1 - x0)
+    ends = np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1)
+    return shapely.linestrings(ends), leg, pieces.astype(float)
+
+
+def _excess(lines: Any, tree: Any, factors: FloatArray) -> FloatArray:
+    """Return for each piece the sum of (factor - 1) times the share of it inside."""
+    import shapely
+
+    which, zone = tree.query(lines, predicate="intersects")
+    if not len(which):
+        return np.zeros(len(lines))
+    whole = shapely.length(lines[which])
+    part = shapely.length(shapely.intersection(lines[which], tree.geometries[zone]))
+    share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 1.0)
+    return np.bincount(which, share * (factors[zone] - 1.0), minlength=len(lines))
