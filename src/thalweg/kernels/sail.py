@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.kernels.bare import bare, inlined
 from thalweg.kernels.codes import CHANNELS, NO_DATA, OK, OUTSIDE_PERIOD
-from thalweg.kernels.jit import jit
 from thalweg.kernels.leg import point_speed_known
 from thalweg.kernels.tables import axes_needed
 
@@ -66,7 +66,7 @@ class Lines(NamedTuple):
     depart: np.ndarray
 
 
-@jit
+@inlined
 def _read(raster, t, lat, lon, step, sample):
     """Fill ``sample`` by channel, linear in time and place; return (status, time step found)."""
     times = raster.times
@@ -101,7 +101,7 @@ def _read(raster, t, lat, lon, step, sample):
     return OK, step
 
 
-@jit
+@inlined
 def _sail_leg(lines, point, stop, t, raster, table, limits, needs, sample, state):
     """Sail at most ``stop`` pieces of the leg that starts at a point; return (arrival, status).
 
@@ -159,8 +159,8 @@ def _sail_leg(lines, point, stop, t, raster, table, limits, needs, sample, state
     return t, OK
 
 
-@jit
-def sail_lines(lines, raster, table, limits, arrive, length, status):
+@bare
+def sail_lines(lines, raster, table, limits, arrive, length, status, sample, state):
     """Sail many polylines through a frozen sea.
 
     Parameters
@@ -177,6 +177,9 @@ def sail_lines(lines, raster, table, limits, arrive, length, status):
         Length sailed of every polyline [m].
     status : int64[L], out
         `OK`, or why a polyline cannot be sailed.
+    sample : float64[CHANNELS]
+    state : float64[3]
+        Room to work in, zeros.
 
     Notes
     -----
@@ -184,8 +187,6 @@ def sail_lines(lines, raster, table, limits, arrive, length, status):
     radii of curvature; they differ in length from geodesics by less than 1e-6. Time goes by the
     midpoint rule, the middle of a piece reached with the slowness met before (order 2).
     """
-    sample = np.zeros(CHANNELS)
-    state = np.zeros(3)
     needs = axes_needed(table)
     for line in range(lines.first.shape[0] - 1):
         start, end = lines.first[line], lines.first[line + 1]

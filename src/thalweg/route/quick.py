@@ -114,7 +114,17 @@ class Sailor:
         )
         arrive, length = np.empty(count * size), np.empty(count)
         status = np.empty(count, dtype=np.int64)
-        sail_lines(lines, self.raster, self.table, self.limits, arrive, length, status)
+        sail_lines(
+            lines,
+            self.raster,
+            self.table,
+            self.limits,
+            arrive,
+            length,
+            status,
+            np.zeros(codes.CHANNELS),
+            np.zeros(3),
+        )
         arrive = arrive.reshape(count, size)
         cost = length.copy() if self.by_length else arrive[:, -1].copy()
         cost[status != codes.OK] = math.inf
