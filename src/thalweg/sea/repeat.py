@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
@@ -103,6 +104,10 @@ class RepeatedLayer:
         low = max(0, int(np.searchsorted(every, start, side="right")) - 1)
         high = int(np.searchsorted(every, end, side="left")) + 1
         return np.asarray(every[low:high], np.float64)
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return whether positions lie where the layer may know values."""
+        return self.layer.inside(lat, lon)
 
     def coverage(self) -> list[Coverage]:
         """Return the layer's coverage, without an end."""

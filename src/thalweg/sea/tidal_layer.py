@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.cache import cache_folder
 from thalweg.core.errors import InputError
@@ -117,6 +118,10 @@ class TidalLayer:
     def times(self, start: float, end: float) -> FloatArray:
         """Return the times at which the tide is frozen over a window."""
         return automatic_times(start, end, self.time_step) if end > start else np.array([start])
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return whether positions lie in the grid or the area."""
+        return np.asarray(self._locate(lat, lon).corner[:, 0] >= 0)
 
     def coverage(self) -> list[Coverage]:
         """Return one row per variable; the tide is known always."""
