@@ -61,6 +61,15 @@ def test_an_opening_between_two_times_of_the_data_is_found():
     assert result.arrive == pytest.approx(opens + 50e3 / 4.0 - 250.0, abs=2.0)
 
 
+def test_a_window_at_high_water_shorter_than_the_step_of_the_data_is_found():
+    times = np.arange(0.0, 10 * HOUR, HOUR)
+    level = np.where(times == 5 * HOUR, -4.9, CLOSED)  # deep enough for 2 x 116 s
+    network, fields = bar(level, times)
+    result = sail(network, fields)
+    opens = 5 * HOUR - HOUR * 0.1 / 3.1
+    assert result.path_depart[15] + 250.0 == pytest.approx(opens, abs=1.0)
+
+
 def test_without_waiting_the_bar_closes_the_way():
     times = np.arange(0.0, 10 * HOUR, HOUR)
     network, fields = bar(np.interp(times, [4 * HOUR, 5 * HOUR], [CLOSED, OPEN]), times)

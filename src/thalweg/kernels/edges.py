@@ -7,18 +7,15 @@ import numpy as np
 
 from thalweg.kernels.bare import bare, inlined, inner
 from thalweg.kernels.codes import (
-    CURRENT,
     DEPTH,
     NO_DATA,
     OK,
     OUTSIDE_PERIOD,
-    WAVE_HEIGHT,
-    WIND_SPEED,
 )
 from thalweg.kernels.leg import guided_point_speed
 from thalweg.kernels.tables import TableArrays
 
-OPENING_TOLERANCE = 1.0  # an opening is found to this [s]
+OPENING_TOLERANCE = 0.1  # an opening is found to this [s]
 
 
 class NetworkArrays(NamedTuple):
@@ -195,7 +192,8 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
     Returns
     -------
     arrival : float
-        [s]; inf when the status is not `OK`, or when it is of no use.
+        [s]; inf when it is of no use. When the status is not `OK`: when the ship was to pass the
+        sample that blocks the edge.
     status : int
 
     Notes
@@ -209,7 +207,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
     depth = float(network.depth[edge])
     table, setting, limits, needs = ship
     index = sea.channel_index
-    slowness, at, here, guess = 0.0, 0.0, tail, math.inf
+    slowness, at, here, guess, then = 0.0, 0.0, tail, math.inf, t
     first, last = network.via_ptr[edge], network.via_ptr[edge + 1]
     for p in range(first - 1, last + 1):
         piece = 0.0
@@ -234,7 +232,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
             here, index, east, north, table, setting, depth, limits, needs, guess
         )
         if status != OK:
-            return math.inf, status
+            return then, status
         before = slowness
         slowness = 1.0 / speed
         t += 0.5 * piece * (before + slowness)
@@ -242,7 +240,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
         return math.inf, OUTSIDE_PERIOD
     head = network.target[edge]
     if not network.opens[head] <= t < network.closes[head]:
-        return math.inf, DEPTH  # afloat there, but at another tide
+        return t, DEPTH  # afloat there, but at another tide
     return t, OK
 
 
@@ -251,12 +249,6 @@ def _sail_at(network, sea, ship, edge, tail_node, k, t, work):
     """Sail an edge at any departure of interval k, sampling the tail too."""
     sample_station(sea, tail_node, k, t, work[1])
     return sail_edge(network, sea, ship, edge, k, t, work[1], work[2], work[3], math.inf, 0.0)
-
-
-@inlined
-def _opens(status):
-    """Whether what blocks an edge changes gradually, so that an opening can be bisected."""
-    return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT)
 
 
 @inner
@@ -309,11 +301,13 @@ def wait_for_edge(
 
     Notes
     -----
-    Candidates are t itself, every later time of the data and, where the edge opens between two of
-    these, the opening (bisection to 1 s): the suffix minimum of arrivals (van Halem 2019, section
-    3.4, corrected for series that start blocked). As the fields are linear between the times of
-    the data, a better departure inside an interval whose ends are both open is not looked for, nor
-    is an opening that closes again within the interval.
+    Candidates are t itself, every later time of the data, where one of these is blocked the
+    departure that passes the blocking sample at that time (fields are linear between times, so a
+    sample is at its best at one of them: a short window at high water is found), and the opening
+    before a candidate that is open (bisection to 0.1 s). Of their arrivals the least is taken: the
+    suffix minimum (van Halem 2019, section 3.4, corrected for series that start blocked). A better
+    departure between two that are both open is not looked for, and a window between two times can
+    be missed where one sample shuts as another opens.
     """
     departure, best = t, math.inf
     if status == OK:
@@ -334,12 +328,18 @@ def wait_for_edge(
         then, now = _sail_at(network, sea, ship, edge, tail, interval, s, work)
         if now == OUTSIDE_PERIOD:
             break
-        if now == OK:
-            value = s - t + factor * (then - s)
+        start, found = s, now
+        if now != OK and s - (then - s) > before:  # pass the sample that blocks at a time of data
+            start = s - (then - s)
+            then, found = _sail_at(network, sea, ship, edge, tail, j - 1, start, work)
+        if found == OK:
+            value = start - t + factor * (then - start)
             if value < best:
-                departure, arrival, best, status = s, then, value, OK
-            if _opens(before_status):
-                start, then = _opening(network, sea, ship, edge, tail, j - 1, before, s, then, work)
+                departure, arrival, best, status = start, then, value, OK
+            if before_status != OK:
+                start, then = _opening(
+                    network, sea, ship, edge, tail, j - 1, before, start, then, work
+                )
                 value = start - t + factor * (then - start)
                 if value < best:
                     departure, arrival, best, status = start, then, value, OK
@@ -375,3 +375,5 @@ def edge_arrivals(network, sea, ship, edges, tails, departures, arrivals, status
             arrivals[i, j], statuses[i, j] = _sail_at(
                 network, sea, ship, edges[i], tails[i], k, departures[j], work
             )
+            if statuses[i, j] != OK:
+                arrivals[i, j] = math.inf
