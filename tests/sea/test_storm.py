@@ -118,7 +118,7 @@ def test_symmetric_maximum_is_kept_by_the_fitted_deficit() -> None:
         radius_of_maximum=state.radius,
         pressure_deficit=state.deficit,
         b=state.b,
-        coriolis=models.coriolis_parameter(state.lat),
+        coriolis=state.coriolis,
     )
     assert wind == pytest.approx(state.maximum, rel=1e-9)
     assert (state.radius <= 150e3).all()

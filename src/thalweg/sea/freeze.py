@@ -21,7 +21,7 @@ Extra: TypeAlias = Callable[
     [Mapping[str, FloatArray], FloatArray, FloatArray, FloatArray], FloatArray
 ]
 
-CHUNK = 1 << 19  #: values computed at a time, so that temporaries stay small
+CHUNK = 1 << 17  #: values computed at a time, so that temporaries stay small
 
 
 class SampledSea(Mapping[str, FloatArray]):
@@ -58,7 +58,7 @@ def freeze_stations(
     lat, lon = np.ascontiguousarray(lat, np.float64), np.ascontiguousarray(lon, np.float64)
     index, present = channel_places(sea, channels, extra)
     times = frozen_times(sea, window, [n for c in present if (n := _variable(c, extra))], extra)
-    values = np.full((lat.size, times.size, len(present)), np.nan, np.float32)
+    values = np.empty((lat.size, times.size, len(present)), np.float32)
     rows = max(1, CHUNK // times.size)
     for first in range(0, lat.size, rows):
         part = slice(first, first + rows)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea import conform, grib, netcdf3
+from thalweg.sea import conform, grib, joining, netcdf3
 from thalweg.sea.conform import OpenedFile
 from thalweg.sea.gridded import GridLayer
 from thalweg.sea.recognise import Ignored, check_mapping
@@ -58,7 +58,7 @@ def open_layers(sources: Sequence[Any], mapping: Mapping[str, str] | None) -> li
     for source, nothing in faults.items():
         if source not in useful:
             raise nothing
-    layers = conform.layers_of(drafts, ignored)
+    layers = joining.layers_of(drafts, ignored)
     for layer in layers:
         first_look(layer)
     return layers

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,13 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.sea import freeze, functions, inspection, storm
-from thalweg.sea import names as nm
+from thalweg.sea import freeze, inspection, storm
+from thalweg.sea import functions as formulas
 from thalweg.sea.arguments import area_of, period_of, step_of
-from thalweg.sea.fields import Coverage, FloatArray, GridFields, Mesh, StationFields
+from thalweg.sea.fields import GridFields, StationFields
 from thalweg.sea.inspection import Inspection
-from thalweg.sea.layer import Layer, Samples
-from thalweg.sea.merge import edges, merged, point_reader, series_reader
+from thalweg.sea.layered import LayeredSea
 from thalweg.sea.policies import CALM, policy_values
 
 if TYPE_CHECKING:
@@ -28,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Sea:
+class Sea(LayeredSea):
     """Met-ocean fields from layers by priority; never changed, never guessed.
 
     Make one with `Sea.open`, `Sea.from_functions`, `Sea.storm` or `Sea.calm`; put one over another
@@ -42,9 +39,6 @@ class Sea:
     assumptions : tuple of str
         What was assumed on the user's word (see `filled`).
     """
-
-    layers: tuple[Layer, ...]
-    assumptions: tuple[str, ...] = ()
 
     @classmethod
     def open(
@@ -97,7 +91,7 @@ class Sea:
     @classmethod
     def from_functions(
         cls,
-        functions_by_name: Mapping[str, functions.FieldFunction],
+        functions: Mapping[str, formulas.FieldFunction],
         *,
         time_step: float | None = None,
         area: tuple[float, float, float, float] | None = None,
@@ -107,7 +101,7 @@ class Sea:
 
         Parameters
         ----------
-        functions_by_name : mapping of str to callable
+        functions : mapping of str to callable
             ``f(time_s, lat, lon) -> array``: seconds since 1970-01-01T00:00Z and degrees, as
             float64 arrays of one shape; the answer has that shape or is one number, in SI units,
             NaN where unknown. Names are CF standard names: components
@@ -136,8 +130,8 @@ class Sea:
             If one half of a vector is missing, a variable is given twice, or (when sampled) a
             function returns something of another shape.
         """
-        layer = functions.layer_of_functions(
-            dict(functions_by_name),
+        layer = formulas.layer_of_functions(
+            dict(functions),
             area=area_of(area),
             period=period_of(period),
             time_step=step_of(time_step),
@@ -152,7 +146,7 @@ class Sea:
         which look at angle and period can be asked; it knows no water level and no depth.
         """
         return cls(
-            (functions.constant_layer(CALM, "calm"),), ("no wind, waves and currents anywhere",)
+            (formulas.constant_layer(CALM, "calm"),), ("no wind, waves and currents anywhere",)
         )
 
     @classmethod
@@ -265,21 +259,8 @@ class Sea:
         for policy, value in policies.items():
             values.update(policy_values(policy, value))
             told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
-        layer = functions.constant_layer(values, "filled")
+        layer = formulas.constant_layer(values, "filled")
         return Sea((*self.layers, layer), (*self.assumptions, *told))
-
-    @property
-    def variables(self) -> frozenset[str]:
-        """Canonical names of everything some layer holds (vectors as components)."""
-        return frozenset().union(*(layer.variables for layer in self.layers))
-
-    def knows(self, name: str) -> bool:
-        """Return whether some layer holds the variable, or what it can be derived from."""
-        return all(n in self.variables for n in self._sources(name))
-
-    def coverage(self) -> list[Coverage]:
-        """Return where and when each variable of each layer is known."""
-        return [row for layer in self.layers for row in layer.coverage()]
 
     def describe(self) -> Inspection:
         """Return what was recognised in the files, what not and why, coverage and gaps."""
@@ -312,91 +293,6 @@ class Sea:
         box = None if area is None else area_of(area)
         lines = [(np.asarray(a, np.float64), np.asarray(o, np.float64)) for a, o in coastline]
         draw(self, path, time=when, area=box, coastline=lines)
-
-    def sample(
-        self, names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
-    ) -> dict[str, FloatArray]:
-        """Return values at points, linear in time and space.
-
-        Parameters
-        ----------
-        names : sequence of str
-            Canonical names, or CF names of a vector's speed and direction [deg].
-        time : array_like
-            Seconds since 1970-01-01T00:00Z.
-        lat, lon : array_like
-            Positions [deg]; all three are broadcast together.
-
-        Returns
-        -------
-        dict of str to float64 array
-            One array of the broadcast shape per name; NaN where nothing is known (see
-            `why_missing`).
-        """
-        names = [names] if isinstance(names, str) else names
-        arrays = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in (time, lat, lon)))
-        shape = arrays[0].shape
-        flat = [np.ascontiguousarray(a).reshape(-1) for a in arrays]
-        base = merged(
-            self.layers, self._base(names), point_reader(flat[0], flat[1], flat[2]), flat[0].shape
-        )
-        return {name: self._derive(name, base).reshape(shape) for name in names}
-
-    def series(
-        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> dict[str, FloatArray]:
-        """Return values (S, T) at stations (S,) for every time (T,); faster than `sample`."""
-        read = series_reader(times, lat, lon)
-        base = merged(self.layers, self._base(names), read, (lat.size, times.size))
-        return {name: self._derive(name, base) for name in names}
-
-    def why_missing(self, name: str, time: float, lat: float, lon: float) -> str:
-        """Return why a value is NaN: "variable", "area", "period" or "gap" (a hole in the data)."""
-        holders = [x for x in self.layers if set(self._sources(name)) & x.variables]
-        if not holders or not self.knows(name):
-            return "variable"
-        point = np.array([lat], float), np.array([lon], float)
-        holders = [x for x in holders if x.inside(*point)[0]]
-        if not holders:
-            return "area"
-        spans = [x.period for x in holders]
-        if not any(p is None or p[0] <= time <= p[1] for p in spans):
-            return "period"
-        return "gap"
-
-    def period_of(self, names: Sequence[str]) -> tuple[float, float]:
-        """Return first and last time [s] some layer knows any of the names; infinite if always."""
-        sources = {s for n in names for s in self._sources(n)}
-        spans = [x.period or (-np.inf, np.inf) for x in self.layers if x.variables & sources]
-        if not spans:
-            return np.nan, np.nan
-        return min(s[0] for s in spans), max(s[1] for s in spans)
-
-    def times(self, start: float, end: float, *, names: Sequence[str] | None = None) -> FloatArray:
-        """Return the times at which the sea is known natively, over a window.
-
-        Parameters
-        ----------
-        start, end : float
-            Window [s since epoch].
-        names : sequence of str, optional
-            Only layers that hold these; all by default.
-
-        Returns
-        -------
-        float64 array
-            Strictly increasing: the union over layers, with one native step beyond each side of
-            the window; formulas add their own uniform steps. Empty if no layer knows the window.
-        """
-        sources = None if names is None else {s for n in names for s in self._sources(n)}
-        layers = [x for x in self.layers if sources is None or x.variables & sources]
-        found = [layer.times(start, end) for layer in layers]
-        if len(layers) > 1:
-            found += [edges(x.period, start, end) for x in layers if x.period is not None]
-        if not any(f.size for f in found):
-            return np.empty(0)
-        times: FloatArray = np.unique(np.concatenate(found).round(3)).astype(np.float64)
-        return times if times.size > 1 else np.append(times, times + 1.0)
 
     def freeze_stations(
         self,
@@ -462,46 +358,3 @@ class Sea:
             spacing_deg=float(spacing_deg),
             extra=extra or {},
         )
-
-    def mesh(self) -> Mesh | None:
-        """Return nodes and triangles of the first layer that lies on a mesh, if any."""
-        return next((m for layer in self.layers if (m := layer.mesh()) is not None), None)
-
-    def provenance(self) -> dict[str, Any]:
-        """Return plain facts about every layer and assumption, ready for JSON."""
-        return {
-            "layers": [dict(layer.provenance()) for layer in self.layers],
-            "assumptions": list(self.assumptions),
-            "fingerprint": self.fingerprint(),
-        }
-
-    def fingerprint(self) -> str:
-        """Return a hash that changes when a file, its variables or an assumption changes."""
-        facts = [dict(layer.provenance()) for layer in self.layers]
-        text = json.dumps([facts, self.assumptions], sort_keys=True, default=str)
-        return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-    def _sources(self, name: str) -> tuple[str, ...]:
-        """Return the canonical variables a name is made from."""
-        name = nm.canonical(name)
-        derived = nm.components_for(name)
-        if derived is None or (name in self.variables and derived[0].east not in self.variables):
-            return (name,)
-        return derived[0].pair
-
-    def _base(self, names: Sequence[str]) -> list[str]:
-        """Return all variables that must be read, vectors complete."""
-        wanted = [s for name in names for s in self._sources(name)]
-        whole = [part for name in wanted for part in nm.group_of(name)]
-        return list(dict.fromkeys(whole))
-
-    def _derive(self, name: str, base: Samples) -> FloatArray:
-        kept = nm.canonical(name)
-        if kept in base:
-            return base[kept]
-        vector, part = nm.components_for(kept) or (nm.WIND, "speed")
-        east, north = base[vector.east], base[vector.north]
-        if part == "speed":
-            return np.asarray(np.hypot(east, north), np.float64)
-        sign = 1.0 if part == "towards" else -1.0
-        return np.degrees(np.arctan2(sign * east, sign * north)) % 360.0

@@ -56,7 +56,7 @@ class State(NamedTuple):
     """The vortex at some times; all arrays of one shape, SI."""
 
     centre: FloatArray  # unit vectors, last axis 3
-    lat: FloatArray
+    coriolis: FloatArray  # negative in the south
     radius: FloatArray
     deficit: FloatArray
     b: FloatArray
@@ -69,7 +69,7 @@ class State(NamedTuple):
         added = (self.added[0][pick], self.added[1][pick])
         return State(
             self.centre[pick],
-            self.lat[pick],
+            self.coriolis[pick],
             self.radius[pick],
             self.deficit[pick],
             self.b[pick],
@@ -233,7 +233,11 @@ class StormLayer:
         inward = into[0][reach] / sine, into[1][reach] / sine
         radius = MEAN_RADIUS * np.arctan2(sine, dot[reach])
         wind, share = vortex_wind(radius, inward, local)
-        height_wind = np.hypot(*vortex_wind(np.maximum(radius, local.radius), inward, local)[0])
+        height_wind = np.hypot(*wind)
+        eye = np.flatnonzero(radius < local.radius)
+        if eye.size:
+            rim, towards = local.at(eye), (inward[0][eye], inward[1][eye])
+            height_wind[eye] = np.hypot(*vortex_wind(rim.radius, towards, rim)[0])
         background = self.ambient.wind
         u = wind[0] + (1.0 - share) * background[0]
         v = wind[1] + (1.0 - share) * background[1]
@@ -325,13 +329,14 @@ def vortex(track: Track, time: FloatArray) -> State:
     symmetric = np.maximum(wind - np.hypot(*added), 0.5 * wind) / models.SURFACE_FACTOR
     b = models.holland_b(symmetric, deficit)
     radius = models.radius_of_maximum_wind_willoughby2006(wind, lat)
-    turning = np.abs(models.coriolis_parameter(lat)) * np.maximum(symmetric, 1.0)
+    coriolis = models.coriolis_parameter(lat)
+    turning = np.abs(coriolis) * np.maximum(symmetric, 1.0)
     surplus = b * deficit / (models.AIR_DENSITY * np.e) - symmetric**2
     radius = np.clip(surplus / np.maximum(turning, 1e-9), radius, np.maximum(radius, WIDEST))
     fitted = models.AIR_DENSITY * np.e * (symmetric**2 + turning * radius) / b
     fetch = models.equivalent_fetch_young2013(wind, np.hypot(east, north), radius)
     centre = _frames(lat, lon)[0]
-    return State(centre, lat, radius, fitted, b, symmetric, added, fetch)
+    return State(centre, coriolis, radius, fitted, b, symmetric, added, fetch)
 
 
 def vortex_wind(
@@ -355,18 +360,17 @@ def vortex_wind(
     share : float64 array
         Local over maximum symmetric wind, 0 to 1: where it is 1 no ambient wind is left.
     """
-    coriolis = models.coriolis_parameter(state.lat)
     gradient = models.holland_gradient_wind(
         radius,
         radius_of_maximum=state.radius,
         pressure_deficit=state.deficit,
         b=state.b,
-        coriolis=coriolis,
+        coriolis=state.coriolis,
     )
     gradient = gradient * _fade(radius)
     share = np.clip(gradient / np.maximum(state.maximum, 1e-6), 0.0, 1.0)
     angle = models.inflow_angle(radius, state.radius)
-    spin = np.where(state.lat >= 0.0, 1.0, -1.0)  # counter-clockwise in the north
+    spin = np.where(state.coriolis >= 0.0, 1.0, -1.0)  # counter-clockwise in the north
     speed = gradient * models.SURFACE_FACTOR
     across, along = speed * np.cos(angle) * spin, speed * np.sin(angle)
     u = across * inward[1] + along * inward[0] + share * state.added[0]
