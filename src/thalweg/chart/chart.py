@@ -80,7 +80,9 @@ class Area:
         return np.array([self.south, self.north, self.west, self.width])
 
 
-WORLD = Area(-90.0, 90.0, -180.0, 180.0)
+WORLD: Final = Area(-90.0, 90.0, -180.0, 180.0)
+NO_ZONES: Final = Zones()
+NO_DEPTHS: Final = Depths()
 
 
 @dataclass(frozen=True)
@@ -92,8 +94,8 @@ class Chart:
 
     land: Land
     area: Area = WORLD
-    zones: Zones = Zones()
-    depths: Depths = Depths()
+    zones: Zones = NO_ZONES
+    depths: Depths = NO_DEPTHS
 
     @classmethod
     def gshhg(cls, resolution: str = "i") -> Chart:

@@ -59,11 +59,11 @@ def _cut(rings: Rings, chosen: Any, shift: float, box: Any) -> list[Any]:
     offset = np.repeat(np.cumsum(counts) - counts, counts)
     take = np.arange(len(member)) - offset + rings.start[chosen][member]
     lines = shapely.linearrings(rings.lon[take] + shift, rings.lat[take], indices=member)
-    shapes = shapely.make_valid(shapely.polygons(lines))
+    shapes: Any = shapely.make_valid(shapely.polygons(lines))
     holes = ~shapely.is_ccw(lines)
-    land = shapely.union_all(shapes[~holes]) if holes.any() else shapes
+    land: Any = shapely.union_all(shapes[~holes]) if holes.any() else shapes
     if holes.any():
-        land = np.atleast_1d(shapely.difference(land, shapely.union_all(shapes[holes])))
+        land = np.array([shapely.difference(land, shapely.union_all(shapes[holes]))])
     inside = shapely.intersection(land[~shapely.is_empty(land)], box)
     parts = shapely.get_parts(shapely.get_parts(inside))
     return [part for part in parts if part.geom_type == "Polygon" and not part.is_empty]

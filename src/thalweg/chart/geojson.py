@@ -87,7 +87,7 @@ def polygons(geometry: Mapping[str, Any], what: str) -> list[Any]:
             continue
         for k in range(1, len(rings)):  # holes go on the same turn as their outline
             rings[k][:, 0] += 360.0 * np.round((rings[0][0, 0] - rings[k][0, 0]) / 360.0)
-        shape = shapely.polygons(rings[0], holes=rings[1:] or None)
+        shape: Any = shapely.polygons(rings[0], holes=rings[1:] or None)
         if not shapely.is_valid(shape):
             reason = shapely.is_valid_reason(shape)
             warnings.warn(

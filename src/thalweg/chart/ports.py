@@ -9,8 +9,27 @@ import unicodedata
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
+from typing import Final
 
 from thalweg.core.errors import InputError, near_matches
+
+# Usual English names of ports that the index has under another name.
+ENGLISH: Final = {
+    "alexandria egypt": "EGALY",
+    "antwerp": "BEANR",
+    "flushing": "NLVLI",
+    "genoa": "ITGOA",
+    "ghent": "BEGNE",
+    "gothenburg": "SEGOT",
+    "hull": "GBHUL",
+    "leghorn": "ITLIV",
+    "lisbon": "PTLIS",
+    "naples": "ITNAP",
+    "piraeus": "GRPIR",
+    "singapore": "SGKEP",
+    "suez": "EGSUZ",
+    "venice": "ITVCE",
+}
 
 
 @dataclass(frozen=True)
@@ -73,13 +92,17 @@ class Ports:
         )
 
     def _named(self, text: str) -> list[Port]:
-        wanted = folded(text)
-        found = [port for port in self.all if folded(port.name) == wanted]
-        if found or "," not in text:
-            return found
-        name, _, country = text.rpartition(",")
-        wanted, code = folded(name), country.strip().upper()
-        return [p for p in self.all if folded(p.name) == wanted and p.country_code == code]
+        """Return the ports of a name: exactly, by English name, or as words of a longer name."""
+        name, _, country = text.rpartition(",") if "," in text else (text, "", "")
+        code = country.strip().upper()
+        wanted = folded(name)
+        pool = [port for port in self.all if not code or port.country_code == code]
+        found = [port for port in pool if folded(port.name) == wanted]
+        if not found and wanted in ENGLISH:
+            found = [port for port in pool if port.locode == ENGLISH[wanted]][:1]
+        if not found and len(wanted) >= 4:
+            found = [port for port in pool if f" {wanted} " in f" {folded(port.name)} "]
+        return found
 
     def _unknown(self, text: str) -> InputError:
         wanted = folded(text.split(",")[0])

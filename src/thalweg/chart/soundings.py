@@ -18,42 +18,22 @@ DepthFunction = Callable[[FloatArray, FloatArray], Any]
 
 #: names (standard names or variable names) of heights, positive up, and of depths, positive down
 HEIGHTS: Final = frozenset(
-    [
-        "height",
-        "height_above_mean_sea_level",
-        "height_above_geoid",
+    (
+        *("height", "altitude", "elevation", "z", "bed", "topo", "topography", "band1"),
+        *("bed_level", "surface_altitude", "bedrock_altitude", "sea_floor_altitude"),
+        *("height_above_mean_sea_level", "height_above_geoid", "height_above_geopotential_datum"),
         "height_above_reference_ellipsoid",
-        "altitude",
-        "height_above_geopotential_datum",
-        "surface_altitude",
-        "bedrock_altitude",
-        "elevation",
-        "z",
-        "bed",
-        "topo",
-        "topography",
-        "band1",
-        "bed_level",
-        "sea_floor_altitude",
-    ]
+    )
 )
 DEPTHS: Final = frozenset(
-    [
-        "depth",
-        "deptho",
-        "depths",
-        "bathymetry",
-        "bathy",
-        "water_depth",
-        "bed_depth",
-        "sea_floor_depth",
-        "sea_floor_depth_below_geoid",
+    (
+        *("depth", "deptho", "depths", "bathymetry", "bathy", "water_depth", "bed_depth"),
+        *("sea_floor_depth", "sea_floor_depth_below_geoid", "sea_floor_depth_below_sea_surface"),
         "sea_floor_depth_below_mean_sea_level",
-        "sea_floor_depth_below_sea_surface",
         "sea_floor_depth_below_reference_ellipsoid",
         "sea_floor_depth_below_geopotential_datum",
         "model_sea_floor_depth_below_geoid",
-    ]
+    )
 )
 UNITS: Final = {
     "m": 1.0,
@@ -103,9 +83,9 @@ class GridLayer:
             i1 = min(int(np.searchsorted(self.lon + turn, east + wide)) + 1, len(self.lon))
             if len(turns) == 1:
                 i0, i1 = 0, len(self.lon)
-            if i1 - i0 >= 1 and self.lon[i0] + turn <= east + wide:
-                if self.lon[i1 - 1] + turn >= west - wide:
-                    ranges.append((i0, i1, turn))
+            reaches = i0 < i1 and self.lon[i0] + turn <= east + wide
+            if reaches and self.lon[i1 - 1] + turn >= west - wide:
+                ranges.append((i0, i1, turn))
         if j1 - j0 < 2 or not ranges:
             return None
         if around and (len(ranges) > 1 or len(turns) == 1):

@@ -76,14 +76,14 @@ class Zones:
     @cached_property
     def _trees(self) -> tuple[tuple[Any, FloatArray], ...]:
         """For penalty and price: a tree of the polygons on three turns, and their factors."""
-        import shapely
+        import shapely.affinity
 
         trees = []
         for zones in (self.penalty, self.price):
             shapes, factors = [], []
             for shape, factor in zones:
                 for turn in (-360.0, 0.0, 360.0):
-                    moved = shapely.transform(shape, lambda xy, t=turn: xy + np.array([t, 0.0]))
+                    moved = shapely.affinity.translate(shape, turn)
                     shapely.prepare(moved)
                     shapes.append(moved)
                     factors.append(factor)
@@ -193,4 +193,5 @@ def _excess(lines: Any, tree: Any, factors: FloatArray) -> FloatArray:
     whole = shapely.length(lines[which])
     part = shapely.length(shapely.intersection(lines[which], tree.geometries[zone]))
     share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 1.0)
-    return np.bincount(which, share * (factors[zone] - 1.0), minlength=len(lines))
+    excess = np.bincount(which, share * (factors[zone] - 1.0), minlength=len(lines))
+    return excess.astype(np.float64)
