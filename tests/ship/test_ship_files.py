@@ -164,9 +164,16 @@ def test_an_unknown_name_gets_near_matches():
 
 
 @pytest.mark.parametrize("name", library_names())
-def test_library_ships_load_tell_their_sources_and_tabulate(name):
+def test_library_ships_load_and_tell_their_sources(name):
     ship = Ship.load(name)
     assert ship.data["sources"] and ship.data["description"]
+    assert (np.diff(ship.speeds) > 0).all()
+    assert ship.draught > 0
+
+
+@pytest.mark.parametrize("name", ["handysize-bulker", "hopper-dredger"])
+def test_library_tables_bound_their_speeds(name):
+    ship = Ship.load(name)
     table = ship.tabulate()
     assert table.error.p99 <= 0.01
     assert table.nbytes < 64e6

@@ -11,19 +11,20 @@ import numpy as np
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
 
-_LABELS = {
-    "friction": "friction",
-    "form_factor": "form",
-    "appendage": "appendages",
-    "residuary": "residuary",
-    "wave_making": "wave making",
-    "bulb": "bulb",
-    "transom": "transom",
-    "correlation": "correlation",
-    "shallow": "shallow water",
-    "waves": "waves",
-    "wind": "wind",
-    "rudder": "rudder",
+#: component: label and colour, from the hull outwards
+_PARTS = {
+    "friction": ("friction", "#1b4f72"),
+    "form_factor": ("form", "#2e86c1"),
+    "appendage": ("appendages", "#85c1e9"),
+    "residuary": ("residuary", "#5dade2"),
+    "wave_making": ("wave making", "#148f77"),
+    "bulb": ("bulb", "#73c6b6"),
+    "transom": ("transom", "#a2d9ce"),
+    "correlation": ("correlation", "#b2babb"),
+    "shallow": ("shallow water", "#b7950b"),
+    "waves": ("waves", "#ca6f1e"),
+    "wind": ("wind", "#f0b27a"),
+    "rudder": ("rudder", "#76448a"),
 }
 
 
@@ -78,13 +79,13 @@ def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
     speed = _column(sheet, "speed_kn")
     parts = {
         name: np.array([row["resistance_n"][name] or 0.0 for row in rows]) / 1000.0
-        for name in _LABELS
+        for name in _PARTS
     }
-    shown = [name for name in _LABELS if np.abs(parts[name]).max() > 0.0]
+    shown = [name for name in _PARTS if np.abs(parts[name]).max() > 0.0]
     up = [np.maximum(parts[name], 0.0) for name in shown]
     down = [np.minimum(parts[name], 0.0) for name in shown]
-    colours = _colours(len(shown))
-    axes.stackplot(speed, up, labels=[_LABELS[n] for n in shown], colors=colours)
+    colours = [_PARTS[name][1] for name in shown]
+    axes.stackplot(speed, up, labels=[_PARTS[n][0] for n in shown], colors=colours)
     if any((d < 0).any() for d in down):
         axes.stackplot(speed, down, colors=colours)
     total = sum(parts[name] for name in shown)
@@ -94,13 +95,6 @@ def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
     axes.set(xlabel="speed through water [kn]", ylabel="resistance [kN]", title=sheet["name"])
     axes.margins(x=0)
     return True
-
-
-def _colours(count: int) -> list[Any]:
-    import matplotlib
-
-    palette = matplotlib.colormaps["tab20"]
-    return [palette(k % 20) for k in range(count)]
 
 
 def _power(axes: Any, sheet: Mapping[str, Any]) -> bool:

@@ -21,6 +21,15 @@ FloatArray = NDArray[np.float64]
 Data = Mapping[str, Any]
 
 
+def simple_data(*, name: str, speeds_kn: list[float], **sections: Data) -> dict[str, Any]:
+    """Return the data of a ship file from sections in which None means not given."""
+    given = {
+        section: {key: value for key, value in values.items() if value is not None}
+        for section, values in sections.items()
+    }
+    return {"name": name, "speeds_kn": speeds_kn, **given}
+
+
 def build_limits(data: Data) -> ShipLimits:
     """Return the limits of a ship file."""
     given = data.get("limits", {})

@@ -205,6 +205,10 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
         If it fails on plausible conditions, gives other than one speed per condition, or mixes
         place, time or plain variables with what depends on the heading.
     """
+    if top_speed is not None and not 0.0 < top_speed < math.inf:
+        raise InputError(
+            f"The greatest speed is {top_speed:g} m/s.", "It is positive.", "Correct it."
+        )
     recorder = RecordingConditions()
     try:
         _check_answer(np.asarray(function(recorder), float), recorder.shape)

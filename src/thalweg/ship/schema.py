@@ -175,6 +175,7 @@ _MODELS: Final = (
     | {
         "kwon_sign": Key("word", words=("plus", "printed")),
         "kwon_classes": Key("flag"),
+        "wave_push": Key("flag"),
         "kwon_ship_type": Key("word", words=("other", "container")),
     }
 )

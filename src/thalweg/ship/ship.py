@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,8 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, ModelRangeError
 from thalweg.core.units import KNOT
-from thalweg.ship.build import build_limits, build_loading, build_model
+from thalweg.ship.build import build_limits, build_loading, build_model, simple_data
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.fuel_terms import FuelTerms, fuel_terms
 from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.hull import complete_hull
 from thalweg.ship.limits import ShipLimits
@@ -26,7 +26,7 @@ from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import Estimate, ShipModel
 from thalweg.ship.schema import check_ship_data
-from thalweg.ship.ship_file import read_ship
+from thalweg.ship.ship_file import library_names, plugin, read_ship
 from thalweg.ship.table import PerformanceTable
 from thalweg.ship.variables import needed_variables
 
@@ -70,14 +70,18 @@ class Ship:
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> Ship:
-        """Read a ship of the library by name, or a ship file (YAML) by path.
+        """Read a ship of the library or of a plug-in by name, or a ship file (YAML) by path.
 
         Raises
         ------
         InputError
             If there is none (with near matches), or the file holds what cannot be.
         """
-        data, source = read_ship(name_or_path)
+        known = not isinstance(name_or_path, str) or name_or_path in library_names()
+        offered = None if known else plugin(str(name_or_path))
+        if isinstance(offered, Ship):
+            return offered
+        data, source = read_ship(name_or_path) if offered is None else (offered, "plug-in ship")
         return cls.from_dict(data, source=source)
 
     @classmethod
@@ -142,33 +146,26 @@ class Ship:
         -------
         Ship
             Without fuel data its fuel is unknown (NaN), never zero.
-
-        Raises
-        ------
-        InputError
         """
-        sections: dict[str, dict[str, Any]] = {
-            "hull": {
+        data = simple_data(
+            name=name,
+            speeds_kn=[speed_kn] if speeds_kn is None else list(speeds_kn),
+            hull={
                 "length_between_perpendiculars_m": length_m,
                 "breadth_m": breadth_m,
                 "draught_m": draught_m,
                 "block_coefficient": block_coefficient,
                 "displacement_m3": displacement_m3,
             },
-            "limits": {
+            limits={
                 "max_significant_wave_height_m": max_wave_height_m,
                 "max_wind_speed_kn": max_wind_speed_kn,
             },
-            "fuel": {"reference_t_per_day": fuel_t_per_day},
-            "engine": {"reference_speed_kn": speed_kn},
-            "models": {"speed_loss": speed_loss},
-        }
-        given = {
-            section: {key: value for key, value in values.items() if value is not None}
-            for section, values in sections.items()
-        }
-        speeds = [speed_kn] if speeds_kn is None else list(speeds_kn)
-        return cls.from_dict({"name": name, "speeds_kn": speeds, **given})
+            fuel={"reference_t_per_day": fuel_t_per_day},
+            engine={"reference_speed_kn": speed_kn},
+            models={"speed_loss": speed_loss},
+        )
+        return cls.from_dict(data)
 
     @classmethod
     def from_speed_function(
@@ -204,10 +201,6 @@ class Ship:
         """
         if top_speed_kn is not None:
             top_speed = top_speed_kn * KNOT
-        if top_speed is not None and not 0.0 < top_speed < math.inf:
-            raise InputError(
-                f"The greatest speed is {top_speed:g} m/s.", "It is positive.", "Correct it."
-            )
         model = model_of_function(function, top_speed=top_speed)
         loading = Loading(float(draught_m), float(draught_m))
         return cls(name, model, loading, limits or ShipLimits())
@@ -245,6 +238,11 @@ class Ship:
             return self.model.field(self.loading.load_factor)
         return None
 
+    @property
+    def fuel_terms(self) -> FuelTerms:
+        """Fuels inside and outside emission control areas, their carbon and prices."""
+        return fuel_terms(self.data)
+
     def with_load_factor(self, load_factor: float) -> Ship:
         """Return the ship loaded differently, 0 empty to 1 full."""
         return replace(self, loading=self.loading.at(load_factor))
@@ -266,8 +264,7 @@ class Ship:
         if change is None:
             raise InputError(
                 f"The ship {self.name!r} goes as its model says; no speed can be ordered.",
-                "",
-                "Leave the ordered speed out.",
+                remedy="Leave the ordered speed out.",
             )
         return replace(self, model=change(wanted, self.loading.load_factor))
 

@@ -20,6 +20,20 @@ def library_names() -> list[str]:
     )
 
 
+def plugin(name: str) -> Any:
+    """Return the ship that a third-party package offers under a name, or None.
+
+    Packages register a callable without arguments that returns a `Ship` (or a mapping like a ship
+    file) in the entry-point group ``thalweg.ships``.
+    """
+    from importlib.metadata import entry_points
+
+    for entry in entry_points(group="thalweg.ships"):
+        if entry.name == name:
+            return entry.load()()
+    return None
+
+
 def read_ship(name_or_path: str | Path) -> tuple[Any, str]:
     """Return the plain data of a ship of the library or of a file, and what to call it.
 

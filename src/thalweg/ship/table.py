@@ -26,8 +26,8 @@ class TableError:
     Attributes
     ----------
     mean, p99, max : float
-        Absolute difference over the model's value, the latter not taken below a tenth of the
-        greatest value of its setting.
+        Absolute difference over the model's value, the latter not taken below a quarter of
+        the greatest value of its setting.
     samples : int
         Number of random conditions measured.
     """

@@ -18,7 +18,7 @@ FloatArray = NDArray[np.float64]
 #: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
 Tabulated = Callable[[Mapping[str, FloatArray]], FloatArray]
 
-FLOOR: Final = 0.1  #: relative errors are not taken to less than this share of the greatest value
+FLOOR: Final = 0.25  #: relative errors are not taken to less than this share of the greatest value
 LARGEST_TABLE: Final = 32_000_000  #: bytes of one part
 _CHUNK = 200_000
 _SAMPLES = 4000

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -268,16 +268,29 @@ WIND: Final[Mapping[str, Callable[[Hull, str], Wind]]] = MappingProxyType(
 def build_waves(data: Mapping[str, Any], hull: Hull) -> Waves | None:
     """Return the wave part chosen in a ship file; None for ``none``.
 
+    A method that lets waves from astern push the ship is cut off at zero unless the file says
+    ``wave_push: true``: the push of high seas is the least certain part of such methods, and a
+    search would look for it.
+
     Raises
     ------
     InputError
     """
-    name = data.get("models", {}).get("waves", "none")
+    models = data.get("models", {})
+    name = models.get("waves", "none")
     if name == "none":
         return None
     if name not in WAVES:
         raise unknown_name("wave method", name, ("none", *WAVES))
-    return WAVES[name](hull)
+    waves = WAVES[name](hull)
+    return waves if models.get("wave_push", False) else _without_push(waves)
+
+
+def _without_push(waves: Waves) -> Waves:
+    def force(*at: FloatArray) -> FloatArray:
+        return np.maximum(waves.force(*at), 0.0)
+
+    return replace(waves, force=force)
 
 
 def build_wind(data: Mapping[str, Any], hull: Hull) -> Wind | None:

@@ -1,0 +1,151 @@
+"""``thalweg ship``: arguments, the JSON it promises, pictures, and refusals."""
+
+import argparse
+import json
+import math
+
+import pytest
+
+from thalweg.cli.ship import add_ship_command, parse_speeds
+from thalweg.core.errors import InputError, ModelRangeError
+
+KEYS = {
+    *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
+    *("correlation", "waves", "wind", "shallow", "rudder"),
+}
+FILE = """
+name: Test bulker
+hull: {length_waterline_m: 172.42, length_between_perpendiculars_m: 169, breadth_m: 32,
+  draught_m: 10, block_coefficient: 0.785, frontal_area_m2: 700, deadweight_t: 35000,
+  type: bulk carrier}
+engine: {power_kw: 9000, type: slow_speed_diesel}
+fuel: {type: hfo}
+models: {calm_water: holtrop_mennen_1982, waves: stawave_1, wind: ittc}
+"""
+
+
+def _run(capsys, *words):
+    parser = argparse.ArgumentParser()
+    add_ship_command(parser.add_subparsers())
+    arguments = parser.parse_args(["ship", *map(str, words)])
+    assert arguments.run(arguments) == 0
+    return capsys.readouterr().out
+
+
+@pytest.fixture
+def ship_file(tmp_path):
+    path = tmp_path / "ship.yaml"
+    path.write_text(FILE)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("text", "speeds"),
+    [
+        ("8:11", [8, 9, 10, 11]),
+        ("8:9:0.5", [8, 8.5, 9]),
+        ("10,12.5", [10, 12.5]),
+        ("9", [9]),
+        ("8:8", [8]),
+    ],
+)
+def test_speeds_are_read(text, speeds):
+    assert parse_speeds(text) == pytest.approx(speeds)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "x", "8:", "0:4", "-3", "9:8", "1:9999:0.001", "nan", "8:9,1"]
+)
+def test_speeds_that_are_none_are_refused(text):
+    with pytest.raises(InputError, match="are not speeds"):
+        parse_speeds(text)
+
+
+def test_json_holds_what_is_promised(capsys, ship_file):
+    text = _run(capsys, ship_file, "--speed", "10:12", "--hs", 2, "--wave-from", 30, "--json")
+    sheet = json.loads(text)
+    assert sheet["name"] == "Test bulker"
+    assert [row["speed_kn"] for row in sheet["conditions"]] == pytest.approx([10, 11, 12])
+    for row in sheet["conditions"]:
+        forces = row["resistance_n"]
+        assert forces.keys() >= KEYS
+        parts = sum(value for name, value in forces.items() if name != "total")
+        assert parts == pytest.approx(forces["total"])
+        speed = row["speed_kn"] * 1852 / 3600
+        assert row["effective_power_kw"] == pytest.approx(forces["total"] * speed / 1000)
+        assert row["brake_power_kw"] > row["effective_power_kw"]
+        assert row["co2_kg_per_h"] == pytest.approx(3.114 * row["fuel_kg_per_h"])
+        assert row["cii"]["attained_g_per_t_nm"] == pytest.approx(
+            row["co2_kg_per_h"] * 1000 / (35000 * row["speed_kn"])
+        )
+        assert row["cii"]["rating_2026"] in "ABCDE"
+        assert isinstance(row["warnings"], list)
+    assert {"key", "value", "method"} == set(sheet["estimated"][0])
+
+
+def test_waves_from_port_and_starboard_are_the_same_and_from_astern_cost_less(capsys, ship_file):
+    def waves(degrees):
+        sheet = json.loads(
+            _run(capsys, ship_file, "--speed", 10, "--hs", 3, "--wave-from", degrees, "--json")
+        )
+        return sheet["conditions"][0]["resistance_n"]["waves"]
+
+    assert waves(40) == waves(-40) == waves(320) > 0
+    assert waves(120) == 0.0
+
+
+def test_a_power_that_cannot_be_reached_is_said_and_has_no_fuel(capsys, ship_file):
+    sheet = json.loads(_run(capsys, ship_file, "--speed", 18, "--json"))
+    (row,) = sheet["conditions"]
+    assert row["brake_power_kw"] > 9000
+    assert row["fuel_kg_per_h"] is None
+    assert any("not reached" in note for note in row["warnings"])
+
+
+def test_strictness_refuses_what_is_out_of_range(capsys, ship_file):
+    with pytest.raises(ModelRangeError, match="not reached"):
+        _run(capsys, ship_file, "--speed", 18, "--strict")
+
+
+def test_ships_with_known_speeds_show_them(capsys):
+    sheet = json.loads(_run(capsys, "handysize-bulker", "--wind", 10, "--json"))
+    assert len(sheet["conditions"]) == 12
+    row = sheet["conditions"][-1]
+    assert row["ordered_speed_kn"] == pytest.approx(15.2)
+    assert row["speed_kn"] < 14.0
+    assert row["resistance_n"] is None and row["brake_power_kw"] is None
+    assert row["fuel_kg_per_h"] == pytest.approx(39000 / 24)
+
+
+def test_the_table_for_people_names_estimates_and_sources(capsys, ship_file):
+    text = _run(capsys, ship_file, "--speed", "10:11")
+    assert "Test bulker" in text and "waterplane_coefficient" in text
+    assert "Seuren" in _run(capsys, "handysize-bulker")
+
+
+def test_pictures_and_json_are_written(capsys, ship_file, tmp_path):
+    folder = tmp_path / "out"
+    _run(capsys, ship_file, "--speed", "8:14", "--hs", 2, "--out", folder)
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"ship.json", "resistance.png", "power.png", "fuel.png", "speed_loss.png"}
+    assert all(path.stat().st_size > 1000 for path in folder.iterdir())
+
+
+def test_a_folder_that_cannot_be_written_is_said(capsys, ship_file, tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("x")
+    with pytest.raises(InputError, match="cannot be written"):
+        _run(capsys, ship_file, "--out", blocked / "sub")
+
+
+def test_the_library_is_listed(capsys):
+    assert "handysize-bulker" in _run(capsys, "--list").split()
+    with pytest.raises(InputError, match="No ship is named"):
+        _run(capsys)
+
+
+@pytest.mark.parametrize("option", ["--hs", "--tp", "--wind", "--water-depth"])
+@pytest.mark.parametrize("value", [-1.0, math.nan])
+def test_impossible_weather_is_refused(capsys, ship_file, option, value):
+    with pytest.raises(InputError, match="at least 0"):
+        _run(capsys, ship_file, f"{option}={value}")
