@@ -175,3 +175,45 @@ def test_data_folder_is_left_alone(tmp_path) -> None:
     before = sorted(p.name for p in tmp_path.iterdir())
     Sea.open(tmp_path / "a.nc").sample([HS], T0, 11.0, 21.0)
     assert sorted(p.name for p in tmp_path.iterdir()) == before
+
+
+def test_wind_at_another_height_gives_way_to_wind_at_ten_metres() -> None:
+    winds = regular(
+        fields={
+            "u10": {"standard_name": "eastward_wind", "units": "m/s"},
+            "v10": {"standard_name": "northward_wind", "units": "m/s"},
+        },
+        field=lambda t, y, x: 5.0 + 0 * (t + y + x),
+    )
+    height = xr.DataArray([80.0, 100.0], dims="height", attrs={"units": "m"})
+    high = (winds * 2.0).rename(u10="u", v10="v").expand_dims(height=height)
+    for new, old in (("u", "u10"), ("v", "v10")):
+        winds[new] = high[new]
+        winds[new].attrs = winds[old].attrs
+    sea = Sea.open(winds)
+    assert value(sea, "eastward_wind", T0, 11.0, 21.0) == 5.0
+    assert any("not at 10 m" in reason for _, _, reason in sea.describe().ignored)
+
+
+def test_whole_classic_files_of_every_version_pass_the_length_check(tmp_path) -> None:
+    from thalweg.sea.netcdf3 import promised_length
+
+    for format_ in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"):
+        for unlimited in ([], ["time"]):
+            path = tmp_path / f"{format_}{len(unlimited)}.nc"
+            dataset = regular(hours=np.arange(7.0), lat=np.arange(5.0), lon=np.arange(3.0))
+            dataset["flag"] = ("time", np.arange(7).astype("i2"))
+            encoding = {"swh": {"dtype": "int16", "scale_factor": 0.001, "_FillValue": -1}}
+            from netCDF4 import Dataset
+
+            kind = "NETCDF3_CLASSIC" if "CLASSIC" in format_ else "NETCDF3_64BIT"
+            dataset.to_netcdf(path, format=kind, encoding=encoding, unlimited_dims=unlimited)
+            if "DATA" in format_:
+                path.unlink()
+                with Dataset(path, "w", format=format_) as out:
+                    out.createDimension("time", None if unlimited else 7)
+                    out.createDimension("lat", 5)
+                    out.createVariable("a", "i2", ("time", "lat"))[:] = np.ones((7, 5))
+                    out.createVariable("b", "f8", ("time",))[:] = np.ones(7)
+            size = path.stat().st_size
+            assert size - 4 <= promised_length(path) <= size, (format_, unlimited)

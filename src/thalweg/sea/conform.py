@@ -82,9 +82,9 @@ def drafts_of(file: OpenedFile, mapping: Mapping[str, str]) -> tuple[list[Draft]
         raise _nothing(file, ignored)
     meshes = ugrid.mesh_layouts(file.dataset, mapping, file.source)
     ingredients = {role: _ingredient(file, one, mapping, meshes) for role, one in chosen.items()}
-    cook = Cook(file, ingredients, ignored)
-    cook.all()
-    return cook.drafts, cook.ignored
+    assembly = Assembly(file, ingredients, ignored)
+    assembly.all()
+    return assembly.drafts, assembly.ignored
 
 
 def _coordinates(dataset: Any) -> frozenset[str]:
@@ -158,7 +158,7 @@ def _refuse_undated(dataset: Any, array: Any, source: str) -> None:
             )
 
 
-class Cook:
+class Assembly:
     """Makes quantities of ingredients, each in one way, and tells what is left over."""
 
     def __init__(

@@ -31,6 +31,7 @@ VERTICAL: Final = (
     "depth", "lev", "level", "height", "sigma", "s_rho", "deptht", "depthu", "depthv", "altitude",
     "isobaric", "pressure",
 )  # fmt: skip
+WIND_HEIGHT: Final = 10.0  #: [m] height at which wind is used
 MEMBERS: Final = ("number", "member", "ensemble", "realization", "realisation")
 CLIMATE: Final = ("month", "season", "dayofyear", "climatology")
 
@@ -174,15 +175,33 @@ def _level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
             "Select one entry of it into a file first.",
         )  # fmt: skip
     values = np.asarray(levels.values, float)
-    if "wind" not in role:
-        return int(np.argmin(np.abs(values)))
-    place = int(np.argmin(np.abs(values - 10.0)))
-    if abs(values[place] - 10.0) > 1.0:
-        raise _layout_fault(
-            source, name, f"holds wind at {values.tolist()} but not at 10 m",
-            "Give wind at 10 m above the sea.",
-        )  # fmt: skip
-    return place
+    if "wind" in role:
+        return int(np.argmin(np.abs(values - WIND_HEIGHT)))
+    return int(np.argmin(np.abs(values)))
+
+
+def wind_height_fault(dataset: Any, array: Any) -> str | None:
+    """Return why a wind cannot be used if the file says it is not at 10 m above the sea.
+
+    What counts is the variable's own vertical axis; without one, a single height that the
+    variable names (or that GRIB gives).
+    """
+    named = array.encoding.get("coordinates", array.attrs.get("coordinates", ""))
+    stated = {"heightAboveGround", *str(named or "").split()}
+    axes = [dataset[n] for n in dataset.variables if _is_vertical(dataset[n], str(n))]
+    along = [a for a in axes if a.ndim == 1 and a.dims[0] in array.dims and a.size > 1]
+    single = [a for a in axes if a.size == 1 and (str(a.name) in stated or a.name in array.dims)]
+    single = [a for a in single if str(a.name).lower().startswith("height")]
+    for axis in along or (single if len(single) == 1 else []):
+        values = np.atleast_1d(np.asarray(axis.values, float))
+        if np.abs(values - WIND_HEIGHT).min() > 1.0:
+            return f"it holds wind at {values.tolist()} ({axis.name}), not at 10 m"
+    return None
+
+
+def _is_vertical(axis: Any, name: str) -> bool:
+    known = any(name.lower().startswith(word) for word in VERTICAL)
+    return known and axis.ndim <= 1 and axis.dtype.kind in "fiu"
 
 
 def _layout_fault(source: str, name: str, fault: str, remedy: str) -> DatasetError:

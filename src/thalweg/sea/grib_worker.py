@@ -15,6 +15,9 @@ from typing import Any
 
 import numpy as np
 
+#: kinds of levels that are not the sea's surface; their fields are not decoded
+UPPER_AIR = {"isobaricInhPa", "isobaricInPa", "hybrid", "theta", "potentialVorticity", "sigma"}
+
 
 def main(source: str, folder: Path) -> None:
     """Decode a file into arrays in a folder."""
@@ -22,6 +25,7 @@ def main(source: str, folder: Path) -> None:
     import cfgrib
 
     parts = cfgrib.open_datasets(source, backend_kwargs={"indexpath": "", "errors": "raise"})
+    parts = [part for part in parts if not UPPER_AIR & set(map(str, part.coords))]
     listing = [describe(part, k, folder) for k, part in enumerate(parts)]
     (folder / "listing.tmp").write_text(json.dumps(listing), "utf-8")
     os.replace(folder / "listing.tmp", folder / "listing.json")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
@@ -127,23 +128,18 @@ def not_data(path: Path, fault: str) -> DatasetError:
     return DatasetError(f"{path.name} {fault}.", KINDS, "Check the file.", file=str(path))
 
 
-class _reading:
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
     """Turn system errors on reading a path into `DatasetError`."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
-        if isinstance(error, OSError):
-            raise DatasetError(
-                f"{self.path.name} cannot be read ({error.strerror or error}).",
-                KINDS,
-                "Check the rights to the file.",
-                file=str(self.path),
-            ) from error
+    try:
+        yield
+    except OSError as error:
+        raise DatasetError(
+            f"{path.name} cannot be read ({error.strerror or error}).",
+            KINDS,
+            "Check the rights to the file.",
+            file=str(path),
+        ) from error
 
 
 def _open_netcdf(path: Path, engines: Sequence[str]) -> Any:

@@ -10,6 +10,7 @@ from typing import Any
 from thalweg.core.errors import DatasetError, InputError, near_matches
 from thalweg.sea import names as nm
 from thalweg.sea import spellings, units
+from thalweg.sea.coordinates import wind_height_fault
 
 _BRACKETS = re.compile(r"\[([^\[\]]+)\]\s*$")
 
@@ -108,6 +109,9 @@ def recognise(
         if name in mapped.values():
             continue
         found = _candidate(dataset[name], name)
+        if isinstance(found, tuple) and "wind" in found[0]:
+            fault = wind_height_fault(dataset, dataset[name])
+            found = Ignored(name, fault) if fault else found
         if isinstance(found, Ignored):
             ignored.append(found)
         elif found[0] not in mapped:
