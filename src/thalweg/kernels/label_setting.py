@@ -122,6 +122,69 @@ def _worth(query, cost, time, length, factor, goal_distance, labels, node):
     return enough if quickest * factor < enough else -1.0
 
 
+@inlined
+def _sail(network, sea, ship, query, node, edge, k, time, enough, work):
+    """Return (departure, arrival, status) of the best use of an edge from a node since a time."""
+    factor = 1.0 if query.by_distance else float(network.factor[edge])
+    latest = math.inf if query.by_distance else time + enough / factor
+    least, quickest = query.slowness, network.length[edge] * query.slowness
+    arrival, status = sail_edge(
+        network, sea, ship, edge, k, time, work[0], work[2], work[3], latest, least
+    )
+    if not (query.wait and network.can_wait[node]):
+        return time, arrival, status
+    pause = sea.times[k + 1] - time  # until the next time of the data
+    useful = min(enough, factor * (arrival - time))
+    if status == OK and pause + factor * quickest >= useful:
+        return time, arrival, status
+    station, until = network.station[node], network.until[node]
+    return wait_for_edge(
+        network, sea, ship, edge, station, k, time, until,
+        arrival, status, factor, quickest, enough, work,
+    )  # fmt: skip
+
+
+@inlined
+def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, size):
+    """Improve the label of an edge's head if the edge can; return the size of the heap."""
+    to = network.target[edge]
+    if labels.settled[to]:
+        return size
+    cost, time = labels.cost[node], labels.time[node]
+    length, factor, left = network.length[edge], float(network.factor[edge]), distances[to]
+    enough = _worth(query, cost, time, length, factor, left, labels, to)
+    if enough <= 0.0:
+        return size
+    memory.counts[SAILED] += 1
+    required = ship.limits[LIMIT_REQUIRED_DEPTH]
+    status = OK
+    departure, arrival = time, math.inf
+    if required > -math.inf:
+        status = never_deep_enough(network, sea, edge, required)
+    if status == OK:
+        departure, arrival, status = _sail(
+            network, sea, ship, query, node, edge, k, time, enough, memory.samples
+        )
+    if status != OK:
+        memory.refused[status] += 1
+        return size
+    if arrival == math.inf:  # of no use
+        return size
+    if arrival > query.horizon:
+        memory.refused[ARRIVE_BY] += 1
+        return size
+    new = cost + length * factor
+    if not query.by_distance:
+        new = cost + (departure - time) + factor * (arrival - departure)
+    known = labels.cost[to]
+    if new < known or (new == known and arrival < labels.time[to]):
+        labels.cost[to], labels.time[to] = new, arrival
+        labels.before[to], labels.departed[to] = node, departure
+        key = new + left * query.per_metre
+        size = heap.put(memory.nodes, memory.keys, memory.place, size, to, key)
+    return size
+
+
 @bare
 def label_setting(network, sea, ship, query, distances, labels, memory):
     """Settle nodes in order of cost, from one start, until the goal is settled.
@@ -150,11 +213,8 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     A ship waits only while it stays afloat; a node that falls dry is one state for each time it is
     afloat, so that arriving at a later tide is not lost to arriving at an earlier one.
     """
-    nodes, keys, place, work, counts, refused = memory
-    required = ship.limits[LIMIT_REQUIRED_DEPTH]
-    limited = required > -math.inf
-    labels.cost[query.start] = 0.0
-    labels.time[query.start] = query.depart
+    nodes, keys, place, counts = memory.nodes, memory.keys, memory.place, memory.counts
+    labels.cost[query.start], labels.time[query.start] = 0.0, query.depart
     size = heap.put(nodes, keys, place, 0, query.start, 0.0)
     while size > 0:
         node, _, size = heap.take(nodes, keys, place, size)
@@ -162,84 +222,13 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
         counts[SETTLED] += 1
         if node == query.goal:
             break
-        station = network.station[node]
-        cost, time = labels.cost[node], labels.time[node]
         first, last = network.indptr[node], network.indptr[node + 1]
         counts[RELAXED] += last - first
+        time = labels.time[node]
         k = interval_of(sea.times, time)
         if k < 0:
-            refused[OUTSIDE_PERIOD] += last - first
+            memory.refused[OUTSIDE_PERIOD] += last - first
             continue
-        sample_station(sea, station, k, time, work[0])
-        pause = sea.times[k + 1] - time  # until the next time of the data
-        wait = query.wait and network.can_wait[node]
+        sample_station(sea, network.station[node], k, time, memory.samples[0])
         for edge in range(first, last):
-            to = network.target[edge]
-            if labels.settled[to]:
-                continue
-            length, factor = network.length[edge], float(network.factor[edge])
-            left = distances[to]
-            enough = _worth(query, cost, time, length, factor, left, labels, to)
-            if enough <= 0.0:
-                continue
-            counts[SAILED] += 1
-            if limited:
-                status = never_deep_enough(network, sea, edge, required)
-                if status != OK:
-                    refused[status] += 1
-                    continue
-            quickest = length * query.slowness
-            weight = 1.0 if query.by_distance else factor
-            departure = time
-            latest = math.inf if query.by_distance else time + enough / factor
-            arrival, status = sail_edge(
-                network,
-                sea,
-                ship,
-                edge,
-                k,
-                time,
-                work[0],
-                work[2],
-                work[3],
-                latest,
-                query.slowness,
-            )
-            useful = min(enough, weight * (arrival - time))
-            if wait and (status != OK or pause + weight * quickest < useful):
-                departure, arrival, status = wait_for_edge(
-                    network,
-                    sea,
-                    ship,
-                    edge,
-                    station,
-                    k,
-                    time,
-                    network.until[node],
-                    arrival,
-                    status,
-                    weight,
-                    quickest,
-                    enough,
-                    work,
-                )
-            if status != OK:
-                refused[status] += 1
-                continue
-            if arrival == math.inf:
-                continue
-            if arrival > query.horizon:
-                refused[ARRIVE_BY] += 1
-                continue
-            if query.by_distance:
-                new = cost + length * factor
-            else:
-                new = cost + (departure - time) + factor * (arrival - departure)
-            known = labels.cost[to]
-            if new < known or (new == known and arrival < labels.time[to]):
-                labels.cost[to] = new
-                labels.time[to] = arrival
-                labels.before[to] = node
-                labels.departed[to] = departure
-                key = new + left * query.per_metre
-                size = heap.put(nodes, keys, place, size, to, key)
+            size = _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, size)

@@ -137,6 +137,37 @@ def _through_water(needs, table, setting, course, across, wind, waves, depth, gu
 
 
 @inlined
+def _conditions(sample, channel_index, current, needs, static_depth, limits):
+    """Return (depth, waves, wind, status): what is needed of the sea, and whether limits allow it.
+
+    Waves are (height, east, north, period), wind is (east, north) relative to the moving water.
+    """
+    depth, waves, wind = 0.0, (0.0, 0.0, 0.0, 0.0), (0.0, 0.0)
+    required = limits[LIMIT_REQUIRED_DEPTH]
+    if needs & _DEPTH_AXIS or required > -math.inf:
+        depth = water_depth(sample, channel_index, static_depth)
+        if depth != depth:
+            return depth, waves, wind, NO_DATA
+        if depth < required:
+            return depth, waves, wind, DEPTH
+    if needs & _WAVE_AXES or limits[LIMIT_WAVE_HEIGHT] < math.inf:
+        height, wave_east, wave_north, period, known = _waves(sample, channel_index, needs)
+        waves = (height, wave_east, wave_north, period)
+        if not known:
+            return depth, waves, wind, NO_DATA
+        if height > limits[LIMIT_WAVE_HEIGHT]:
+            return depth, waves, wind, WAVE_HEIGHT
+    if needs & _WIND_AXES or limits[LIMIT_WIND_SPEED] < math.inf:
+        wind = _wind(sample, channel_index, current[0], current[1])
+        squared = wind[0] * wind[0] + wind[1] * wind[1]
+        if squared != squared:
+            return depth, waves, wind, NO_DATA
+        if squared > limits[LIMIT_WIND_SPEED] * limits[LIMIT_WIND_SPEED]:
+            return depth, waves, wind, WIND_SPEED
+    return depth, waves, wind, OK
+
+
+@inlined
 def guided_point_speed(
     sample, channel_index, east, north, table, setting, static_depth, limits, needs, guess
 ):
@@ -144,49 +175,31 @@ def guided_point_speed(
 
     Returns (speed over ground, status, speed through water); a guess of inf is none.
     """
-    current_east, current_north = 0.0, 0.0
+    current = (0.0, 0.0)
     if channel_index[CURRENT_EAST] >= 0 and channel_index[CURRENT_NORTH] >= 0:
-        current_east, current_north = sample[CURRENT_EAST], sample[CURRENT_NORTH]
-    along = current_east * east + current_north * north
-    across = current_north * east - current_east * north  # positive to the left of the course
+        current = (sample[CURRENT_EAST], sample[CURRENT_NORTH])
+    along = current[0] * east + current[1] * north
+    across = current[1] * east - current[0] * north  # positive to the left of the course
     if not (along == along and across == across):
         return 0.0, NO_DATA, 0.0
     field = channel_index[SPEED_FIELD] >= 0
     if field:
         needs = 0
-    depth = 0.0
-    required = limits[LIMIT_REQUIRED_DEPTH]
-    if needs & _DEPTH_AXIS or required > -math.inf:
-        depth = water_depth(sample, channel_index, static_depth)
-        if depth != depth:
-            return 0.0, NO_DATA, 0.0
-        if depth < required:
-            return 0.0, DEPTH, 0.0
-    waves = (0.0, 0.0, 0.0, 0.0)
-    if needs & _WAVE_AXES or limits[LIMIT_WAVE_HEIGHT] < math.inf:
-        height, wave_east, wave_north, period, known = _waves(sample, channel_index, needs)
-        if not known:
-            return 0.0, NO_DATA, 0.0
-        if height > limits[LIMIT_WAVE_HEIGHT]:
-            return 0.0, WAVE_HEIGHT, 0.0
-        waves = (height, wave_east, wave_north, period)
-    wind = (0.0, 0.0)
-    if needs & _WIND_AXES or limits[LIMIT_WIND_SPEED] < math.inf:
-        wind = _wind(sample, channel_index, current_east, current_north)
-        squared = wind[0] * wind[0] + wind[1] * wind[1]
-        if squared != squared:
-            return 0.0, NO_DATA, 0.0
-        if squared > limits[LIMIT_WIND_SPEED] * limits[LIMIT_WIND_SPEED]:
-            return 0.0, WIND_SPEED, 0.0
+    depth, waves, wind, status = _conditions(
+        sample, channel_index, current, needs, static_depth, limits
+    )
+    if status != OK:
+        return 0.0, status, 0.0
     if field:
-        speed = sample[SPEED_FIELD]
+        speed, ok = sample[SPEED_FIELD], True
         if speed != speed:
             return 0.0, NO_DATA, 0.0
     else:
-        course = (east, north)
-        speed, ok = _through_water(needs, table, setting, course, across, wind, waves, depth, guess)
-        if not ok:
-            return 0.0, SHIP_RANGE, 0.0
+        speed, ok = _through_water(
+            needs, table, setting, (east, north), across, wind, waves, depth, guess
+        )
+    if not ok:
+        return 0.0, SHIP_RANGE, 0.0
     spare = speed * speed - across * across
     over_ground = along + math.sqrt(max(spare, 0.0))
     if speed <= 0.0 or spare <= 0.0 or over_ground <= 0.0:
@@ -199,17 +212,9 @@ def point_speed_known(
     sample, channel_index, east, north, table, setting, static_depth, limits, needs
 ):
     """Do as `point_speed` with ``needs = axes_needed(table)`` found beforehand."""
+    none = math.inf
     speed, status, _ = guided_point_speed(
-        sample,
-        channel_index,
-        east,
-        north,
-        table,
-        setting,
-        static_depth,
-        limits,
-        needs,
-        math.inf,
+        sample, channel_index, east, north, table, setting, static_depth, limits, needs, none
     )
     return speed, status
 
