@@ -34,7 +34,7 @@ from thalweg.kernels.soundings import DepthArrays
 SIDE: Final = 512  # cells along a face of the index of land from GeoJSON
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Land:
     """Land polygons: their name, the grid of their edges, and where their rings come from."""
 
@@ -85,7 +85,7 @@ NO_ZONES: Final = Zones()
 NO_DEPTHS: Final = Depths()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Chart:
     """A chart; immutable, so every ``with_...`` returns another.
 

@@ -23,17 +23,17 @@ def nearest_navigable(
 ) -> tuple[float, float, float] | None:
     """Return the nearest navigable place joined to the open sea, and the distance to it [m].
 
-    Grids of 2 x 90 points a side are laid round the place, ever wider: 0.25, 0.6 and at last
-    ``largest`` and 40 km more in 90 steps. Neighbouring points are joined by exact legs. Water
-    counts as open sea when it reaches the border of the grid; when none does, the largest
-    connected water counts.
+    Grids of 180 x 180 steps are laid round the place, ever wider: for water within 5 km, 20 km
+    and ``largest``, going on three times as far or 40 km. Neighbouring points are joined by exact
+    legs. Water counts as open sea when it reaches the border of the grid; when none does on the
+    widest one, the largest connected water counts. The answer is a point of the grid: up to half
+    a step (0.1, 0.3 or 0.5 km) farther than the nearest water there is.
     """
-    for radius in (min(r, largest) for r in (5_000.0, 20_000.0, largest)):
+    for radius in sorted({min(r, largest) for r in (5_000.0, 20_000.0, largest)}):
         lats, lons = _grid(lat, lon, radius + min(REACH, 3.0 * radius))
         free = chart.is_navigable(lats, lons)
-        if free.any():
-            open_sea = _open_sea(chart, lats, lons, free)
-            k = np.flatnonzero(open_sea)
+        k = np.flatnonzero(_open_sea(chart, lats, lons, free, radius == largest))
+        if len(k):
             away = geodesy.distance(lat, lon, lats.ravel()[k], lons.ravel()[k])
             best = int(np.argmin(away))
             if away[best] <= radius:
@@ -51,9 +51,9 @@ def _grid(lat: float, lon: float, half: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _open_sea(
-    chart: Chart, lats: FloatArray, lons: FloatArray, free: NDArray[np.bool_]
+    chart: Chart, lats: FloatArray, lons: FloatArray, free: NDArray[np.bool_], last: bool
 ) -> NDArray[np.bool_]:
-    """Return (flat) which free points are joined to the border, or form the largest water."""
+    """Return (flat) which free points are joined to the border, or at last the largest water."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
@@ -71,6 +71,6 @@ def _open_sea(
     border = np.ones(free.shape, bool)
     border[1:-1, 1:-1] = False
     joined = np.unique(labels[border & free])
-    if not len(joined):
+    if last and not len(joined) and free.any():
         joined = np.array([np.bincount(labels[free]).argmax()])
     return np.asarray((np.isin(labels, joined) & free).ravel())
