@@ -6,7 +6,16 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.bare import bare, inlined
-from thalweg.kernels.codes import CHANNELS, NO_DATA, OK, OUTSIDE_PERIOD
+from thalweg.kernels.codes import (
+    CHANNELS,
+    CURRENT,
+    DEPTH,
+    NO_DATA,
+    OK,
+    OUTSIDE_PERIOD,
+    WAVE_HEIGHT,
+    WIND_SPEED,
+)
 from thalweg.kernels.leg import point_speed_known
 from thalweg.kernels.tables import axes_needed
 
@@ -64,6 +73,27 @@ class Lines(NamedTuple):
     pieces: np.ndarray
     charted: np.ndarray
     depart: np.ndarray
+
+
+class Passages(NamedTuple):
+    """What comes of sailing `Lines`.
+
+    Attributes
+    ----------
+    arrive : float64[P]
+        Arrival at every point [s]; +inf from the first leg that cannot be sailed.
+    leave : float64[P]
+        When every point is left [s]; not set at last points and from a leg that cannot be sailed.
+    length : float64[L]
+        Length sailed [m].
+    status : int64[L]
+        `OK`, or why a polyline cannot be sailed.
+    """
+
+    arrive: np.ndarray
+    leave: np.ndarray
+    length: np.ndarray
+    status: np.ndarray
 
 
 @inlined
@@ -159,8 +189,14 @@ def _sail_leg(lines, point, stop, t, raster, table, limits, needs, sample, state
     return t, OK
 
 
+@inlined
+def _may_pass(status):
+    """Return whether waiting could help."""
+    return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT)
+
+
 @bare
-def sail_lines(lines, raster, table, limits, arrive, length, status, sample, state):
+def sail_lines(lines, raster, table, limits, patience, out, sample, state):
     """Sail many polylines through a frozen sea.
 
     Parameters
@@ -171,12 +207,11 @@ def sail_lines(lines, raster, table, limits, arrive, length, status, sample, sta
         Speed through water.
     limits : float64[LIMITS]
         See `thalweg.kernels.leg.point_speed`.
-    arrive : float64[P], out
-        Arrival at every point [s]; +inf from the first leg that cannot be sailed.
-    length : float64[L], out
-        Length sailed of every polyline [m].
-    status : int64[L], out
-        `OK`, or why a polyline cannot be sailed.
+    patience : float64[3]
+        How long the ship waits at most at a point for the next leg to open, how long between two
+        looks, and how exactly the opening is found [s]; zero: it does not wait of itself.
+    out : Passages
+        Filled.
     sample : float64[CHANNELS]
     state : float64[3]
         Room to work in, zeros.
@@ -192,20 +227,37 @@ def sail_lines(lines, raster, table, limits, arrive, length, status, sample, sta
         start, end = lines.first[line], lines.first[line + 1]
         t = lines.depart[line]
         state[1], sailed = 0.0, 0.0
-        status[line] = OK
-        arrive[start] = t
+        out.status[line] = OK
+        out.arrive[start] = t
         for point in range(start, end - 1):
             t = max(t, lines.leave[point])
             pieces = lines.pieces[point]
-            for stop in (1, pieces):  # a first piece is tried, for a first slowness
-                if stop == pieces or state[1] == 0.0:
-                    state[2] = sailed
-                    after, status[line] = _sail_leg(
-                        lines, point, stop, t, raster, table, limits, needs, sample, state
-                    )
-            t, sailed = after, state[2]
-            arrive[point + 1] = t
-            if status[line] != OK:
-                arrive[point + 1 : end] = math.inf
+            low, high, tried = t, -math.inf, t
+            after, length, status = math.inf, sailed, OK
+            while True:  # sail; if the leg is closed wait for it to open, then find the moment
+                reached = math.inf
+                for stop in (1, pieces):  # a first piece is tried, for a first slowness
+                    if stop == pieces or state[1] == 0.0:
+                        state[2] = sailed
+                        reached, status = _sail_leg(
+                            lines, point, stop, tried, raster, table, limits, needs, sample, state
+                        )
+                if status == OK:
+                    high, after, length = tried, reached, state[2]
+                else:
+                    low = tried
+                if high - low <= patience[2] and high >= t:
+                    break
+                if high >= t:
+                    tried = 0.5 * (low + high)
+                    continue
+                tried = low + patience[1]
+                if tried - t > patience[0] or not _may_pass(status) or patience[0] == 0.0:
+                    break
+            t, sailed = after, length
+            out.leave[point], out.arrive[point + 1] = high, after
+            if after == math.inf:
+                out.status[line] = status
+                out.arrive[point + 1 : end] = math.inf
                 break
-        length[line] = sailed
+        out.length[line] = sailed

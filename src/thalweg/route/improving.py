@@ -28,7 +28,9 @@ LARGEST_RASTER = 4_000_000  #: numbers in the frozen raster of the sea around a 
 _LEAST_ROWS, _MOST_ROWS = 12, 120  # cells along the longer side of the raster
 _ROOM = (0.2, 0.4, 0.6)  # room around the track, as a share of its box; more when it is used up
 _RIM = 0.04  # nearness to the rim of the raster at which it counts as used up
-_MARGINS = (0.0, 0.02, 0.06)  # shares by which limits are tightened when the referee objects
+# (share by which limits are tightened, whether it may wait anywhere) while the referee objects
+_TRIES = ((0.0, True), (0.005, True), (0.02, True), (0.06, True), (0.0, False), (0.02, False))
+_MARGINS = 4  # of them differ for a ship that does not wait
 _WAIT_EXACT = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
 _WAIT_SHARE = 1e-5
 _LONGER = (0.0, 120.0, 600.0, 1800.0)  # seconds by which a wait may grow when the referee objects
@@ -46,6 +48,7 @@ def better_route(
     limits: ArrayLike,
     min_ukc: float | None = 0.0,
     objective: str = "time",
+    wait: bool | None = None,
 ) -> Route:
     """Smooth a route and return whichever of the two the referee prefers.
 
@@ -63,6 +66,8 @@ def better_route(
     min_ukc : float or None
         As for `evaluate`.
     objective : {"time", "distance"}
+    wait : bool, optional
+        Whether the ship may wait where it did not before; by default only if it waits somewhere.
 
     Returns
     -------
@@ -75,7 +80,8 @@ def better_route(
         return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
 
     best = scored
-    for margin in _MARGINS:
+    may_wait = bool(scored.track.wait.any()) if wait is None else wait
+    for margin, patient in _TRIES[: None if may_wait else _MARGINS]:
         track = scored.track
         for room in _ROOM:
             fields = freeze_around(scored, track, room, ship=ship, sea=sea, limits=limits)
@@ -86,6 +92,7 @@ def better_route(
                 limits=_tightened(limits, margin),
                 chart=chart,
                 objective=objective,
+                wait=may_wait and patient,
             )
             if objective == "distance" or not _touches_rim(track, fields):
                 break

@@ -105,8 +105,8 @@ def line_of(track: Track, sailor: Sailor) -> Line:
 
 def track_of_line(line: Line, sailor: Sailor) -> Track:
     """Return a line as a track, its moments of leaving as waits."""
-    arrive, _ = sailor.sail(line.bundle(), check=False)
-    wait = np.maximum(0.0, line.leave - arrive[0])
+    arrive, leave, _ = sailor.sail_and_wait(line.bundle())
+    wait = np.maximum(0.0, leave[0] - arrive[0])
     wait[~np.isfinite(wait)] = 0.0
     wait[-1] = 0.0
     return Track(

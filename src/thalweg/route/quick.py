@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.geodesy import FloatArray
 from thalweg.kernels import codes
-from thalweg.kernels.sail import Lines, RasterArrays, sail_lines
+from thalweg.kernels.sail import Lines, Passages, RasterArrays, sail_lines
 from thalweg.kernels.tables import TableArrays
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 IntArray = NDArray[np.int64]
 _METRES_PER_DEGREE = 111_195.0
+_PATIENCE = 13.0 * 3600.0  # longest wait for a leg to open [s]: a tide and a little
+_PAUSES = (30.0, 900.0)  # least and largest time between two looks [s]
+_OPENING = 0.1  # seconds to which an opening is found
 _LONGEST_PIECE = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
 
 
@@ -63,6 +66,8 @@ class Sailor:
         Whether tracks compare by length instead of time.
     spacing : float
         Longest piece [m].
+    patience : float64 array (3,)
+        How the ship waits of itself (see `thalweg.kernels.sail.sail_lines`); zeros: it does not.
     """
 
     raster: RasterArrays
@@ -72,6 +77,7 @@ class Sailor:
     origin: float
     by_length: bool
     spacing: float
+    patience: FloatArray
 
     def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
         """Return how many pieces each leg of polylines (..., n) is cut into."""
@@ -98,6 +104,13 @@ class Sailor:
         cost : float64 array (L,)
             What is compared: last arrival [s], or length [m]; +inf if it cannot be sailed.
         """
+        arrive, _, cost = self.sail_and_wait(bundle, pieces=pieces, check=check)
+        return arrive, cost
+
+    def sail_and_wait(
+        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Do as `sail` does, and return (arrive, leave, cost): when each point is left, too."""
         count, size = bundle.lat.shape
         shape = (count, size - 1)
         pieces = self.pieces(bundle.lat, bundle.lon) if pieces is None else pieces
@@ -112,27 +125,22 @@ class Sailor:
             _flat(_padded(np.full(shape, math.inf) if charted is None else charted, shape), float),
             _flat(bundle.depart, np.float64),
         )
-        arrive, length = np.empty(count * size), np.empty(count)
-        status = np.empty(count, dtype=np.int64)
-        sail_lines(
-            lines,
-            self.raster,
-            self.table,
-            self.limits,
-            arrive,
-            length,
-            status,
-            np.zeros(codes.CHANNELS),
-            np.zeros(3),
+        out = Passages(
+            np.empty(count * size),
+            np.array(lines.leave),
+            np.empty(count),
+            np.empty(count, dtype=np.int64),
         )
-        arrive = arrive.reshape(count, size)
-        cost = length.copy() if self.by_length else arrive[:, -1].copy()
-        cost[status != codes.OK] = math.inf
+        room = np.zeros(codes.CHANNELS), np.zeros(3)
+        sail_lines(lines, self.raster, self.table, self.limits, self.patience, out, *room)
+        arrive = out.arrive.reshape(count, size)
+        cost = out.length.copy() if self.by_length else arrive[:, -1].copy()
+        cost[out.status != codes.OK] = math.inf
         if blocked is not None:
             over = np.logical_or.accumulate(blocked, axis=1)
             arrive[:, 1:][over] = math.inf
             cost[over[:, -1]] = math.inf
-        return arrive, cost
+        return arrive, out.leave.reshape(count, size), cost
 
     def look(
         self, lat: FloatArray, lon: FloatArray
@@ -159,8 +167,10 @@ def make_sailor(
     origin: float,
     by_length: bool,
     total: float,
+    wait: bool = False,
 ) -> Sailor:
-    """Put a sailor together; ``total`` is the rough length of the track [m].
+    """Put a sailor together; ``total`` is the rough length of the track [m], and
+    with ``wait`` it waits of itself where a leg is closed for the time being.
 
     Pieces are half a cell of the raster, at least a 400th of the track, at most 100 km.
     """
@@ -172,7 +182,12 @@ def make_sailor(
     )
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
     spacing = min(max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0), _LONGEST_PIECE)
-    return Sailor(raster, arrays, chart, np.asarray(limits, np.float64), origin, by_length, spacing)
+    bounds = np.asarray(limits, np.float64)
+    patience = np.zeros(3)
+    if wait and np.isfinite(bounds).any():
+        pause = float(np.clip(np.median(np.diff(raster.times)), *_PAUSES))
+        patience[:] = _PATIENCE, pause, _OPENING
+    return Sailor(raster, arrays, chart, bounds, origin, by_length, spacing, patience)
 
 
 def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:

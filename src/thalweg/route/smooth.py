@@ -15,7 +15,7 @@ from thalweg.route.feeling import feel
 from thalweg.route.line import Line, line_of, track_of_line
 from thalweg.route.pulling import pull
 from thalweg.route.quick import Sailor, make_sailor, rough_lengths
-from thalweg.route.tightening import tighten
+from thalweg.route.tightening import merge_close, tighten
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ FINEST = 48  #: legs are split until they are shorter than the track divided by 
 THINNING = 5e-5  #: share of the cost that may be lost by leaving waypoints out at the end
 _SETTLED = 1e-5  # relative gain of a level below which no finer one is tried
 _WAITS_TRIED = 48
+_SHORTEST = 2e-5  # legs below this share of the track are merged with a neighbour
 
 
 def smooth(
@@ -37,6 +38,7 @@ def smooth(
     limits: ArrayLike,
     chart: Chart | None = None,
     objective: str = "time",
+    wait: bool | None = None,
     finest: int = FINEST,
 ) -> Track:
     """Return a better track than a given one, in the same water.
@@ -44,7 +46,7 @@ def smooth(
     Parameters
     ----------
     track : Track
-        One that can be sailed, such as a path on a network; its waits may shrink, never grow.
+        One that can be sailed, such as a path on a network.
     table : PerformanceTable or TableArrays
         Speed through water.
     fields : GridFields
@@ -54,6 +56,8 @@ def smooth(
     chart : Chart, optional
         Land, zones and charted depth to keep clear of.
     objective : {"time", "distance"}
+    wait : bool, optional
+        Whether the ship may wait where it did not before; by default only if it waits somewhere.
     finest : int
         Legs are split until they are shorter than the track divided by this.
 
@@ -77,6 +81,7 @@ def smooth(
         origin=track.depart,
         by_length=objective == "distance",
         total=float(track.lengths.sum()),
+        wait=bool(track.wait.any()) if wait is None else wait,
     )
     first = line_of(track, sailor)
     if not math.isfinite(_cost(first, sailor)):
@@ -120,24 +125,27 @@ def _levels(line: Line, sailor: Sailor, finest: int) -> Line:
     """Refine a line level by level, and thin it at the end."""
     total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
-    line = _refined(line, sailor)
+    bound = _is_bound(line, sailor)
+    line = _refined(line, sailor, bound)
     while longest > total / finest and (idle < 2 or longest > total / 16.0):
         before = _spent(line, sailor)
         finer = line.split(longest)
         if len(finer) > len(line):
-            finer = _settled_waits(_refined(finer, sailor), sailor)
+            finer = _settled_waits(_refined(finer, sailor, False), sailor)
             if _spent(finer, sailor) < before:
                 line = finer
             gained = before - _spent(finer, sailor)
             idle = idle + 1 if gained < _SETTLED * before else 0
         longest *= 0.5
+    if bound:
+        line = tighten(_refined(line, sailor, True), sailor)
     return _thinned(line, sailor)
 
 
-def _refined(line: Line, sailor: Sailor) -> Line:
-    """Bend a line, and feel along obstacles where they bind."""
+def _refined(line: Line, sailor: Sailor, bound: bool) -> Line:
+    """Bend a line, and feel along obstacles where they may bind."""
     bent = bend(line, sailor)
-    if not _is_bound(bent, sailor):
+    if not bound:
         return bent
     smallest = max(1.0, 1e-6 * float(rough_lengths(line.lat, line.lon).sum()))
     return bend(feel(bent, sailor, smallest=smallest), sailor, rounds=3)
@@ -154,7 +162,9 @@ def _thinned(line: Line, sailor: Sailor) -> Line:
     spent = _spent(line, sailor)
     if not math.isfinite(spent) or len(line) < 3:
         return line
-    thin = pull(line, sailor, penalty=THINNING * spent / len(line))
+    shortest = _SHORTEST * float(rough_lengths(line.lat, line.lon).sum())
+    thin = merge_close(line, sailor, shortest=shortest)
+    thin = pull(thin, sailor, penalty=THINNING * spent / len(line))
     thin = bend(thin, sailor, rounds=3)
     return thin if _spent(thin, sailor) <= spent * (1.0 + 2.0 * THINNING) else line
 
@@ -167,6 +177,7 @@ def _settled_waits(line: Line, sailor: Sailor, *, longer: float = 0.0) -> Line:
     longer : float
         How much longer [s] than now a wait may become.
     """
+    sailor = replace(sailor, patience=np.zeros(3))
     for index in np.flatnonzero(np.isfinite(line.leave)):
         arrive, _ = sailor.sail(line.bundle(), check=False)
         low, high = float(arrive[0, index]), float(line.leave[index]) + longer

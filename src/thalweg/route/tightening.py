@@ -9,7 +9,7 @@ import numpy as np
 from thalweg.core.geodesy import FloatArray, direct, inverse
 from thalweg.route.line import IntArray, Line, unwrapped
 from thalweg.route.pulling import pull
-from thalweg.route.quick import Bundle, Sailor
+from thalweg.route.quick import Bundle, Sailor, rough_lengths
 
 _ROUNDS = 24
 _SCAN = 12  # cuts tried at once
@@ -46,6 +46,68 @@ def tighten(line: Line, sailor: Sailor) -> Line:
         if gain < _SETTLED * (cost if sailor.by_length else cost - line.depart):
             return line
     return line
+
+
+def merge_close(line: Line, sailor: Sailor, *, shortest: float) -> Line:
+    """Return the line with the two ends of every very short leg made one, if that can be sailed.
+
+    Cutting a corner down to a point of the coast leaves two waypoints a hand apart; they become the
+    point where the legs beside them meet when they are drawn on.
+
+    Parameters
+    ----------
+    line : Line
+    sailor : Sailor
+    shortest : float
+        Legs below this length [m] are merged.
+    """
+    k = 1
+    while k < len(line) - 2:
+        short = rough_lengths(line.lat[k : k + 2], line.lon[k : k + 2])[0] < shortest
+        merged = None
+        if short and np.isinf(line.leave[k : k + 2]).all():
+            merged = _merged(line, sailor, k)
+        if merged is None:
+            k += 1
+        else:
+            line = merged
+    return line
+
+
+def _merged(line: Line, sailor: Sailor, k: int) -> Line | None:
+    """Return the line with one point for points k and k + 1, the nearest that can be sailed."""
+    apex = _meeting(line, k)
+    if apex is None:
+        return None
+    middle = 0.5 * (line.lat[k] + line.lat[k + 1]), 0.5 * (line.lon[k] + line.lon[k + 1])
+    out = np.array([1.0, 2.0, 5.0, 20.0])  # ever farther from the corner
+    lat = np.repeat(np.delete(line.lat, k)[None], len(out), axis=0)
+    lon = np.repeat(np.delete(line.lon, k)[None], len(out), axis=0)
+    lat[:, k] = middle[0] + out * (apex[0] - middle[0])
+    lon[:, k] = middle[1] + out * (apex[1] - middle[1])
+    base = Line(lat[0], lon[0], np.delete(line.leave, k), np.delete(line.setting, k), line.depart)
+    cost = sailor.sail(base.bundle(lat, lon))[1]
+    if not np.isfinite(cost).any():
+        return None
+    pick = int(np.argmin(cost))
+    return base.moved(lat[pick], lon[pick])
+
+
+def _meeting(line: Line, k: int) -> tuple[float, float] | None:
+    """Return where leg k - 1 drawn on meets leg k + 1 drawn back; None if that is not near."""
+    lat, lon = line.lat[k - 1 : k + 3], line.lon[k - 1 : k + 3]
+    gaps, starts, ends = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    x, y = gaps[1] * math.sin(starts[1]), gaps[1] * math.cos(starts[1])
+    ax, ay = math.sin(ends[0]), math.cos(ends[0])
+    bx, by = -math.sin(starts[2]), -math.cos(starts[2])
+    cross = ax * by - ay * bx
+    if cross == 0.0:
+        return None
+    reach = (x * by - y * bx) / cross
+    if not 0.0 <= reach <= 20.0 * gaps[1]:
+        return None
+    apex = direct(lat[1], lon[1], ends[0], reach)
+    return float(apex[0]), float(lon[1] + (apex[1] - lon[1] + 180.0) % 360.0 - 180.0)
 
 
 def _cut(line: Line, sailor: Sailor) -> Line:
