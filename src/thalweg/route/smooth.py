@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 FINEST = 48  #: legs are split until they are shorter than the track divided by this
 THINNING = 5e-5  #: share of the cost that may be lost by leaving waypoints out at the end
 _SETTLED = 1e-5  # relative gain of a level below which no finer one is tried
+_HOPEFUL = 1.02  # a coarse resampling is refined too if it costs no more than this times the track
 _WAITS_TRIED = 48
 _SHORTEST = 2e-5  # legs below this share of the track are merged with a neighbour
 
@@ -85,7 +86,7 @@ def smooth(
     )
     first = line_of(track, sailor)
     if not math.isfinite(_cost(first, sailor)):
-        first = _settled_waits(first, sailor, longer=3600.0)
+        first = _made_sailable(first, sailor)
         if not math.isfinite(_cost(first, sailor)):
             return track
     line = pull(first, sailor)
@@ -102,12 +103,20 @@ def smooth(
     return track_of_line(best, sailor)
 
 
+def _made_sailable(line: Line, sailor: Sailor) -> Line:
+    """Return the line with longer waits, or with those the quick sailor finds of itself."""
+    longer = _settled_waits(line, sailor, longer=3600.0)
+    if math.isfinite(_cost(longer, sailor)):
+        return longer
+    return replace(line, leave=np.full(len(line), -math.inf))
+
+
 def _starts(first: Line, pulled: Line, sailor: Sailor) -> list[Line]:
     """Return the lines to refine: the pulled one, and a coarse resampling if it can be sailed."""
     starts = [pulled]
     if len(pulled) > 6 and not np.isfinite(first.leave).any():
         coarse = _resampled(first, 5)
-        if math.isfinite(_cost(coarse, sailor)):
+        if _spent(coarse, sailor) <= _HOPEFUL * _spent(pulled, sailor):
             starts.append(coarse)
     return starts
 
