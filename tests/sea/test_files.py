@@ -508,3 +508,34 @@ def test_nemo_cell_sides_are_averaged_to_centres() -> None:
     assert got[EAST] == pytest.approx([0.34, 0.2], abs=2e-3)
     assert got[NORTH] == pytest.approx([0.23, 0.3], abs=2e-3)
     assert np.isnan(Sea.open(dataset).sample([EAST], T0, 2.5, 0.2)[EAST])
+
+
+def test_masked_positions_of_a_curvilinear_grid_are_holes() -> None:
+    dataset = rotated_grid(20.0, {"swh": (affine, {"units": "m"})})
+    lat, lon = dataset.lat.values.copy(), dataset.lon.values.copy()
+    lat[0, :2] = lon[0, :2] = np.nan
+    masked = dataset.assign_coords(
+        lat=(("y", "x"), lat, dataset.lat.attrs), lon=(("y", "x"), lon, dataset.lon.attrs)
+    )
+    sea = Sea.open(masked)
+    assert value(sea, HS, T0, 0.03, 0.05) == pytest.approx(affine(T0, 0.03, 0.05), rel=1e-9)
+    inside = 0.5 * (dataset.lat.values[0, 0] + dataset.lat.values[1, 1])
+    assert np.isnan(
+        value(
+            sea, HS, T0, inside, 0.5 * (dataset.lon.values[0, 0] + dataset.lon.values[1, 1]) - 0.02
+        )
+    )
+    assert 0.05 < sea.coverage()[0].spacing_deg < 0.15
+
+
+def test_fingerprint_follows_the_file(tmp_path) -> None:
+    import os
+
+    path = tmp_path / "a.nc"
+    regular().to_netcdf(path)
+    first = Sea.open(path).fingerprint()
+    assert Sea.open(path).fingerprint() == first
+    os.utime(path, ns=(1, 1))
+    assert Sea.open(path).fingerprint() != first
+    facts = Sea.open(path).provenance()["layers"][0]["files"][0]
+    assert facts == {"name": "a.nc", "size": path.stat().st_size, "mtime_ns": 1}

@@ -194,7 +194,8 @@ class TriangleGrid:
         shrink = np.cos(np.radians(self.lat[a]))
         x1, x2 = (_wrap(self.lon[k] - self.lon[a]) * shrink for k in (b, c))
         y1, y2 = self.lat[b] - self.lat[a], self.lat[c] - self.lat[a]
-        return float(np.sqrt(np.median(np.abs(x1 * y2 - x2 * y1)))) if len(a) else 0.0
+        twice = np.abs(x1 * y2 - x2 * y1)
+        return float(np.sqrt(np.nanmedian(twice))) if np.isfinite(twice).any() else 0.0
 
     def mesh(self) -> Mesh | None:
         """Return nodes and triangles, if the grid is a mesh."""
@@ -261,6 +262,8 @@ def make_bins(plane: Plane, lat: FloatArray, lon: FloatArray, triangles: IntArra
         x = x[:, :1] + _wrap(x - x[:, :1])
     whole = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
     whole &= (x.max(axis=1) - x.min(axis=1)) < 180.0
+    if not whole.any():  # nothing can be found in a single point
+        x, y, whole = np.zeros_like(x), np.zeros_like(y), np.arange(len(x)) == 0
     x, y, corners = x[whole], y[whole], triangles[whole]
     if plane.pole == 0:
         x, y, corners = _over_the_seam(plane, x, y, corners)

@@ -85,7 +85,7 @@ def open_file(source: Any) -> list[OpenedFile]:
                 {"name": "dataset", "variables": sorted(map(str, source.data_vars))},
             )
         ]
-    path = Path(source)
+    path = Path(source).expanduser()
     if not path.exists():
         raise _missing(path)
     if path.is_dir():
