@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import shapely
@@ -61,6 +62,7 @@ class Islands:
     """
 
     has_depth = False
+    zones = SimpleNamespace(penalty=())
 
     def __init__(self, *polygons):
         self.land = shapely.union_all(list(polygons))

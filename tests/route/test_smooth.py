@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.route.planar import Islands, Plane, rectangle, ship
+from thalweg.chart import Chart
 from thalweg.route import Track, better_route, evaluate
 from thalweg.route.line import line_of
 from thalweg.route.pulling import pull
@@ -273,3 +274,49 @@ def test_quick_sailor_knows_the_edges_of_its_raster():
     arrive, cost = sailor.sail(bundle)
     assert np.isfinite(cost).tolist() == [True, False, False]  # the last runs out of time
     assert arrive[0, 1] == pytest.approx(0.5 * 111319.49 / 5.0, rel=1e-6)
+
+
+def test_penalty_zones_are_gone_round_when_that_is_cheaper():
+    plane, boat = Plane(unit=1000.0), ship(5.0)
+    ring = np.array([plane.place(*p) for p in [(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)]])
+    zone = {
+        "type": "Feature",
+        "properties": {"kind": "penalty", "factor": 3.0},
+        "geometry": {"type": "Polygon", "coordinates": [ring[:, ::-1].tolist()]},
+    }
+    chart = Chart.open_water(-1, 1, -1, 1).with_zones(
+        {"type": "FeatureCollection", "features": [zone]}
+    )
+    track = Track.from_positions([plane.place(*p) for p in [(-3, 0), (0, 2.5), (3, 0)]], depart=0)
+    _, better = improved(track, boat, Sea.calm(), chart=chart)
+    round_it = 2 * math.hypot(2, 1) + 2  # straight through costs 4 + 3 * 2
+    assert better.distance_nm * 1.852 == pytest.approx(round_it, rel=2e-3)
+    assert better.distance_nm * 1.852 > round_it * 0.999
+
+
+def test_waits_for_the_tide_are_found_and_cut_to_what_they_must_be():
+    # two bars, 4 m at datum; the tide gives the metre that is needed from 26585 s on
+    def bed(t, lat, lon):
+        return np.where(((lon > 0.2) & (lon < 0.25)) | ((lon > 0.6) & (lon < 0.65)), 4.0, 20.0)
+
+    def level(t, lat, lon):
+        return 2.0 * np.cos(2 * np.pi * t / 44714.0 + 1.5) + 0.0 * lat
+
+    sea = Sea.from_functions({BED: bed, "sea_surface_height_above_geopotential_datum": level})
+    boat = ship(5.0, 4.5)
+    opens = (2 * math.pi - math.pi / 3 - 1.5) / (2 * math.pi) * 44714.0
+    for wait in ([0, 30000, 0, 0, 0], [0, 30000, 0, 10000, 0]):
+        track = Track([0, 0, 0.05, 0, 0], [0, 0.1, 0.4, 0.5, 0.8], 0, wait)
+        scored = evaluate(track, ship=boat, sea=sea, min_ukc=0.5)
+        assert not scored.feasible
+        better = better_route(
+            scored,
+            ship=boat,
+            sea=sea,
+            chart=None,
+            table=boat.tabulate(),
+            limits=[5.0, math.inf, math.inf],
+            min_ukc=0.5,
+        )
+        assert better.feasible
+        assert better.time_h * 3600 == pytest.approx(opens + 0.6 * 111319.49 / 5.0, abs=2.0)

@@ -13,6 +13,7 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.tables import TableArrays
 from thalweg.route.line import unwrapped
+from thalweg.route.quick import penalty_factors
 from thalweg.route.referee import evaluate
 from thalweg.route.route import Route
 from thalweg.route.smooth import smooth
@@ -97,7 +98,7 @@ def better_route(
             if objective == "distance" or not _touches_rim(track, fields):
                 break
         route = shorten_waits(score(track), score) if track != scored.track else scored
-        best = min(best, route, key=lambda item: _rank(item, objective))
+        best = min(best, route, key=lambda item: _rank(item, objective, chart))
         if route.feasible:
             break
     return shorten_waits(best, score)
@@ -196,11 +197,17 @@ def _with_wait(track: Track, index: int, change: float) -> Track:
     return track.replaced(wait=wait)
 
 
-def _rank(route: Route, objective: str) -> tuple[bool, float, float]:
-    """Return what routes are compared by: limits kept first, then the objective."""
-    time = route.arrive if math.isfinite(route.arrive) else math.inf
-    first = route.distance_nm if objective == "distance" else time
-    return (not route.feasible, first if math.isfinite(time) else math.inf, time)
+def _rank(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
+    """Return what routes are compared by: limits kept first, then the objective, then time."""
+    if not math.isfinite(route.arrive):
+        return True, math.inf, math.inf
+    sailed = route.legs["arrive"] - route.legs["depart"]
+    spent = route.legs["length"] if objective == "distance" else sailed
+    factor = penalty_factors(chart, route.track.lat, route.track.lon)
+    cost = float(np.sum(spent if factor is None else factor * spent))
+    if objective != "distance":
+        cost += float(route.track.wait.sum())
+    return not route.feasible, cost, route.arrive
 
 
 def _tightened(limits: ArrayLike, margin: float) -> FloatArray:

@@ -57,7 +57,7 @@ def _best_subset(line: Line, sailor: Sailor, penalty: float) -> NDArray[np.int64
         there = np.arange(here + 1, min(count, here + 1 + _REACH))
         leave = max(arrive[here], line.leave[here])
         ends, cost = sailor.sail(_hops(line, here, there, leave))
-        spent = cost if sailor.by_length else ends[:, -1] - arrive[here]
+        spent = cost if sailor.by_length else cost - arrive[here]
         total = label[here] + spent + penalty
         slack = 1e-9 * np.where(np.isfinite(total), np.abs(total), 0.0)
         better = total + slack < label[there]

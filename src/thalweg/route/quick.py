@@ -102,7 +102,8 @@ class Sailor:
             Arrival at every point [s after the origin]; +inf from the first leg that cannot be
             sailed.
         cost : float64 array (L,)
-            What is compared: last arrival [s], or length [m]; +inf if it cannot be sailed.
+            What is compared: last arrival [s], or length [m], with what penalty zones add to it;
+            +inf if it cannot be sailed.
         """
         arrive, _, cost = self.sail_and_wait(bundle, pieces=pieces, check=check)
         return arrive, cost
@@ -140,7 +141,21 @@ class Sailor:
             over = np.logical_or.accumulate(blocked, axis=1)
             arrive[:, 1:][over] = math.inf
             cost[over[:, -1]] = math.inf
-        return arrive, out.leave.reshape(count, size), cost
+        leave = out.leave.reshape(count, size)
+        return arrive, leave, cost + self._penalty(bundle, arrive, leave, cost) if check else cost
+
+    def _penalty(
+        self, bundle: Bundle, arrive: FloatArray, leave: FloatArray, cost: FloatArray
+    ) -> FloatArray:
+        """Return what penalty zones add to the cost of polylines."""
+        factor = penalty_factors(self.chart, bundle.lat, bundle.lon)
+        if factor is None:
+            return np.zeros(len(cost))
+        spent = rough_lengths(bundle.lat, bundle.lon)
+        if not self.by_length:
+            with np.errstate(invalid="ignore"):
+                spent = arrive[:, 1:] - leave[:, :-1]
+        return np.where(np.isfinite(cost), ((factor - 1.0) * spent).sum(axis=1), 0.0)
 
     def look(
         self, lat: FloatArray, lon: FloatArray
@@ -188,6 +203,15 @@ def make_sailor(
         pause = float(np.clip(np.median(np.diff(raster.times)), *_PAUSES))
         patience[:] = _PATIENCE, pause, _OPENING
     return Sailor(raster, arrays, chart, bounds, origin, by_length, spacing, patience)
+
+
+def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> FloatArray | None:
+    """Return the penalty factor of every leg of polylines (..., n); None if there are no zones."""
+    if chart is None or not chart.zones.penalty:
+        return None
+    ends = lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:]
+    shape = ends[0].shape
+    return np.asarray(chart.zone_factor(*(x.ravel() for x in ends))[0]).reshape(shape)
 
 
 def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:

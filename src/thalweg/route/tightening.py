@@ -9,7 +9,7 @@ import numpy as np
 from thalweg.core.geodesy import FloatArray, direct, inverse
 from thalweg.route.line import IntArray, Line, unwrapped
 from thalweg.route.pulling import pull
-from thalweg.route.quick import Bundle, Sailor, rough_lengths
+from thalweg.route.quick import Bundle, Sailor, penalty_factors, rough_lengths
 
 _ROUNDS = 24
 _SCAN = 12  # cuts tried at once
@@ -155,7 +155,13 @@ def _clear(
         line.setting[which - 1][:, None],
         np.repeat(arrive, shape[1]),
     )
-    return np.isfinite(sailor.sail(bundle)[1]).reshape(shape)
+    clear = np.isfinite(sailor.sail(bundle)[1])
+    factor = penalty_factors(sailor.chart, bundle.lat, bundle.lon)
+    if factor is not None:  # a cut must not enter a zone that neither of its legs was in
+        own = penalty_factors(sailor.chart, line.lat, line.lon)
+        allowed = np.maximum(own[which - 1], own[which])  # type: ignore[index]
+        clear &= factor[:, 0] <= allowed + 1e-9
+    return clear.reshape(shape)
 
 
 def _part(
