@@ -11,7 +11,7 @@ from thalweg.kernels.jit import jit
 INSIDE = -1e-9  # least barycentric weight that still counts as inside
 
 
-@jit
+@jit(inline="always")
 def corner_sum(values, level, index, weight, i):
     """Return the weighted sum over the corners of point ``i`` at one time level."""
     total = 0.0
@@ -43,8 +43,8 @@ def gather_points(values, index, weight, level, fraction, out):
 @jit
 def gather_series(values, index, weight, level, fraction, out):
     """Interpolate ``values`` (T, M) at points for all of the given times into ``out`` (N, K)."""
-    for i in range(out.shape[0]):
-        for k in range(out.shape[1]):
+    for k in range(out.shape[1]):  # one level at a time stays in the processor's cache
+        for i in range(out.shape[0]):
             if level[k] < 0 or index[i, 0] < 0:
                 out[i, k] = np.nan
                 continue
