@@ -102,6 +102,14 @@ def test_uneven_steps_keep_the_least_sounding():
     assert chart.depth_at(51.0, 2.4) == pytest.approx(10.0)
 
 
+def test_the_fingerprint_knows_the_soundings():
+    one = OPEN.with_depth(grid(RAMP, LAT, LON, "depth"))
+    two = OPEN.with_depth(grid(RAMP + 1.0, LAT, LON, "depth"))
+    again = OPEN.with_depth(grid(RAMP, LAT, LON, "depth"))
+    assert one.fingerprint() == again.fingerprint()
+    assert len({one.fingerprint(), two.fingerprint(), OPEN.fingerprint()}) == 3
+
+
 def test_the_kernel_gives_the_same_least_depth():
     chart = OPEN.with_depth(grid(RAMP, LAT, LON, "depth"))
     depths = chart.depth_kernel(50.5, 51.5, 2.5, 3.5)

@@ -315,6 +315,6 @@ class Chart:
         digest = hashlib.sha256(self.land.name.encode())
         for array in (*self.land.index[1:], self.area.array()):
             digest.update(np.ascontiguousarray(array).tobytes())
-        for text in (*self.zones.texts(), *(layer.name for layer in self.depths.layers)):
+        for text in (*self.zones.texts(), *(layer.fingerprint() for layer in self.depths.layers)):
             digest.update(text.encode())
         return digest.hexdigest()[:16]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,17 +47,6 @@ UNITS: Final = {
 }
 
 
-class Layer(Protocol):
-    """A source of depth [m, positive down]."""
-
-    name: str
-
-    def window(
-        self, south: float, north: float, west: float, east: float
-    ) -> tuple[tuple[float, float, float, float], Float32Array] | None:
-        """Return (first lat, step, first lon, step) and depths of a box; None outside it."""
-
-
 @dataclass(frozen=True)
 class GridLayer:
     """Depth on latitudes and longitudes [deg], both ascending; read when needed."""
@@ -65,6 +55,15 @@ class GridLayer:
     lat: FloatArray
     lon: FloatArray
     read: Callable[[slice, slice], Float32Array]
+
+    def fingerprint(self) -> str:
+        """Return a digest of the name, the axes and about 10,000 of the soundings."""
+        digest = hashlib.sha256(self.name.encode())
+        tall, wide = (max(len(axis) // 100, 1) for axis in (self.lat, self.lon))
+        sample = self.read(slice(None, None, tall), slice(None, None, wide))
+        for array in (self.lat, self.lon, sample):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()[:16]
 
     def window(
         self, south: float, north: float, west: float, east: float
@@ -113,6 +112,11 @@ class FunctionLayer:
     name: str
     function: DepthFunction
     spacing_deg: float | None = None
+
+    def fingerprint(self) -> str:
+        """Return the function's name and spacing: what it does is not known."""
+        where = getattr(self.function, "__module__", "")
+        return f"{where}.{self.name} {self.spacing_deg}"
 
     def at(self, lat: FloatArray, lon: FloatArray) -> FloatArray:
         """Return the depth [m] the function gives."""

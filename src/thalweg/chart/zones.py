@@ -18,6 +18,7 @@ from thalweg.chart import geojson
 from thalweg.chart.index import build_index, empty_index
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray, direct, inverse, wrap_longitude
+from thalweg.kernels.coast import outlines_touched
 from thalweg.kernels.cube import IndexArrays
 
 SIDE: Final = 128  # cells along a face of the index of no-go zones
@@ -31,6 +32,54 @@ KINDS: Final = {
     "price": "price",
     "eca": "price",
 }
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Zones of one kind, each on three turns of longitude, their factors and their outlines."""
+
+    tree: Any
+    factors: FloatArray
+    outlines: IndexArrays
+
+    @classmethod
+    def of(cls, zones: tuple[tuple[Any, float], ...]) -> Group:
+        """Prepare (polygon, factor) pairs."""
+        import shapely.affinity
+
+        shapes = [
+            shapely.affinity.translate(shape, turn)
+            for shape, _ in zones
+            for turn in (-360.0, 0.0, 360.0)
+        ]
+        shapely.prepare(shapes)
+        parts = [part for shape, _ in zones for part in shapely.get_parts(shape)]
+        areas = [part for part in parts if part.geom_type == "Polygon"]
+        outlines = build_index(geojson.rings_of(areas), SIDE)
+        factors = np.repeat([factor for _, factor in zones], 3)
+        return cls(shapely.STRtree(shapes), factors, outlines)
+
+    def at(self, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        """Return the excess (factor - 1) at positions [deg]."""
+        import shapely
+
+        which, zone = self.tree.query(shapely.points(lon, lat), predicate="intersects")
+        excess = np.zeros(len(lat))
+        excess[which] = self.factors[zone] - 1.0
+        return excess
+
+    def along(self, lines: Any) -> FloatArray:
+        """Return for each line the sum of (factor - 1) times the share of it inside."""
+        import shapely
+
+        which, zone = self.tree.query(lines, predicate="intersects")
+        if not len(which):
+            return np.zeros(len(lines))
+        whole = shapely.length(lines[which])
+        part = shapely.length(shapely.intersection(lines[which], self.tree.geometries[zone]))
+        share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 1.0)
+        excess = np.bincount(which, share * (self.factors[zone] - 1.0), minlength=len(lines))
+        return excess.astype(np.float64)
 
 
 @dataclass(frozen=True)
@@ -74,21 +123,9 @@ class Zones:
         return build_index(geojson.rings_of(list(self.no_go)), SIDE)
 
     @cached_property
-    def _trees(self) -> tuple[tuple[Any, FloatArray], ...]:
-        """For penalty and price: a tree of the polygons on three turns, and their factors."""
-        import shapely.affinity
-
-        trees = []
-        for zones in (self.penalty, self.price):
-            shapes, factors = [], []
-            for shape, factor in zones:
-                for turn in (-360.0, 0.0, 360.0):
-                    moved = shapely.affinity.translate(shape, turn)
-                    shapely.prepare(moved)
-                    shapes.append(moved)
-                    factors.append(factor)
-            trees.append((shapely.STRtree(shapes), np.array(factors)))
-        return tuple(trees)
+    def _groups(self) -> tuple[Group, Group]:
+        """Penalty and price zones ready for legs."""
+        return Group.of(self.penalty), Group.of(self.price)
 
     def factors(
         self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
@@ -99,14 +136,24 @@ class Zones:
         if not (self.penalty or self.price):
             return np.ones(shape), np.ones(shape)
         legs = [np.ascontiguousarray(x).ravel() for x in ends]
-        lines, leg, pieces = _lines(*legs)
-        answers = []
-        for tree, factors in self._trees:
-            excess = np.zeros(len(legs[0]))
-            if len(factors):
-                np.add.at(excess, leg, _excess(lines, tree, factors))
-            answers.append((1.0 + excess / pieces).reshape(shape))
-        return answers[0], answers[1]
+        penalty, price = (self._weighted(legs, group) for group in self._groups)
+        return penalty.reshape(shape), price.reshape(shape)
+
+    def _weighted(self, legs: list[FloatArray], group: Group) -> FloatArray:
+        """Return the factors of legs of one group: at once where no outline is touched."""
+        excess = np.zeros(len(legs[0]))
+        if not len(group.factors):
+            return 1.0 + excess
+        touched = np.empty(len(excess), np.bool_)
+        outlines_touched(group.outlines, *legs, touched)
+        whole = np.flatnonzero(~touched)
+        excess[whole] = group.at(legs[0][whole], legs[1][whole])
+        cut = np.flatnonzero(touched)
+        if len(cut):
+            lines, leg, pieces = _lines(*(x[cut] for x in legs))
+            shares = np.bincount(leg, group.along(lines), minlength=len(cut))
+            excess[cut] = shares / pieces
+        return 1.0 + excess
 
     def texts(self) -> list[str]:
         """Return everything as text, for a fingerprint."""
@@ -181,17 +228,3 @@ def _lines(
     x1 = x0 + wrap_longitude(x1 - x0)
     ends = np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1)
     return shapely.linestrings(ends), leg, pieces.astype(float)
-
-
-def _excess(lines: Any, tree: Any, factors: FloatArray) -> FloatArray:
-    """Return for each piece the sum of (factor - 1) times the share of it inside."""
-    import shapely
-
-    which, zone = tree.query(lines, predicate="intersects")
-    if not len(which):
-        return np.zeros(len(lines))
-    whole = shapely.length(lines[which])
-    part = shapely.length(shapely.intersection(lines[which], tree.geometries[zone]))
-    share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 1.0)
-    excess = np.bincount(which, share * (factors[zone] - 1.0), minlength=len(lines))
-    return excess.astype(np.float64)

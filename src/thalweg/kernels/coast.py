@@ -350,3 +350,15 @@ def point_codes(coast, lat, lon, code):
     """Fill ``code`` (int8) for many positions [deg]; see `point_code`."""
     for i in range(len(code)):
         code[i] = point_code(coast, lat[i], lon[i])
+
+
+@bare
+def outlines_touched(index, lat1, lon1, lat2, lon2, touched):
+    """Fill ``touched`` (bool) with whether legs [deg] may touch an outline; long ones may."""
+    for i in range(len(touched)):
+        a, b = unit_vector(lat1[i], lon1[i]), unit_vector(lat2[i], lon2[i])
+        x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+        chord = sqrt(x * x + y * y + z * z)
+        touched[i] = not chord < LONGEST_ARC
+        if SHORTEST_ARC < chord < LONGEST_ARC:
+            touched[i] = _touched(index, a, b, chord, 0.3 * (FLATTENING * chord) ** 2) > 0
