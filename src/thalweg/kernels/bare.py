@@ -33,3 +33,12 @@ def inlined(function):
     Tuples of arrays are handed over by value, some hundred machine words at every call.
     """
     return _compile(function, forceinline=True, **_INNER)
+
+
+def woven(function):
+    """Compile as part of the caller from the start: for thin layers over large inlined functions.
+
+    Each layer of `inlined` functions is optimised anew; woven ones cost nothing. Do not weave large
+    functions or many: the time of type inference grows fast.
+    """
+    return _compile(function, inline="always", **_INNER)

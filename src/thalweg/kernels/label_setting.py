@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels import heap
-from thalweg.kernels.bare import bare, inlined
+from thalweg.kernels.bare import bare, woven
 from thalweg.kernels.codes import (
     ARRIVE_BY,
     CHANNELS,
@@ -102,7 +102,7 @@ def new_workspace(n_nodes):
     )
 
 
-@inlined
+@woven
 def _worth(query, cost, time, length, factor, goal_distance, labels, node):
     """Return how much waiting plus weighted sailing [s] may at most be; not positive: no use."""
     quickest = length * query.slowness
@@ -122,7 +122,7 @@ def _worth(query, cost, time, length, factor, goal_distance, labels, node):
     return enough if quickest * factor < enough else -1.0
 
 
-@inlined
+@woven
 def _sail(network, sea, ship, query, node, edge, k, time, enough, work):
     """Return (departure, arrival, status) of the best use of an edge from a node since a time."""
     factor = 1.0 if query.by_distance else float(network.factor[edge])
@@ -144,7 +144,7 @@ def _sail(network, sea, ship, query, node, edge, k, time, enough, work):
     )  # fmt: skip
 
 
-@inlined
+@woven
 def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, size):
     """Improve the label of an edge's head if the edge can; return the size of the heap."""
     to = network.target[edge]
