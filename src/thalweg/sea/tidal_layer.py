@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import json
-import os
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.cache import cache_folder
 from thalweg.core.errors import InputError
 from thalweg.sea import names as nm
 from thalweg.sea import tides
@@ -23,17 +18,15 @@ from thalweg.sea.constituents import Complex, Constituents, phasors, tide
 from thalweg.sea.fields import WORLD, Area, Coverage, FloatArray, Mesh
 from thalweg.sea.functions import automatic_times
 from thalweg.sea.gridded import GridLayer
-from thalweg.sea.grids import Grid, Located, RectilinearGrid, TriangleGrid
+from thalweg.sea.grids import Grid, Located, TriangleGrid
 from thalweg.sea.layer import Samples, nan_pairs
-from thalweg.sea.store import Window
+from thalweg.sea.tidal_run import analyse_layer, has_tides, no_tides
 
 if TYPE_CHECKING:
     from thalweg.sea.sea import Sea
 
-TIDAL: Final = (nm.EASTWARD_CURRENT, nm.NORTHWARD_CURRENT, nm.WATER_LEVEL)
 TIME_STEP: Final = 600.0  #: [s] step at which kernels get the tide
 BLOCK: Final = 1 << 13  #: points predicted at once
-VERSION: Final = 1  #: of the cached analyses
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,16 +193,12 @@ def tidal_sea(
         return SeaClass((_of_constituents(source, area),))
     layers: list[Any] = []
     for layer in source.layers:
-        if isinstance(layer, GridLayer) and set(TIDAL) & layer.variables and layer.period:
+        if isinstance(layer, GridLayer) and has_tides(layer):
             layers.append(_of_layer(layer, constituents, rayleigh, progress, cache))
         elif layer.period is None:
             layers.append(layer)
     if not any(isinstance(layer, TidalLayer) for layer in layers):
-        raise InputError(
-            "The sea holds no currents or water levels on a grid or mesh over time.",
-            "Tides are analysed at the nodes of files opened with Sea.open.",
-            "Open the model run, or give Constituents.",
-        )
+        raise no_tides()
     return SeaClass(tuple(layers), source.assumptions)
 
 
@@ -232,46 +221,6 @@ def _of_layer(
     return TidalLayer(
         analysis.constituents, layer.grid, source=f"tide of {layer.source}", facts=facts
     )
-
-
-def analyse_layer(
-    layer: GridLayer,
-    *,
-    constituents: Sequence[str] | None = None,
-    rayleigh: float = tides.RAYLEIGH,
-    progress: tides.Progress | None = None,
-    cache: bool = True,
-) -> tides.TideAnalysis:
-    """Return the tides of currents and water level at every place of a layer, kept on disk."""
-    times = layer.axis.times
-    names = tides.chosen_constituents(times, constituents, rayleigh)
-    rows, columns = layer.grid.shape
-    lat, lon = _positions(layer.grid)
-    path = _cache_path(layer, names) if cache else None
-    kept = _read_cache(path, lat, lon) if path else None
-    if kept is not None:
-        return kept
-    window = Window(0, times.size, 0, rows, 0, columns)
-    series: dict[str, Any] = {}
-    for quantity in layer.quantities:
-        if set(quantity.names) & set(TIDAL):
-            values = quantity.read(window, columns)
-            series.update({n: values[n].T for n in quantity.names if n in TIDAL})
-    analysis = tides.analyse(
-        times, series, lat=lat, lon=lon, constituents=names, rayleigh=rayleigh, progress=progress
-    )
-    if path is not None:
-        _write_cache(path, analysis)
-    return analysis
-
-
-def _positions(grid: Any) -> tuple[FloatArray, FloatArray]:
-    """Return the position of every place, flat."""
-    lat, lon = np.array(grid.lat, np.float64), np.array(grid.lon, np.float64)
-    rows, columns = grid.shape
-    if isinstance(grid, RectilinearGrid):
-        return lat.repeat(columns), np.tile(lon, rows)
-    return lat.ravel(), lon.ravel()
 
 
 def _of_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
@@ -314,52 +263,3 @@ def _triangulated(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
         ) from None
     triangles = np.ascontiguousarray(triangles, np.int64)
     return TriangleGrid(lat, lon, triangles, (1, lat.size), Mesh(lat, lon, triangles))
-
-
-def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:
-    key = [VERSION, dict(layer.provenance()), list(names), tides.LEAST_KNOWN]
-    text = json.dumps(key, sort_keys=True, default=str)
-    return cache_folder("tides") / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
-
-
-def _write_cache(path: Path, analysis: tides.TideAnalysis) -> None:
-    constants = analysis.constituents
-    arrays: dict[str, Any] = {
-        "names": np.array(constants.names),
-        "record": np.array([analysis.start, analysis.end]),
-    }
-    for name in constants.variables:
-        arrays[f"amplitude:{name}"] = constants.amplitude[name]
-        arrays[f"phase:{name}"] = constants.phase[name]
-        arrays[f"mean:{name}"] = constants.mean[name]
-        arrays[f"share:{name}"] = analysis.tidal_share[name]
-        arrays[f"variance:{name}"] = analysis.variance[name]
-    partial = path.with_name(f"{path.stem}.{os.getpid()}.part.npz")
-    try:
-        np.savez(partial, **arrays)
-        os.replace(partial, path)
-    except OSError:
-        partial.unlink(missing_ok=True)
-
-
-def _read_cache(path: Path, lat: FloatArray, lon: FloatArray) -> tides.TideAnalysis | None:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            held = {key: file[key] for key in file.files}
-        parts: dict[str, dict[str, FloatArray]] = {}
-        for key, value in held.items():
-            kind, _, name = key.partition(":")
-            parts.setdefault(kind, {})[name] = value
-        constants = Constituents(
-            tuple(str(n) for n in held["names"]),
-            parts["amplitude"],
-            parts["phase"],
-            parts["mean"],
-            lat,
-            lon,
-            "foreman",
-        )
-        start, end = (float(x) for x in held["record"])
-        return tides.TideAnalysis(constants, parts["share"], parts["variance"], start, end)
-    except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
-        return None

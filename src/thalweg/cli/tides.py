@@ -1,0 +1,293 @@
+"""``thalweg tides``: analyse records and model runs, predict from constituents."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import re
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import format_time, parse_time
+
+if TYPE_CHECKING:
+    from thalweg.sea.constituents import Constituents
+    from thalweg.sea.tides import TideAnalysis
+
+MOST_ROWS = 2_000_000  #: times one prediction may have
+SHOWN = 12  #: constituents printed for a reader
+
+
+def add_command(commands: Any) -> None:
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        "tides",
+        help="analyse tides and predict them for any date",
+        description="Find tidal constituents in a record or a model run, and predict from them.",
+    )
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    _add_analyse(actions)
+    _add_predict(actions)
+    for action in actions.choices.values():
+        action._negative_number_matcher = re.compile(r"^-\d[\d.]*([,;\s].*)?$")
+        action.set_defaults(run=run)
+
+
+def _add_analyse(actions: Any) -> None:
+    parser = actions.add_parser(
+        "analyse",
+        help="find the tidal constituents of a record or a model run",
+        description="Find the tidal constituents of a record (CSV) or a model run (NetCDF).",
+    )
+    parser.add_argument("file", metavar="FILE", help="record (CSV) or model run (NetCDF)")
+    parser.add_argument("--at", metavar="LAT,LON", help="position of the record")
+    parser.add_argument(
+        "--constituents", nargs="+", metavar="NAME", help="by default all the length can tell apart"
+    )
+    parser.add_argument(
+        "--rayleigh", type=float, default=1.0, metavar="R", help="cycles two constituents must part"
+    )
+    parser.add_argument("--out", metavar="FILE", help="write the constituents as JSON")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def _add_predict(actions: Any) -> None:
+    parser = actions.add_parser(
+        "predict",
+        help="predict the tide from constituents",
+        description="Predict the tide from a constituents file, as CSV or JSON.",
+    )
+    parser.add_argument(
+        "file", metavar="FILE", help="of 'tides analyse', a hatyan component file or a station set"
+    )
+    parser.add_argument("--station", metavar="ID|NAME", help="station in a set of many")
+    parser.add_argument("--at", metavar="LAT,LON", help="position, where the file holds many nodes")
+    parser.add_argument("--start", required=True, metavar="TIME", help="ISO 8601, UTC")
+    parser.add_argument("--end", required=True, metavar="TIME", help="ISO 8601, UTC")
+    parser.add_argument("--step", type=float, default=10.0, metavar="MIN", help="step in minutes")
+    parser.add_argument("--out", metavar="FILE", help="write CSV here instead of printing it")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Analyse or predict."""
+    return _analyse(arguments) if arguments.action == "analyse" else _predict(arguments)
+
+
+def _analyse(arguments: argparse.Namespace) -> int:
+    from thalweg.sea.tide_files import write_constituents
+
+    if not (np.isfinite(arguments.rayleigh) and arguments.rayleigh > 0.0):
+        raise InputError(
+            f"A Rayleigh criterion of {arguments.rayleigh:g} cannot be.",
+            "It is a positive number of cycles, usually 1.",
+            "Correct it.",
+        )
+    is_record = Path(arguments.file).suffix.lower() in (".csv", ".txt")
+    analysis = _record(arguments) if is_record else _model(arguments)
+    if arguments.out:
+        write_constituents(analysis.constituents, arguments.out)
+    found = _summary(analysis, arguments.out)
+    if arguments.json:
+        print(json.dumps(found, indent=2, allow_nan=False))
+    else:
+        _show(found)
+    return 0
+
+
+def _record(arguments: argparse.Namespace) -> TideAnalysis:
+    from thalweg.sea.tide_records import read_record
+    from thalweg.sea.tides import analyse
+
+    if not arguments.at:
+        raise InputError(
+            "The position of the record is not given.",
+            "Nodal corrections depend on latitude.",
+            "Add --at LAT,LON.",
+        )
+    lat, lon = _position(arguments.at)
+    times, series = read_record(arguments.file)
+    return analyse(
+        times,
+        series,
+        lat=lat,
+        lon=lon,
+        constituents=arguments.constituents,
+        rayleigh=arguments.rayleigh,
+    )
+
+
+def _model(arguments: argparse.Namespace) -> TideAnalysis:
+    from thalweg.sea import Sea
+    from thalweg.sea.tidal_run import tidal_analysis
+
+    return tidal_analysis(
+        Sea.open(arguments.file),
+        constituents=arguments.constituents,
+        rayleigh=arguments.rayleigh,
+        progress=_progress(arguments),
+    )
+
+
+def _progress(arguments: argparse.Namespace) -> Callable[[int, int], None] | None:
+    if arguments.json or not sys.stderr.isatty():
+        return None
+
+    def tell(done: int, total: int) -> None:
+        end = "\n" if done >= total else ""
+        print(f"\r{done} of {total} series", end=end, file=sys.stderr, flush=True)
+
+    return tell
+
+
+def _summary(analysis: TideAnalysis, out: str | None) -> dict[str, Any]:
+    constants = analysis.constituents
+    known = {n: np.isfinite(constants.mean[n]) for n in sorted(constants.variables)}
+    return {
+        "start": format_time(analysis.start),
+        "end": format_time(analysis.end),
+        "nodes": int(constants.lat.size),
+        "constituents": list(constants.names),
+        "tidal_share": {n: _number(analysis.share(n)) for n in known},
+        "nodes_without_tide": {n: int((~k).sum()) for n, k in known.items()},
+        "variables": {n: _rows(constants, n, k) for n, k in known.items()},
+        "wrote": out,
+    }
+
+
+def _rows(constants: Constituents, name: str, known: Any) -> list[dict[str, Any]]:
+    """Return the constants of a single node, or the median amplitude over many."""
+    if constants.lat.size == 1:
+        return constants.table(name)
+    sizes = constants.amplitude[name][:, known]
+    middle = np.median(sizes, axis=1) if known.any() else np.full(len(constants.names), np.nan)
+    rows = [
+        {"name": n, "period_h": float(1.0 / f), "amplitude_median": _number(a)}
+        for n, f, a in zip(constants.names, constants.frequencies(), middle)
+    ]
+    return sorted(rows, key=lambda r: -(r["amplitude_median"] or 0.0))
+
+
+def _show(found: dict[str, Any]) -> None:
+    print(f"{found['start']} to {found['end']}, {found['nodes']} nodes")
+    for name, rows in found["variables"].items():
+        share = found["tidal_share"][name]
+        told = (
+            "nothing varies" if share is None else f"{100 * share:.1f} % of the variance is tidal"
+        )
+        dry = found["nodes_without_tide"][name]
+        print(f"{name}: {told}" + (f", {dry} nodes without tide" if dry else ""))
+        for row in rows[:SHOWN]:
+            size = row.get("amplitude", row.get("amplitude_median"))
+            phase = f"  {row['phase_deg']:6.1f} deg" if "phase_deg" in row else "  (median)"
+            print(f"  {row['name']:>6}  {row['period_h']:9.4f} h  {size:8.4f}{phase}")
+        if len(rows) > SHOWN:
+            print(f"  and {len(rows) - SHOWN} more")
+    if found["wrote"]:
+        print(f"wrote {found['wrote']}")
+
+
+def _predict(arguments: argparse.Namespace) -> int:
+    from thalweg.sea.tide_files import read_constituents
+
+    times = _times(arguments)
+    constants = read_constituents(arguments.file, station=arguments.station)
+    series = _series(constants, times, arguments.at)
+    if arguments.json:
+        print(json.dumps(_predicted(constants, times, series), indent=2, allow_nan=False))
+    elif arguments.out:
+        with open(arguments.out, "w", encoding="utf-8", newline="") as file:
+            _write(file, times, series)
+        print(f"wrote {arguments.out}")
+    else:
+        _write(sys.stdout, times, series)
+    return 0
+
+
+def _times(arguments: argparse.Namespace) -> np.ndarray[Any, np.dtype[np.float64]]:
+    start, end = parse_time(arguments.start), parse_time(arguments.end)
+    step = 60.0 * arguments.step
+    if not (np.isfinite(step) and step > 0.0 and end >= start):
+        raise InputError(
+            f"Every {arguments.step:g} minutes from {arguments.start} to {arguments.end} is no "
+            "series of times.",
+            "The step is positive and the end not before the start.",
+            "Correct them.",
+        )
+    rows = int((end - start) / step + 1e-6) + 1
+    if rows > MOST_ROWS:
+        raise InputError(
+            f"{rows} times are asked for.", f"At most {MOST_ROWS}.", "Use a longer step."
+        )
+    return start + step * np.arange(rows, dtype=np.float64)
+
+
+def _series(constants: Constituents, times: Any, at: str | None) -> dict[str, Any]:
+    """Return the tide by variable, at a station or at a position between nodes."""
+    names = sorted(constants.variables)
+    if constants.lat.size == 1:
+        return {n: constants.predict(n, times)[0] for n in names}
+    if not at:
+        raise InputError(
+            f"The file holds {constants.lat.size} nodes.",
+            "The tide is predicted at one position.",
+            "Add --at LAT,LON.",
+        )
+    from thalweg.sea import Sea
+
+    lat, lon = _position(at)
+    found = Sea.from_tides(constants).series(names, times, np.array([lat]), np.array([lon]))
+    if all(np.isnan(v).all() for v in found.values()):
+        raise InputError(
+            f"{at} lies outside the nodes, or at one without a tide.",
+            "",
+            "Choose another position.",
+        )
+    return {n: v[0] for n, v in found.items()}
+
+
+def _position(text: str) -> tuple[float, float]:
+    from thalweg.core.geodesy import parse_position
+
+    position = parse_position(text)
+    if position is None:
+        raise InputError(
+            f"{text!r} is not a position.",
+            "A position is LAT,LON in degrees, such as 51.44,3.60 or 51.44N 3.60E.",
+            "Write it that way.",
+            value=text,
+        )
+    return float(position[0]), float(position[1])
+
+
+def _predicted(constants: Constituents, times: Any, series: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "times": [format_time(t) for t in times],
+        "variables": {n: [_number(x) for x in v] for n, v in series.items()},
+        "constituents": list(constants.names),
+        "convention": constants.convention,
+        "source": dict(constants.facts),
+    }
+
+
+def _write(file: TextIO, times: Any, series: dict[str, Any]) -> None:
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(["time", *series])
+    writer.writerows(_lines(times, series))
+
+
+def _lines(times: Any, series: dict[str, Any]) -> Iterator[list[str]]:
+    columns = list(series.values())
+    for k, time in enumerate(times):
+        numbers = [f"{c[k]:.4f}" if np.isfinite(c[k]) else "" for c in columns]
+        yield [format_time(time), *numbers]
+
+
+def _number(value: float) -> float | None:
+    return round(float(value), 6) if np.isfinite(value) else None
