@@ -223,10 +223,8 @@ def _triangle(
         )
         speed = np.broadcast_to(ship.speed_through_water(here, points.setting), across.shape)
         drift = _drift(across, speed)
-        if fixed or np.all(
-            ~(np.abs(speed - before) > _SPEED_TOLERANCE * np.abs(speed)) & ~np.isnan(before)
-            | np.isnan(speed)
-        ):
+        settled = np.abs(speed - before) <= _SPEED_TOLERANCE * np.abs(speed)
+        if fixed or np.all(settled | np.isnan(speed)):
             break
     return speed, drift
 

@@ -1,0 +1,213 @@
+"""The referee's verdict: every number of a sailed track, and every limit it breaks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.route.limits import broken_limits, land_violations, stops
+from thalweg.route.passage_times import Passage
+from thalweg.route.physics import Motion, World, conditions_at, look, move
+from thalweg.route.pieces import IntArray, Pieces, Points
+from thalweg.route.route import Route, Violation
+from thalweg.route.sailing import Sailed, spacings
+from thalweg.route.track import Track
+
+MOST_LOOKS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
+LOOKS_PER_CELL = 8  #: of gridded data
+_WAIT_LOOKS = 300.0  # longest time between two looks at the depth while waiting [s]
+
+
+def report(sailed: Sailed, min_ukc: float | None, tolerance: float) -> Route:
+    """Look at every point once more, check the limits and put the route together.
+
+    Parameters
+    ----------
+    sailed : Sailed
+    min_ukc : float or None
+        Least under-keel clearance [m]; None: depth is not looked at.
+    tolerance : float
+        Of the time of sailing [s].
+    """
+    world, pieces = sailed.world, sailed.pieces
+    points, time, order = _all_points(sailed)
+    looked_at = np.where(np.isfinite(time), time, pieces.track.depart)
+    motion = move(world, points, looked_at)
+    rate = _fuel_rate(world, points, looked_at, motion)
+    near, moments = _looks(sailed, points, time)
+    violations, least = _judged(sailed, near, moments, min_ukc)
+    violations += stops(world, points, time, motion)
+    violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
+    departs, arrives = sailed.leg_times()
+    legs = {
+        "length": pieces.length,
+        "course": pieces.course,
+        "depart": departs,
+        "arrive": arrives,
+        "fuel": _leg_fuel(pieces, sailed.passage, rate[order]),
+        "under_keel_clearance": least,
+    }
+    if np.any(pieces.track.wait) and world.has_depth:
+        tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
+    samples = _samples(sailed, points, time, motion=motion, rate=rate)
+    return Route(pieces.track, legs, samples, tuple(violations), tolerance, world.assumptions)
+
+
+def _judged(
+    sailed: Sailed, near: Points, moments: FloatArray, min_ukc: float | None
+) -> tuple[list[Violation], FloatArray]:
+    """Return the limits broken at close looks, and the least clearance of every leg [m]."""
+    world, track = sailed.world, sailed.pieces.track
+    sampled, depth = look(world, near, np.where(np.isfinite(moments), moments, track.depart))
+    found = broken_limits(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
+    found += _grounded_waits(sailed, min_ukc)
+    found += land_violations(world, track, sailed.leg_times()[0])
+    clearance = _finite(depth - world.ship.draught)
+    return found, _leg_least(near.leg, clearance, moments, len(track) - 1)
+
+
+def _samples(
+    sailed: Sailed, points: Points, time: FloatArray, *, motion: Motion, rate: FloatArray
+) -> dict[str, FloatArray]:
+    """Return the columns of the fine samples; NaN where the ship does not get."""
+    start = np.concatenate([[0.0], np.cumsum(sailed.pieces.length)])
+    varying = {
+        **motion.sampled,
+        "time": time,
+        "heading": motion.heading,
+        "speed_through_water": motion.through_water,
+        "speed_over_ground": motion.over_ground,
+        "depth": _finite(motion.depth),
+        "under_keel_clearance": _finite(motion.depth - sailed.world.ship.draught),
+        "fuel_rate": rate,
+    }
+    reached = np.isfinite(time)
+    return {
+        "leg": points.leg,  # type: ignore[dict-item]
+        "lat": points.lat,
+        "lon": points.lon,
+        "distance": start[points.leg] + points.along,
+        "course": points.course,
+        **{name: np.where(reached, values, math.nan) for name, values in varying.items()},
+    }
+
+
+def _all_points(sailed: Sailed) -> tuple[Points, FloatArray, IntArray]:
+    """Return all points in the order of sailing, their times, and where the Gauss points are."""
+    pieces, passage = sailed.pieces, sailed.passage
+    last = pieces.last_of_leg()
+    charted = np.concatenate([sailed.charted, sailed.charted[last]])
+    ends = replace(pieces.ends(), charted=charted)
+    arrive = passage.start[1:][last] - pieces.wait[last]
+    fields = ("lat", "lon", "course", "setting", "leg", "along", "charted")
+    both = Points(*(np.concatenate([getattr(sailed.gauss, f), getattr(ends, f)]) for f in fields))
+    time = np.concatenate([passage.inside.reshape(-1), passage.start[:-1], arrive])
+    stop = passage.first_bad
+    if stop < len(pieces):
+        time[time > passage.inside[stop, int(np.argmax(passage.bad[stop]))]] = math.nan
+    order = np.lexsort((both.along, both.leg))
+    place = np.empty(len(both), dtype=np.int64)
+    place[order] = np.arange(len(both))
+    return both.part(order), time[order], place[: len(sailed.gauss)]
+
+
+def _fuel_rate(world: World, points: Points, time: FloatArray, motion: Motion) -> FloatArray:
+    """Return the fuel rate [kg/s] at points; NaN where the ship has no fuel model."""
+    here = conditions_at(
+        world,
+        points,
+        time,
+        sampled=motion.sampled,
+        depth=motion.depth,
+        heading=motion.heading,
+    )
+    rate = world.ship.fuel_rate(here, points.setting)
+    return np.array(np.broadcast_to(rate, len(points)), dtype=float)
+
+
+def _leg_fuel(pieces: Pieces, passage: Passage, rate: FloatArray) -> FloatArray:
+    """Return the fuel of each leg [kg]: rate times slowness, integrated over the pieces."""
+    burnt = 0.5 * pieces.step * (rate.reshape(-1, 2) * passage.slowness).sum(axis=1)
+    if passage.first_bad < len(pieces):
+        burnt[passage.first_bad :] = math.nan
+    total = np.bincount(pieces.leg, weights=burnt, minlength=len(pieces.length))
+    return total.astype(np.float64)
+
+
+def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
+    """Return the least known value on each leg as far as it is sailed; NaN where none is known."""
+    least = np.full(count, math.inf)
+    known = np.isfinite(values) & np.isfinite(time)
+    np.minimum.at(least, leg[known], values[known])
+    return np.where(np.isfinite(least), least, math.nan)
+
+
+def _looks(sailed: Sailed, points: Points, time: FloatArray) -> tuple[Points, FloatArray]:
+    """Return closely spaced points where limits are looked at, and when they are passed."""
+    world, pieces = sailed.world, sailed.pieces
+    spacing = float(pieces.length.sum()) / MOST_LOOKS
+    spacing = max(spacing, min(spacings(world, 1.0 / LOOKS_PER_CELL), default=0.0))
+    count = np.maximum(np.ceil(pieces.length / max(spacing, 1e-3)).astype(np.int64), 1) + 1
+    leg = np.repeat(np.arange(len(count)), count)
+    share = (np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)) / (count[leg] - 1)
+    near = pieces.points(leg, share * pieces.length[leg])
+    step = np.zeros(len(pieces.length))
+    step[pieces.leg] = pieces.step
+    first = np.searchsorted(pieces.leg, leg)
+    last = np.searchsorted(pieces.leg, leg, side="right") - 1
+    with np.errstate(invalid="ignore", divide="ignore"):
+        number = np.where(step[leg] > 0.0, near.along / step[leg], 0.0).astype(np.int64)
+    near = replace(near, charted=sailed.charted[np.minimum(first + number, last)])
+    key = _key(points.leg, points.along, pieces.length)
+    return near, np.interp(_key(leg, near.along, pieces.length), key, time)
+
+
+def _key(leg: IntArray, along: FloatArray, length: FloatArray) -> FloatArray:
+    """Return a number that grows along the track, with a step between legs."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(length[leg] > 0.0, along / length[leg], 0.0)
+    return leg * 2.0 + np.clip(share, 0.0, 1.0)
+
+
+def _finite(values: FloatArray) -> FloatArray:
+    return np.where(np.isfinite(values), values, math.nan)
+
+
+def _grounded_waits(sailed: Sailed, min_ukc: float | None) -> list[Violation]:
+    """Return the waits during which there is too little water."""
+    world, track = sailed.world, sailed.pieces.track
+    waits = np.flatnonzero(track.wait[1:-1]) + 1
+    if min_ukc is None or not world.has_depth or not len(waits):
+        return []
+    _, arrive = sailed.leg_times()
+    found = []
+    for index in waits:
+        if not math.isfinite(arrive[index - 1]):
+            continue
+        count = 2 + int(track.wait[index] / _WAIT_LOOKS)
+        time = arrive[index - 1] + np.linspace(0.0, track.wait[index], count)
+        points = _still(world, track, int(index), count)
+        _, depth = look(world, points, time)
+        clearance = depth - world.ship.draught
+        worst = int(np.argmin(clearance))
+        if not clearance[worst] >= min_ukc - 1e-9:
+            place = (float(track.lat[index]), float(track.lon[index]))
+            value = float(clearance[worst])
+            reason = "under-keel clearance" if math.isfinite(value) else "no data: depth"
+            found.append(
+                Violation(f"{reason} (waiting)", float(time[worst]), *place, value, min_ukc)
+            )
+    return found
+
+
+def _still(world: World, track: Track, index: int, count: int) -> Points:
+    """Return one waypoint, several times."""
+    lat, lon = np.full(count, track.lat[index]), np.full(count, track.lon[index])
+    charted = np.full(count, math.inf)
+    if world.charted and world.chart is not None:
+        charted[:] = np.asarray(world.chart.depth_at(track.lat[index], track.lon[index]), float)
+    zero = np.zeros(count, dtype=np.int64)
+    return Points(lat, lon, np.zeros(count), zero, zero, np.zeros(count), charted)
