@@ -337,15 +337,14 @@ def thin_points(x, y, spacing, keep):
         Filled.
     """
     n = x.shape[0]
-    cell = max(spacing.max(), 1e-300)
     x0 = x.min()
     y0 = y.min()
+    extent = max(x.max() - x0, y.max() - y0)
+    cell = max(spacing.max(), extent / (2.0 * math.sqrt(n) + 8.0))
+    if cell == 0.0:
+        cell = 1.0
     wide = np.int64((x.max() - x0) / cell) + 1
     high = np.int64((y.max() - y0) / cell) + 1
-    while wide * high > 4 * n + 1024:  # very sparse: larger cells only cost time
-        cell *= 2.0
-        wide = np.int64((x.max() - x0) / cell) + 1
-        high = np.int64((y.max() - y0) / cell) + 1
     last = np.full(wide * high, -1, np.int64)
     before = np.full(n, -1, np.int64)
     for p in range(n):

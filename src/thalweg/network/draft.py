@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from thalweg.network.frame import Frame, arc, unit_vectors
 from thalweg.network.levels import Ground, Level, grow_levels
 from thalweg.network.network import BoolArray, FloatArray, IntArray, Network, NetworkMeta
 from thalweg.network.pairs import (
+    MirroredPairs,
     Pairs,
     Rejected,
     Samples,
@@ -24,6 +26,7 @@ from thalweg.network.pairs import (
     free_legs,
     join_samples,
     measure,
+    mirrored,
 )
 
 if TYPE_CHECKING:
@@ -59,21 +62,33 @@ class Draft:
         """Node of the goal."""
         return self.stations.n_nodes - 1
 
-    def distances(self) -> tuple[FloatArray, FloatArray]:
-        """Return every node's static distance [m] from the start and from the goal."""
-        pairs = join_pairs([part.pairs for part in self.parts] + [self.ends])
+    @cached_property
+    def pairs(self) -> Pairs:
+        """All pairs: those of the levels, then those of start and goal."""
+        return join_pairs([part.pairs for part in self.parts] + [self.ends])
+
+    @cached_property
+    def edges(self) -> MirroredPairs:
+        """The directed edges of all pairs by tail."""
+        pairs = self.pairs
+        return mirrored(self.stations.n_nodes, pairs)
+
+    def distances(self, node: int) -> FloatArray:
+        """Return the static distance [m] of every node from one; inf where unreached."""
         n = self.stations.n_nodes
-        indptr, target, pair, _ = graph.mirror_pairs(n, pairs.first, pairs.second)
-        weight, parent = pairs.length[pair], np.empty(n, np.int64)
-        start, goal = np.empty(n), np.empty(n)
-        graph.static_distances(indptr, target, weight, self.start, -1, start, parent)
-        graph.static_distances(indptr, target, weight, self.goal, -1, goal, parent)
-        return start, goal
+        distance, parent = np.empty(n), np.empty(n, np.int64)
+        weight = self.pairs.length[self.edges.pair]
+        graph.static_distances(
+            self.edges.indptr, self.edges.target, weight, node, -1, distance, parent
+        )
+        return distance
 
     def where(self, keep: BoolArray) -> Draft:
         """Return the draft with only the nodes that are kept (start and goal always are)."""
         keep = keep.copy()
         keep[-2:] = True
+        if keep.all():
+            return self
         new = np.cumsum(keep) - 1
         stations = Stations(self.stations.lat[keep], self.stations.lon[keep], int(keep.sum()))
         parts = [_level_where(part, keep, new) for part in self.parts]
@@ -92,9 +107,9 @@ class Draft:
         spacing = _spacing_of_ends(self, meta.spacing_m)
         stations, new = even_samples(stations, self.ends, spacing)
         samples.append(new)
-        pairs = join_pairs([part.pairs for part in self.parts] + [self.ends])
         meta = replace(meta, start=self.start, goal=self.goal, rejected=self.rejected)
-        return assemble(chart, stations, pairs, join_samples(samples), meta=meta)
+        samples_of_all = join_samples(samples)
+        return assemble(chart, stations, self.pairs, samples_of_all, meta=meta, edges=self.edges)
 
 
 def make_draft(

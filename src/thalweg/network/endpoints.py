@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from thalweg.network.network import FloatArray, Int32Array, Network
 from thalweg.network.pairs import (
     Pairs,
     Rejected,
-    Samples,
     Stations,
     add_counts,
     assemble,
@@ -241,19 +240,18 @@ def _merge(old: Network, new: Network) -> Network:
     tails = np.concatenate([old.tails(), new.tails()])
     order = np.argsort(tails, kind="stable").astype(np.int32)
 
-    def both(name: str) -> FloatArray:
+    def both(name: str) -> Any:
         return np.concatenate([getattr(old, name), getattr(new, name)])
 
     ptr = np.append(old.via_ptr, new.via_ptr[1:] + old.via_ptr[-1])
-    samples = Samples(ptr, *(both(f"via_{c}") for c in "abws"))  # type: ignore[arg-type]
-    via = graph.mirror_vias(
-        order, np.zeros(len(order), bool), ptr, samples.a, samples.b, samples.w, samples.s
-    )
-    columns = {
+    forward = np.zeros(len(order), bool)
+    vias = (both(name) for name in ("via_a", "via_b", "via_w", "via_s"))
+    via_ptr, via_a, via_b, via_w, via_s = graph.mirror_vias(order, forward, ptr, *vias)
+    columns: dict[str, Any] = {
         name: both(name)[order]
         for name in ("target", "length", "course", "depth", "factor", "price")
     }
     return replace(
         new, indptr=old.indptr + new.indptr, can_wait=old.can_wait,
-        via_ptr=via[0], via_a=via[1], via_b=via[2], via_w=via[3], via_s=via[4], **columns,
-    )  # type: ignore[arg-type]  # fmt: skip
+        via_ptr=via_ptr, via_a=via_a, via_b=via_b, via_w=via_w, via_s=via_s, **columns,
+    )  # fmt: skip

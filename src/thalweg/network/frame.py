@@ -9,6 +9,7 @@ columns are meridians and parallels.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -80,6 +81,11 @@ class Frame:
         """Length [m] of one unit at the frame's equator, where it is largest."""
         return MEAN_RADIUS * self.unit
 
+    @property
+    def upright(self) -> bool:
+        """Whether rows and columns are meridians and parallels."""
+        return bool(self.turn[2, 2] == 1.0)
+
     def refined(self, halvings: int) -> Frame:
         """Return the same frame with its unit halved a number of times."""
         parts = 2**halvings
@@ -131,7 +137,7 @@ def great_circle_frame(start: Position, goal: Position, spacing: float) -> Frame
         pole = np.cross(first, [0.0, 0.0, 1.0] if abs(first[2]) < 0.9 else [1.0, 0.0, 0.0])
     pole = pole / np.linalg.norm(pole)
     turn = np.stack([first, np.cross(pole, first), pole])
-    pieces = max(1, round(distance * MEAN_RADIUS / spacing))
+    pieces = max(1, math.ceil(distance * MEAN_RADIUS / spacing - 1e-3))
     return Frame(turn=turn, unit=distance / pieces)
 
 

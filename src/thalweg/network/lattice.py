@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -24,13 +24,23 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _FINEST_COAST = 1.5 * NAUTICAL_MILE
-_BUDGET = 60_000
+_BUDGET = 60_000  # nodes of the open sea, and as many of the coasts, unless more are asked for
 _HARD_BUDGET = 6_000_000
-_GROWTH = 1.6
+_GROWTH = 1.8
 _MOST_EXTRA = 2
-_WORTH_REFINING = 0.45  # of the budget: a level more would go beyond it again
+_GLOBAL_SPACING = 80.0 * NAUTICAL_MILE
 
 _Offsets: TypeAlias = tuple[IntArray, IntArray]
+
+
+@dataclass(frozen=True)
+class _Drawing:
+    """A lattice drawn, what was coarsened in words, and the count of points that was too many."""
+
+    ground: Ground
+    draft: Draft
+    notes: tuple[str, ...]
+    refused: int
 
 
 @dataclass(frozen=True)
@@ -45,6 +55,7 @@ class _Wish:
     orientation: str
     area: Box | None
     budget: int
+    coast_budget: int
 
 
 def lattice(
@@ -103,15 +114,16 @@ def lattice(
     _check(spacing, coast_levels, orientation, slack)
     wish = _wish(chart, start, goal, distance, spacing, coast_levels, orientation, area)
     slack = _default_slack(distance) if slack is None else slack
-    ground, draft, notes = _connected(wish, (di, dj), distance, slack)
+    drawing = _connected(wish, (di, dj), distance, slack)
+    ground = drawing.ground
     meta = NetworkMeta(
-        kind=f"lattice/{orientation}",
+        kind="lattice/latlon" if ground.frame.upright else "lattice/great_circle",
         spacing_m=ground.frame.largest_unit * ground.step(0),
         directions=directions,
         gap_rad=largest_gap(di, dj),
-        notes=tuple(notes),
+        notes=drawing.notes,
     )
-    return draft.network(chart, ground.frame, di, dj, meta)
+    return drawing.draft.network(chart, ground.frame, di, dj, meta)
 
 
 def default_spacing(distance: float) -> float:
@@ -149,31 +161,31 @@ def _wish(
     chart: Chart, start: Position, goal: Position, distance: float, spacing: float | None,
     coast_levels: int | None, orientation: str, area: Box | None,
 ) -> _Wish:  # fmt: skip
-    asked = spacing is not None or coast_levels is not None
+    budget = _BUDGET if spacing is None else _HARD_BUDGET
+    coast_budget = _BUDGET if coast_levels is None else _HARD_BUDGET
     own = default_spacing(distance) if spacing is None else min(spacing, distance)
     if coast_levels is None:
         finest = min(max(own / 8.0, 250.0), _FINEST_COAST)
         coast_levels = min(max(round(math.log2(own / finest)), 0), 6)
-    budget = _HARD_BUDGET if asked else _BUDGET
-    return _Wish(chart, start, goal, own, coast_levels, orientation, area, budget)
+    return _Wish(chart, start, goal, own, coast_levels, orientation, area, budget, coast_budget)
 
 
-def _connected(
-    wish: _Wish, offsets: _Offsets, distance: float, slack: float
-) -> tuple[Ground, Draft, list[str]]:
+def _connected(wish: _Wish, offsets: _Offsets, distance: float, slack: float) -> _Drawing:
     """Grow and refine until start and goal connect and the slack fits; return the last lattice."""
     factor, extra = 1.01 * (1.0 + slack), 0
     while True:
-        ground, draft, notes = _drawn(wish, offsets, factor * distance, extra)
-        to_start, to_goal = draft.distances()
+        drawing = _drawn(wish, offsets, factor * distance, extra)
+        ground, draft = drawing.ground, drawing.draft
+        to_start = draft.distances(draft.start)
         length = to_start[draft.goal]
         whole = ground.region.global_
         if math.isfinite(length):
             needed = (1.0 + slack) * float(length) / distance
             if whole or needed <= 1.005 * factor:
-                return _refined(wish, offsets, (ground, draft, notes), slack, extra)
+                return _refined(wish, offsets, _pruned(drawing, slack, to_start), slack, extra)
             factor = 1.01 * needed
             continue
+        to_goal = draft.distances(draft.goal)
         start_side, goal_side = reached_sides(ground, draft, to_start, to_goal)
         if start_side and goal_side and not whole:
             factor *= _GROWTH
@@ -184,59 +196,78 @@ def _connected(
 
 
 def _refined(
-    wish: _Wish,
-    offsets: _Offsets,
-    coarse: tuple[Ground, Draft, list[str]],
-    slack: float,
-    extra: int,
-) -> tuple[Ground, Draft, list[str]]:
-    """Prune; draw a lattice that had to be coarse again, finer, along the ways it found."""
-    ground, draft, notes = coarse
-    draft = _pruned(ground, draft, slack)
-    if not notes or draft.stations.n_nodes > _WORTH_REFINING * ground.budget:
-        return ground, draft, notes
+    wish: _Wish, offsets: _Offsets, coarse: _Drawing, slack: float, extra: int
+) -> _Drawing:
+    """Draw a lattice that had to be coarse again, finer, along the ways it found."""
+    ground, stations = coarse.ground, coarse.draft.stations
+    spacing = ground.frame.largest_unit * ground.step(0)
+    beyond = coarse.refused > ground.coast_budget and spacing < 1.3 * wish.spacing
+    if not coarse.notes or beyond:
+        return coarse
     corridor = Corridor.around(
-        ground.frame, ground.step(0), unit_vectors(draft.stations.lat, draft.stations.lon)
+        ground.frame, ground.step(0), unit_vectors(stations.lat, stations.lon)
     )
     finer = _drawn(wish, offsets, ground.region.limit, extra, corridor)
-    if not math.isfinite(finer[1].distances()[0][finer[1].goal]):
-        return ground, draft, notes
-    return finer[0], _pruned(finer[0], finer[1], slack), finer[2]
+    to_start = finer.draft.distances(finer.draft.start)
+    if not math.isfinite(to_start[finer.draft.goal]):
+        return coarse
+    return _pruned(finer, slack, to_start)
 
 
 def _drawn(
     wish: _Wish, offsets: _Offsets, limit: float, extra: int, corridor: Corridor | None = None
-) -> tuple[Ground, Draft, list[str]]:
+) -> _Drawing:
     """Draw the lattice for a region, coarsening it while it is over its budget."""
     region = Region(wish.start, wish.goal, limit, wish.area, _box(wish.chart), corridor)
     spacing, coast, ends = wish.spacing, wish.coast_levels + max(extra - 1, 0), 2 * extra
-    budget = wish.budget * (1 + 2 * extra)
-    notes: list[str] = []
+    notes: tuple[str, ...] = ()
+    refused = 0
+    if region.unbounded and corridor is None:  # only to find the ways worth a finer look
+        spacing, coast = max(spacing, _GLOBAL_SPACING), min(max(coast, 2), 3)
+        wish = replace(wish, budget=_BUDGET, coast_budget=_BUDGET)
+        notes = _note(spacing, coast)
+    most = min(wish.coast_budget * (1 + 2 * extra), _HARD_BUDGET)
     while True:
         frame = _frame(wish, region, spacing).refined(coast + ends)
-        ground = Ground(wish.chart, frame, region, coast, ends, budget)
+        ground = Ground(wish.chart, frame, region, coast, ends, wish.budget, most)
         try:
-            return ground, make_draft(ground, *offsets, wish.start, wish.goal), notes
+            draft = make_draft(ground, *offsets, wish.start, wish.goal)
+            return _Drawing(ground, draft, notes, refused)
         except TooManyPoints as refusal:
-            _refuse_if_asked(wish, refusal)
-            if 1 < refusal.level <= coast:
-                coast = refusal.level - 1
-            else:
-                spacing *= 2.0 if refusal.level == 0 and region.global_ else 1.4
-                coast = max(coast, 1)
-            notes = [
-                f"coarsened to {spacing / NAUTICAL_MILE:.3g} nm and {coast} coast levels "
-                f"to keep to {budget} nodes"
-            ]
+            spacing, coast, ends = _coarser(wish, region, refusal, (spacing, coast, ends))
+            notes, refused = _note(spacing, coast), refusal.count
 
 
-def _refuse_if_asked(wish: _Wish, refusal: TooManyPoints) -> None:
-    if wish.budget >= _HARD_BUDGET:
-        raise InputError(
-            f"A lattice {wish.spacing:.0f} m apart would have over {refusal.count} nodes.",
-            f"At most {_HARD_BUDGET} nodes are built.",
-            "Give a larger spacing, fewer coast levels or a smaller area.",
-        ) from None
+def _note(spacing: float, coast: int) -> tuple[str, ...]:
+    sizes = f"{spacing / NAUTICAL_MILE:.3g} nm and {coast} coast levels"
+    return (f"coarsened to {sizes} to keep the number of nodes in bounds",)
+
+
+def _coarser(
+    wish: _Wish, region: Region, refusal: TooManyPoints, sizes: tuple[float, int, int]
+) -> tuple[float, int, int]:
+    """Return a larger spacing or fewer levels than those (spacing, coast, ends) refused.
+
+    Raises
+    ------
+    InputError
+        If what is too fine was asked for.
+    """
+    spacing, coast, ends = sizes
+    level = refusal.level
+    if wish.coast_budget < _HARD_BUDGET and 1 < level <= coast:
+        return spacing, level - 1, ends
+    if level > coast and ends > 0:
+        return spacing, coast, ends - 1
+    if wish.budget < _HARD_BUDGET:
+        return spacing * (2.0 if level == 0 and region.unbounded else 1.4), max(coast, 1), ends
+    if wish.coast_budget < _HARD_BUDGET and level > 0:
+        return spacing, level - 1, ends
+    raise InputError(
+        f"A lattice {wish.spacing:.0f} m apart would have over {refusal.count} nodes.",
+        f"At most {_HARD_BUDGET} nodes are built.",
+        "Give a larger spacing, fewer coast levels or a smaller area.",
+    )
 
 
 def _box(chart: Chart) -> Box | None:
@@ -251,16 +282,21 @@ def _frame(wish: _Wish, region: Region, spacing: float) -> Frame:
     if wish.orientation == "great_circle" and not region.global_:
         return great_circle_frame(wish.start, wish.goal, spacing)
     middle = 0.5 * (wish.start[0] + wish.goal[0])
-    closed = region.global_ and wish.area is None and region.chart_area is None
+    closed = region.unbounded
     return mercator_frame(wish.start, spacing, latitude=0.0 if closed else middle, closed=closed)
 
 
-def _pruned(ground: Ground, draft: Draft, slack: float) -> Draft:
-    """Drop the nodes that no reasonable way passes."""
-    to_start, to_goal = draft.distances()
-    limit = (1.0 + slack) * to_start[draft.goal] + 4.0 * ground.frame.largest_unit * ground.step(0)
-    total = to_start + to_goal
-    return draft.where(np.isfinite(total) & (total <= limit))
+def _pruned(drawing: _Drawing, slack: float, to_start: FloatArray) -> _Drawing:
+    """Drop the nodes that no reasonable way passes; count how many a finer level would have."""
+    ground, draft = drawing.ground, drawing.draft
+    total, limit = to_start, math.inf
+    if not math.isinf(slack):
+        total = to_start + draft.distances(draft.goal)
+        limit = (1.0 + slack) * to_start[draft.goal]
+        limit += 4.0 * ground.frame.largest_unit * ground.step(0)
+    kept = draft.where(np.isfinite(total) & (total <= limit))
+    share = kept.stations.n_nodes / draft.stations.n_nodes
+    return replace(drawing, draft=kept, refused=int(drawing.refused * share))
 
 
 def _no_route(wish: _Wish, draft: Draft, to_start: FloatArray) -> NoRouteError:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 COAST_WIDTH = 3.0  #: a level reaches this many of its spacings off the coast
 _END_REACH = 24.0  # levels finer than the coast's reach this many spacings round start and goal
 _BLOCK = 2_000_000
+_CELLS_PER_POINT = 12  # cells looked at per point of the budget
 _FLOOD_STEPS = 48
 _LARGEST_CAP = 250_000.0  # [m] the chart's own limit on shore distances
 _LARGEST_MAP = 300_000_000
@@ -79,8 +80,8 @@ class Ground:
         Where points may lie.
     coast_levels, end_levels : int
         Levels along all coasts, and further levels near start and goal only.
-    budget : int
-        Most points over all levels.
+    budget, coast_budget : int
+        Most points of level 0, and of all finer levels together.
     """
 
     chart: Chart
@@ -89,6 +90,7 @@ class Ground:
     coast_levels: int
     end_levels: int
     budget: int
+    coast_budget: int
 
     def step(self, level: int) -> int:
         """Return the finest units between neighbouring points of a level."""
@@ -117,12 +119,12 @@ def grow_levels(ground: Ground) -> tuple[list[Level], FloatArray, FloatArray]:
     """
     i, j, shore = _open_sea(ground)
     points: list[Points] = [(i, j)]
-    total = len(i)
+    fine = 0
     for level in range(1, ground.coast_levels + ground.end_levels + 1):
         i, j, shore = _next_level(ground, level, i, j, shore)
-        total += len(i)
-        if total > ground.budget:
-            raise TooManyPoints(level, total)
+        fine += len(i)
+        if fine > ground.coast_budget:
+            raise TooManyPoints(level, fine)
         points.append((i, j))
     return _number(ground, points)
 
@@ -134,6 +136,9 @@ def _open_sea(ground: Ground) -> tuple[IntArray, IntArray, FloatArray]:
     columns = np.arange(np.ceil(y0 - 1e-9), np.floor(y1 + 1e-9) + 1).astype(np.int64)
     first, last = int(np.ceil(x0 - 1e-9)), int(np.floor(x1 + 1e-9))
     around = ground.around(0)
+    cells = len(columns) * max(0, last - first + 1)
+    if cells > _CELLS_PER_POINT * ground.budget + _BLOCK:
+        raise TooManyPoints(0, cells)
     if around and last - first + 1 > around:
         first, last = -(around // 2), -(around // 2) + around - 1
     block = max(1, _BLOCK // max(1, len(columns)))
@@ -189,7 +194,7 @@ def _next_level(
     def accept(ci: IntArray, cj: IntArray) -> tuple[BoolArray, FloatArray]:
         return _near_coast(ground, level, ci, cj)
 
-    return _flood(accept, flat_i, flat_j, around, level, ground.budget)
+    return _flood(accept, flat_i, flat_j, around, level, ground.coast_budget)
 
 
 _AROUND_I = np.array([-1, -1, -1, 0, 0, 0, 1, 1, 1])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -183,8 +184,7 @@ def _joined(
 
 def _inside_mesh(plane: _Plane, faces: IntArray, a: IntArray, b: IntArray) -> BoolArray:
     """Return which straight lines between nodes stay inside the triangles."""
-    import shapely
-
+    shapely: Any = import_module("shapely")
     xy = np.column_stack([plane.x, plane.y])
     border = shapely.linestrings(xy[_border(faces)])
     lines = shapely.linestrings(np.stack([xy[a], xy[b]], axis=1))
@@ -215,7 +215,7 @@ def _inside_mesh(plane: _Plane, faces: IntArray, a: IntArray, b: IntArray) -> Bo
 def _covered(shapely: Any, xy: FloatArray, faces: IntArray, points: Any) -> BoolArray:
     """Return which points lie in or on a triangle, rounding aside."""
     triangles = shapely.polygons(np.concatenate([xy[faces], xy[faces[:, :1]]], axis=1))
-    covered = np.zeros(len(points), bool)
+    covered: BoolArray = np.zeros(len(points), np.bool_)
     size = float(np.median(np.sqrt(shapely.area(triangles))))
     covered[
         shapely.STRtree(triangles).query(points, predicate="dwithin", distance=1e-6 * size)[0]

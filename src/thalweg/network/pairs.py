@@ -152,20 +152,46 @@ def join_samples(parts: list[Samples]) -> Samples:
     return Samples(ptr, *columns)
 
 
+@dataclass(frozen=True)
+class MirroredPairs:
+    """Directed edges by tail: their heads, the pair each comes from, and whether reversed."""
+
+    indptr: IntArray
+    target: Int32Array
+    pair: Int32Array
+    back: BoolArray
+
+
+def mirrored(n_nodes: int, pairs: Pairs) -> MirroredPairs:
+    """Return an edge each way for every pair."""
+    return MirroredPairs(*graph.mirror_pairs(n_nodes, pairs.first, pairs.second))
+
+
 def assemble(
-    chart: Chart, stations: Stations, pairs: Pairs, samples: Samples, *, meta: NetworkMeta
+    chart: Chart,
+    stations: Stations,
+    pairs: Pairs,
+    samples: Samples,
+    *,
+    meta: NetworkMeta,
+    edges: MirroredPairs | None = None,
 ) -> Network:
     """Return the network with an edge each way for every pair; all pairs have been tested."""
     n = stations.n_nodes
     depth, factor, price = _along(chart, stations, pairs)
-    indptr, target, pair, back = graph.mirror_pairs(n, pairs.first, pairs.second)
-    via = graph.mirror_vias(pair, back, samples.ptr, samples.a, samples.b, samples.w, samples.s)
+    edges = edges or mirrored(n, pairs)
+    pair = edges.pair
+    via_ptr, via_a, via_b, via_w, via_s = graph.mirror_vias(
+        pair, edges.back, samples.ptr, samples.a, samples.b, samples.w, samples.s
+    )
     course = pairs.course[pair]
-    course[back] += np.float32(np.pi)
+    course[edges.back] += np.float32(np.pi)
     course[course >= 2 * np.pi] -= np.float32(2 * np.pi)
     return Network(
-        stations.lat, stations.lon, n, indptr, target, pairs.length[pair], course,
-        depth[pair], factor[pair], price[pair], *via,
+        station_lat=stations.lat, station_lon=stations.lon, n_nodes=n,
+        indptr=edges.indptr, target=edges.target, length=pairs.length[pair], course=course,
+        depth=depth[pair], factor=factor[pair], price=price[pair],
+        via_ptr=via_ptr, via_a=via_a, via_b=via_b, via_w=via_w, via_s=via_s,
         can_wait=np.ones(n, bool), meta=meta,
     )  # fmt: skip
 

@@ -95,6 +95,11 @@ class Region:
         """Whether the ellipse is so large that the whole globe is taken."""
         return self.limit / MEAN_RADIUS > _LARGEST_ELLIPSE
 
+    @property
+    def unbounded(self) -> bool:
+        """Whether neither an ellipse nor a box bounds the region."""
+        return self.global_ and self.area is None and self.chart_area is None
+
     def slack(self, vectors: FloatArray) -> FloatArray:
         """Return how much shorter than the limit the way start-place-goal is [m]."""
         total = arc(vectors, unit_vectors(*self.start)) + arc(vectors, unit_vectors(*self.goal))

@@ -1,0 +1,173 @@
+"""The public check finds every kind of fault; end points; static shortest ways; kernels."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.network.worlds import land_chart
+from thalweg.chart import Chart
+from thalweg.core import geodesy
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.kernels import graph
+from thalweg.network import Network, check_network, lattice, shortest, with_endpoints
+from thalweg.network.frame import great_circle_frame, mercator_frame
+
+OPEN = Chart.open_water()
+
+
+@pytest.fixture(scope="module")
+def network() -> Network:
+    return lattice(OPEN, (10, -40), (12, -37), directions=16, spacing=30e3)
+
+
+def changed(array: np.ndarray, index: int, value: float) -> np.ndarray:
+    copy = array.copy()
+    copy[index] = value
+    return copy
+
+
+def test_sound_network_passes(network):
+    check_network(network, symmetric=True)
+
+
+FAULTS = {
+    "indptr": (lambda n: {"indptr": n.indptr[:-1].copy()}, "indptr"),
+    "falling": (lambda n: {"indptr": changed(n.indptr, 3, 10**6)}, "ascend"),
+    "target": (lambda n: {"target": changed(n.target, 0, n.n_nodes)}, "ends outside"),
+    "loop": (lambda n: {"target": changed(n.target, 0, 0)}, "own node"),
+    "length": (lambda n: {"length": n.length * 1.00001}, "length"),
+    "negative": (lambda n: {"length": -n.length}, "positive"),
+    "course": (lambda n: {"course": n.course + np.float32(0.01)}, "course"),
+    "factor": (lambda n: {"factor": n.factor * np.float32(0.5)}, "factor"),
+    "price": (lambda n: {"price": -n.price}, "price"),
+    "station": (lambda n: {"station_lat": changed(n.station_lat, 0, np.nan)}, "finite"),
+    "latitude": (lambda n: {"station_lat": changed(n.station_lat, 0, 91.0)}, "90"),
+    "via": (lambda n: {"via_a": changed(n.via_a, 0, -1)}, "no station"),
+    "weight": (lambda n: {"via_w": changed(n.via_w, 0, 1.5)}, "weight"),
+    "share": (lambda n: {"via_s": changed(n.via_s, 0, 1.0)}, "inside its edge"),
+    "place": (lambda n: {"via_a": np.roll(n.via_a, 500)}, "lie on its edge"),
+    "kind": (lambda n: {"course": n.course.astype(float)}, "float32"),
+    "wait": (lambda n: {"can_wait": n.can_wait[:-1].copy()}, "can_wait"),
+    "goal": (lambda n: {"meta": replace(n.meta, goal=10**6)}, "goal"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_every_fault_is_named(network, name):
+    change, word = FAULTS[name]
+    with pytest.raises(InputError, match=word) as fault:
+        check_network(replace(network, **change(network)))
+    assert fault.value.details["faults"]
+
+
+def test_one_way_edges_are_no_fault_unless_symmetry_is_declared(network):
+    keep = np.ones(network.n_edges, bool)
+    keep[np.flatnonzero(np.diff(network.via_ptr) == 0)[0]] = False
+    indptr = np.concatenate([[0], np.cumsum(keep)])[network.indptr]
+    via_ptr = np.append(network.via_ptr[:-1][keep], network.via_ptr[-1])
+    columns = {
+        name: getattr(network, name)[keep]
+        for name in ("target", "length", "course", "depth", "factor", "price")
+    }
+    lame = replace(network, indptr=indptr, via_ptr=via_ptr, **columns)
+    check_network(lame)
+    with pytest.raises(InputError, match="no opposite"):
+        check_network(lame, symmetric=True)
+
+
+def test_unordered_samples_are_a_fault():
+    wide = lattice(OPEN, (10, -40), (12, -37), directions=32, spacing=30e3)
+    edge = np.flatnonzero(np.diff(wide.via_ptr) == 2)[0]
+    first = wide.via_ptr[edge]
+    swapped = wide.via_s.copy()
+    swapped[first : first + 2] = swapped[first : first + 2][::-1]
+    with pytest.raises(InputError, match="not in order"):
+        check_network(replace(wide, via_s=swapped))
+
+
+def test_with_endpoints_adds_nodes_in_order(network):
+    places = [(10.3, -39.2), (11.6, -37.8), (11.0, -38.5), (10.9, -38.9)]
+    grown = with_endpoints(network, OPEN, *places[:2], via=places[2:])
+    check_network(grown, symmetric=True)
+    n = network.n_nodes
+    assert (grown.meta.start, grown.meta.goal) == (n, n + 1)
+    for number, place in enumerate(places):
+        assert (grown.lat[n + number], grown.lon[n + number]) == place
+        assert np.isfinite(shortest(grown, n)[0][n + number])
+    assert grown.n_edges > network.n_edges
+    old, _ = shortest(network, 0)
+    new, _ = shortest(grown, 0)
+    assert np.all(new[:n] <= old + 1e-6)
+
+
+def test_with_endpoints_refuses_land_and_the_unreachable():
+    chart = land_chart((10.4, 10.6, -38.6, -38.4))
+    net = lattice(chart, (10, -40), (12, -37), directions=16, spacing=30e3)
+    with pytest.raises(InputError, match="start"):
+        with_endpoints(net, chart, (10.5, -38.5), (11, -38))
+    with pytest.raises(InputError, match="via point 1"):
+        with_endpoints(net, chart, (10.2, -38.5), (11, -38), via=[(10.5, -38.5)])
+    with pytest.raises(NoRouteError):
+        with_endpoints(net, OPEN, (10.2, -38.5), (60, 100))
+
+
+@settings(max_examples=25)
+@given(st.integers(0, 10_000))
+def test_static_distances_equal_networkx(seed):
+    rng = np.random.default_rng(seed)
+    a, b = rng.integers(0, 30, (2, 70)).astype(np.int32)
+    a, b = a[a != b], b[a != b]
+    weight = rng.random(len(a))
+    indptr, target, pair, _ = graph.mirror_pairs(30, a, b)
+    distance, parent = np.empty(30), np.empty(30, np.int64)
+    graph.static_distances(indptr, target, weight[pair], 0, -1, distance, parent)
+    peer = nx.Graph()
+    peer.add_nodes_from(range(30))
+    for p, q, w in zip(a.tolist(), b.tolist(), weight.tolist()):
+        if not peer.has_edge(p, q) or peer[p][q]["weight"] > w:
+            peer.add_edge(p, q, weight=w)
+    truth = nx.single_source_dijkstra_path_length(peer, 0)
+    assert distance == pytest.approx([truth.get(k, np.inf) for k in range(30)])
+
+
+def test_measure_agrees_with_the_exact_geodesic():
+    rng = np.random.default_rng(3)
+    lat, lon = rng.uniform(-88, 88, 3000), rng.uniform(-180, 180, 3000)
+    course, length = rng.uniform(0, 2 * np.pi, 3000), 10 ** rng.uniform(2, 6.5, 3000)
+    to = geodesy.direct(lat, lon, course, length)
+    here = np.arange(3000, dtype=np.int32)
+    measured, middle = np.empty(3000), np.empty(3000, np.float32)
+    graph.measure(
+        np.append(lat, to[0]), np.append(lon, to[1]), here, here + np.int32(3000), measured, middle
+    )
+    assert np.abs(measured - length).max() < 1e-3
+    half = geodesy.direct(lat, lon, course, 0.5 * length)
+    exact = geodesy.inverse(*half, *to)[1]
+    assert np.abs(np.angle(np.exp(1j * (middle - exact)))).max() < 1e-3
+
+
+@given(st.floats(-85, 85), st.floats(-180, 179.9), st.booleans())
+def test_frames_invert_and_are_conformal(lat, lon, turned):
+    frame = (
+        great_circle_frame((40, -70), (50, -5), 1e4)
+        if turned
+        else mercator_frame((40, -70), 1e4, latitude=45)
+    )
+    x, y = frame.from_positions(lat, lon)
+    back = frame.to_positions(x, y)
+    assert geodesy.distance(lat, lon, *back) < 1e-3
+    if abs(float(y) * frame.unit + frame.y0) < 2.5:
+        centre = frame.to_positions(x, y)
+        step = 0.01
+        along = geodesy.inverse(*centre, *frame.to_positions(x + step, y))
+        up = geodesy.inverse(*centre, *frame.to_positions(x, y + step))
+        assert float(along[0] / up[0]) == pytest.approx(1.0, abs=1e-3)
+        quarter = np.angle(np.exp(1j * (along[1] - up[1])))
+        assert float(quarter) == pytest.approx(np.pi / 2, abs=1e-3)
+        assert float(up[0]) == pytest.approx(float(frame.metres(y)) * step, rel=6e-3)
