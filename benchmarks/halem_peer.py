@@ -31,6 +31,7 @@ OPTIMUM = 26240.4617
 METRES_PER_DEGREE = 6_372_800.0 * math.pi / 180.0
 PER_LON, PER_LAT = 111319.490793, 110574.2759
 T0 = 1_546_300_800.0
+SPACING = 0.046  # degrees: as many nodes as HALEM has
 WORKER = Path(__file__).with_name("halem_worker.py")
 
 
@@ -64,7 +65,7 @@ def ours(directions):
         chart,
         start,
         goal,
-        spacing=0.05 * METRES_PER_DEGREE,
+        spacing=SPACING * METRES_PER_DEGREE,
         directions=directions,
         orientation="latlon",
         slack=math.inf,

@@ -53,7 +53,7 @@ def main():
     )
     roadmap.parse()
     second = time.perf_counter()
-    path, moments, _ = HALEM_time((0.1, 0.1), (0.9, 0.9), T0, ordered, roadmap)
+    _, moments, _ = HALEM_time((0.1, 0.1), (0.9, 0.9), T0, ordered, roadmap)
     third = time.perf_counter()
     json.dump(
         {

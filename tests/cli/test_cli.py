@@ -10,7 +10,7 @@ from thalweg.cli.main import build_parser, main
 
 SHIP = """
 name: tester
-hull: {draught_m: 5.0, length_between_perpendiculars_m: 80.0, block_coefficient: 0.7, breadth_m: 14.0}
+hull: {draught_m: 5.0, length_between_perpendiculars_m: 80.0, breadth_m: 14.0}
 speeds_kn: [8.0, 10.0]
 fuel: {reference_t_per_day: 6.0}
 engine: {reference_speed_kn: 10.0}

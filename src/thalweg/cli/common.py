@@ -57,6 +57,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     """Build the sea that the options name."""
     from thalweg.sea import Sea
 
+    policies = dict(_policy(text) for text in arguments.fill)
     if arguments.calm and arguments.sea:
         raise InputError("Both --calm and --sea are given.", "", "Choose one.")
     if not arguments.calm and not arguments.sea:
@@ -72,7 +73,6 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     if "storm" in arguments.sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
-    policies = dict(_policy(text) for text in arguments.fill)
     return sea.filled(**policies) if policies else sea
 
 

@@ -86,10 +86,9 @@ def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:
 
 def _first_time(sea: Any) -> float:
     """Without --depart: the first moment of the data, or now where the sea has no period."""
-    import math
     import time
 
-    starts = [row.start for row in sea.coverage() if math.isfinite(row.start)]
+    starts = [row.start for row in sea.coverage() if row.start is not None]
     return max(starts) if starts else float(round(time.time()))
 
 

@@ -64,9 +64,9 @@ def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
     from matplotlib.figure import Figure
 
     box = _box_of(plan)
-    width = 10.0
     shape = (box.north - box.south) * box.aspect / (box.east - box.west)
-    height = min(11.0, max(3.6, (width - 1.6) * shape + 0.8))
+    width = min(10.0, 9.0 / shape + 1.6)
+    height = max(3.6, (width - 1.6) * shape + 0.8)
     figure = Figure(figsize=(width, height), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()

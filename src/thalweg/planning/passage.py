@@ -282,7 +282,8 @@ def _top_speed(task: Task, stations: StationFields) -> float:
     column = stations.channel_index[codes.SPEED_FIELD]
     if column >= 0:
         return float(np.nanmax(stations.values[:, :, column], initial=0.0))
-    return float(task.ship.top_speed(task.setting))
+    top = task.ship.top_speed(task.setting)
+    return float(task.ship.speeds[task.setting] if top is None else top)
 
 
 def _run(

@@ -8,15 +8,16 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import TimeLike, format_time, parse_time
 
 Place: TypeAlias = "Position | str"
+Objective: TypeAlias = Literal["time", "distance"]
 
-OBJECTIVES = ("time", "distance")
+OBJECTIVES: tuple[Objective, ...] = ("time", "distance")
 _LARGEST_FILE = 1_000_000
 
 
@@ -59,7 +60,7 @@ class Voyage:
     goal: Place
     depart: TimeLike | None = None
     depart_window: tuple[TimeLike, TimeLike] | None = None
-    objective: str = "time"
+    objective: Objective = "time"
     via: Sequence[Place] = ()
     arrive_by: TimeLike | None = None
     wait: bool = True
