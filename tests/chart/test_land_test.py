@@ -94,6 +94,17 @@ def test_antimeridian_and_poles(world):
     assert world.is_navigable(90.0, 0.0)
 
 
+def test_land_cut_in_two_at_a_meridian_has_no_seam(world):
+    # GSHHG cuts Chukotka and Wrangel Island at 180 degrees, Antarctica at 0 and 180
+    lat = np.array([66.0, 67.5, 68.5, 71.1, -80.0, -85.0])
+    for lon in (180.0, -180.0, 180.0 - 1e-13, -180.0 + 1e-13):
+        assert not world.is_navigable(lat, lon).any()
+        assert world.legs_blocked(lat, lon, lat + 0.01, lon).all()
+        assert world.legs_blocked(64.0, lon, 70.0, lon)
+        assert world.legs_blocked(70.0, lon, 64.0, lon)
+    assert not world.is_navigable(np.linspace(-89.9, -70.0, 50), 0.0).any()
+
+
 def test_zero_length_legs_are_points(world):
     assert not world.legs_blocked(54.0, 3.0, 54.0, 3.0)
     assert world.leg_status(52.0, 5.5, 52.0, 5.5) == LAND

@@ -110,6 +110,8 @@ def test_land_for_drawing_is_cut_to_the_box_and_crosses_the_antimeridian(world):
     assert boxes[:, 0].min() >= 170.0
     assert boxes[:, 2].max() <= 190.0
     assert boxes[:, 2].max() > 185.0
+    seam = [lon == 180.0 for _, lon in world.coastline_lines(64.0, 72.0, 175.0, -175.0)]
+    assert not any((on[1:] & on[:-1]).any() for on in seam)
     lines = world.coastline_lines(50.0, 52.0, 0.0, 2.0)
     assert lines
     assert all((lat >= 50.0).all() and (lon <= 2.0).all() for lat, lon in lines)

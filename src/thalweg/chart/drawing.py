@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,10 +70,23 @@ def _cut(rings: Rings, chosen: Any, shift: float, box: Any) -> list[Any]:
     return [part for part in parts if part.geom_type == "Polygon" and not part.is_empty]
 
 
+@cache
+def _seams() -> Any:
+    """Return the meridians at which GSHHG cuts land, as lines."""
+    import shapely
+
+    cuts = [[(x, -90.0), (x, 90.0)] for x in (-540.0, -180.0, 180.0, 540.0)]
+    cuts += [[(x, -90.0), (x, -69.0)] for x in (-360.0, 0.0, 360.0)]
+    return shapely.MultiLineString(cuts)
+
+
 def coastline_lines(
     chart: Chart, south: float, north: float, west: float, east: float
 ) -> list[tuple[FloatArray, FloatArray]]:
-    """Return the outlines of land in a box as (lat, lon) arrays, without the box's own sides."""
+    """Return the outlines of land in a box as (lat, lon) arrays.
+
+    Without the box's own sides, and without the meridians (0 and 180) at which GSHHG cuts land.
+    """
     import shapely
 
     if east <= west:
@@ -80,7 +94,8 @@ def coastline_lines(
     inner = shapely.box(west, south, east, north).buffer(-1e-9)
     lines: list[tuple[FloatArray, FloatArray]] = []
     for polygon in land_polygons(chart, south, north, west, east):
-        for part in shapely.get_parts(shapely.intersection(polygon.boundary, inner)):
+        outline = shapely.difference(shapely.intersection(polygon.boundary, inner), _seams())
+        for part in shapely.get_parts(outline):
             xy = shapely.get_coordinates(part)
             lines.append((xy[:, 1], xy[:, 0]))
     return lines

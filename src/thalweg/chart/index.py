@@ -60,12 +60,27 @@ def empty_index() -> IndexArrays:
 
 
 def unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
-    """Return geocentric unit vectors, shape (..., 3), of positions [deg]; poles are exact."""
+    """Return geocentric unit vectors, shape (..., 3), of positions [deg].
+
+    Poles and both names of the antimeridian are exact, so that they meet.
+    """
     phi, lam = np.radians(lat), np.radians(lon)
     c, s = np.cos(phi), POLAR * np.sin(phi)
     c = np.where(np.abs(lat) >= 90.0, 0.0, c)
     scale = 1.0 / np.sqrt(c * c + s * s)
-    return np.stack([c * np.cos(lam) * scale, c * np.sin(lam) * scale, s * scale], -1)
+    east = np.where(np.abs(lon) == 180.0, 0.0, np.sin(lam))
+    return np.stack([c * np.cos(lam) * scale, c * east * scale, s * scale], -1)
+
+
+def _seams(lat0: FloatArray, lat1: FloatArray, lon0: FloatArray, lon1: FloatArray) -> IntArray:
+    """Return the edges along meridians that two polygons share, where one land was cut in two."""
+    k = np.flatnonzero((lon0 == lon1) & (lat0 != lat1))
+    low, high = np.minimum(lat0[k], lat1[k]), np.maximum(lat0[k], lat1[k])
+    places = np.stack([low, high, lon0[k] % 360.0], -1)
+    _, which = np.unique(places, axis=0, return_inverse=True)
+    turns = np.bincount(which.ravel(), np.sign(lat1[k] - lat0[k]))
+    often = np.bincount(which.ravel())
+    return k[((turns == 0.0) & (often > 1))[which.ravel()]]
 
 
 def _cut(rings: Rings) -> Pieces:
@@ -75,6 +90,7 @@ def _cut(rings: Rings) -> Pieces:
     keep = (lat0 != lat1) | (lon0 != lon1)
     keep &= ~((np.abs(lat0) >= 90.0) & (np.abs(lat1) >= 90.0))
     keep[rings.start[1:-1] - 1] = False
+    keep[_seams(lat0, lat1, lon0, lon1)] = False
     edge = np.flatnonzero(keep)
     lat0, lat1, lon0, lon1 = lat0[edge], lat1[edge], lon0[edge], lon1[edge]
     north, east = np.radians(lat1 - lat0), np.radians(lon1 - lon0)

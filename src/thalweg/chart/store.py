@@ -18,7 +18,7 @@ from thalweg.chart.index import build_index
 from thalweg.core.cache import cache_folder
 from thalweg.kernels.cube import IndexArrays
 
-FORMAT: Final = 1  # raise when the arrays or the way they are made change
+FORMAT: Final = 2  # raise when the arrays or the way they are made change
 SIDES: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
 
 
