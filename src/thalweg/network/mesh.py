@@ -78,7 +78,8 @@ def mesh(
         Nodes are joined to all nodes within 1, 2 or 3 rings: the way over a regular mesh is then
         at most 15.5, 3.5 or 1.4 % too long in open water.
     sampling : float, optional
-        Distance between samples of a leg as a fraction of the spacing of the nodes around it.
+        Distance between samples of a leg as a fraction of the spacing of the nodes it passes
+        (its length by the rings between its ends).
 
     Returns
     -------
@@ -167,14 +168,14 @@ def _joined(
         add_counts(rejected, {"outside the mesh": outside} if outside else {})
         free &= inside
     pairs = measure_pairs(stations.lat, stations.lon, first[free], second[free])
-    pairs = pairs.where(~_through_nodes(pairs, n))
-    spacing = _local_spacing(pairs, n)
-    stations, samples = even_samples(
-        stations, pairs, sampling * 0.5 * (spacing[pairs.first] + spacing[pairs.second])
-    )
+    ring = np.repeat(np.arange(1, rings + 1), [len(a) for a, _ in by_ring])[free]
+    straight = ~_through_nodes(pairs, n)
+    pairs, ring = pairs.where(straight), ring[straight]
+    near = pairs.length[ring == 1]
+    stations, samples = even_samples(stations, pairs, sampling * pairs.length / ring)
     meta = NetworkMeta(
         kind="mesh",
-        spacing_m=float(np.percentile(spacing, 95)),
+        spacing_m=float(np.percentile(near, 95)) if len(near) else 1.0,
         directions=_DIRECTIONS[rings],
         gap_rad=math.radians(_GAP_DEG[rings]),
         rejected=rejected,
@@ -261,13 +262,3 @@ def _through_nodes(pairs: Pairs, n: int) -> BoolArray:
     through = np.zeros(count, bool)
     through[pair[straight]] = True
     return through
-
-
-def _local_spacing(pairs: Pairs, n: int) -> FloatArray:
-    """Return the distance from every node to its nearest neighbour [m]."""
-    spacing = np.full(n, np.inf)
-    np.minimum.at(spacing, pairs.first, pairs.length)
-    np.minimum.at(spacing, pairs.second, pairs.length)
-    known = np.isfinite(spacing)
-    spacing[~known] = spacing[known].mean() if known.any() else 1.0
-    return spacing
