@@ -1,34 +1,69 @@
-"""The one way kernels are compiled: numba, cached on disk, without division checks."""
+"""The one way kernels are compiled: numba, cached on disk, without division checks.
 
+Compiled code is kept in the user's cache folder, in a folder of its own for each state of the
+kernels: numba itself notices only changes of the file a function stands in, not of what it calls.
+"""
+
+import hashlib
 import os
+import shutil
 import tempfile
 from pathlib import Path
 
+import numba
 
-def _use_writable_cache() -> None:
-    """Send compiled code to the user's cache folder when the package folder is read-only."""
-    if "NUMBA_CACHE_DIR" in os.environ or os.access(Path(__file__).parent, os.W_OK):
-        return
-    base = Path(os.environ.get("THALWEG_CACHE") or Path.home() / ".cache" / "thalweg")
-    folder = base / "numba"
+_KEPT = 4  # folders of compiled code, the newest ones
+
+
+def _stamp() -> str:
+    """Return a hash that changes with any kernel file."""
+    files = sorted(Path(__file__).parent.glob("*.py"))
+    facts = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in files]
+    return hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
+
+
+def _base() -> Path:
+    override = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("THALWEG_CACHE")
+    if override:
+        return Path(override)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "thalweg"
+
+
+def _make_folder() -> Path:
+    base = _base() / "kernels"
+    folder = base / _stamp()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _forget_old(base)
+        if os.access(folder, os.W_OK):
+            return folder
     except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="thalweg-numba-"))
-    os.environ["NUMBA_CACHE_DIR"] = str(folder)
+        pass
+    return Path(tempfile.mkdtemp(prefix="thalweg-kernels-"))
 
 
-_use_writable_cache()
+def _forget_old(base: Path) -> None:
+    folders = sorted(base.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
+    for folder in folders[_KEPT:]:
+        shutil.rmtree(folder, ignore_errors=True)
 
-import numba  # noqa: E402  # the cache folder must be settled before numba is imported
+
+#: Where the compiled code of these kernels is kept.
+COMPILED = _make_folder()
 
 
-def jit(*args, **options):
+def jit(function=None, **options):
     """Compile with on-disk caching and NumPy's error model (division checks block SIMD)."""
-    options.setdefault("cache", True)
-    options.setdefault("error_model", "numpy")
-    options.setdefault("nogil", True)
-    return numba.njit(*args, **options)
+    if function is None:
+        return lambda given: jit(given, **options)
+    options = {"cache": True, "error_model": "numpy", "nogil": True, **options}
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(COMPILED)
+    try:
+        return numba.njit(**options)(function)
+    finally:
+        numba.config.CACHE_DIR = before
 
 
 prange = numba.prange
