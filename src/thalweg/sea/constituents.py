@@ -208,8 +208,10 @@ class Constituents:
 
 
 def tide(coefficient: Complex, wave: Complex) -> FloatArray:
-    """Return the real part of a product of complex matrices, with real ones only."""
-    return np.asarray(coefficient.real @ wave.real - coefficient.imag @ wave.imag, np.float64)
+    """Return the real part of a product of complex matrices (N, C) and (C, T), as one real one."""
+    left = np.concatenate([coefficient.real, -coefficient.imag], axis=1)
+    right = np.concatenate([wave.real, wave.imag], axis=0)
+    return np.asarray(left @ right, np.float64)
 
 
 def phasors(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -148,10 +148,13 @@ class TidalLayer:
         }
 
     def _phasors(self, times: FloatArray) -> Complex:
-        constants = self.constituents
         known = np.where(np.isfinite(times), times, 0.0)
-        wave = phasors(constants.names, known, constants.latitude, constants.convention)
-        wave[~np.isfinite(times)] = np.nan
+        constants = self.constituents
+        wave = _kept_phasors(
+            constants.names, known.tobytes(), constants.latitude, constants.convention
+        )
+        if not np.isfinite(times).all():
+            wave = np.where(np.isfinite(times)[:, None], wave, np.nan)
         return wave
 
     def _locate(self, lat: FloatArray, lon: FloatArray) -> Located:
@@ -173,6 +176,16 @@ class TidalLayer:
             coefficient[used] += share[used, None] * wave[node[used]]
         level[corner[:, 0] < 0] = np.nan
         return level, coefficient
+
+
+@lru_cache(maxsize=8)
+def _kept_phasors(
+    names: tuple[str, ...], times: bytes, latitude: float, convention: str
+) -> Complex:
+    """Return phasors for times given as bytes, kept for the next stations with the same times."""
+    wave = phasors(names, np.frombuffer(times), latitude, convention)
+    wave.flags.writeable = False
+    return wave
 
 
 def tidal_sea(
