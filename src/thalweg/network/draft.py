@@ -45,12 +45,16 @@ class LevelPairs:
 
 @dataclass(frozen=True)
 class Draft:
-    """A lattice before assembly; start and goal are its last two nodes."""
+    """A lattice before assembly; start and goal are its last two nodes.
+
+    ``refused`` is the number of points that the level left out would have brought, or 0.
+    """
 
     stations: Stations
     parts: list[LevelPairs]
     ends: Pairs
     rejected: Rejected
+    refused: int
 
     @property
     def start(self) -> int:
@@ -116,7 +120,7 @@ def make_draft(
     ground: Ground, di: IntArray, dj: IntArray, start: Position, goal: Position
 ) -> Draft:
     """Grow the levels, join their points in all directions and link start and goal."""
-    levels, lat, lon = grow_levels(ground)
+    levels, lat, lon, refused = grow_levels(ground)
     n = len(lat)
     rejected: Rejected = {}
     parts = [_join(ground.chart, level, lat, lon, di, dj, rejected) for level in levels]
@@ -127,11 +131,11 @@ def make_draft(
     ends = []
     for point in (n, n + 1):
         own = spacing / np.cosh(_ordinate(ground.frame, lat[point], lon[point]))
-        pairs, refused = links(ground.chart, lat, lon, point, n_nodes=n, reach=reach * own)
+        pairs, counts = links(ground.chart, lat, lon, point, n_nodes=n, reach=reach * own)
         ends.append(pairs)
-        add_counts(rejected, refused)
+        add_counts(rejected, counts)
     ends.append(direct_pairs(ground.chart, stations, n, reach=reach * spacing))
-    return Draft(stations, parts, join_pairs(ends), rejected)
+    return Draft(stations, parts, join_pairs(ends), rejected, refused)
 
 
 def _ordinate(frame: Frame, lat: float, lon: float) -> float:

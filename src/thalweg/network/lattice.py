@@ -227,11 +227,14 @@ def _drawn(
         wish = replace(wish, budget=_BUDGET, coast_budget=_BUDGET)
         notes = _note(spacing, coast)
     most = min(wish.coast_budget * (1 + 2 * extra), _HARD_BUDGET)
+    may_stop = wish.coast_budget < _HARD_BUDGET
     while True:
         frame = _frame(wish, region, spacing).refined(coast + ends)
-        ground = Ground(wish.chart, frame, region, coast, ends, wish.budget, most)
+        ground = Ground(wish.chart, frame, region, coast, ends, wish.budget, most, may_stop)
         try:
             draft = make_draft(ground, *offsets, wish.start, wish.goal)
+            if draft.refused:
+                notes, refused = _note(spacing, len(draft.parts) - 1), draft.refused
             return _Drawing(ground, draft, notes, refused)
         except TooManyPoints as refusal:
             spacing, coast, ends = _coarser(wish, region, refusal, (spacing, coast, ends))

@@ -82,6 +82,8 @@ class Ground:
         Levels along all coasts, and further levels near start and goal only.
     budget, coast_budget : int
         Most points of level 0, and of all finer levels together.
+    may_stop : bool
+        Whether coast levels beyond the budget are left out instead of refused.
     """
 
     chart: Chart
@@ -91,6 +93,7 @@ class Ground:
     end_levels: int
     budget: int
     coast_budget: int
+    may_stop: bool = False
 
     def step(self, level: int) -> int:
         """Return the finest units between neighbouring points of a level."""
@@ -109,8 +112,11 @@ class TooManyPoints(Exception):
         super().__init__(f"{count} points at level {level}")
 
 
-def grow_levels(ground: Ground) -> tuple[list[Level], FloatArray, FloatArray]:
+def grow_levels(ground: Ground) -> tuple[list[Level], FloatArray, FloatArray, int]:
     """Return all levels and the positions [deg] of their nodes, numbered along rows.
+
+    When the ground says so the growth stops before the level that goes beyond the budget; the
+    last value returned is then the number of points of the coasts it would have come to, else 0.
 
     Raises
     ------
@@ -124,9 +130,11 @@ def grow_levels(ground: Ground) -> tuple[list[Level], FloatArray, FloatArray]:
         i, j, shore = _next_level(ground, level, i, j, shore)
         fine += len(i)
         if fine > ground.coast_budget:
+            if level > 1 and ground.end_levels == 0 and ground.may_stop:
+                return *_number(ground, points), fine
             raise TooManyPoints(level, fine)
         points.append((i, j))
-    return _number(ground, points)
+    return *_number(ground, points), 0
 
 
 def _open_sea(ground: Ground) -> tuple[IntArray, IntArray, FloatArray]:
