@@ -78,7 +78,8 @@ def _try(
     pick = np.argmin(cost, axis=1)
     row = np.arange(len(moving))
     spent = cost[:, 0] - (0.0 if sailor.by_length else arrive[0, moving - 1])
-    moved = cost[row, pick] < cost[:, 0] - 1e-10 * np.abs(spent)
+    slack = 1e-10 * np.where(np.isfinite(spent), np.abs(spent), 0.0)
+    moved = cost[row, pick] + slack < cost[:, 0]
     chosen = (row * trials + pick)[moved]
     new_lat, new_lon = line.lat.copy(), line.lon.copy()
     new_lat[moving[moved]], new_lon[moving[moved]] = lat[chosen, 1], lon[chosen, 1]
