@@ -19,7 +19,8 @@ def leg_status(
 ) -> NDArray[np.int8]:
     """Return the status code of each geodesic leg [deg]; arguments broadcast together."""
     ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
-    a, b, c, d = (np.ascontiguousarray(x).ravel() for x in ends)
+    # writeable arrays all, so that the kernel is compiled for one kind only
+    a, b, c, d = (np.require(x, float, ("C", "W")).ravel() for x in ends)
     code = np.empty(len(a), np.int8)
     unsure = np.empty(len(a), np.bool_)
     leg_codes(coast, a, b, c, d, code, unsure)
@@ -44,6 +45,6 @@ def point_status(coast: CoastArrays, lat: ArrayLike, lon: ArrayLike) -> NDArray[
     """Return the status code of each position [deg]."""
     a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
     code = np.empty(a.size, np.int8)
-    flat: list[FloatArray] = [np.ascontiguousarray(x).ravel() for x in (a, b)]
+    flat: list[FloatArray] = [np.require(x, float, ("C", "W")).ravel() for x in (a, b)]
     point_codes(coast, flat[0], flat[1], code)
     return code.reshape(a.shape)
