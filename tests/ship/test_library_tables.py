@@ -5,11 +5,8 @@ import pytest
 
 from thalweg.ship import Conditions, Ship
 
-#: tables of full tankers in short steep seas stay a little above the one per cent asked
-_REACHED = {"jbc": 0.03, "kvlcc2": 0.025}
 
-
-@pytest.mark.parametrize("name", ["gunnerus", "s175", "vox-olympia", "yu-single-screw-169m"])
+@pytest.mark.parametrize("name", ["s175", "vox-olympia", "yu-single-screw-169m"])
 def test_tables_meet_one_per_cent_in_64_megabytes(name):
     table = Ship.load(name).tabulate(tolerance=0.01)
     assert table.error.p99 <= 0.01
@@ -18,11 +15,16 @@ def test_tables_meet_one_per_cent_in_64_megabytes(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", _REACHED)
-def test_tables_that_miss_the_tolerance_say_so(name):
-    table = Ship.load(name).tabulate(tolerance=0.01)
-    assert 0.01 < table.error.p99 <= _REACHED[name]
-    assert table.error.mean < 0.003
+@pytest.mark.parametrize("name", ["gunnerus", "kvlcc2"])
+def test_larger_tables_meet_one_per_cent_too(name):
+    assert Ship.load(name).tabulate(tolerance=0.01).error.p99 <= 0.01
+
+
+@pytest.mark.slow
+def test_a_table_that_misses_the_tolerance_says_so():
+    table = Ship.load("jbc").tabulate(tolerance=0.01)
+    assert 0.01 < table.error.p99 <= 0.02
+    assert table.error.mean < 0.002
 
 
 def test_a_table_in_usual_weather_is_much_better_than_its_p99():

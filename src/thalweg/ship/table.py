@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -86,25 +86,39 @@ class TablePart:
 
     def lookup(self, where: Mapping[str, ArrayLike], setting: ArrayLike = 0) -> FloatArray:
         """Return the multilinear look-up; NaN outside an axis (only depth reaches on downwards)."""
+        chosen = np.asarray(setting).astype(np.intp)
+        total: FloatArray = np.zeros(())
+        for weight, index in self._corners(where):
+            value = self.values[(*np.broadcast_arrays(*index, chosen),)]
+            total = total + np.where(weight == 0.0, 0.0, weight * value)
+        return total
+
+    def lookup_all(self, where: Mapping[str, ArrayLike]) -> FloatArray:
+        """Return the look-up of every setting, in a last axis."""
+        total: FloatArray = np.zeros(())
+        for weight, index in self._corners(where):
+            value = self.values[(*index,)] if index else self.values
+            column = np.asarray(weight)[..., None]
+            total = total + np.where(column == 0.0, 0.0, column * value)
+        return total
+
+    def _corners(
+        self, where: Mapping[str, ArrayLike]
+    ) -> Iterator[tuple[FloatArray, list[NDArray[np.intp]]]]:
+        """Weight and index of every corner of the cells that hold the conditions."""
         names = [CONDITION_OF[axis] for axis in self.axes]
-        points = np.broadcast_arrays(
-            *(np.asarray(where[n], float) for n in names), np.asarray(setting)
-        )
-        chosen = points[-1].astype(np.intp)
         located = [
-            _locate(axis, grid, x) for axis, grid, x in zip(self.axes, self.grids, points[:-1])
+            _locate(axis, grid, np.asarray(where[name], float))
+            for axis, grid, name in zip(self.axes, self.grids, names)
         ]
-        total = np.zeros(points[-1].shape)
         for corner in range(1 << len(self.axes)):
-            weight = np.ones(total.shape)
+            weight: FloatArray = np.ones(())
             index: list[NDArray[np.intp]] = []
             for bit, (cell, fraction) in enumerate(located):
                 up = corner >> bit & 1
                 index.append(cell + up)
                 weight = weight * (fraction if up else 1.0 - fraction)
-            value = self.values[(*index, chosen)]
-            total += np.where(weight == 0.0, 0.0, weight * value)
-        return total
+            yield weight, index
 
 
 @dataclass(frozen=True, eq=False)

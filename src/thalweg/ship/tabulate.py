@@ -20,7 +20,7 @@ Tabulated = Callable[[Mapping[str, FloatArray]], FloatArray]
 
 FLOOR: Final = 0.25  #: relative errors are not taken to less than this share of the greatest value
 LARGEST_TABLE: Final = 32_000_000  #: bytes of one part
-_CHUNK = 200_000
+_CHUNK = 40_000
 _SAMPLES = 4000
 _LARGEST_AXIS = 1025
 
@@ -107,7 +107,7 @@ def tabulate_dense(
     points = random_conditions(axes, _SAMPLES if check is None else 1, 0)
     truth = function(points) + base
     axes = _fitting(axes, largest // (4 * truth.shape[-1]))
-    measure = check or (lambda part: table_error(lookup_all(part, points) + base, truth))
+    measure = check or (lambda part: table_error(part.lookup_all(points) + base, truth))
     while True:
         values = _on_grid(function, axes)
         part = TablePart(tuple(a.axis for a in axes), tuple(a.grid for a in axes), values)
@@ -129,11 +129,6 @@ def random_conditions(axes: Sequence[Axis], count: int, seed: int) -> dict[str, 
     """Return conditions drawn evenly over the axes, by name."""
     draw = np.random.default_rng(seed)
     return {a.name: draw.uniform(a.start, a.stop, count) for a in axes}
-
-
-def lookup_all(part: TablePart, where: Mapping[str, FloatArray]) -> FloatArray:
-    """Look a part up for every setting; shape ``(*shape, settings)``."""
-    return np.stack([part.lookup(where, s) for s in range(part.values.shape[-1])], axis=-1)
 
 
 def table_error(found: FloatArray, truth: FloatArray) -> TableError:

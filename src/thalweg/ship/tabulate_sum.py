@@ -18,8 +18,8 @@ from thalweg.ship.powering import Balance, ResistanceModel
 from thalweg.ship.table import TableError, TablePart
 from thalweg.ship.tabulate import (
     Axis,
+    Tabulated,
     constant_part,
-    lookup_all,
     random_conditions,
     table_error,
     tabulate_dense,
@@ -37,7 +37,7 @@ _ALONE: Final = {
     "wind_speed": Axis(codes.AXIS_WIND_SPEED, 0.0, 40.0, 26),
     "wind_angle": Axis(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 19),
     "wave_height": Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 12.0, 17),
-    "wave_angle": Axis(codes.AXIS_WAVE_ANGLE, 0.0, np.pi, 25),
+    "wave_angle": Axis(codes.AXIS_WAVE_ANGLE, 0.0, np.pi, 33),
     "wave_period": Axis(codes.AXIS_WAVE_PERIOD, 0.0, 30.0, 31),
 }
 _SHARED: Final = {
@@ -50,8 +50,8 @@ _SHARED: Final = {
 }  # without and with depth
 _CHECKS: Final = 1500
 _MARGIN: Final = 1.005
-_LARGEST_ALONE: Final = 2_000_000  #: bytes
-_LARGEST_SHARED: Final = 14_000_000  #: bytes
+_LARGEST_ALONE: Final = 8_000_000  #: bytes
+_LARGEST_SHARED: Final = 16_000_000  #: bytes
 
 
 def tabulate_balance(
@@ -89,11 +89,16 @@ def tabulate_balance(
     groups = [group for group in groups if group]
     calm = model.speeds(load_factor)
     parts = [constant_part(calm)]
+    shift = calm - ladder({"depth": np.asarray(np.inf)})
+
+    def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
+        return ladder(where) + shift
+
     for group in groups:
         part, _ = tabulate_dense(
-            lambda where: ladder(where) - calm,
+            lambda where: speeds(where) - calm,
             group,
-            tolerance=tolerance / 3,
+            tolerance=tolerance / 5,
             largest=_LARGEST_ALONE,
             base=calm,
         )
@@ -104,10 +109,16 @@ def tabulate_balance(
     points = random_conditions(axes, _CHECKS, 7)
     truth = _speeds(model, balance, load_factor, points)
     error = table_error(_total(parts, points), truth)
-    if error.p99 > tolerance:
+    alone = parts
+    for strictness in (0.85, 0.35):
+        if error.p99 <= tolerance or len(groups) < 2:
+            break
+        parts = list(alone)
         for together in _growing(groups):
-            parts.append(_together(ladder, together, parts, tolerance))
+            parts.append(_together(speeds, together, parts, strictness * tolerance))
         error = table_error(_total(parts, points), truth)
+        if sum(part.values.nbytes for part in parts) > _LARGEST_SHARED / 4:
+            break
     return tuple(parts), error
 
 
@@ -199,26 +210,26 @@ def _speeds(
 
 
 def _total(parts: list[TablePart], points: Mapping[str, FloatArray]) -> FloatArray:
-    return reduce(np.add, (lookup_all(part, points) for part in parts))
+    return reduce(np.add, (part.lookup_all(points) for part in parts))
 
 
 def _together(
-    ladder: Ladder, axes: list[Axis], parts: list[TablePart], tolerance: float
+    speeds: Tabulated, axes: list[Axis], parts: list[TablePart], tolerance: float
 ) -> TablePart:
     """The part over two groups of axes: what they cost together beyond what each costs alone."""
     deep = any(axis.name == "depth" for axis in axes)
     coarse = [_coarse(axis, deep) for axis in axes]
     points = random_conditions(coarse, 2 * _CHECKS, 5)
-    truth = ladder(points)
+    truth = speeds(points)
     with_rest = {**_at_rest(parts, points), **points}
 
     def left(where: Mapping[str, FloatArray]) -> FloatArray:
-        return ladder(where) - _total(parts, {**_at_rest(parts, where), **where})
+        return speeds(where) - _total(parts, {**_at_rest(parts, where), **where})
 
     part, _ = tabulate_dense(
         left,
         coarse,
-        tolerance=0.7 * tolerance,
+        tolerance=tolerance,
         largest=_LARGEST_SHARED,
         check=lambda part: table_error(_total([*parts, part], with_rest), truth),
     )

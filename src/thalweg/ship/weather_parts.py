@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import unknown_name
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.hull_estimates import estimated_or_error
-from thalweg.ship.methods.holtrop_form import half_angle_of_entrance, hull_form, length_of_run
+from thalweg.ship.methods.holtrop_form import hull_form, length_of_run
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.methods.waves import (
     stawave1,
@@ -21,7 +21,7 @@ from thalweg.ship.methods.waves import (
     stawave2,
     stawave2_validity,
 )
-from thalweg.ship.methods.waves_snnm import SnnmHull, entrance_length, snnm, snnm_validity
+from thalweg.ship.methods.waves_snnm import SnnmHull, snnm, snnm_validity
 from thalweg.ship.methods.wind import (
     BLENDERMANN,
     ITTC_CURVES,
@@ -37,6 +37,8 @@ from thalweg.ship.methods.wind import (
 from thalweg.ship.model import Estimate
 
 FloatArray = NDArray[np.float64]
+#: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
+_ENTRANCE: Final = 0.85
 SHORTEST_PERIOD, LONGEST_PERIOD = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
 
 
@@ -144,15 +146,15 @@ def _snnm(hull: Hull) -> Waves:
     keys = (*_WAVE_KEYS, *form_keys)
     hull = estimated_or_error(hull, keys, "snnm", instead="stawave_1")
     length, breadth, _, block = (float(hull.values[key]) for key in _WAVE_KEYS)
-    entrance, run = _ends(hull)
+    hull = _with_ends(hull)
     vessel = SnnmHull(
         length=length,
         breadth=breadth,
         draught_fore=float(hull.values["draught_fore_m"]),
         draught_aft=float(hull.values["draught_aft_m"]),
         block_coefficient=block,
-        entrance_length=entrance,
-        run_length=run,
+        entrance_length=float(hull.values["length_entrance_m"]),
+        run_length=float(hull.values["length_run_m"]),
         pitch_gyration=hull.number("pitch_gyration") or 0.25,
     )
 
@@ -167,25 +169,18 @@ def _snnm(hull: Hull) -> Waves:
     return Waves("snnm", hull, force, notes, _BOTH | {"wave_period"})
 
 
-def _ends(hull: Hull) -> tuple[float, float]:
-    """Lengths of entrance and run [m], from Holtrop's angle and length when not given."""
-    numbers = [
-        float(hull.values[key])
-        for key in (
-            *("length_waterline_m", "breadth_m", "draught_m", "displacement_m3"),
-            *("midship_coefficient", "waterplane_coefficient", "lcb_percent"),
-        )
-    ]
+def _with_ends(hull: Hull) -> Hull:
+    """The hull with lengths of entrance and run [m], estimated when not given."""
     names = ("length_waterline", "breadth", "draught", "displacement")
+    keys = ("length_waterline_m", "breadth_m", "draught_m", "displacement_m3")
     more = ("midship_coefficient", "waterplane_coefficient", "lcb_percent")
+    numbers = [float(hull.values[key]) for key in (*keys, *more)]
     form = hull_form(**dict(zip((*names, *more), numbers)))
-    angle = hull.number("half_entrance_angle_deg")
-    degrees = float(half_angle_of_entrance(form)) if angle is None else angle
-    bow = hull.number("length_entrance_m")
-    run = hull.number("length_run_m")
-    return (
-        float(entrance_length(numbers[1], entrance_angle_deg=degrees)) if bow is None else bow,
-        float(length_of_run(form)) if run is None else run,
+    entrance = _ENTRANCE * (1.0 - float(form.prismatic_coefficient)) * numbers[0]
+    run = float(length_of_run(form))
+    return hull.with_estimates(
+        Estimate("length_entrance_m", entrance, f"{_ENTRANCE:g} (1 - C_P) L_WL, ours"),
+        Estimate("length_run_m", run, "Holtrop and Mennen (1982)"),
     )
 
 
