@@ -156,3 +156,25 @@ def test_real_grids_have_the_depths_of_the_sea():
     assert wide.depth_at(float(cell.lat), float(cell.lon)) == pytest.approx(-float(cell))
     ocean = wide.depth_along(45.0, -30.0, 45.0, -20.0)
     assert 1000.0 < ocean < 5000.0
+
+
+def test_a_leg_that_clips_the_corner_of_a_shallow_cell_is_shallow():
+    """However it is cut: the whole leg is as shallow as the least of its parts."""
+    lat = lon = np.arange(0.0, 1.01, 0.1)
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        grid = xr.DataArray(
+            np.where(rng.random((11, 11)) < 0.06, 4.0, 30.0),
+            coords={"lat": lat, "lon": lon},
+            dims=("lat", "lon"),
+            name="depth",
+            attrs={"units": "m", "positive": "down"},
+        )
+        chart = Chart.open_water(-1, 2, -1, 2).with_depth(grid)
+        ends = rng.uniform(0.05, 0.95, (4, 40))
+        whole = chart.depth_along(*ends)
+        cuts = np.linspace(0.0, 1.0, 201)[:, None]
+        points_lat = ends[0] + cuts * (ends[2] - ends[0])
+        points_lon = ends[1] + cuts * (ends[3] - ends[1])
+        fine = chart.depth_along(points_lat[:-1], points_lon[:-1], points_lat[1:], points_lon[1:])
+        assert np.all(whole <= np.nanmin(fine, axis=0) + 1e-6)

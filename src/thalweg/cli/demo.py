@@ -24,12 +24,14 @@ def run(arguments: argparse.Namespace) -> int:
     """Plan the demonstration voyage, and say what the storm costs a ship that ignores it."""
     from thalweg.chart import Chart
     from thalweg.planning import plan as make_plan
+    from thalweg.planning import warming
     from thalweg.planning.demo import demo_voyage
     from thalweg.planning.output import check_folder
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
     folder = check_folder(arguments.out)
+    warming.begin()
     found = make_plan(
         demo_voyage(),
         ship=Ship.load("handysize-bulker"),

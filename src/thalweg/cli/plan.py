@@ -39,9 +39,10 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan, print and write."""
-    from thalweg.planning import plan
+    from thalweg.planning import plan, warming
     from thalweg.planning.output import check_folder
 
+    warming.begin()
     if arguments.out:
         check_folder(arguments.out)
     ship, sea = common.open_ship(arguments), common.open_sea(arguments)

@@ -2,7 +2,7 @@
 
 A leg is sampled no farther apart than half a grid step, and each sample takes the least of the
 four soundings round it: bilinear depth never lies below them, so the answer errs to the shallow
-side.
+side. Where a step passes into the cell across a corner, both cells beside it are looked at too.
 """
 
 from math import ceil, cos, floor, pi, sqrt
@@ -85,6 +85,19 @@ def _finest(depths, lat):
 
 
 @bare
+def _across_a_corner(depths, lat1, lon1, lat2, lon2):
+    """Return whether a step shorter than a cell changes row and column of any layer."""
+    for layer in range(len(depths.offset)):
+        lat0, dlat = depths.grid[layer, 0], depths.grid[layer, 1]
+        lon0, dlon = depths.grid[layer, 2], depths.grid[layer, 3]
+        if floor((lat1 - lat0) / dlat) != floor((lat2 - lat0) / dlat) and floor(
+            ((lon1 - lon0) % 360.0) / dlon
+        ) != floor(((lon2 - lon0) % 360.0) / dlon):
+            return True
+    return False
+
+
+@bare
 def least_depth(depths, lat1, lon1, lat2, lon2):
     """Return the least charted depth [m] on a leg [deg] below 1,000 km.
 
@@ -97,6 +110,9 @@ def least_depth(depths, lat1, lon1, lat2, lon2):
     length = sqrt((bx - ax) ** 2 + (by - ay) ** 2 + (bz - az) ** 2)
     steps = ceil(length / (0.5 * _finest(depths, max(abs(lat1), abs(lat2))))) + 1
     least = depth_point(depths, lat1, lon1, True)
+    if least != least:
+        return np.nan
+    lat_before, lon_before = lat1, lon1
     for k in range(1, steps + 1):
         share = k / steps
         lat, lon = latitude_longitude(
@@ -108,6 +124,13 @@ def least_depth(depths, lat1, lon1, lat2, lon2):
         if value != value:
             return np.nan
         least = min(least, value)
+        if _across_a_corner(depths, lat_before, lon_before, lat, lon):
+            one = depth_point(depths, lat_before, lon, True)
+            other = depth_point(depths, lat, lon_before, True)
+            if one != one or other != other:
+                return np.nan
+            least = min(least, min(one, other))
+        lat_before, lon_before = lat, lon
     return least
 
 

@@ -15,6 +15,7 @@ from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.network import Network
+from thalweg.planning import warming
 from thalweg.planning.ends import End
 from thalweg.planning.needs import Needs
 from thalweg.planning.networks import NetworkChoice, build_network
@@ -189,6 +190,7 @@ def _score(task: Task, network: Network, result: SearchResult, limits: np.ndarra
         limits=limits,
         min_ukc=task.min_ukc,
         objective=task.voyage.objective,
+        wait=task.voyage.wait,
     )
 
 
@@ -223,6 +225,7 @@ def _search(
         end = min(end, latest)
         task.tell(f"freezing the sea until {format_time(end)}")
         frozen = freeze(task, network, window[0], end)
+        warming.finish()
         task.tell("searching")
         result = _run(task, network, frozen, limits, window)
         if result.found or end >= latest:
