@@ -6,6 +6,8 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tests.conftest import data_file
 from thalweg.core.errors import DatasetError, InputError, ThalwegWarning
@@ -129,6 +131,45 @@ def test_analysis_is_that_of_utide_with_gaps_and_noise():
         k = list(solved.name).index(row["name"])
         assert row["amplitude"] == pytest.approx(solved.A[k], abs=1e-8)
         assert np.exp(1j * np.radians(row["phase_deg"] - solved.g[k])) == pytest.approx(1, abs=1e-5)
+
+
+def test_tidal_currents_of_a_line_in_vanuatu_as_utide_solves_them_in_two_dimensions():
+    with xr.open_dataset(data_file("tide/dhi_vanuatu_tidal_current_line_hourly_202108.nc")) as data:
+        times = data.time.values.astype("datetime64[ns]").astype(np.int64) / 1e9
+        east, north = data.ucur.values.T, data.vcur.values.T
+    found = analyse(times, {EAST: east, NORTH: north}, lat=np.full(11, -17.7))
+    assert found.share() > 0.999  # a tide it is: another program predicted it
+    when = _utide_times(times)
+    solved = utide.solve(
+        when, east[3], north[3], lat=-17.7, method="ols", conf_int="none", trend=False,
+        verbose=False,
+    )  # fmt: skip
+    theirs = utide.reconstruct(when, solved, verbose=False)
+    assert np.abs(found.constituents.predict(EAST, times)[3] - theirs.u).max() < 1e-6
+    assert np.abs(found.constituents.predict(NORTH, times)[3] - theirs.v).max() < 1e-6
+
+
+@settings(max_examples=25)
+@given(
+    st.dictionaries(
+        st.sampled_from(["M2", "S2", "K1", "O1", "M4", "MS4", "M6"]),
+        st.tuples(st.floats(0.01, 3.0), st.floats(0.0, 359.0)),
+        min_size=1,
+    ),
+    st.floats(-75.0, 75.0),
+    st.floats(-2.0, 2.0),
+    st.integers(0, 12000),
+)
+def test_any_tide_comes_back_from_its_record(table, latitude, mean, day):
+    truth = Constituents.single(LEVEL, table, mean=mean, lat=latitude, convention="foreman")
+    times = _hours(18, start=START + 86400.0 * (day - 6000))
+    record = truth.predict(LEVEL, times)[0]
+    found = analyse(times, {LEVEL: record}, lat=latitude, constituents=list(table)).constituents
+    assert found.mean[LEVEL][0] == pytest.approx(mean, abs=1e-8)
+    error = found.coefficients(LEVEL) - truth.coefficients(LEVEL)
+    assert np.abs(error).max() < 1e-7
+    other = times + 1e8
+    assert np.allclose(found.predict(LEVEL, other), truth.predict(LEVEL, other), atol=1e-6)
 
 
 def test_constants_come_back_and_hold_eleven_years_later():

@@ -90,7 +90,8 @@ def _constants() -> Any:
         from utide._ut_constants import ut_constants  # type: ignore[import-untyped]
     except ImportError:
         raise InputError(
-            "Harmonic analysis needs the package utide, which is not installed.",
+            "Analysing tides, and predicting from an analysis, needs the package utide, which is "
+            "not installed.",
             "Published constituents can be read and predicted without it.",
             "Install it with: pip install 'thalweg[tides]'.",
             package="utide",

@@ -30,7 +30,7 @@ Progress = Callable[[int, int], None]
 
 RAYLEIGH: Final = 1.0  #: separation of two constituents [cycles over the record]
 LEAST_KNOWN: Final = 0.5  #: share of the record that must be known at a node
-NODES_AT_ONCE: Final = 2048  #: nodes whose series are in memory as float64 at a time
+NODES_AT_ONCE: Final = 1024  #: nodes whose series are in memory as float64 at a time
 WORST_CONDITION: Final = 1e5  #: of the equations, above which the constants mean nothing
 
 
@@ -158,7 +158,7 @@ def _fit(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return solutions (columns of the design, N), tidal shares and variances (N,)."""
     nodes = values.shape[0]
-    solution = np.full((design.shape[1], nodes), np.nan)
+    solution = np.full((nodes, design.shape[1]), np.nan)
     share, variance = np.full(nodes, np.nan), np.full(nodes, np.nan)
     whole = design.T @ design
     _check_condition(whole)
@@ -169,12 +169,12 @@ def _fit(
             block = np.asarray(values[part], np.float64)
             known = np.isfinite(block)
             groups = list(_groups(known, needed))
-            solve = partial(_solve, design, whole, block, known)
-            tasks = pool.map(solve, groups)
-            for rows, (x, s, v) in zip(groups, tasks):
-                solution[:, first + rows], share[first + rows], variance[first + rows] = x, s, v
+            squares = list(pool.map(partial(_square, design, whole, known), groups))
+            good = [(g, q) for g, q in zip(groups, squares) if q is not None]
+            solved = _solve(design, block, known, good)
+            solution[part], share[part], variance[part] = solved
             tell(part.stop)
-    return solution, share, variance
+    return solution.T, share, variance
 
 
 def _groups(known: BoolArray, needed: float) -> Iterator[NDArray[np.int64]]:
@@ -182,32 +182,58 @@ def _groups(known: BoolArray, needed: float) -> Iterator[NDArray[np.int64]]:
     enough = np.flatnonzero(known.sum(axis=1) >= needed)
     packed = np.packbits(known[enough], axis=1)
     _, group = np.unique(packed, axis=0, return_inverse=True)
-    for k in range(int(group.max()) + 1 if group.size else 0):
-        yield enough[group.ravel() == k]
+    order = np.argsort(group.ravel(), kind="stable")
+    ends = np.flatnonzero(np.diff(group.ravel()[order])) + 1
+    yield from (enough[rows] for rows in np.split(order, ends) if rows.size)
+
+
+def _square(
+    design: FloatArray, whole: FloatArray, known: BoolArray, rows: NDArray[np.int64]
+) -> FloatArray | None:
+    """Return the normal matrix of rows that share their gaps; None if it tells nothing."""
+    there = known[rows[0]]
+    if there.all():
+        return whole
+    if 2 * int(there.sum()) > there.size:
+        gaps = design[~there]
+        square = whole - gaps.T @ gaps
+    else:
+        kept = design[there]
+        square = kept.T @ kept
+    spread = np.linalg.eigvalsh(square)
+    return square if spread[0] * WORST_CONDITION**2 > spread[-1] else None
 
 
 def _solve(
-    design: FloatArray, whole: FloatArray, block: FloatArray, known: BoolArray,
-    rows: NDArray[np.int64],
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
-    """Solve the least squares of rows that share their gaps."""
-    there = known[rows[0]]
-    data = block[rows][:, there]
-    equations = design if there.all() else design[there]
-    square = whole if there.all() else equations.T @ equations
-    if np.linalg.cond(square) > WORST_CONDITION**2:
-        nothing = np.full(rows.size, np.nan)
-        return np.full((design.shape[1], rows.size), np.nan), nothing, nothing
-    start = data.mean(axis=1)
-    centred = data - start[:, None]
-    x = np.linalg.solve(square, equations.T @ centred.T)
-    left = centred.T - equations @ x
-    x = x + np.linalg.solve(square, equations.T @ left)
-    left = centred.T - equations @ x
-    x[0] += start
-    variance = data.var(axis=1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.where(variance > 0.0, 1.0 - left.var(axis=0) / variance, np.nan)
+    design: FloatArray,
+    block: FloatArray,
+    known: BoolArray,
+    groups: Sequence[tuple[NDArray[np.int64], FloatArray]],
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return solutions (N, columns), shares and variances of a block of nodes.
+
+    Each solution is refined once, so that normal equations lose no digits that matter.
+    """
+    count = np.maximum(known.sum(axis=1), 1)
+    start = np.where(known, block, 0.0).sum(axis=1) / count
+    left = np.where(known, block - start[:, None], 0.0)
+    variance = (left**2).sum(axis=1) / count
+    x = np.full((block.shape[0], design.shape[1]), np.nan)
+    for rows, _ in groups:
+        x[rows] = 0.0
+    for _ in range(2):
+        right = left @ design
+        step = np.zeros_like(x)
+        for rows, square in groups:
+            step[rows] = np.linalg.solve(square, right[rows].T).T
+        x += step
+        left -= np.where(known, step @ design.T, 0.0)
+    x[:, 0] += start
+    spare = (left**2).sum(axis=1) / count - (left.sum(axis=1) / count) ** 2
+    solved = np.isfinite(x[:, 0]) & (variance > 0.0)
+    share = np.full(block.shape[0], np.nan)
+    share[solved] = 1.0 - spare[solved] / variance[solved]
+    variance[~np.isfinite(x[:, 0])] = np.nan
     return x, share, variance
 
 
