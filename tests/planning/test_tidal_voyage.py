@@ -1,0 +1,56 @@
+"""A bar in 2031 on the tide of constituents, and the coast of Prandle and Heaps."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.time import parse_time
+from thalweg.sea import names as nm
+from thalweg.sea.constituents import Constituents
+from thalweg.sea.north_sea import north_sea_current
+
+AREA = (51.6, 51.9, 3.40, 3.75)
+
+
+def _bar(time, lat, lon):
+    return np.where((lon > 3.55) & (lon < 3.60), 7.0, 15.0) + 0.0 * lat
+
+
+@pytest.fixture(scope="module")
+def gauge():
+    return Constituents.single(nm.WATER_LEVEL, {"M2": (1.4, 59.5), "S2": (0.3, 117.7)}, lat=51.4)
+
+
+def test_a_bar_is_crossed_when_the_tide_of_that_day_allows(gauge):
+    start = parse_time("2031-07-05T00:00Z")
+    times = start + 600.0 * np.arange(150)
+    level = gauge.predict(nm.WATER_LEVEL, times)[0]
+    low = times[int(np.argmin(level))]
+    sea = Sea.from_tides(gauge, area=AREA) + Sea.from_functions({nm.BED_DEPTH: _bar})
+    ship = Ship.load("hopper-dredger").with_load_factor(1.0)  # draught 6.5 m
+    voyage = Voyage(start=(51.71, 3.45), goal=(51.77, 3.70), depart=float(low), min_ukc_m=1.0)
+    best = plan(voyage, ship=ship, sea=sea, chart=Chart.open_water(*AREA)).best
+    assert best.waiting_h > 1.0
+    assert best.min_ukc_m >= 1.0 - 1e-6
+    # the bar opens when the level passes 0.5 m (6.5 + 1 - 7), about; the ship does not dawdle
+    opening = times[np.flatnonzero((times > low) & (level > 0.5))[0]]
+    assert best.arrive >= opening
+    assert best.arrive < opening + 2.5 * 3600.0
+
+
+def test_waiting_for_the_flood_along_the_coast_pays_in_time():
+    coast = north_sea_current(
+        "spring", coast=(51.75, 4.0), onshore_deg=90.0, flood="2031-07-05T06:00Z", draught=5.0
+    )
+    sea = Sea.from_functions(coast)
+    ship = Ship.simple(8.0, 5.0)
+    chart = Chart.open_water(51.5, 52.5, 3.0, 4.0)
+    found = {
+        when: plan(
+            Voyage(start=(51.6, 3.6), goal=(52.1, 3.6), depart=f"2031-07-05T{when}Z"),
+            ship=ship, sea=sea, chart=chart,
+        ).best.time_h
+        for when in ("04:15", "10:30")
+    }  # fmt: skip
+    still = 30.05 / 8.0  # h for half a degree of latitude
+    assert found["04:15"] < still - 0.2 < still + 0.1 < found["10:30"]
