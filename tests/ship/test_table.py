@@ -149,3 +149,25 @@ def test_refinement_stops_at_the_memory_allowed_and_tells_the_error():
     part, error = tabulate_dense(step, axes, tolerance=1e-9, largest=1000)
     assert part.values.nbytes <= 1000
     assert error.max > 0.1
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 6])
+def test_kernels_read_parts_of_many_axes_as_numpy_does(count):
+    draw = np.random.default_rng(count)
+    grids = tuple(np.linspace(0.0, 1.0 + k, 3) for k in range(count))
+    values = draw.normal(size=(*(3,) * count, 2))
+    part = TablePart(tuple(range(count)), grids, values)
+    table = PerformanceTable((part,), np.array([1.0, 2.0]), "many", NO_ERROR)
+    names = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
+    for _ in range(20):
+        at = [draw.uniform(0.0, 1.0 + k) for k in range(6)]
+        value, ok = table_value(table.kernel_arrays(), tuple(at), 1)
+        assert ok
+        assert value == pytest.approx(float(table.lookup(dict(zip(names, at)), 1)), abs=1e-6)
+
+
+def test_a_table_of_one_setting_gives_the_same_numbers():
+    where = _draws(20)
+    alone = _affine_table().at_setting(1)
+    assert alone.settings.tolist() == [6.0]
+    assert alone.lookup(where, 0) == pytest.approx(_affine_table().lookup(where, 1))

@@ -7,7 +7,7 @@ import numpy as np
 from thalweg.kernels.bare import bare, inlined
 from thalweg.kernels.codes import AXES, AXIS_DEPTH
 
-MOST_AXES = 4  # of one part
+MOST_AXES = 6  # of one part
 _EDGE = 1e-6  # rounding allowed beyond the first and last grid point [grid steps]
 
 
@@ -18,7 +18,7 @@ class TableArrays(NamedTuple):
     ----------
     part_axes : int64[P, 6]
         Axis ids (``AXIS_*`` of `thalweg.kernels.codes`) of each part, in the order of its values;
-        -1 after the last, at most 4. A part without axes is a constant per setting.
+        -1 after the last, at most 6. A part without axes is a constant per setting.
     axis_start : float64[P, 6]
         First grid point of each axis (SI; angles in radians from the bow, 0 to pi).
     axis_inv_step : float64[P, 6]
@@ -78,8 +78,8 @@ def _square(values, base, stride0, f0, stride1, f1):
 @inlined
 def part_value(table, part, axis_values, setting):
     """Return (value, ok) of one part of a table; see `table_value`."""
-    f0, f1, f2, f3 = 0.0, 0.0, 0.0, 0.0  # fractions, the part's last axis first
-    s0, s1, s2, s3 = 0, 0, 0, 0  # strides
+    f0, f1, f2, f3, f4, f5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # fractions, the last axis first
+    s0, s1, s2, s3, s4, s5 = 0, 0, 0, 0, 0, 0  # strides
     corners = 1  # of the axes before the last two
     base, stride = table.value_offset[part] + setting, table.n_settings
     for k in range(AXES - 1, -1, -1):
@@ -95,16 +95,18 @@ def part_value(table, part, axis_values, setting):
         x = min(max(x, 0.0), float(last))
         cell = min(int(x), last - 1)
         base += cell * stride
-        f3, f2, f1, f0 = f2, f1, f0, x - cell
-        s3, s2, s1, s0 = s2, s1, s0, stride
+        f5, f4, f3, f2, f1, f0 = f4, f3, f2, f1, f0, x - cell
+        s5, s4, s3, s2, s1, s0 = s4, s3, s2, s1, s0, stride
         stride *= table.axis_size[part, k]
-        corners = 4 if k > 1 or corners == 4 else 1
+        corners = max(corners, 16 if k > 3 else 4 if k > 1 else 1)
     total = 0.0
     for corner in range(corners):
-        up2, up3 = corner & 1, corner >> 1
+        up2, up3, up4, up5 = corner & 1, corner >> 1 & 1, corner >> 2 & 1, corner >> 3
         weight = (f2 if up2 else 1.0 - f2) * (f3 if up3 else 1.0 - f3)
+        if corners > 4:
+            weight *= (f4 if up4 else 1.0 - f4) * (f5 if up5 else 1.0 - f5)
         if weight > 0.0:
-            at = base + up2 * s2 + up3 * s3
+            at = base + up2 * s2 + up3 * s3 + up4 * s4 + up5 * s5
             total += weight * _square(table.values, at, s1, f1, s0, f0)
     return total, True
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any
 
@@ -174,6 +174,14 @@ class PerformanceTable:
     def largest(self, setting: int) -> float:
         """Return an upper bound of the table's value at a setting [m/s]."""
         return float(sum(np.nanmax(part.values[..., setting]) for part in self.parts))
+
+    def at_setting(self, setting: int) -> PerformanceTable:
+        """Return the table of one setting alone, which is smaller and so quicker to look up."""
+        parts = tuple(
+            TablePart(part.axes, part.grids, part.values[..., setting : setting + 1])
+            for part in self.parts
+        )
+        return replace(self, parts=parts, settings=self.settings[setting : setting + 1])
 
     def kernel_arrays(self) -> TableArrays:
         """Return the arrays that kernels look up (see `thalweg.kernels.tables`)."""
