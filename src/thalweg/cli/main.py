@@ -1,4 +1,4 @@
-"""The command line: ``thalweg plan | evaluate | inspect | ship | demo``."""
+"""The command line: ``thalweg plan | evaluate | inspect | ship | tides | demo``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 
-from thalweg.cli import demo, evaluate, inspect, plan, ship
+from thalweg.cli import demo, evaluate, inspect, plan, ship, tides
 from thalweg.cli.exits import report
 from thalweg.core.errors import ThalwegError, ThalwegWarning
 
@@ -17,6 +17,7 @@ _COMMANDS = (
     evaluate.add_command,
     inspect.add_command,
     ship.add_ship_command,
+    tides.add_command,
     demo.add_command,
 )
 

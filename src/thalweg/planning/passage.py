@@ -147,7 +147,7 @@ def _attempt(
     frozen, result = _search(task, network, limits, window, ends)
     route = _score(task, network, result, limits)
     task.tell("bounding the answer")
-    bound = _bound(task, network, frozen, result)
+    bound = _bound(task, network, frozen, result, route)
     notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
     return Passage(route, result, bound, network, _isochrones(task, network, frozen, route), notes)
 
@@ -307,7 +307,11 @@ def _run(
     return earliest_arrival(network, frozen.stations, task.table, depart=window[0], **options)  # type: ignore[arg-type]
 
 
-def _bound(task: Task, network: Network, frozen: Frozen, result: SearchResult) -> Bound:
+def _bound(
+    task: Task, network: Network, frozen: Frozen, result: SearchResult, route: Route
+) -> Bound:
+    by_distance = task.voyage.objective == "distance"
+    known = float(route.legs["length"].sum()) if by_distance else route.time_h * HOUR
     return lower_bound(
         network,
         frozen.stations,
@@ -319,6 +323,8 @@ def _bound(task: Task, network: Network, frozen: Frozen, result: SearchResult) -
         limits=task.needs.limits,
         objective=task.voyage.objective,
         top_speed=frozen.top_speed,
+        known=known if route.feasible else None,
+        any_departure=task.voyage.depart_window is not None,
     )
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.geodesy import FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.tables import TableArrays
+from thalweg.route.blending import blended
 from thalweg.route.line import unwrapped
 from thalweg.route.quick import penalty_factors
 from thalweg.route.referee import evaluate
@@ -80,7 +81,7 @@ def better_route(
     def score(track: Track) -> Route:
         return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
 
-    best = scored
+    best, wished = scored, None
     may_wait = bool(scored.track.wait.any()) if wait is None else wait
     for margin, patient in _TRIES[: None if may_wait else _MARGINS]:
         track = scored.track
@@ -101,6 +102,10 @@ def better_route(
         best = min(best, route, key=lambda item: _rank(item, objective, chart))
         if route.feasible:
             break
+        if best is scored and scored.feasible and math.isfinite(route.arrive):
+            wished = track if wished is None else wished
+    if best is scored and wished is not None:
+        best = blended(scored, wished, score)
     return shorten_waits(best, score)
 
 

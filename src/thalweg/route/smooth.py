@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable
 
-FINEST = 48  #: legs are split until they are shorter than the track divided by this
+FINEST = 160  #: legs are split until they are shorter than the track divided by this at most
 THINNING = 5e-5  #: share of the cost that may be lost by leaving waypoints out at the end
-_SETTLED = 1e-5  # relative gain of a level below which no finer one is tried
+_SETTLED = 5e-5  # relative gain of a level below which no finer one is tried: a third of it is left
 _HOPEFUL = 1.02  # a coarse resampling is refined too if it costs no more than this times the track
 _WAITS_TRIED = 48
 _SHORTEST = 2e-5  # legs below this share of the track are merged with a neighbour

@@ -126,6 +126,8 @@ def lower_bound(
     limits: ArrayLike,
     top_speed: float,
     objective: Objective = "time",
+    known: float | None = None,
+    any_departure: bool = False,
 ) -> Bound:
     """Bound the time (or distance) of every route between two nodes from below.
 
@@ -133,16 +135,25 @@ def lower_bound(
     ----------
     network, fields, table, start, goal, depart, setting, limits, top_speed, objective
         As in `thalweg.search.earliest_arrival`.
+    known : float, optional
+        Time or distance of a route that exists, in open water rather than on the network. A
+        network bound above it is disproved by it (edges that pass a bank at a distance) and is
+        not used.
+    any_departure : bool
+        Bound every departure inside the fields, not ``depart`` alone: free space only.
 
     Returns
     -------
     Bound
-        The larger of `free_space_bound` and `network_bound`.
+        The larger of `free_space_bound` and `network_bound`, as far as both hold.
     """
     given = problem(network, fields, table, setting=setting, limits=limits, top_speed=top_speed)
     free = free_space_bound(network, given, start=start, goal=goal, objective=objective)
+    if any_departure:
+        return free
     net = network_bound(network, given, start=start, goal=goal, depart=depart, objective=objective)
-    return net if net.value > free.value else free
+    disproved = known is not None and net.value > known
+    return net if net.value > free.value and not disproved else free
 
 
 def free_space_bound(
