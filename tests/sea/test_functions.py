@@ -235,3 +235,12 @@ def test_calm_is_steady_and_says_so() -> None:
 def test_fingerprint_is_stable() -> None:
     assert Sea.calm().fingerprint() == Sea.calm().fingerprint()
     assert Sea.calm().provenance()["layers"][0]["label"] == "calm"
+
+
+@pytest.mark.parametrize("step", [None, 600.0])
+def test_frozen_times_begin_and_end_at_the_window_to_the_bit(step) -> None:
+    start, end = 1767240664.4288292, 1767280664.1234567
+    sea = Sea.from_functions({"salinity": lambda t, lat, lon: 1.0}, time_step=step)
+    times = Sea.layered(sea, Sea.calm()).times(start, end)
+    assert times[0] <= start and times[-1] >= end
+    assert np.diff(times).min() > 1e-3

@@ -160,3 +160,11 @@ def test_temporary_arrays_are_removed_with_the_sea(tmp_path, monkeypatch) -> Non
 
     gc.collect()
     assert list((tmp_path / "scratch").glob("thalweg-grib-*")) == []
+
+
+@pytest.mark.parametrize("tail", [b"GRIB hello", b"GRIB\0\0\0\1", b"GRIB" + bytes(20)])
+def test_a_head_without_a_message(tmp_path, tail) -> None:
+    path = tmp_path / "head.grb"
+    path.write_bytes(tail)
+    with pytest.raises(DatasetError, match="cut or damaged"):
+        Sea.open(path)

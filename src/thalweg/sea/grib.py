@@ -22,6 +22,7 @@ import numpy as np
 from thalweg.core.errors import DatasetError
 
 WORKER: Final = Path(__file__).with_name("grib_worker.py")
+_SHORTEST: Final = 12  #: [bytes] of a message that has its ends
 TIME_LIMIT: Final = 1800.0  #: [s] after which a worker is given up
 
 
@@ -80,8 +81,9 @@ def check_messages(path: Path) -> int:
             length = _length(head)
             if length is None:
                 return count + 1
-            stream.seek(place + length - 4)
-            if place + length > size or stream.read(4) != b"7777":
+            whole = _SHORTEST <= length <= size - place
+            stream.seek(place + length - 4 if whole else size)
+            if stream.read(4) != b"7777":
                 raise _damaged(path, f"message {count + 1} is cut or damaged")
             place, count = place + length, count + 1
     if count == 0:

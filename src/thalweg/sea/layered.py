@@ -16,6 +16,8 @@ from thalweg.sea.fields import Coverage, FloatArray, Mesh
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.merge import edges, merged, point_reader, series_reader
 
+_TWINS = 1e-3  #: [s] within which two layers mean the same time
+
 
 @dataclass(frozen=True, eq=False)
 class LayeredSea:
@@ -130,7 +132,7 @@ class LayeredSea:
             found += [edges(x.period, start, end) for x in layers if x.period is not None]
         if not any(f.size for f in found):
             return np.empty(0)
-        times: FloatArray = np.unique(np.concatenate(found).round(3)).astype(np.float64)
+        times = _without_twins(np.unique(np.concatenate(found)))
         return times if times.size > 1 else np.append(times, times + 1.0)
 
     def mesh(self) -> Mesh | None:
@@ -175,3 +177,14 @@ class LayeredSea:
             return np.asarray(np.hypot(east, north), np.float64)
         sign = 1.0 if part == "towards" else -1.0
         return np.degrees(np.arctan2(sign * east, sign * north)) % 360.0
+
+
+def _without_twins(times: FloatArray) -> FloatArray:
+    """Return ascending times without those that follow another within a millisecond.
+
+    The first and the last stay exactly as they are: a ship may leave at the one to the bit.
+    """
+    kept: FloatArray = times[np.append(True, np.diff(times) > _TWINS)]
+    if kept.size > 1:
+        kept[-1] = times[-1]
+    return kept
