@@ -92,7 +92,7 @@ def test_plan_for_a_person(capsys, ship):
     )  # fmt: skip
     text = capsys.readouterr().out
     assert code == 0
-    assert "7.6" in text and "nm" in text and "best possible" in text
+    assert "7.6" in text and "nm" in text and "Lower bound" in text
 
 
 def test_inspect(capsys, currents):

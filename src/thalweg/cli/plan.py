@@ -10,6 +10,8 @@ from thalweg.cli import common
 if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
 
+_MOST_ROWS = 30
+
 
 def add_command(commands: Any) -> None:
     """Add the command to the parser."""
@@ -95,17 +97,22 @@ def _first_time(sea: Any) -> float:
 
 def show(plan: Plan) -> None:
     """Print a plan for a person."""
+    from rich import box
     from rich.console import Console
     from rich.table import Table
 
     console = Console()
     best = plan.best
-    table = Table(title=_title(plan), title_justify="left")
-    columns = ("waypoint", "time (UTC)", "course", "nm so far", "stw", "sog", "wait h", "ukc m")
-    for name in columns:
-        table.add_column(name, justify="left" if name in ("waypoint", "time (UTC)") else "right")
-    for row in best.waypoints():
-        table.add_row(*_cells(row))
+    table = Table(
+        title=_title(plan), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1)
+    )
+    table.add_column("waypoint", no_wrap=True)
+    table.add_column("UTC", no_wrap=True)
+    for name in ("course", "nm", "stw", "sog", "wait", "ukc"):
+        table.add_column(name, justify="right", no_wrap=True)
+    rows = [_cells(row) for row in best.waypoints()]
+    for row in _shortened(rows):
+        table.add_row(*row)
     console.print(table)
     parts = [f"{best.time_h:.2f} h", f"{best.distance_nm:.1f} nm"]
     if best.fuel_t is not None:
@@ -114,11 +121,13 @@ def show(plan: Plan) -> None:
         parts.append(f"{best.waiting_h:.2f} h waiting")
     console.print("[bold]" + ", ".join(parts) + "[/bold]")
     console.print(
-        f"No route is better than {plan.lower_bound:.2f} {plan.unit}: "
-        f"within {100 * plan.gap:.1f} % of the best possible ({plan.proof.kind})."
+        f"Lower bound {plan.lower_bound:.2f} {plan.unit}, gap {100 * plan.gap:.1f} % "
+        f"[dim]({plan.proof.kind})[/dim]; no route at all is better than "
+        f"{plan.proof.certain:.2f} {plan.unit}.",
+        soft_wrap=True,
     )
     for note in plan.notes:
-        console.print(f"[yellow]note:[/yellow] {note}")
+        console.print(f"[yellow]note:[/yellow] {note}", soft_wrap=True)
 
 
 def _title(plan: Plan) -> str:
@@ -130,12 +139,11 @@ def _cells(row: dict[str, Any]) -> list[str]:
         value = row.get(key)
         return "" if value is None else f"{value:.{digits}f}"
 
-    from thalweg.core.geodesy import format_position
-
+    lat, lon = row["lat"], row["lon"]
     course = number("course_deg", 0)
     return [
-        format_position(row["lat"], row["lon"]),
-        str(row["time"] or ""),
+        f"{abs(lat):6.3f}{'N' if lat >= 0 else 'S'} {abs(lon):7.3f}{'E' if lon >= 0 else 'W'}",
+        str(row["time"] or "")[5:16].replace("T", " "),
         f"{int(course):03d}" if course else "",
         number("distance_nm", 1),
         number("speed_through_water_kn", 1),
@@ -143,3 +151,12 @@ def _cells(row: dict[str, Any]) -> list[str]:
         number("waiting_h", 2) if row.get("waiting_h") else "",
         number("ukc_m", 1),
     ]
+
+
+def _shortened(rows: list[list[str]]) -> list[list[str]]:
+    """Leave out the middle of a long table; the files hold all of it."""
+    if len(rows) <= _MOST_ROWS:
+        return rows
+    half = _MOST_ROWS // 2
+    dots = [f"... {len(rows) - 2 * half} more", *[""] * (len(rows[0]) - 1)]
+    return [*rows[:half], dots, *rows[-half:]]

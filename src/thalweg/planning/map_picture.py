@@ -256,7 +256,8 @@ def _finish(axes: Any, plan: Plan, box: Box) -> None:
     fuel = "" if best.fuel_t is None else f", {best.fuel_t:.1f} t fuel"
     axes.set_title(
         f"{best.time_h:.1f} h, {best.distance_nm:.0f} nm{fuel}; depart "
-        f"{format_time(best.depart)}; within {100 * plan.gap:.1f} % of the best possible",
+        f"{format_time(best.depart)}; gap to the bound {100 * plan.gap:.1f} % (certain: "
+        f"{100 * (1 - plan.proof.certain / plan.objective_value):.1f} %)",
         fontsize=9,
         loc="left",
     )

@@ -74,7 +74,9 @@ class Passage:
     result : SearchResult
         What the search on the network found.
     bound : Bound
-        No route is better than this, in SI.
+        No route is better than this, in SI, on the evidence of the network.
+    floor : Bound
+        No route at all is better than this.
     network : Network
         The network searched.
     isochrones : ndarray
@@ -86,6 +88,7 @@ class Passage:
     route: Route
     result: SearchResult
     bound: Bound
+    floor: Bound
     network: Network
     isochrones: np.ndarray
     notes: tuple[str, ...]
@@ -147,9 +150,13 @@ def _attempt(
     frozen, result = _search(task, network, limits, window, ends)
     route = _score(task, network, result, limits)
     task.tell("bounding the answer")
-    bound = _bound(task, network, frozen, result, route)
+    floor = _bound(task, network, frozen, result, route, any_departure=True)
+    bound = floor
+    if task.voyage.depart_window is None:
+        bound = _bound(task, network, frozen, result, route)
     notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
-    return Passage(route, result, bound, network, _isochrones(task, network, frozen, route), notes)
+    isochrones = _isochrones(task, network, frozen, route)
+    return Passage(route, result, bound, floor, network, isochrones, notes)
 
 
 def _isochrones(task: Task, network: Network, frozen: Frozen, route: Route) -> np.ndarray:
@@ -308,7 +315,13 @@ def _run(
 
 
 def _bound(
-    task: Task, network: Network, frozen: Frozen, result: SearchResult, route: Route
+    task: Task,
+    network: Network,
+    frozen: Frozen,
+    result: SearchResult,
+    route: Route,
+    *,
+    any_departure: bool = False,
 ) -> Bound:
     by_distance = task.voyage.objective == "distance"
     known = float(route.legs["length"].sum()) if by_distance else route.time_h * HOUR
@@ -324,7 +337,7 @@ def _bound(
         objective=task.voyage.objective,
         top_speed=frozen.top_speed,
         known=known if route.feasible else None,
-        any_departure=task.voyage.depart_window is not None,
+        any_departure=any_departure,
     )
 
 

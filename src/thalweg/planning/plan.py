@@ -26,12 +26,16 @@ class Proof:
         No route is better than this, in the objective's unit (h or nm).
     kind : str
         How the bound was found, and what it rests on.
+    certain : float
+        The bound in free space, which holds whatever the network: the geodesic at the greatest
+        speed over ground in the data.
     solver_total : float
         What the search on the network said, before refinement and before the referee.
     """
 
     lower_bound: float
     kind: str
+    certain: float
     solver_total: float
 
 
@@ -117,6 +121,7 @@ class Plan:
             "routes": [route_dict(route, self.voyage.objective) for route in self.routes],
             "lower_bound": _number(self.lower_bound),
             "lower_bound_kind": self.proof.kind,
+            "lower_bound_certain": _number(self.proof.certain),
             "gap": _number(self.gap),
             "solver_total": _number(self.solver_total),
             "rejections": dict(self.rejections),

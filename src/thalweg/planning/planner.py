@@ -13,8 +13,10 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import KNOT
+from thalweg.kernels import codes
 from thalweg.planning.ends import End, check_apart, find_end
 from thalweg.planning.needs import check_period, find_needs
 from thalweg.planning.networks import Builder, NetworkChoice
@@ -25,6 +27,11 @@ from thalweg.route import Route
 from thalweg.route import join as join_routes
 from thalweg.sea import Sea
 from thalweg.ship import Ship
+
+#: The coarse depth of the world is looked at only this far off the coast [m] ...
+_OFFSHORE = 15_000.0
+#: ... and doubted when it leaves less than this under the keel [m].
+_DOUBTFUL = 10.0
 
 
 def plan(
@@ -138,10 +145,13 @@ def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
     proof = Proof(
         lower_bound=in_unit(bound, voyage.objective),
         kind=passages[0].bound.kind,
+        certain=in_unit(sum(passage.floor.value for passage in passages), voyage.objective),
         solver_total=in_unit(total, voyage.objective),
     )
     notes = [end.note for end in ends if end.note] + list(task.needs.notes)
     notes += [note for passage in passages for note in passage.notes]
+    if not math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
+        notes += _shallow_notes(task, route)
     return Plan(
         voyage=voyage,
         routes=(route,),
@@ -151,6 +161,21 @@ def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
         provenance=_provenance(task, ends, passages),
         surroundings=_surroundings(task, passages),
     )
+
+
+def _shallow_notes(task: Task, route: Route) -> list[str]:
+    """Warn where the embedded coarse depth of the world looks shallow, well off the coast."""
+    lat, lon = route.samples["lat"][::4], route.samples["lon"][::4]
+    depth = np.asarray(task.chart.warning_depth_at(lat, lon))
+    offshore = np.asarray(task.chart.shore_distance(lat, lon, cap=_OFFSHORE)) >= _OFFSHORE
+    doubtful = offshore & (depth < float(task.ship.draught) + _DOUBTFUL)
+    if not doubtful.any():
+        return []
+    worst = int(np.argmin(np.where(doubtful, depth, np.inf)))
+    return [
+        f"The coarse depth of the world shows {max(float(depth[worst]), 0.0):.0f} m near "
+        f"{format_position(float(lat[worst]), float(lon[worst]))}: check the chart there."
+    ]
 
 
 def _joined(task: Task, passages: list[Passage]) -> Route:
