@@ -314,3 +314,9 @@ def test_fuels_and_prices_inside_and_outside_control_areas():
     assert switched.price_inside == pytest.approx(0.8)
     with pytest.raises(InputError, match="given twice"):
         _ = _ship(fuel={"type": "hfo", "eca_price_per_t": 800, "eca_price_factor": 1.5}).fuel_terms
+
+
+def test_a_hull_without_an_answer_is_refused_with_what_is_out_of_range():
+    full = {"block_coefficient": 0.99, "midship_coefficient": 1.0, "waterplane_coefficient": 1.0}
+    with pytest.raises(InputError, match=r"no resistance for this hull.*prismatic coefficient"):
+        _ship(hull={**full, "length_waterline_m": 169.0})

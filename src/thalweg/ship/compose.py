@@ -85,7 +85,36 @@ def _resistance_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> 
     orders, guessed = _orders(data, balance_at(1.0), plant)
     plant = replace(plant, estimated=(*plant.estimated, *guessed))
     facts = {name: data[name] for name in _FACTS if name in data}
-    return ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
+    model = ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
+    _check_answers(model)
+    return model
+
+
+def _check_answers(model: ResistanceModel) -> None:
+    """Refuse a hull for which the chosen methods have no number.
+
+    Raises
+    ------
+    InputError
+    """
+    balance = model.balance(1.0)
+    with np.errstate(all="ignore"):
+        speeds = model.speeds(1.0)
+    calm = {
+        "depth": np.full(speeds.shape, np.inf),
+        **{name: np.zeros(speeds.shape) for name in ("wind_speed", "wind_angle")},
+        **{name: np.zeros(speeds.shape) for name in ("wave_height", "wave_angle", "wave_period")},
+    }
+    with np.errstate(all="ignore"):
+        power = balance.brake_power(calm, np.where(np.isfinite(speeds), speeds, 5.0))
+    if (np.isfinite(speeds) & (speeds > 0.0) & np.isfinite(power) & (power > 0.0)).all():
+        return
+    outside = [str(note) for note in balance.calm.notes(np.array([5.0]), np.array([np.inf]))]
+    raise InputError(
+        f"{balance.calm.method} has no resistance for this hull.",
+        "; ".join(outside) or "Its particulars lie beyond what the method was made for.",
+        "Check the particulars, or choose another calm_water method.",
+    )
 
 
 def _displaced(hull: Hull, loading: Loading) -> Hull:

@@ -19,6 +19,7 @@ from thalweg.ship.model import Estimate, setting_index
 from thalweg.ship.propulsion_parts import Plant, Propulsion
 from thalweg.ship.solve import bracketed_root
 from thalweg.ship.table import TableError, TablePart
+from thalweg.ship.table_store import Kept, kept_table
 from thalweg.ship.weather_parts import Waves, Wind
 
 FloatArray = NDArray[np.float64]
@@ -222,12 +223,7 @@ class ResistanceModel:
 
     def top_speed(self, setting: int, load_factor: float) -> float:
         """Greatest speed over the table and over random conditions [m/s]."""
-        from thalweg.ship.tabulate_sum import greatest_speed
-
-        key = ("top", float(load_factor))
-        if key not in self._kept:
-            self._kept[key] = greatest_speed(self, float(load_factor))
-        return float(self._kept[key][setting])
+        return float(self._table(load_factor, 0.01)[2][setting])
 
     def tabulate(
         self, load_factor: float, tolerance: float
@@ -239,12 +235,20 @@ class ResistanceModel:
         ModelRangeError
             If power does not rise with speed.
         """
-        from thalweg.ship.tabulate_sum import tabulate_balance
+        parts, error, _ = self._table(load_factor, tolerance)
+        return parts, error
 
+    def _table(self, load_factor: float, tolerance: float) -> Kept:
+        """The table and the greatest speeds, from this object, from disk or built."""
         key = ("table", float(load_factor), float(tolerance))
         if key not in self._kept:
-            self._kept[key] = tabulate_balance(self, float(load_factor), tolerance)
-        found: tuple[tuple[TablePart, ...], TableError] = self._kept[key]
+            from thalweg.ship.tabulate_sum import tabulate_balance
+
+            facts = [self.identity, repr(self.limits), key]
+            self._kept[key] = kept_table(
+                facts, lambda: tabulate_balance(self, float(load_factor), tolerance)
+            )
+        found: Kept = self._kept[key]
         return found
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:

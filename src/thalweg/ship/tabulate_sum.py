@@ -16,6 +16,7 @@ from thalweg.ship.ladder import Ladder
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.powering import Balance, ResistanceModel
 from thalweg.ship.table import TableError, TablePart
+from thalweg.ship.table_store import Kept
 from thalweg.ship.tabulate import (
     Axis,
     Tabulated,
@@ -54,9 +55,7 @@ _LARGEST_ALONE: Final = 8_000_000  #: bytes
 _LARGEST_SHARED: Final = 16_000_000  #: bytes
 
 
-def tabulate_balance(
-    model: ResistanceModel, load_factor: float, tolerance: float
-) -> tuple[tuple[TablePart, ...], TableError]:
+def tabulate_balance(model: ResistanceModel, load_factor: float, tolerance: float) -> Kept:
     """Tabulate the speed through water of every setting as a sum of parts.
 
     First a constant (calm, deep), one part for wind, one for waves, one for depth, each refined on
@@ -75,6 +74,8 @@ def tabulate_balance(
     parts : tuple of TablePart
     error : TableError
         Against the methods themselves.
+    top : ndarray
+        Greatest speed of every setting [m/s]; see `greatest_speed`.
 
     Raises
     ------
@@ -105,7 +106,7 @@ def tabulate_balance(
         parts.append(part)
     axes = [axis for group in groups for axis in group]
     if not axes:
-        return tuple(parts), TableError(0.0, 0.0, 0.0, 0)
+        return tuple(parts), TableError(0.0, 0.0, 0.0, 0), calm
     points = random_conditions(axes, _CHECKS, 7)
     truth = _speeds(model, balance, load_factor, points)
     error = table_error(_total(parts, points), truth)
@@ -119,7 +120,7 @@ def tabulate_balance(
         error = table_error(_total(parts, points), truth)
         if sum(part.values.nbytes for part in parts) > _LARGEST_SHARED / 4:
             break
-    return tuple(parts), error
+    return tuple(parts), error, greatest_speed(parts, truth, _total(parts, points))
 
 
 def axes_of(balance: Balance, limits: ShipLimits) -> dict[str, Axis]:
@@ -166,23 +167,18 @@ def check_power_rises(model: ResistanceModel, load_factor: float) -> None:
         )
 
 
-def greatest_speed(model: ResistanceModel, load_factor: float) -> FloatArray:
+def greatest_speed(parts: list[TablePart], truth: FloatArray, found: FloatArray) -> FloatArray:
     """Greatest speed of every setting [m/s].
 
     Over the nodes of the parts for wind, waves and depth alone, and over random conditions, of the
-    table and of the methods themselves; a half per cent is added for what lies between.
+    table (``found``) and of the methods themselves (``truth``); a half per cent is added for what
+    lies between.
     """
-    parts, _ = model.tabulate(load_factor, 0.01)
-    axes = list(axes_of(model.balance(load_factor), model.limits).values())
-    calm = model.speeds(load_factor)
-    if not axes:
-        return calm
-    points = random_conditions(axes, _CHECKS, 11)
-    exact = _speeds(model, model.balance(load_factor), load_factor, points)
+    calm = parts[0].values.astype(float)
     alone = [part for part in parts if 0 < len(part.axes) <= 3]
     gains = sum(np.maximum(np.nanmax(_flat(part), axis=0), 0.0) for part in alone)
-    found = [calm + gains, np.nanmax(exact, axis=0), np.nanmax(_total(list(parts), points), axis=0)]
-    return _MARGIN * np.max(found, axis=0)
+    highest = [calm + gains, np.nanmax(truth, axis=0), np.nanmax(found, axis=0)]
+    return _MARGIN * np.max(highest, axis=0)
 
 
 def _flat(part: TablePart) -> NDArray[np.float32]:

@@ -1,0 +1,99 @@
+"""Tables of composed ships kept on disk between runs: seconds to build, milliseconds to read."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.cache import cache_folder
+from thalweg.ship.table import TableError, TablePart
+
+FloatArray = NDArray[np.float64]
+#: parts, their error, and the greatest speed of every setting
+Kept: TypeAlias = tuple[tuple[TablePart, ...], TableError, FloatArray]
+MOST_FILES: Final = 24
+
+
+def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
+    """Return a table from disk, or build and keep it.
+
+    Parameters
+    ----------
+    facts : plain data
+        All that the table depends on, besides the code of this package.
+    build : callable
+        Makes the table.
+
+    Returns
+    -------
+    parts, error, top
+        Read-only; the same numbers as built.
+    """
+    text = json.dumps([facts, _code_stamp()], sort_keys=True, default=str)
+    name = hashlib.sha256(text.encode()).hexdigest()[:32]
+    path = cache_folder("ship-tables") / f"{name}.npz"
+    found = _read(path)
+    if found is None:
+        found = build()
+        _write(path, found)
+    return found
+
+
+def _code_stamp() -> list[tuple[str, int, int]]:
+    """Size and time of every source file of the room, so that changed code builds anew."""
+    folder = Path(__file__).parent
+    files = sorted([*folder.glob("*.py"), *folder.glob("methods/*.py")])
+    return [(f.name, f.stat().st_size, f.stat().st_mtime_ns) for f in files]
+
+
+def _read(path: Path) -> Kept | None:
+    """Return the kept table; None when there is none or it is damaged."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            data = {name: file[name] for name in file.files}
+        parts = []
+        for p in range(int(data["count"])):
+            axes = tuple(int(axis) for axis in data[f"axes{p}"])
+            grids = tuple(data[f"grid{p}_{k}"] for k in range(len(axes)))
+            parts.append(TablePart(axes, grids, data[f"values{p}"]))
+        mean, p99, largest, samples = data["error"]
+        return tuple(parts), TableError(mean, p99, largest, int(samples)), data["top"]
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+
+
+def _write(path: Path, kept: Kept) -> None:
+    """Keep a table; a disk that is full or closed costs nothing but the time of the next run."""
+    parts, error, top = kept
+    arrays: dict[str, Any] = {
+        "count": np.array(len(parts)),
+        "error": np.array([error.mean, error.p99, error.max, error.samples]),
+        "top": top,
+    }
+    for p, part in enumerate(parts):
+        arrays[f"axes{p}"] = np.array(part.axes, np.int64)
+        arrays[f"values{p}"] = part.values
+        arrays |= {f"grid{p}_{k}": grid for k, grid in enumerate(part.grids)}
+    draft = path.with_suffix(f".{os.getpid()}.tmp")
+    try:
+        with draft.open("wb") as file:
+            np.savez(file, **arrays)
+        os.replace(draft, path)
+        _tidy(path.parent)
+    except OSError:
+        draft.unlink(missing_ok=True)
+
+
+def _tidy(folder: Path) -> None:
+    """Remove the oldest tables beyond `MOST_FILES`."""
+    files = sorted(folder.glob("*.npz"), key=lambda file: file.stat().st_mtime)
+    for file in files[:-MOST_FILES]:
+        file.unlink(missing_ok=True)
