@@ -25,20 +25,20 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate, print and write."""
-    from thalweg.planning.evaluation import evaluate_file
     from thalweg.planning.output import check_folder, write_route
     from thalweg.planning.plan import route_dict
+    from thalweg.route import evaluate as score
 
     if arguments.out:
         check_folder(arguments.out)
-    route = evaluate_file(
+    route = score(
         arguments.route,
         ship=common.open_ship(arguments),
         sea=common.open_sea(arguments),
         chart=common.open_chart(arguments),
         depart=arguments.depart,
         speed_kn=arguments.speed,
-        min_ukc_m=arguments.ukc,
+        min_ukc=arguments.ukc or 0.0,
     )
     files = write_route(route, arguments.out) if arguments.out else []
     if arguments.json:

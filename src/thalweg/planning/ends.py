@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
@@ -28,12 +28,26 @@ class End:
         Position used [deg].
     moved_m : float
         How far it was moved to reach navigable water [m].
+    asked : (lat, lon), optional
+        Where it was asked for [deg], when it was moved.
+    is_port : bool
+        Whether it was given by the name of a port.
+    why : str
+        Why it was moved.
     """
 
     name: str
     lat: float
     lon: float
     moved_m: float
+    asked: tuple[float, float] | None = None
+    is_port: bool = False
+    why: str = "on charted land"
+
+    @property
+    def origin(self) -> tuple[float, float]:
+        """Where it was asked for, as (lat, lon) [deg]."""
+        return self.asked or (self.lat, self.lon)
 
     @property
     def note(self) -> str:
@@ -41,7 +55,7 @@ class End:
         if self.moved_m < 1.0:
             return ""
         return (
-            f"{self.name} lies on charted land: moved {self.moved_m / NAUTICAL_MILE:.1f} nm to "
+            f"{self.name} lies {self.why}: moved {self.moved_m / NAUTICAL_MILE:.1f} nm to "
             f"open water at {format_position(self.lat, self.lon)}."
         )
 
@@ -58,7 +72,8 @@ def find_end(place: Place, chart: Chart, what: str) -> End:
         position = parse_position(place)
         if position is None:
             port = chart.ports.lookup(place)
-            return _on_water(port.name, port.lat, port.lon, chart, what, SNAP_PORT)
+            found = _on_water(port.name, port.lat, port.lon, chart, what, SNAP_PORT)
+            return replace(found, is_port=True)
     else:
         position = place
     return _on_water(format_position(*position), *position, chart, what, SNAP_POSITION)
@@ -84,7 +99,7 @@ def _on_water(name: str, lat: float, lon: float, chart: Chart, what: str, limit:
             _swap_hint(lat, lon, chart) or "Give that position, or a port by name.",
             field=what,
         )
-    return End(name, float(near_lat), float(near_lon), float(moved))
+    return End(name, float(near_lat), float(near_lon), float(moved), asked=(lat, lon))
 
 
 def _swap_hint(lat: float, lon: float, chart: Chart) -> str:

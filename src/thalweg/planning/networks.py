@@ -6,13 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import numpy as np
-
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, unknown_name
-from thalweg.network import Network, check_network, lattice, with_endpoints
+from thalweg.network import Network, check_network, lattice, mesh, with_endpoints
 from thalweg.planning.ends import End
-from thalweg.sea import Sea
+from thalweg.sea import Mesh, Sea
 
 #: A builder of one's own: (chart, start, goal, spacing) -> Network with its endpoints attached.
 Builder: TypeAlias = Callable[..., Network]
@@ -37,11 +35,12 @@ class NetworkChoice:
     spacing: float | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.network, str) and self.network not in KINDS:
-            raise unknown_name("network", self.network, KINDS)
-        if self.spacing is not None and not 0.1 <= self.spacing <= 1e6:
+        if not callable(self.network) and self.network not in KINDS:
+            raise unknown_name("network", str(self.network), KINDS)
+        number = isinstance(self.spacing, (int, float)) and not isinstance(self.spacing, bool)
+        if self.spacing is not None and not (number and 0.1 <= self.spacing <= 1e6):
             raise InputError(
-                f"A resolution of {self.spacing:g} m cannot be.",
+                f"A resolution of {self.spacing!r} m cannot be.",
                 "It lies between 0.1 m and 1,000 km.",
                 "Give the spacing of the network in metres.",
             )
@@ -62,13 +61,12 @@ def build_network(choice: NetworkChoice, chart: Chart, sea: Sea, start: End, goa
             "Use network='lattice', or open such a file first.",
         )
     if model is not None and (choice.network == "mesh" or _inside(model, ends)):
-        from thalweg.network import mesh
-
         network = mesh(chart, model.lat, model.lon, model.triangles, largest_spacing=choice.spacing)
         return with_endpoints(network, chart, *ends)
     return lattice(chart, *ends, spacing=choice.spacing)
 
 
-def _inside(model: object, ends: tuple[tuple[float, float], ...]) -> bool:
-    lat, lon = np.asarray(model.lat), np.asarray(model.lon)  # type: ignore[attr-defined]
-    return all(lat.min() <= a <= lat.max() and lon.min() <= b <= lon.max() for a, b in ends)
+def _inside(model: Mesh, ends: tuple[tuple[float, float], ...]) -> bool:
+    """Return whether both ends lie in the box of a model's nodes."""
+    south, north, west, east = model.lat.min(), model.lat.max(), model.lon.min(), model.lon.max()
+    return all(south <= lat <= north and west <= lon <= east for lat, lon in ends)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import along, distance, format_position
+from thalweg.core.geodesy import along, distance
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
@@ -19,6 +18,7 @@ from thalweg.planning import warming
 from thalweg.planning.ends import End
 from thalweg.planning.needs import Needs
 from thalweg.planning.networks import NetworkChoice, build_network
+from thalweg.planning.refusal import no_route
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, better_route, evaluate
 from thalweg.sea import Sea, StationFields
@@ -238,7 +238,7 @@ def _search(
         if result.found or end >= latest:
             break
     if not result.found:
-        raise _no_route(task, network, result, ends)
+        raise no_route(network, result, ends, depart=task.voyage.earliest_departure, last=task.last)
     return frozen, result
 
 
@@ -339,51 +339,3 @@ def _bound(
         known=known if route.feasible else None,
         any_departure=any_departure,
     )
-
-
-def _no_route(
-    task: Task, network: Network, result: SearchResult, ends: tuple[End, End]
-) -> NoRouteError:
-    reasons = {**network.meta.rejected}
-    for reason, count in result.refused.items():
-        reasons[reason] = reasons.get(reason, 0) + count
-    reasons = {reason: count for reason, count in reasons.items() if count}
-    nearest, words = None, "Nothing beyond the start can be reached."
-    if result.nearest_node >= 0:
-        lat = float(network.station_lat[result.nearest_node])
-        lon = float(network.station_lon[result.nearest_node])
-        nearest = (lat, lon)
-        left = float(distance(lat, lon, ends[1].lat, ends[1].lon)) / 1852.0
-        words = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."
-    return NoRouteError(
-        f"No route from {ends[0].name} to {ends[1].name} within the limits, departing "
-        f"{format_time(task.voyage.earliest_departure)}.",
-        words,
-        _advice(reasons, task.last),
-        reasons=reasons,
-        nearest=nearest,
-    )
-
-
-_ADVICE = {
-    codes.DEPTH: "Sail lighter, ask less clearance, or allow waiting for the tide.",
-    codes.WAVE_HEIGHT: "Leave later, or raise the limit of the ship.",
-    codes.WIND_SPEED: "Leave later, or raise the limit of the ship.",
-    codes.NO_DATA: "The data have gaps: add a layer that covers them, or name a filling.",
-    codes.CURRENT: "The current is faster than the ship: leave at another time.",
-    codes.ARRIVE_BY: "Allow a later arrival.",
-}
-
-
-def _advice(reasons: dict[str, int], last: float) -> str:
-    counts = {
-        code: reasons.get(codes.REASONS[code], 0)
-        for code in codes.REASONS
-        if code not in (codes.LAND, codes.OUTSIDE_PERIOD)
-    }
-    code = max(counts, key=lambda c: counts[c])
-    if counts[code]:
-        return _ADVICE.get(code, "Change the limits or the area.")
-    if reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]) and math.isfinite(last):
-        return f"The data end at {format_time(last)}: add later data or leave earlier."
-    return "Try a finer resolution, or check that the places are not enclosed by land."

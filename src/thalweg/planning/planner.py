@@ -17,6 +17,7 @@ from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import KNOT
 from thalweg.kernels import codes
+from thalweg.planning.door import check_kinds, covered_ends
 from thalweg.planning.ends import End, check_apart, find_end
 from thalweg.planning.needs import check_period, find_needs
 from thalweg.planning.networks import Builder, NetworkChoice
@@ -78,8 +79,13 @@ def plan(
         If no route exists within the limits (with the reasons counted).
     """
     chart = Chart.gshhg("i") if chart is None else chart
+    check_kinds(voyage, ship, sea, chart)
+    choice = NetworkChoice(network, resolution)
     ends = _ends(voyage, chart)
     needs = find_needs(voyage, ship=ship, sea=sea, chart=chart)
+    last = check_period(voyage, sea, needs)
+    world = {"ship": ship, "sea": sea, "chart": chart}
+    ends = covered_ends(ends, voyage=voyage, needs=needs, last=last, **world)  # type: ignore[arg-type]
     task = Task(
         voyage=voyage,
         ship=ship,
@@ -88,8 +94,8 @@ def plan(
         needs=needs,
         table=table_of(ship),
         setting=_setting(voyage, ship),
-        last=check_period(voyage, sea, needs),
-        choice=NetworkChoice(network, resolution),
+        last=last,
+        choice=choice,
         tell=progress or (lambda text: None),
     )
     passages = _make_passages(task, ends)

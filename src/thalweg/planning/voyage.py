@@ -69,6 +69,13 @@ class Voyage:
     seed: int = 0
 
     def __post_init__(self) -> None:
+        if isinstance(self.via, str) or not isinstance(self.via, Sequence):
+            raise InputError(
+                f"The via points are {self.via!r}, which is no list of places.",
+                "They are places in order, such as via=[(51.0, 2.0), 'Dover'].",
+                "Put a single place in brackets, too.",
+                field="via",
+            )
         places = [_place(place, f"via point {i + 1}") for i, place in enumerate(self.via)]
         object.__setattr__(self, "start", _place(self.start, "start"))
         object.__setattr__(self, "goal", _place(self.goal, "goal"))

@@ -1,0 +1,171 @@
+"""Checks at the door: whether the ends of a voyage lie where the data know anything."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError, OutsideAreaError
+from thalweg.core.geodesy import direct, distance, format_position
+from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.kernels import codes
+from thalweg.planning.ends import SNAP_PORT, End
+from thalweg.planning.needs import Needs
+from thalweg.planning.voyage import Voyage
+from thalweg.sea import Sea, names
+from thalweg.ship import Ship
+
+_DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
+#: Where there is no end of the data, the ends are looked at over so long a time [s].
+_LONGEST = 20 * 24 * HOUR
+_MOMENTS = 24
+_RINGS, _BEARINGS = 40, 72
+
+
+def check_kinds(voyage: object, ship: object, sea: object, chart: object) -> None:
+    """Raise `InputError` when an argument of `plan` is not what it should be."""
+    wanted = {
+        "voyage": (voyage, Voyage, "Voyage(start=..., goal=..., depart=...)"),
+        "ship": (ship, Ship, "Ship.load(name or file) or Ship.simple(...)"),
+        "sea": (sea, Sea, "Sea.open(files), Sea.from_functions(...), Sea.storm() or Sea.calm()"),
+        "chart": (chart, Chart, 'Chart.gshhg("i") or Chart.open_water(...)'),
+    }
+    for name, (value, kind, example) in wanted.items():
+        if not isinstance(value, kind):
+            raise InputError(
+                f"The {name} is {value!r}, which is no {kind.__name__}.",
+                f"It is made by {example}.",
+                f"Give a {kind.__name__}.",
+                field=name,
+            )
+
+
+def covered_ends(
+    ends: Sequence[End],
+    *,
+    voyage: Voyage,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart,
+    needs: Needs,
+    last: float,
+) -> list[End]:
+    """Return the ends, those given as ports moved to the nearest water that the data know.
+
+    Parameters
+    ----------
+    ends : sequence of End
+    voyage, ship, sea, chart, needs
+        What is asked and what is needed.
+    last : float
+        Last moment of the data [s since 1970]; may be infinite.
+
+    Raises
+    ------
+    OutsideAreaError
+        If the data never know all that is needed at an end.
+    """
+    knowledge = _Knowledge(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs, last=last)
+    return [_covered(end, knowledge, chart) for end in ends]
+
+
+class _Knowledge:
+    """What the data must know at a place, and when it is looked for."""
+
+    def __init__(
+        self, *, voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, needs: Needs, last: float
+    ) -> None:
+        channels = {names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
+        self.names = sorted((channels | set(ship.needs)) - set(_DIRECTIONS) - {names.BED_DEPTH})
+        self.sea, self.chart = sea, chart
+        self.deep = math.isfinite(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
+        first = voyage.earliest_departure
+        end = last if math.isfinite(last) else voyage.latest_departure + _LONGEST
+        self.times = np.linspace(first, end, _MOMENTS)
+
+    def missing(self, lat: float, lon: float) -> list[str]:
+        """Return what is not known at a place at any time."""
+        got = self.sea.sample(self.names, self.times, lat, lon) if self.names else {}
+        lacking = [name for name in self.names if not np.isfinite(got[name]).any()]
+        if self.deep and not self._depths(np.array([lat]), np.array([lon]))[0]:
+            lacking.append("depth")
+        return lacking
+
+    def known(self, lat: NDArray[np.float64], lon: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return where all is known at some time."""
+        good = np.ones(lat.shape, bool)
+        got = self.sea.sample(self.names, self.times[:, None], lat, lon) if self.names else {}
+        for name in self.names:
+            good &= np.isfinite(got[name]).any(axis=0)
+        return good & self._depths(lat, lon) if self.deep else good
+
+    def _depths(self, lat: NDArray[np.float64], lon: NDArray[np.float64]) -> NDArray[np.bool_]:
+        known = np.zeros(lat.shape, bool)
+        if self.chart.has_depth:
+            known |= np.isfinite(self.chart.depth_at(lat, lon))
+        if names.BED_DEPTH in self.sea.variables:
+            bed = self.sea.sample([names.BED_DEPTH], self.times[:, None], lat, lon)
+            known |= np.isfinite(bed[names.BED_DEPTH]).any(axis=0)
+        return known
+
+
+def _covered(end: End, knowledge: _Knowledge, chart: Chart) -> End:
+    lacking = knowledge.missing(end.lat, end.lon)
+    if not lacking:
+        return end
+    near = _nearest_known(end, knowledge, chart)
+    if near is not None and end.is_port:
+        return replace(end, lat=near[0], lon=near[1], moved_m=near[2], why="outside the data")
+    raise OutsideAreaError(
+        f"{end.name} lies outside the data: {', '.join(lacking)} {_are(lacking)} not known there.",
+        _possible(near, knowledge),
+        "Choose a place inside, or add data that cover it.",
+        lacking=lacking,
+    )
+
+
+def _nearest_known(
+    end: End, knowledge: _Knowledge, chart: Chart
+) -> tuple[float, float, float] | None:
+    """Return the nearest navigable water where all is known: lat, lon [deg], distance [m]."""
+    radius, bearing = np.meshgrid(
+        np.linspace(0.0, SNAP_PORT, _RINGS + 1)[1:],
+        np.linspace(0.0, 2.0 * math.pi, _BEARINGS, endpoint=False),
+        indexing="ij",
+    )
+    lat, lon = direct(*end.origin, bearing.ravel(), radius.ravel())
+    lat, lon = np.append(end.lat, lat), np.append(end.lon, lon)
+    use = np.asarray(chart.is_navigable(lat, lon), bool)
+    use[use] = knowledge.known(lat[use], lon[use])
+    away = distance(*end.origin, lat, lon)
+    for k in np.flatnonzero(use)[np.argsort(away[use])][:40]:
+        place = chart.nearest_navigable(float(lat[k]), float(lon[k]), largest=2_000.0)
+        if place is not None and place[2] < 1_000.0:
+            return float(lat[k]), float(lon[k]), float(away[k])
+    return None
+
+
+def _possible(near: tuple[float, float, float] | None, knowledge: _Knowledge) -> str:
+    if near is not None:
+        return (
+            f"The nearest water they know is {near[2] / NAUTICAL_MILE:.1f} nm away, at "
+            f"{format_position(near[0], near[1])}."
+        )
+    rows = [row for row in knowledge.sea.coverage() if row.variable in knowledge.names]
+    if not rows:
+        return f"They know none within {SNAP_PORT / NAUTICAL_MILE:.0f} nm."
+    south, north = min(row.south for row in rows), max(row.north for row in rows)
+    west, east = min(row.west for row in rows), max(row.east for row in rows)
+    return (
+        f"The data lie between {format_position(south, west)} and {format_position(north, east)} "
+        "(with gaps, perhaps)."
+    )
+
+
+def _are(lacking: list[str]) -> str:
+    return "is" if len(lacking) == 1 else "are"
