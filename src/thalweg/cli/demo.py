@@ -32,14 +32,15 @@ def run(arguments: argparse.Namespace) -> int:
 
     folder = check_folder(arguments.out)
     warming.begin()
-    world = {"ship": Ship.load("handysize-bulker"), "sea": Sea.storm(), "chart": Chart.gshhg("i")}
-    found = make_plan(demo_voyage(), **world, progress=common.progress_for(arguments))
+    ship, sea, chart = Ship.load("handysize-bulker"), Sea.storm(), Chart.gshhg("i")
+    progress = common.progress_for(arguments)
+    found = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=progress)
     files = found.write(folder)
     if arguments.json:
         print(found.to_json())
         return 0
     plan.show(found)
-    _compare(found, weather_blind(found, **world))
+    _compare(found, weather_blind(found, ship=ship, sea=sea, chart=chart))
     for path in files:
         print(f"wrote {path}")
     return 0
