@@ -56,6 +56,8 @@ class Conditions(Mapping[str, FloatArray]):
     """
 
     __slots__ = ("_shape", "_values")
+    _shape: tuple[int, ...]
+    _values: dict[str, FloatArray]
 
     def __init__(self, values: Mapping[str, ArrayLike] | None = None, /, **more: ArrayLike) -> None:
         arrays = {name: _frozen(name, value) for name, value in {**(values or {}), **more}.items()}

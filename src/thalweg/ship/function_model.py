@@ -45,6 +45,8 @@ class RecordingConditions(Conditions):
     """
 
     __slots__ = ("_read", "_row")
+    _read: set[str]
+    _row: int | None
 
     def __init__(self, row: int | None = None) -> None:
         super().__init__()

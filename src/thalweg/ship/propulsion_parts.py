@@ -109,7 +109,12 @@ def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
             "Add them, or choose propulsion: efficiencies.",
             missing=missing,
         )
-    screw = Propeller(*(float(given[key]) for key in keys[:3]), int(given["propeller_blades"]))
+    screw = Propeller(
+        diameter=float(given["propeller_diameter_m"]),
+        pitch_ratio=float(given["propeller_pitch_ratio"]),
+        area_ratio=float(given["propeller_area_ratio"]),
+        blades=int(given["propeller_blades"]),
+    )
     count = int(given.get("propellers", 1))
     form, hull = _form(hull)
     factors, guessed = _interaction(hull, form, given, screw, count)

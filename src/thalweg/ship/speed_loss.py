@@ -25,12 +25,12 @@ cost nothing; the composed ship therefore never lets the loss fall while the win
 
 from __future__ import annotations
 
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import unknown_name
 from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.notes import RangeNote, range_notes
 
@@ -204,7 +204,7 @@ def kwon_speed_loss(
     """
     number = beaufort_number(wind_speed, classes=classes)
     volume = np.asarray(displacement_volume, float)
-    options = {"loading": loading, "ship_type": ship_type}
+    options: dict[str, Any] = {"loading": loading, "ship_type": ship_type}
     number, angle, volume = np.broadcast_arrays(number, np.asarray(wind_angle, float), volume)
     by_sector = np.empty((4, *number.shape))
     for sector in range(4):
@@ -239,7 +239,7 @@ def kwon_notes(
     )
 
 
-def _peak(sector: int, volume: FloatArray, **options: str) -> FloatArray:
+def _peak(sector: int, volume: FloatArray, **options: Any) -> FloatArray:
     """Return the Beaufort number at which C_beta C_form of a sector is greatest."""
     if _BEND[sector] == 0.0:
         return np.full(volume.shape, 12.0)
@@ -271,25 +271,7 @@ def _between_sectors(by_sector: FloatArray, angle: FloatArray, *, classes: bool)
     return low + (place - cell) * (high - low)
 
 
-def _choose(options: dict, name: str):  # type: ignore[type-arg, no-untyped-def]
+def _choose(options: dict[str, Any], name: str) -> Any:
     if name not in options:
         raise unknown_name("choice in Kwon's method", name, options)
     return options[name]
-
-
-def check_kwon_inputs(given: dict[str, float | None]) -> None:
-    """Refuse hull data that the method cannot do without.
-
-    Raises
-    ------
-    InputError
-        Naming the keys that are missing from the ship file.
-    """
-    missing = sorted(key for key, value in given.items() if value is None)
-    if missing:
-        raise InputError(
-            f"Speed loss by kwon_2008 needs {', '.join(missing)}, which the ship does not give.",
-            "It needs length between perpendiculars, block coefficient and displaced volume.",
-            "Add them under 'hull', or choose speed_loss: none.",
-            missing=missing,
-        )

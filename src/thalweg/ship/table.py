@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -223,14 +222,3 @@ def _bad_part(problem: str) -> InputError:
         "Axes are uniform and ascending, SI; values end with the settings.",
         "Check how the table was made.",
     )
-
-
-def table_summary(table: PerformanceTable) -> dict[str, Any]:
-    """Return what a plan keeps of a table: axes, size and error."""
-    return {
-        "axes": sorted(table.axes),
-        "parts": [list(part.values.shape) for part in table.parts],
-        "bytes": table.nbytes,
-        "fingerprint": table.fingerprint,
-        "error": {"mean": table.error.mean, "p99": table.error.p99, "max": table.error.max},
-    }
