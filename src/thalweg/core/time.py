@@ -42,6 +42,12 @@ def parse_time(value: TimeLike) -> float:
         moment = datetime(value.year, value.month, value.day)
     elif isinstance(value, str):
         moment = _parse_text(value)
+    elif isinstance(value, bool) or not isinstance(value, (int, float, np.number)):
+        raise InputError(
+            f"{value!r} is not a time.",
+            "Times are ISO 8601 text in UTC, datetimes or seconds since 1970.",
+            "Give one such as 2026-01-01T06:30Z.",
+        )
     else:
         seconds = float(value)
         if not math.isfinite(seconds):
