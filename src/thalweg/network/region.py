@@ -129,7 +129,7 @@ class Region:
         if not self.global_:
             box = _overlap(box, self._ellipse_bounds(frame))
         for area in (self.area, self.chart_area):
-            if area is not None:
+            if area is not None and ((area[3] - area[2]) % 360.0 or 360.0) <= _WIDEST_OUTLINE:
                 box = _overlap(box, _outline_bounds(frame, _box_outline(area)))
         x0, x1, y0, y1 = box
         return (
@@ -148,6 +148,10 @@ class Region:
                             x1 - (x1 - x0) * along, np.full(200, x0)])  # fmt: skip
         ys = np.concatenate([np.full(200, -y), across, np.full(200, y), -across])
         return _outline_bounds(frame, axis.to_vectors(x / axis.unit, ys / axis.unit))
+
+
+#: The outline of a wider box [deg] runs round the globe and does not bound it.
+_WIDEST_OUTLINE = 180.0
 
 
 def _outline_bounds(frame: Frame, vectors: FloatArray) -> Box:
