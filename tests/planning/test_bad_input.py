@@ -12,6 +12,7 @@ from thalweg.core.errors import (
     OutsidePeriodError,
     ThalwegError,
 )
+from thalweg.ship import ShipLimits
 
 DEPART = "2026-01-01T00:00Z"
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
@@ -116,6 +117,15 @@ def test_draught_deeper_than_any_water():
 def test_clearance_without_any_depth():
     with pytest.raises(MissingVariableError, match="depth"):
         ask(min_ukc_m=1.0)
+
+
+def test_a_ship_that_feels_the_bottom_needs_a_bottom():
+    ship = Ship.load("vox-olympia").with_limits(ShipLimits())
+    with pytest.raises(MissingVariableError, match="depends on the depth"):
+        ask(ship=ship)
+    deep = ask(ship=ship, chart=WATER.with_depth(lambda lat, lon: 60.0 + 0.0 * lat)).best
+    shallow = ask(ship=ship, chart=WATER.with_depth(lambda lat, lon: 14.0 + 0.0 * lat)).best
+    assert shallow.time_h > deep.time_h * 1.005
 
 
 def test_depth_that_does_not_overlap():

@@ -84,6 +84,12 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
             "Depth comes from a chart with depth (--depth FILE) or from a sea with a bed level.",
             "Add depth, or plan without a clearance and check it on the chart.",
         )
+    if "depth" in ship.reads and not known:
+        raise MissingVariableError(
+            f"The speed of {ship.name!r} depends on the depth of the water, which nothing tells.",
+            "Depth comes from a chart with depth (--depth FILE) or from a sea with a bed level.",
+            "Add depth, or take a ship file without a method for shallow water.",
+        )
     if not known:
         notes.append("No depth in the data: under-keel clearance was not checked.")
         return -math.inf
