@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -201,3 +202,13 @@ def test_broken_meshes(changes, word):
     values = {"lat": lat, "lon": lon, "triangles": triangles} | changes
     with pytest.raises(InputError, match=word):
         mesh(OPEN, values.pop("lat"), values.pop("lon"), **values)
+
+
+def test_links_of_ends_are_sampled_as_closely_as_the_mesh_around_them():
+    lat, lon, triangles = triangular_mesh(21, 2000.0)
+    network = mesh(Chart.open_water(-2, 2, -2, 2), lat, lon, triangles)
+    coarse = replace(network, meta=replace(network.meta, spacing_m=30_000.0))
+    ends = with_endpoints(coarse, Chart.open_water(-2, 2, -2, 2), (0.01, 0.01), (0.1, 0.1))
+    first = slice(ends.indptr[ends.meta.start], ends.indptr[ends.meta.start + 1])
+    pieces = 1 + np.diff(ends.via_ptr)[first]
+    assert (ends.length[first] / pieces).max() < 2000.0

@@ -32,6 +32,9 @@ REACH = 2.6  #: end points are linked to nodes within this many spacings
 _SHORTEST = 1.0  # links shorter than this are left out [m]
 _NEAREST = 24  # always linked, beside the nearest node in every sector and ring
 _SECTORS = 96
+_AROUND = (
+    3  # the distance to this nearest node, over this many pieces, is how close links are sampled
+)
 _MOST_LINKS = 400
 
 
@@ -166,7 +169,8 @@ def with_endpoints(
     counts = dict(network.meta.rejected)
     add_counts(counts, rejected)
     meta = replace(network.meta, start=network.n_nodes, goal=network.n_nodes + 1, rejected=counts)
-    stations, samples = even_samples(stations, pairs, network.meta.spacing_m)
+    apart = np.minimum(network.meta.spacing_m, _sample_spacing(stations, len(places)))
+    stations, samples = even_samples(stations, pairs, apart[pairs.first - network.n_nodes])
     return _merge(old, assemble(chart, stations, pairs, samples, meta=meta))
 
 
@@ -193,6 +197,21 @@ def _link_all(
         parts.append(pairs)
     parts.append(direct_pairs(chart, stations, first, reach=REACH * spacing))
     return join_pairs(parts), rejected
+
+
+def _sample_spacing(stations: Stations, count: int) -> FloatArray:
+    """Return how far apart [m] links of each of the last ``count`` nodes are sampled.
+
+    The nodes of a mesh lie close where the water is uneven; links are sampled as closely there.
+    """
+    first = stations.n_nodes - count
+    vectors = unit_vectors(stations.lat[:first], stations.lon[:first])
+    nth = min(_AROUND, first) - 1
+    near = [
+        np.partition(arc(vectors, unit_vectors(stations.lat[p], stations.lon[p])), nth)[nth]
+        for p in range(first, stations.n_nodes)
+    ]
+    return np.maximum(np.array(near) * (MEAN_RADIUS / _AROUND), _SHORTEST)
 
 
 def direct_pairs(chart: Chart, stations: Stations, first: int, *, reach: float) -> Pairs:

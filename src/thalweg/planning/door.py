@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, OutsideAreaError
-from thalweg.core.geodesy import direct, distance, format_position
+from thalweg.core.geodesy import FloatArray, direct, format_position
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.planning.ends import SNAP_PORT, End
@@ -24,7 +24,7 @@ _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direct
 #: Where there is no end of the data, the ends are looked at over so long a time [s].
 _LONGEST = 20 * 24 * HOUR
 _MOMENTS = 24
-_RINGS, _BEARINGS = 40, 72
+_RINGS, _BEARINGS, _TRIED = 40, 72, 40
 
 
 def check_kinds(voyage: object, ship: object, sea: object, chart: object) -> None:
@@ -55,7 +55,7 @@ def covered_ends(
     needs: Needs,
     last: float,
 ) -> list[End]:
-    """Return the ends, those given as ports moved to the nearest water that the data know.
+    """Return the ends; ports move to the nearest water that is known and deep enough.
 
     Parameters
     ----------
@@ -83,89 +83,99 @@ class _Knowledge:
         channels = {names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
         self.names = sorted((channels | set(ship.needs)) - set(_DIRECTIONS) - {names.BED_DEPTH})
         self.sea, self.chart = sea, chart
-        self.deep = math.isfinite(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
+        self.depth = float(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
         first = voyage.earliest_departure
         end = last if math.isfinite(last) else voyage.latest_departure + _LONGEST
         self.times = np.linspace(first, end, _MOMENTS)
 
-    def missing(self, lat: float, lon: float) -> list[str]:
+    def missing(self, lat: FloatArray, lon: FloatArray) -> list[str]:
         """Return what is not known at a place at any time."""
-        got = self.sea.sample(self.names, self.times, lat, lon) if self.names else {}
+        got = self._sample(self.names, lat, lon)
         lacking = [name for name in self.names if not np.isfinite(got[name]).any()]
-        if self.deep and not self._depths(np.array([lat]), np.array([lon]))[0]:
+        if math.isfinite(self.depth) and not np.isfinite(self._depths(lat, lon)).any():
             lacking.append("depth")
         return lacking
 
-    def known(self, lat: NDArray[np.float64], lon: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return where all is known at some time."""
+    def suits(self, lat: FloatArray, lon: FloatArray, *, harbour: bool) -> NDArray[np.bool_]:
+        """Return where all is known at some time; for a harbour, always and with water enough."""
         good = np.ones(lat.shape, bool)
-        got = self.sea.sample(self.names, self.times[:, None], lat, lon) if self.names else {}
-        for name in self.names:
-            good &= np.isfinite(got[name]).any(axis=0)
-        return good & self._depths(lat, lon) if self.deep else good
+        often = np.all if harbour else np.any
+        for values in self._sample(self.names, lat, lon).values():
+            good &= often(np.isfinite(values), axis=0)
+        if math.isfinite(self.depth):
+            depths = self._depths(lat, lon)
+            good &= depths >= self.depth if harbour else np.isfinite(depths)
+        return good
 
-    def _depths(self, lat: NDArray[np.float64], lon: NDArray[np.float64]) -> NDArray[np.bool_]:
-        known = np.zeros(lat.shape, bool)
+    def _sample(self, wanted: list[str], lat: FloatArray, lon: FloatArray) -> dict[str, FloatArray]:
+        return self.sea.sample(wanted, self.times[:, None], lat, lon) if wanted else {}
+
+    def _depths(self, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        """Return the depth at chart datum [m]; NaN where nothing tells it."""
+        depths = np.full(lat.shape, math.nan)
         if self.chart.has_depth:
-            known |= np.isfinite(self.chart.depth_at(lat, lon))
+            depths = np.asarray(self.chart.depth_at(lat, lon), float)
         if names.BED_DEPTH in self.sea.variables:
-            bed = self.sea.sample([names.BED_DEPTH], self.times[:, None], lat, lon)
-            known |= np.isfinite(bed[names.BED_DEPTH]).any(axis=0)
-        return known
+            bed = self._sample([names.BED_DEPTH], lat, lon)[names.BED_DEPTH]
+            depths = np.fmin(depths, np.fmin.reduce(bed, axis=0))
+        return depths
 
 
 def _covered(end: End, knowledge: _Knowledge, chart: Chart) -> End:
-    lacking = knowledge.missing(end.lat, end.lon)
+    here = np.array([end.lat]), np.array([end.lon])
+    if end.is_port and not knowledge.suits(*here, harbour=True)[0]:
+        near = _nearest(end, knowledge, chart, harbour=True)
+        if near is not None:
+            why = "in water that is shallow or outside the data"
+            return replace(end, lat=near[0], lon=near[1], moved_m=near[2], why=why)
+    lacking = knowledge.missing(*here)
     if not lacking:
         return end
-    near = _nearest_known(end, knowledge, chart)
-    if near is not None and end.is_port:
-        return replace(end, lat=near[0], lon=near[1], moved_m=near[2], why="outside the data")
     raise OutsideAreaError(
-        f"{end.name} lies outside the data: {', '.join(lacking)} {_are(lacking)} not known there.",
-        _possible(near, knowledge),
+        f"{end.name} lies outside the data: {', '.join(lacking)} "
+        f"{'is' if len(lacking) == 1 else 'are'} not known there.",
+        _possible(_nearest(end, knowledge, chart, harbour=False), knowledge, lacking),
         "Choose a place inside, or add data that cover it.",
         lacking=lacking,
     )
 
 
-def _nearest_known(
-    end: End, knowledge: _Knowledge, chart: Chart
+def _nearest(
+    end: End, knowledge: _Knowledge, chart: Chart, *, harbour: bool
 ) -> tuple[float, float, float] | None:
-    """Return the nearest navigable water where all is known: lat, lon [deg], distance [m]."""
+    """Return the nearest navigable water that suits: lat, lon [deg], distance [m]."""
     radius, bearing = np.meshgrid(
         np.linspace(0.0, SNAP_PORT, _RINGS + 1)[1:],
         np.linspace(0.0, 2.0 * math.pi, _BEARINGS, endpoint=False),
         indexing="ij",
     )
     lat, lon = direct(*end.origin, bearing.ravel(), radius.ravel())
-    lat, lon = np.append(end.lat, lat), np.append(end.lon, lon)
     use = np.asarray(chart.is_navigable(lat, lon), bool)
-    use[use] = knowledge.known(lat[use], lon[use])
-    away = distance(*end.origin, lat, lon)
-    for k in np.flatnonzero(use)[np.argsort(away[use])][:40]:
-        place = chart.nearest_navigable(float(lat[k]), float(lon[k]), largest=2_000.0)
-        if place is not None and place[2] < 1_000.0:
+    use[use] = knowledge.suits(lat[use], lon[use], harbour=harbour)
+    away = radius.ravel()
+    places = np.flatnonzero(use)
+    for k in places[np.argsort(away[places], kind="stable")][:_TRIED]:
+        water = chart.nearest_navigable(float(lat[k]), float(lon[k]), largest=2_000.0)
+        if water is not None and water[2] < 1_000.0:
             return float(lat[k]), float(lon[k]), float(away[k])
     return None
 
 
-def _possible(near: tuple[float, float, float] | None, knowledge: _Knowledge) -> str:
+def _possible(
+    near: tuple[float, float, float] | None, knowledge: _Knowledge, lacking: list[str]
+) -> str:
     if near is not None:
         return (
             f"The nearest water they know is {near[2] / NAUTICAL_MILE:.1f} nm away, at "
             f"{format_position(near[0], near[1])}."
         )
-    rows = [row for row in knowledge.sea.coverage() if row.variable in knowledge.names]
+    rows = [row for row in knowledge.sea.coverage() if row.variable in lacking]
+    rows = [row for row in rows if row.north - row.south < 180.0]
     if not rows:
         return f"They know none within {SNAP_PORT / NAUTICAL_MILE:.0f} nm."
     south, north = min(row.south for row in rows), max(row.north for row in rows)
     west, east = min(row.west for row in rows), max(row.east for row in rows)
     return (
-        f"The data lie between {format_position(south, west)} and {format_position(north, east)} "
-        "(with gaps, perhaps)."
+        f"The data lie between {format_position(south, west)} and {format_position(north, east)}, "
+        "perhaps with gaps."
     )
-
-
-def _are(lacking: list[str]) -> str:
-    return "is" if len(lacking) == 1 else "are"

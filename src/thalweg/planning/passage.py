@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -112,29 +112,42 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
     """
     networks: dict[int, Network] = {}
     passage: Passage | None = None
+    refusal: NoRouteError | None = None
     for finer, depth, fraction in _ATTEMPTS:
         if finer not in networks:
-            networks[finer] = _network(task, (start, goal), finer, networks.get(1))
+            networks[finer] = _network(task, (start, goal), finer, networks)
         limits = task.needs.limits * (1.0 - fraction)
         limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
         try:
             tried = _attempt(task, networks[finer], (start, goal), window, limits)
-        except NoRouteError:
-            if passage is None:
-                raise
+        except NoRouteError as error:
+            refusal = refusal or error
+            if passage is None and not _replaceable(task, networks[finer]):
+                raise refusal from None
             continue
         if passage is None or tried.route.feasible:
             passage = tried
         if passage.route.feasible:
             break
-    assert passage is not None  # the first attempt either made one or raised
+    assert passage is not None  # every way without one has raised
     return passage
 
 
-def _network(task: Task, ends: tuple[End, End], finer: int, first: Network | None) -> Network:
+def _replaceable(task: Task, network: Network) -> bool:
+    """Whether a lattice may take the place of the mesh that was chosen automatically."""
+    return task.choice.network == "auto" and network.meta.kind == "mesh"
+
+
+def _network(
+    task: Task, ends: tuple[End, End], finer: int, networks: Mapping[int, Network]
+) -> Network:
     task.tell(f"building the network from {ends[0].name} to {ends[1].name}")
-    choice = task.choice
-    if first is not None:
+    choice, first = task.choice, networks.get(1)
+    if first is not None and _replaceable(task, first):
+        # The nodes of a model cannot be made finer; a lattice over the same water can.
+        spacing = networks[2].meta.spacing_m * 2 / finer if 2 in networks else choice.spacing
+        choice = replace(choice, network="lattice", spacing=spacing)
+    elif first is not None:
         choice = replace(choice, spacing=first.meta.spacing_m / finer)
     return build_network(choice, task.chart, task.sea, *ends)
 

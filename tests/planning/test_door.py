@@ -1,0 +1,93 @@
+"""Ends of a voyage against what the data know."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, InputError, Sea, Ship, Voyage, plan
+from thalweg.core.errors import OutsideAreaError
+
+SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
+WATER = Chart.open_water(50.0, 52.5, 1.0, 5.0)
+
+
+def known_where(condition):
+    def east(t, lat, lon):
+        return np.where(condition(lat, lon), 0.2, np.nan) + 0.0 * t
+
+    return Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": east,
+            "northward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
+        }
+    )
+
+
+def ask(start, goal, sea, chart=WATER, **more):
+    voyage = Voyage(start=start, goal=goal, depart="2026-01-01", **more)
+    return plan(voyage, ship=SHIP, sea=sea, chart=chart)
+
+
+def test_a_position_outside_the_data_is_refused_with_the_nearest_water_known():
+    sea = known_where(lambda lat, lon: lon < 3.0)
+    with pytest.raises(OutsideAreaError, match=r"nearest water they know is 1\d\.\d nm") as caught:
+        ask((50.5, 1.5), (50.5, 3.4), sea)
+    assert "eastward_sea_water_velocity" in caught.value.asked
+
+
+def test_a_position_far_outside_the_data_is_refused():
+    with pytest.raises(OutsideAreaError, match="none within 32 nm"):
+        ask((50.5, 1.5), (50.5, 4.5), known_where(lambda lat, lon: lon < 2.0))
+
+
+def test_a_port_moves_to_water_the_data_know_and_says_so():
+    found = ask((50.5, 1.5), "Rotterdam", known_where(lambda lat, lon: lon < 4.0))
+    end = found.best.track
+    assert 3.9 < end.lon[-1] < 4.0 and abs(end.lat[-1] - 51.9) < 0.1
+    assert any("Rotterdam" in note and "moved" in note for note in found.notes)
+
+
+def test_a_port_moves_to_water_deep_enough():
+    chart = WATER.with_depth(lambda lat, lon: np.where(lon > 4.1, 3.0, 20.0) + 0.0 * lat)
+    found = ask((50.5, 1.5), "Rotterdam", Sea.calm(), chart)
+    assert 4.0 < found.best.track.lon[-1] <= 4.1
+    assert found.best.min_ukc_m >= 0.0
+
+
+def test_depth_that_does_not_reach_an_end_is_named():
+    chart = WATER.with_depth(lambda lat, lon: np.where(lon < 3.0, 30.0, np.nan) + 0.0 * lat)
+    with pytest.raises(OutsideAreaError, match="depth is not known there"):
+        ask((50.5, 1.5), (50.5, 4.5), Sea.calm(), chart, min_ukc_m=1.0)
+
+
+def test_an_end_known_at_some_times_only_is_not_refused():
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, lat, lon: np.where(
+                (lon > 2.9) & (np.asarray(t) % 44712.0 < 22356.0), np.nan, 0.0 * lat
+            ),
+            "northward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
+        },
+        time_step=600.0,
+    )
+    assert ask((50.5, 2.5), (50.5, 3.0), sea).best.feasible
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"sea": None}, {"ship": "handysize-bulker"}, {"chart": 3}, {"network": 7}],
+)
+def test_arguments_of_the_wrong_kind(wrong):
+    voyage = Voyage(start=(50.5, 1.5), goal=(50.5, 2.0), depart="2026-01-01")
+    with pytest.raises(InputError):
+        plan(voyage, **{"ship": SHIP, "sea": Sea.calm(), "chart": WATER, **wrong})
+
+
+def test_a_voyage_that_is_no_voyage():
+    with pytest.raises(InputError, match="Voyage"):
+        plan({"start": (50.5, 1.5)}, ship=SHIP, sea=Sea.calm(), chart=WATER)
+
+
+@pytest.mark.parametrize("wrong", [{"via": "Dover"}, {"depart": [1]}, {"depart": True}])
+def test_voyages_of_the_wrong_kind(wrong):
+    with pytest.raises(InputError):
+        Voyage(**{"start": (50.5, 1.5), "goal": (50.5, 2.0), "depart": "2026-01-01", **wrong})
