@@ -7,10 +7,11 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
+from typing import NoReturn
 
 from thalweg.cli import demo, evaluate, inspect, plan, ship, tides
 from thalweg.cli.exits import report
-from thalweg.core.errors import ThalwegError, ThalwegWarning
+from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
 _COMMANDS = (
     plan.add_command,
@@ -22,9 +23,21 @@ _COMMANDS = (
 )
 
 
-def build_parser() -> argparse.ArgumentParser:
+class Parser(argparse.ArgumentParser):
+    """A parser whose complaints are errors like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise `InputError` in place of leaving the process."""
+        raise InputError(
+            f"The command line is not understood: {message}.",
+            " ".join(self.format_usage().split()),
+            f"See {self.prog} --help.",
+        )
+
+
+def build_parser() -> Parser:
     """Return the parser of the whole command line."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="thalweg",
         description="Voyage optimisation for ships: routes and speeds through moving water.",
     )
@@ -51,14 +64,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         0 done, 2 bad input, 3 no coverage, 4 no route.
     """
-    arguments = build_parser().parse_args(argv)
+    as_json = "--json" in (sys.argv[1:] if argv is None else argv)
+    try:
+        arguments = build_parser().parse_args(argv)
+    except InputError as error:
+        return report(error, as_json=as_json)
     with warnings.catch_warnings():
         warnings.filterwarnings("default", category=ThalwegWarning)
         warnings.showwarning = _show_warning
         try:
             return int(arguments.run(arguments))
         except ThalwegError as error:
-            return report(error, as_json=getattr(arguments, "json", False))
+            return report(error, as_json=as_json)
         except BrokenPipeError:
             return 0
         except KeyboardInterrupt:

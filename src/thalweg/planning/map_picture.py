@@ -103,6 +103,7 @@ def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box)
         np.linspace(box.west, box.east, 240), np.linspace(box.south, box.north, 180)
     )
     reached = _passage_times(plan, world, box, lat, lon)
+    on_water = np.asarray(world.chart.is_navigable(lat, wrap_longitude(lon)), bool)
     moment = np.where(np.isfinite(reached), reached, plan.best.depart)
     shown = _shade(world, moment, lat, lon)
     if shown is not None:
@@ -112,7 +113,7 @@ def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box)
         bar.set_label(label, fontsize=8)
         bar.ax.tick_params(labelsize=7)
     _draw_arrows(axes, world, moment, lat, lon)
-    _draw_isochrones(axes, plan, reached, lat, lon)
+    _draw_isochrones(axes, plan, reached, (lat, lon), on_water)
 
 
 def _passage_times(
@@ -149,13 +150,27 @@ def _shade(
             speed = np.hypot(got[pair[0]], got[pair[1]]) / KNOT
             if _varies(speed):
                 return speed, f"{word} speed at passage [kn]", colours
-    if _DEPTH in names:
-        depth = world.sea.sample([_DEPTH], *at)[_DEPTH]
-        if _LEVEL in names:
-            depth = depth + world.sea.sample([_LEVEL], *at)[_LEVEL]
-        if _varies(depth):
-            return depth, "water depth at passage [m]", "Blues"
+    depth = _depth(world, *at)
+    if depth is not None and _varies(depth):
+        return np.maximum(depth, 0.0), "water depth at passage [m]", "Blues"
     return None
+
+
+def _depth(
+    world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+) -> np.ndarray | None:
+    """Return the depth of water [m] by chart and sea; None where neither tells it."""
+    names, depths = world.sea.variables, []
+    if world.chart.has_depth:
+        depths.append(np.asarray(world.chart.depth_at(lat, lon), float))
+    if _DEPTH in names:
+        depths.append(world.sea.sample([_DEPTH], moment, lat, lon)[_DEPTH])
+    if not depths:
+        return None
+    depth = np.fmin.reduce(depths)
+    if _LEVEL in names:
+        depth = depth + world.sea.sample([_LEVEL], moment, lat, lon)[_LEVEL]
+    return np.asarray(depth)
 
 
 def _varies(values: np.ndarray) -> bool:
@@ -179,9 +194,14 @@ def _draw_arrows(
 
 
 def _draw_isochrones(
-    axes: Any, plan: Plan, reached: np.ndarray, lat: np.ndarray, lon: np.ndarray
+    axes: Any,
+    plan: Plan,
+    reached: np.ndarray,
+    grid: tuple[np.ndarray, np.ndarray],
+    on_water: np.ndarray,
 ) -> None:
-    hours = (reached - plan.best.depart) / HOUR
+    lat, lon = grid
+    hours = np.where(_widened(on_water), (reached - plan.best.depart) / HOUR, np.nan)
     if np.count_nonzero(np.isfinite(hours)) < 10:
         return
     steps = np.array([0.05, 0.1, 0.25, 0.5, 1, 2, 3, 6, 12, 24, 48, 96])
@@ -192,6 +212,13 @@ def _draw_isochrones(
         return
     lines = axes.contour(lon, lat, hours, levels=levels, colors=_INK, linewidths=0.5, alpha=0.6)
     axes.clabel(lines, levels[1::2], fontsize=6, fmt=lambda value: f"{value:g} h")
+
+
+def _widened(mask: np.ndarray) -> np.ndarray:
+    """Return a mask grown by one cell all round, so that lines end at the drawn coast."""
+    from scipy.ndimage import binary_dilation
+
+    return np.asarray(binary_dilation(mask, np.ones((3, 3), bool)))
 
 
 def _draw_land(axes: Any, chart: Any, box: Box) -> None:
@@ -205,6 +232,8 @@ def _draw_land(axes: Any, chart: Any, box: Box) -> None:
 
 
 def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
+    from matplotlib.patheffects import withStroke
+
     best = plan.best
     fractions = np.linspace(0, 1, 101)
     direct_lat, direct_lon = along(
@@ -248,6 +277,7 @@ def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
             zorder=8,
             color=_INK,
             fontweight="bold",
+            path_effects=[withStroke(linewidth=2.5, foreground="white")],
         )
 
 
@@ -272,5 +302,6 @@ def _finish(axes: Any, plan: Plan, box: Box) -> None:
 
 
 def _degrees(value: float, letters: str) -> str:
-    letter = letters[0] if value >= 0 else letters[1]
-    return f"{abs(value):g}°{letter}" if abs(value) > 1e-9 else "0°"
+    if not 1e-9 < abs(value) < 180.0 - 1e-9:
+        return f"{abs(round(value)):d}°"
+    return f"{abs(value):g}°{letters[0] if value >= 0 else letters[1]}"

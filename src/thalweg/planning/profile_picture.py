@@ -38,7 +38,9 @@ def draw_profile(route: Route, path: str | Path | None = None) -> Any:
     for axes, panel in zip(rows, panels):
         panel(route, axes)
         axes.grid(alpha=0.3, lw=0.4)
-        axes.legend(fontsize=7, loc="upper right", ncols=3)
+        axes.legend(
+            fontsize=7, loc="lower right", bbox_to_anchor=(1.0, 0.99), ncols=3, frameon=False
+        )
         axes.tick_params(labelsize=7)
         axes.yaxis.label.set_size(8)
     rows[-1].set_xlabel("hours since departure", fontsize=8)
@@ -80,7 +82,9 @@ def _weather(route: Route, axes: Any | None) -> bool:
             _plot(axes, route, wind, "wind", "#6a1b9a")
         if current is not None:
             _plot(axes, route, current, "current", "#00838f")
-        axes.set_ylabel("[kn]")
+        known = ((wind, "wind"), (current, "current"))
+        axes.set_ylabel(" and ".join(word for value, word in known if value is not None) + " [kn]")
+        axes.set_ylim(bottom=0.0)
     return wind is not None or current is not None
 
 
@@ -90,7 +94,8 @@ def _waves(route: Route, axes: Any | None) -> bool:
         return False
     if axes is not None:
         _plot(axes, route, height, "significant wave height", "#2e7d32")
-        axes.set_ylabel("[m]")
+        axes.set_ylabel("waves [m]")
+        axes.set_ylim(bottom=0.0)
     return True
 
 
@@ -104,5 +109,5 @@ def _depths(route: Route, axes: Any | None) -> bool:
         axes.axhline(0.0, color="#b71c1c", lw=0.8)
         if known.max() > 60:
             axes.set_yscale("symlog", linthresh=10)
-        axes.set_ylabel("[m]")
+        axes.set_ylabel("clearance [m]")
     return True
