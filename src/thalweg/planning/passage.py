@@ -29,6 +29,8 @@ from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 MEMORY_LIMIT = 4_000_000_000
 #: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
 _HORIZONS = (2.5, 8.0, 30.0)
+#: Gap to the bound [fraction] from which the way of the bound is refined as well.
+_WIDE_GAP = 0.01
 _TWO_TIDES = 25 * HOUR
 #: What is tried in turn while the referee finds a limit broken between the stations: how much finer
 #: the network, the margin on the depth [m], and on the limits of wave height and wind [fraction].
@@ -161,15 +163,43 @@ def _attempt(
 ) -> Passage:
     """Search, refine and bound once."""
     frozen, result = _search(task, network, limits, window, ends)
-    route = _score(task, network, result, limits)
+    route = _refined(task, track_of(network, result, task.setting), limits)
     task.tell("bounding the answer")
     floor = _bound(task, network, frozen, result, route, any_departure=True)
     bound = floor
     if task.voyage.depart_window is None:
         bound = _bound(task, network, frozen, result, route)
+        other = _other_way(task, network, bound, route, limits)
+        if other is not route:
+            route, bound = other, _bound(task, network, frozen, result, other)
     notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
     isochrones = _isochrones(task, network, frozen, route)
     return Passage(route, result, bound, floor, network, isochrones, notes)
+
+
+def _other_way(
+    task: Task, network: Network, bound: Bound, route: Route, limits: np.ndarray
+) -> Route:
+    """Where the gap is wide, refine the way of the bound as well and return the better route.
+
+    Weather that passes makes the network's ways sensitive to their delay: the way of the bound is
+    timed as a ship in open water would be.
+    """
+    value = _value(task, route)
+    if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
+        return route
+    lat, lon = network.station_lat[bound.path], network.station_lon[bound.path]
+    settings = np.full(len(lat) - 1, task.setting)
+    other = _refined(task, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
+    better = other.feasible and not (route.feasible and value <= _value(task, other))
+    return other if better else route
+
+
+def _value(task: Task, route: Route) -> float:
+    """Return what a route is compared by: its length [m] or its time [s]."""
+    if task.voyage.objective == "distance":
+        return float(route.legs["length"].sum())
+    return route.time_h * HOUR
 
 
 def _isochrones(task: Task, network: Network, frozen: Frozen, route: Route) -> np.ndarray:
@@ -190,11 +220,11 @@ def _isochrones(task: Task, network: Network, frozen: Frozen, route: Route) -> n
     return everywhere.node_arrival
 
 
-def _score(task: Task, network: Network, result: SearchResult, limits: np.ndarray) -> Route:
-    """Let the referee score the path, refine it, and return the better route."""
+def _refined(task: Task, track: Track, limits: np.ndarray) -> Route:
+    """Let the referee score a track, refine it, and return the better route."""
     task.tell("refining the route")
     scored = evaluate(
-        track_of(network, result, task.setting),
+        track,
         ship=task.ship,
         sea=task.sea,
         chart=task.chart,
@@ -336,8 +366,6 @@ def _bound(
     *,
     any_departure: bool = False,
 ) -> Bound:
-    by_distance = task.voyage.objective == "distance"
-    known = float(route.legs["length"].sum()) if by_distance else route.time_h * HOUR
     return lower_bound(
         network,
         frozen.stations,
@@ -349,6 +377,6 @@ def _bound(
         limits=task.needs.limits,
         objective=task.voyage.objective,
         top_speed=frozen.top_speed,
-        known=known if route.feasible else None,
+        known=_value(task, route) if route.feasible else None,
         any_departure=any_departure,
     )

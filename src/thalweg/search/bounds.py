@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,11 +42,15 @@ class Bound:
         How it was found and what it rests on.
     kappa : float
         Factor on the lengths of the network; 1 for the bound in free space.
+    path : int64[P]
+        Nodes of the way that attains the bound on the network: a hint at a good route, since it
+        is timed as a ship in open water would be. Empty where there is none.
     """
 
     value: float
     kind: str
     kappa: float = 1.0
+    path: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
 
     @property
     def value_s(self) -> float:
@@ -153,7 +157,7 @@ def lower_bound(
         return free
     net = network_bound(network, given, start=start, goal=goal, depart=depart, objective=objective)
     disproved = known is not None and net.value > known
-    return net if net.value > free.value and not disproved else free
+    return net if net.value > free.value and not disproved else replace(free, path=net.path)
 
 
 def free_space_bound(
@@ -217,7 +221,7 @@ def network_bound(
         objective=objective,
         shortened=kappa,
     )
-    return Bound(result.cost if result.found else 0.0, kind, kappa)
+    return Bound(result.cost if result.found else 0.0, kind, kappa, result.path)
 
 
 def _loosened(limits: NDArray[np.float64]) -> NDArray[np.float64]:
