@@ -146,3 +146,18 @@ def test_missing_binary_and_huge_files_are_refused(tmp_path, monkeypatch):
     (tmp_path / "c.csv").write_text("lat,lon\n1,2\n3,4\n")
     with pytest.raises(InputError, match="MB"):
         read_track(tmp_path / "c.csv", depart=0)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "name;lat;lon\nDover;51,05;1,45\nend;51,3;2,0\n",
+        "LAT (deg),LON [deg],SPEED\n51.05,1.45,9\n51.3,2.0,9\n",
+        "\ufeffWaypoint\tLatitude\tLongitude\n1\t51.05\t1.45\n2\t51.3\t2.0\n",
+    ],
+)
+def test_tables_as_other_programs_write_them(tmp_path, text):
+    path = tmp_path / "route.csv"
+    path.write_text(text, encoding="utf-8")
+    track = read_track(path, depart=0.0)
+    assert track.lat.tolist() == [51.05, 51.3] and track.lon.tolist() == [1.45, 2.0]

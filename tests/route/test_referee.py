@@ -268,3 +268,12 @@ def test_table_has_the_promised_columns():
         assert name in frame.columns
     assert frame["time"].iloc[-1].isoformat()[:16] == "1970-01-01T06:11"
     assert frame["speed_over_ground_kn"].iloc[0] == pytest.approx(5.0 / KNOT, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"ship": "handysize-bulker"}, {"sea": None}, {"min_ukc": -1.0}, {"min_ukc": math.nan}]
+)
+def test_what_cannot_be_asked(wrong):
+    given = {"ship": Ship.simple(speed_kn=8.0, draught_m=5.0), "sea": Sea.calm(), "depart": 0.0}
+    with pytest.raises(InputError):
+        evaluate([(51.0, 1.0), (51.5, 2.0)], **{**given, **wrong})

@@ -7,6 +7,7 @@ import json
 from typing import Any
 
 from thalweg.cli import common
+from thalweg.cli.plan import print_waypoints
 
 
 def add_command(commands: Any) -> None:
@@ -54,10 +55,10 @@ def _show(route: Any) -> None:
     from rich.console import Console
 
     console = Console()
-    console.print(route.to_frame().to_string(index=False))
+    print_waypoints(console, route.waypoints(), "the route as given")
     fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
     console.print(f"[bold]{route.time_h:.2f} h, {route.distance_nm:.1f} nm{fuel}[/bold]")
     for violation in route.violations:
-        console.print(f"[red]violation:[/red] {violation}")
+        console.print(f"[red]violation:[/red] {violation}", soft_wrap=True)
     if route.feasible:
         console.print("Every limit is kept.")

@@ -97,23 +97,11 @@ def _first_time(sea: Any) -> float:
 
 def show(plan: Plan) -> None:
     """Print a plan for a person."""
-    from rich import box
     from rich.console import Console
-    from rich.table import Table
 
     console = Console()
     best = plan.best
-    table = Table(
-        title=_title(plan), title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1)
-    )
-    table.add_column("waypoint", no_wrap=True)
-    table.add_column("UTC", no_wrap=True)
-    for name in ("course", "nm", "stw", "sog", "wait", "ukc"):
-        table.add_column(name, justify="right", no_wrap=True)
-    rows = [_cells(row) for row in best.waypoints()]
-    for row in _shortened(rows):
-        table.add_row(*row)
-    console.print(table)
+    print_waypoints(console, best.waypoints(), _title(plan))
     parts = [f"{best.time_h:.2f} h", f"{best.distance_nm:.1f} nm"]
     if best.fuel_t is not None:
         parts.append(f"{best.fuel_t:.1f} t fuel")
@@ -128,6 +116,21 @@ def show(plan: Plan) -> None:
     )
     for note in plan.notes:
         console.print(f"[yellow]note:[/yellow] {note}", soft_wrap=True)
+
+
+def print_waypoints(console: Any, waypoints: list[dict[str, Any]], title: str) -> None:
+    """Print the table of a route's waypoints, narrow enough for any terminal."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    table.add_column("waypoint", no_wrap=True)
+    table.add_column("UTC", no_wrap=True)
+    for name in ("course", "nm", "stw", "sog", "wait", "ukc"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for row in _shortened([_cells(row) for row in waypoints]):
+        table.add_row(*row)
+    console.print(table)
 
 
 def _title(plan: Plan) -> str:

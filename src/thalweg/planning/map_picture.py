@@ -15,6 +15,7 @@ from thalweg.core.units import HOUR, KNOT
 
 if TYPE_CHECKING:
     from thalweg.planning.plan import Plan, Surroundings
+    from thalweg.route import Route
 
 _WAVES = "sea_surface_wave_significant_height"
 _WIND = ("eastward_wind", "northward_wind")
@@ -43,6 +44,12 @@ class Box:
         """Return longitudes moved by whole turns into the box."""
         middle = 0.5 * (self.west + self.east)
         return middle + wrap_longitude(np.asarray(lon) - middle)
+
+    def line(self, lon: np.ndarray) -> np.ndarray:
+        """Return the longitudes of a line without jumps, moved by whole turns into the box."""
+        lon = _without_jumps(lon)
+        away = 0.5 * (self.west + self.east) - 0.5 * (float(lon.min()) + float(lon.max()))
+        return np.asarray(lon + 360.0 * round(away / 360.0))
 
 
 def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
@@ -81,20 +88,24 @@ def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
     return figure
 
 
+def _without_jumps(lon: np.ndarray) -> np.ndarray:
+    return np.degrees(np.unwrap(np.radians(np.asarray(lon, float))))
+
+
 def _box_of(plan: Plan) -> Box:
     lat = np.concatenate([route.samples["lat"] for route in plan.routes])
-    lon = np.concatenate([route.samples["lon"] for route in plan.routes])
-    lon = lon[0] + wrap_longitude(lon - lon[0])
+    lon = np.concatenate([_without_jumps(route.samples["lon"]) for route in plan.routes])
     high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
     margin = 0.12 * max(high, wide, 1e-3)
     stretch = math.cos(math.radians(min(80.0, float(np.max(np.abs(lat))))))
     grow = max(0.0, 0.42 * max(wide, high) - high) / 2
     widen = max(0.0, 0.6 * high - wide) / 2
+    aside = min((margin + widen) / stretch, max(0.0, 0.5 * (359.0 - float(np.ptp(lon)))))
     return Box(
         max(-89.9, float(lat.min()) - margin - grow),
         min(89.9, float(lat.max()) + margin + grow),
-        float(lon.min()) - (margin + widen) / stretch,
-        float(lon.max()) + (margin + widen) / stretch,
+        float(lon.min()) - aside,
+        float(lon.max()) + aside,
     )
 
 
@@ -240,23 +251,23 @@ def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
         best.track.lat[0], best.track.lon[0], best.track.lat[-1], best.track.lon[-1], fractions
     )
     axes.plot(
-        box.unwrapped(direct_lon), direct_lat, "--", color=_INK, lw=0.9, zorder=4, label="geodesic"
+        box.line(direct_lon), direct_lat, "--", color=_INK, lw=0.9, zorder=4, label="geodesic"
     )
     for number, route in enumerate(plan.routes):
         axes.plot(
-            box.unwrapped(route.samples["lon"]),
+            box.line(route.samples["lon"]),
             route.samples["lat"],
             color=_ROUTE,
             lw=2.2 if number == 0 else 1.0,
             zorder=5,
             label="route" if number == 0 else None,
         )
-    track = best.track
-    axes.plot(box.unwrapped(track.lon), track.lat, ".", color=_ROUTE, ms=4, zorder=6)
+    track, track_lon = best.track, _on_line(best, box)
+    axes.plot(track_lon, track.lat, ".", color=_ROUTE, ms=4, zorder=6)
     waits = track.wait > 0
     if waits.any():
         axes.plot(
-            box.unwrapped(track.lon[waits]),
+            track_lon[waits],
             track.lat[waits],
             "s",
             color="#ff8f00",
@@ -265,7 +276,7 @@ def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
             label="waits",
         )
     for index, name in ((0, plan.provenance.get("from")), (-1, plan.provenance.get("to"))):
-        x, y = float(box.unwrapped(track.lon[index : index + 1 or None])[0]), track.lat[index]
+        x, y = track_lon[index], track.lat[index]
         axes.plot(x, y, "o", mfc="white", mec=_ROUTE, mew=1.6, ms=7, zorder=7)
         axes.annotate(
             str(name or ""),
@@ -279,6 +290,14 @@ def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
             fontweight="bold",
             path_effects=[withStroke(linewidth=2.5, foreground="white")],
         )
+
+
+def _on_line(route: Route, box: Box) -> np.ndarray:
+    """Return the longitudes of the waypoints where the drawn line of the route passes them."""
+    lat, lon, drawn = route.samples["lat"], route.samples["lon"], box.line(route.samples["lon"])
+    places = zip(route.track.lat, route.track.lon)
+    near = [int(np.argmin(np.abs(lat - y) + np.abs(wrap_longitude(lon - x)))) for y, x in places]
+    return np.asarray(drawn[near] + wrap_longitude(route.track.lon - lon[near]))
 
 
 def _finish(axes: Any, plan: Plan, box: Box) -> None:

@@ -100,6 +100,7 @@ def evaluate(
     not at the first waypoint, where it lies at its berth. Without currents in the sea (no such
     variable at all) still water is assumed, which is told.
     """
+    _check_given(ship, sea, min_ukc)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
     ship, track = _order(ship, as_track(route, depart), speed_kn)
     world = open_world(ship, sea, chart)
@@ -154,6 +155,27 @@ def _order(ship: Ship, track: Track, speed_kn: float | None) -> tuple[Ship, Trac
             "Give the settings of this ship, or an ordered speed.",
         )
     return ship, track.replaced(setting=setting)
+
+
+def _check_given(ship: Ship, sea: Sea, min_ukc: float | None) -> None:
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+    for name, value, kind in (("ship", ship, Ship), ("sea", sea, Sea)):
+        if not isinstance(value, kind):
+            raise InputError(
+                f"The {name} is {value!r}, which is no {kind.__name__}.",
+                f"It is made by thalweg.{kind.__name__}.",
+                f"Give a {kind.__name__}.",
+                field=name,
+            )
+    if min_ukc is not None and not 0.0 <= min_ukc < 100.0:
+        raise InputError(
+            f"An under-keel clearance of {min_ukc!r} m cannot be.",
+            "It lies between 0 and 100 m.",
+            "Correct it.",
+            field="min_ukc",
+        )
 
 
 def _checked_step(step: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from pathlib import Path
 
 from thalweg.core.errors import InputError
@@ -30,7 +31,7 @@ def parse_csv(text: str) -> ParsedTrack:
     header_line = text.lstrip().partition("\n")[0]
     separator = max(",;\t", key=header_line.count)
     rows = [row for row in csv.reader(io.StringIO(text.lstrip()), delimiter=separator) if row]
-    header = [name.strip().casefold() for name in rows[0]] if rows else []
+    header = [_bare(name) for name in rows[0]] if rows else []
     lat, lon = _column(header, "lat"), _column(header, "lon")
     if lat is None or lon is None:
         raise InputError(
@@ -38,6 +39,9 @@ def parse_csv(text: str) -> ParsedTrack:
             f"Its first line is {header_line.strip()[:80]!r}; needed are lat and lon (and time).",
             "Give it a header such as lat,lon,time.",
         )
+    if separator != ",":  # then a comma is the decimal sign of many languages
+        for row in rows[1:]:
+            row[:] = [re.sub(r"^\s*([+-]?\d+),(\d+)\s*$", r"\1.\2", cell) for cell in row]
     positions = [_position(row, lat, lon, i) for i, row in enumerate(rows[1:], start=1)]
     time = _column(header, "time")
     first = (
@@ -54,6 +58,11 @@ def write_csv(route: Route, path: str | Path) -> None:
         writer.writerow(rows[0])
         for row in rows:
             writer.writerow(_cell(value) for value in row.values())
+
+
+def _bare(name: str) -> str:
+    """Return the name of a column without its unit in brackets, case and spaces."""
+    return re.sub(r"[(\[].*?[)\]]", "", name).strip().casefold()
 
 
 def _column(header: list[str], name: str) -> int | None:

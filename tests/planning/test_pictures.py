@@ -1,0 +1,36 @@
+"""Pictures: lines without jumps, whatever the longitude."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.planning.map_picture import Box, draw_map
+from thalweg.planning.profile_picture import draw_profile
+
+SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
+
+
+@pytest.mark.parametrize("turns", [-360.0, 0.0, 360.0])
+def test_a_line_longer_than_half_the_world_has_no_jump(turns):
+    box = Box(-30.0, 89.0, -260.0, 20.0)
+    lon = np.linspace(4.0, -250.0, 60)
+    wrapped = (lon + 180.0) % 360.0 - 180.0 + turns
+    assert box.line(wrapped) == pytest.approx(lon)
+
+
+def test_pictures_across_the_antimeridian(tmp_path):
+    chart = Chart.open_water(-20.0, -10.0, 170.0, -170.0).with_depth(
+        lambda lat, lon: 40.0 + 10.0 * np.sin(lat) + 0.0 * lon
+    )
+    voyage = Voyage(start=(-15.0, 178.5), goal=(-14.0, -178.5), depart="2026-01-01")
+    found = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart)
+    figure = draw_map(found, tmp_path / "map.png")
+    axes = figure.axes[0]
+    lines = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) > 2]
+    assert lines and all(np.abs(np.diff(x)).max() < 2.0 for x in lines)
+    west, east = axes.get_xlim()
+    assert all(west <= x.min() and x.max() <= east for x in lines)
+    assert figure.axes[1].get_ylabel() == "water depth at passage [m]"
+    profile = draw_profile(found.best, tmp_path / "profile.png")
+    assert [a.get_ylabel() for a in profile.axes] == ["speed [kn]", "clearance [m]"]
+    assert (tmp_path / "map.png").stat().st_size > 10_000
