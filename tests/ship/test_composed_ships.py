@@ -38,7 +38,7 @@ CALM = {
 def _ship(models=None, hull=None, **sections):
     data = {
         "name": "composed",
-        "hull": {**HULL, **(hull or {})},
+        "hull": {k: v for k, v in {**HULL, **(hull or {})}.items() if v is not None},
         "engine": {"power_kw": 9000, "type": "slow_speed_diesel"},
         "fuel": {"type": "hfo"},
         "powers_kw": [3600, 7650],
@@ -320,3 +320,25 @@ def test_a_hull_without_an_answer_is_refused_with_what_is_out_of_range():
     full = {"block_coefficient": 0.99, "midship_coefficient": 1.0, "waterplane_coefficient": 1.0}
     with pytest.raises(InputError, match=r"no resistance for this hull.*prismatic coefficient"):
         _ship(hull={**full, "length_waterline_m": 169.0})
+
+
+def test_missing_particulars_come_with_the_regressions_that_could_supply_them():
+    with pytest.raises(InputError, match=r"displacement_m3 follows from .*block_coefficient"):
+        _ship(hull={"block_coefficient": None})
+
+
+def test_speeds_beyond_the_engine_are_refused_when_the_file_is_read():
+    with pytest.raises(InputError, match="The engines give 9000 kW"):
+        _ship(powers_kw=None, speeds_kn=[10, 25])
+
+
+def test_fuels_and_rudders_are_checked_when_the_file_is_read():
+    with pytest.raises(InputError, match="no fuel named 'coal'"):
+        _ship(fuel={"type": "coal"})
+    with pytest.raises(InputError, match="needs rudder_area_m2"):
+        _ship(models={"rudder": "schless_2023"})
+
+
+def test_squat_of_a_ship_with_a_resistance_is_no_limit_of_speed():
+    with pytest.raises(InputError, match=r"models\.shallow_water"):
+        _ship(models={"squat": "van_halem_2019"})

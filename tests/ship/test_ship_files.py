@@ -218,3 +218,59 @@ def test_halems_dredger_between_empty_and_full():
     assert half.fingerprint() != full.fingerprint()
     with pytest.raises(InputError, match="load factor"):
         full.with_load_factor(1.5)
+
+
+DREDGER = """
+name: Dredger
+hull: {length_between_perpendiculars_m: 80, breadth_m: 20, draught_m: 6.5}
+loading: {weight_full_t: 10000, draught_empty_m: 3.5, weight_empty_t: 4000}
+speeds_kn: [10]
+limits: {min_under_keel_clearance_m: 1.0}
+models: {squat: van_halem_2019}
+"""
+
+
+def test_squat_limits_the_speed_as_in_the_corrected_table_of_van_halem(tmp_path):
+    ship = Ship.load(_write(tmp_path, DREDGER))
+    depth = [7.5, 7.6, 7.8, 8.0, 9.0, 12.0, 25.0]
+    expected = [0.0, 1.85258782, 3.17069172, 3.60579884, 3.87498211, 4.36363728, 4.92338458]
+    speed = ship.speed_through_water(Conditions(depth=depth))
+    assert speed == pytest.approx(expected, rel=1e-5)
+    assert float(ship.speed_through_water(Conditions(depth=np.inf))) == pytest.approx(10 * KNOT)
+    assert np.isnan(ship.speed_through_water(Conditions(depth=np.nan)))
+    assert ship.reads == {"depth"}
+    empty = ship.with_load_factor(0.0)
+    assert float(empty.speed_through_water(Conditions(depth=7.6))) > 3.0
+
+
+def test_a_table_with_squat_follows_the_model_and_ends_at_the_keel(tmp_path):
+    ship = Ship.load(_write(tmp_path, DREDGER))
+    table, depth = ship.tabulate(), np.linspace(8.5, 300.0, 50)
+    truth = ship.speed_through_water(Conditions(depth=depth))
+    assert table.lookup({"depth": depth}, 0) == pytest.approx(truth, rel=0.01)
+    assert np.isnan(table.lookup({"depth": 7.0}, 0))
+    assert table.error.p99 < 0.01
+
+
+def test_squat_and_speed_loss_go_together(tmp_path):
+    text = DREDGER.replace("squat:", "speed_loss: kwon_2008, squat:").replace(
+        "draught_m: 6.5", "draught_m: 6.5, block_coefficient: 0.8"
+    )
+    ship = Ship.load(_write(tmp_path, text.replace("weight_full_t: 10000", "weight_full_t: 8500")))
+    at = Conditions(depth=[8.2, 9.0, 20.0], wind_speed=12.0, wind_angle=0.0)
+    both = ship.speed_through_water(at)
+    assert (np.diff(both) > 0.0).all() and (both < 10 * KNOT).all()
+    assert ship.tabulate().lookup(dict(at), 0) == pytest.approx(both, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("squat: van_halem_2019", "squat: barrass"), "no squat method"),
+        (("breadth_m: 20, ", ""), "breadth_m"),
+        (("squat: van_halem_2019", "engine: seuren"), "not a key"),
+    ],
+)
+def test_squat_that_cannot_be_is_refused(tmp_path, change, words):
+    with pytest.raises(InputError, match=words):
+        Ship.load(_write(tmp_path, DREDGER.replace(*change)))

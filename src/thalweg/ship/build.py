@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
+from thalweg.ship.fuel_terms import fuel_terms
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import ShipModel
 from thalweg.ship.nominal import KwonLoss, NominalModel, check_rising, cubic_law
+from thalweg.ship.squat_part import build_squat
 
 FloatArray = NDArray[np.float64]
 Data = Mapping[str, Any]
@@ -95,6 +97,7 @@ def build_model(data: Data, hull: Hull, loading: Loading) -> ShipModel:
     InputError
         For unknown methods, methods that do not go together, and missing data.
     """
+    fuel_terms(data)  # refuses unknown fuels and two prices for one thing
     models = data.get("models", {})
     acting = [name for name in FORCES if models.get(name, "none") != "none"]
     if models.get("calm_water", "none") in _LAWS and not acting:
@@ -116,7 +119,8 @@ def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
     full, empty = _speeds(data)
     fuel, power = _LAWS[law](data, full)
     check_rising(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
-    return NominalModel(full, empty, fuel, power, law, build_loss(data, hull, loading))
+    loss, squat = build_loss(data, hull, loading), build_squat(data, hull, loading)
+    return NominalModel(full, empty, fuel, power, law, loss, squat)
 
 
 def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.hull import Hull
 from thalweg.ship.hull_estimates import estimated_or_error
 from thalweg.ship.methods.calm_water_hollenbach import (
@@ -19,7 +20,7 @@ from thalweg.ship.methods.calm_water_hollenbach import (
     hollenbach_wetted_surface,
 )
 from thalweg.ship.methods.calm_water_holtrop import Extremities, holtrop, holtrop_validity
-from thalweg.ship.methods.friction import reynolds_number
+from thalweg.ship.methods.friction import SEA_WATER_VISCOSITY, reynolds_number
 from thalweg.ship.methods.holtrop_form import HullForm, hull_form, wetted_surface
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.methods.shallow_water import (
@@ -59,6 +60,8 @@ class CalmWater:
         Where the method is outside its range, from speeds.
     shallow_water, friction : str
         Names of the shallow-water method and the friction line.
+    viscosity : float
+        Kinematic viscosity of the water [m2/s].
     """
 
     method: str
@@ -67,6 +70,7 @@ class CalmWater:
     notes_of: Callable[[FloatArray], list[RangeNote]]
     shallow_water: str = "none"
     friction: str = "ittc_1957"
+    viscosity: float = SEA_WATER_VISCOSITY
 
     @property
     def reads_depth(self) -> bool:
@@ -116,7 +120,7 @@ class CalmWater:
             return None
         length, breadth = self._number("length_waterline_m"), self._number("breadth_m")
         return zeng_2019_friction(
-            reynolds_number(speed, length=length),
+            reynolds_number(speed, length=length, viscosity=self.viscosity),
             depth=depth,
             draught=self._number("draught_m"),
             length=length,
@@ -134,6 +138,15 @@ class CalmWater:
 
 def _sum(parts: Mapping[str, FloatArray]) -> FloatArray:
     return np.sum(np.broadcast_arrays(*parts.values()), axis=0)
+
+
+def _water(data: Mapping[str, Any]) -> dict[str, float]:
+    """Density and viscosity of the water; the sea at 15 degC when not given."""
+    given = data.get("water", {})
+    return {
+        "density": float(given.get("density_kg_m3", SEA_WATER_DENSITY)),
+        "viscosity": float(given.get("kinematic_viscosity_m2_s", SEA_WATER_VISCOSITY)),
+    }
 
 
 def _named(**known: FloatArray) -> dict[str, FloatArray]:
@@ -184,6 +197,7 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
     )
     fore = float(hull.values["draught_fore_m"])
     angle = hull.number("half_entrance_angle_deg")
+    water = _water(data)
 
     def deep(
         speed: FloatArray, waves: FloatArray, line: FloatArray | None
@@ -198,6 +212,7 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
             entrance_angle_deg=angle,
             friction_coefficient=line,
             wave_speed=waves,
+            **water,
         )
         return _named(**{k: getattr(found, k) for k in COMPONENTS if k != "residuary"})
 
@@ -240,12 +255,13 @@ def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWater:
         few = {key: counts[key] for key in _COUNTS if key != "thrusters"}
         area = float(hollenbach_wetted_surface(**sizes, **few, variant=surface_of))
         hull = hull.with_estimates(Estimate("wetted_surface_m2", area, "Hollenbach (1998)"))
-    area = float(hull.values["wetted_surface_m2"])
+    area, water = float(hull.values["wetted_surface_m2"]), _water(data)
 
     def deep(
         speed: FloatArray, waves: FloatArray, line: FloatArray | None
     ) -> dict[str, FloatArray]:
-        options: dict[str, Any] = {**sizes, **counts, "wetted_surface": area, "variant": variant}
+        options: dict[str, Any] = {**sizes, **counts, **water, "variant": variant}
+        options["wetted_surface"] = area
         found = hollenbach_1998(speed, **options, friction_coefficient=line)
         making = found if waves is speed else hollenbach_1998(waves, **options)
         return _named(friction=found.friction, residuary=making.residuary)
@@ -302,7 +318,8 @@ def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWater:
         keys = ("midship_coefficient",)
         hull = estimated_or_error(calm.hull, keys, shallow, instead="shallow_water: none")
         calm = CalmWater(calm.method, hull, calm.deep, calm.notes_of)
-    return CalmWater(calm.method, calm.hull, calm.deep, calm.notes_of, shallow, friction)
+    viscosity = _water(data)["viscosity"]
+    return CalmWater(calm.method, calm.hull, calm.deep, calm.notes_of, shallow, friction, viscosity)
 
 
 def check_length_order(hull: Hull) -> None:

@@ -12,16 +12,17 @@ from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import KNOT
 from thalweg.ship.build import FORCES, build_limits
 from thalweg.ship.calm_parts import CALM_WATER, build_calm_water, check_length_order
-from thalweg.ship.hull import Hull
+from thalweg.ship.hull import Hull, require
 from thalweg.ship.hull_estimates import estimate, hull_at
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate
 from thalweg.ship.powering import Balance, Orders, ResistanceModel
 from thalweg.ship.propulsion_parts import Plant, build_plant, build_propulsion
+from thalweg.ship.squat_part import build_squat
 from thalweg.ship.weather_parts import build_waves, build_wind
 
 RUDDER = ("none", "schless_2023")
-_FACTS = ("hull", "propulsion", "engine", "loading", "models")
+_FACTS = ("hull", "propulsion", "engine", "loading", "models", "water")
 
 
 def compose_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ResistanceModel:
@@ -64,6 +65,13 @@ def _resistance_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> 
             "Leave speed_loss out, or choose calm_water: table, cubic or none.",
             key="models.speed_loss",
         )
+    if build_squat(data, hull, loading) is not None:
+        raise InputError(
+            f"squat: {models['squat']} is for ships with known calm-water speeds.",
+            "Ships with a resistance feel the bed by models.shallow_water.",
+            "Leave squat out; the sinkage is shown for every ship whose particulars are known.",
+            key="models.squat",
+        )
     if models.get("rudder", "none") not in RUDDER:
         raise unknown_name("rudder method", models["rudder"], RUDDER)
     check_length_order(hull)
@@ -87,6 +95,8 @@ def _resistance_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> 
     facts = {name: data[name] for name in _FACTS if name in data}
     model = ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
     _check_answers(model)
+    if orders.kind == "speed":
+        model.with_speeds(model.speeds(1.0), 1.0)  # refuses speeds beyond the engines
     return model
 
 
@@ -129,6 +139,8 @@ def _displaced(hull: Hull, loading: Loading) -> Hull:
 def _balance(data: Mapping[str, Any], hull: Hull) -> Balance:
     calm = build_calm_water(data, hull)
     rudder = data.get("models", {}).get("rudder", "none")
+    if rudder != "none":
+        require(hull, ("rudder_area_m2",), rudder, instead="rudder: none")
     return Balance(
         calm=calm,
         propulsion=build_propulsion(data, calm.hull),

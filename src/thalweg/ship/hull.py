@@ -185,8 +185,20 @@ def require(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> 
     if missing:
         raise InputError(
             f"{method} needs {', '.join(missing)} under 'hull', not given and not estimated.",
-            f"It needs {', '.join(keys)}.",
+            f"It needs {', '.join(keys)}.{_regressions(missing)}",
             f"Add them, or choose {instead}.",
             missing=missing,
         )
     return [float(hull.values[key]) for key in keys]
+
+
+def _regressions(missing: list[str]) -> str:
+    """Say which regressions could supply missing particulars, and from what."""
+    from thalweg.ship.methods.hydrostatics import ESTIMATORS  # many formulas, seldom needed
+
+    ways = [
+        f"{key} follows from {', '.join(one.inputs)} ({one.source})"
+        for key in missing
+        for one in ESTIMATORS.get(key, ())
+    ]
+    return f" {'; '.join(ways)}." if ways else ""

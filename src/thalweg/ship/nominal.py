@@ -16,6 +16,7 @@ from thalweg.ship.loading_state import Loading, between
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import setting_index
 from thalweg.ship.speed_loss import ShipType, Sign, kwon_notes, kwon_speed_loss
+from thalweg.ship.squat_part import Squat
 from thalweg.ship.table import TableError, TablePart
 from thalweg.ship.tabulate import DEFAULT_AXES, Axis, constant_part, tabulate_dense
 
@@ -85,6 +86,8 @@ class NominalModel:
         How fuel and power follow the speed between and beyond the settings.
     loss : KwonLoss, optional
         Involuntary speed loss.
+    squat : Squat, optional
+        Limits the speed in shallow water; power and fuel stay those of the setting.
     """
 
     speeds_full: FloatArray
@@ -93,11 +96,13 @@ class NominalModel:
     powers: FloatArray
     law: str = "none"
     loss: KwonLoss | None = None
+    squat: Squat | None = None
 
     @property
     def reads(self) -> frozenset[str]:
-        """Conditions read: the wind, when there is a speed loss."""
-        return frozenset() if self.loss is None else frozenset({"wind_speed", "wind_angle"})
+        """Conditions read: the wind with a speed loss, the depth with squat."""
+        wind = frozenset() if self.loss is None else frozenset({"wind_speed", "wind_angle"})
+        return wind if self.squat is None else wind | {"depth"}
 
     @property
     def identity(self) -> Mapping[str, object]:
@@ -109,6 +114,7 @@ class NominalModel:
             "fuel_rates": self.fuel_rates.tolist(),
             "powers": self.powers.tolist(),
             "loss": repr(self.loss),
+            **({} if self.squat is None else {"squat": repr(self.squat)}),
         }
 
     def speeds(self, load_factor: float) -> FloatArray:
@@ -120,9 +126,11 @@ class NominalModel:
         index = setting_index(setting, len(self.speeds_full))
         load_factor = conditions.load_factor
         calm = between(self.speeds_empty[index], self.speeds_full[index], load_factor)
-        if self.loss is None:
-            return np.array(np.broadcast_to(calm, _shape(conditions, index)))
-        return calm * (1.0 - self.loss.share(conditions, calm))
+        if self.loss is not None:
+            calm = calm * (1.0 - self.loss.share(conditions, calm))
+        if self.squat is not None:
+            calm = self.squat.allowed(calm, conditions.depth, load_factor)
+        return np.array(np.broadcast_to(calm, _shape(conditions, index)))
 
     def power(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Brake power [W]; the setting's own, whatever the weather."""
@@ -141,8 +149,8 @@ class NominalModel:
     def tabulate(
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
-        """One constant, or one part over wind speed and angle."""
-        if self.loss is None:
+        """One constant, or one part over what is read: wind speed and angle, depth."""
+        if not self.reads:
             return (constant_part(self.speeds(load_factor)),), TableError(0.0, 0.0, 0.0, 0)
         count = len(self.speeds_full)
 
@@ -151,7 +159,12 @@ class NominalModel:
             conditions = Conditions(columns, load_factor=load_factor)
             return self.speed_through_water(conditions, np.arange(count))
 
-        axes = (replace(DEFAULT_AXES["wind_speed"], size=257), _angle_axis(self.loss))
+        axes: list[Axis] = []
+        if self.loss is not None:
+            size = 257 if self.squat is None else 65
+            axes += [replace(DEFAULT_AXES["wind_speed"], size=size), _angle_axis(self.loss)]
+        if self.squat is not None:
+            axes.append(_depth_axis(self.squat, load_factor, 1025 if self.loss is None else 257))
         part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
         return (part,), error
 
@@ -252,6 +265,13 @@ def check_rising(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
 def _angle_axis(loss: KwonLoss) -> Axis:
     """Wind angle in steps of 15 degrees, on which the continuous loss is exact."""
     return Axis(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 13, fixed=not loss.classes)
+
+
+def _depth_axis(squat: Squat, load_factor: float, size: int) -> Axis:
+    """Depth from where the ship has no water for any speed, to twelve draughts."""
+    draught = float(squat.loading.draught_at(load_factor))
+    low = draught + squat.clearance
+    return Axis(codes.AXIS_DEPTH, low, max(12.0 * draught, low + 60.0), size)
 
 
 def _shape(conditions: Conditions, index: NDArray[np.intp]) -> tuple[int, ...]:

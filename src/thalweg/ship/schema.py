@@ -151,6 +151,10 @@ _LIMITS: Final = {
     "max_wind_speed_m_s": _positive(150.0),
     "min_under_keel_clearance_m": _not_negative(50.0),
 }
+_WATER: Final = {
+    "density_kg_m3": Key(low=990.0, high=1040.0),
+    "kinematic_viscosity_m2_s": Key(low=6e-7, high=2.2e-6),
+}
 _COSTS: Final = {
     "per_week": _not_negative(1e9),
     "per_second_per_cubed_speed": _not_negative(1e6),
@@ -168,10 +172,7 @@ _MODELS: Final = (
         name: Key("text")
         for name in ("calm_water", "waves", "wind", "shallow_water", "speed_loss", "propulsion")
     }
-    | {
-        name: Key("text")
-        for name in ("friction", "squat", "rudder", "engine", "wind_type", "estimate")
-    }
+    | {name: Key("text") for name in ("friction", "squat", "rudder", "wind_type")}
     | {
         "kwon_sign": Key("word", words=("plus", "printed")),
         "kwon_classes": Key("flag"),
@@ -189,6 +190,7 @@ SECTIONS: Final[Mapping[str, Mapping[str, Key]]] = MappingProxyType(
         "loading": _LOADING,
         "limits": _LIMITS,
         "costs": _COSTS,
+        "water": _WATER,
         "table": _TABLE,
         "models": _MODELS,
     }
