@@ -113,7 +113,8 @@ def test_ships_with_known_speeds_show_them(capsys):
     row = sheet["conditions"][-1]
     assert row["ordered_speed_kn"] == pytest.approx(15.2)
     assert row["speed_kn"] < 14.0
-    assert row["resistance_n"] is None and row["brake_power_kw"] is None
+    assert row["resistance_n"].keys() >= KEYS and row["brake_power_kw"] is None
+    assert set(row["resistance_n"].values()) == {None}
     assert row["fuel_kg_per_h"] == pytest.approx(39000 / 24)
 
 
@@ -149,3 +150,60 @@ def test_the_library_is_listed(capsys):
 def test_impossible_weather_is_refused(capsys, ship_file, option, value):
     with pytest.raises(InputError, match="at least 0"):
         _run(capsys, ship_file, f"{option}={value}")
+
+
+def test_speeds_a_ship_cannot_show_are_left_out_and_named(capsys):
+    sheet = json.loads(_run(capsys, "handysize-bulker", "--speed", "8:16", "--json"))
+    shown = [row["ordered_speed_kn"] for row in sheet["conditions"]]
+    assert shown == pytest.approx([9, 10, 11, 12, 13, 14, 15])
+    (warning,) = sheet["warnings"]
+    assert warning.startswith("8, 16 kn left out") and "8.8 to 15.2 kn" in warning
+    assert "8, 16 kn left out" in _run(capsys, "handysize-bulker", "--speed", "8:16")
+    with pytest.raises(ModelRangeError, match="left out"):
+        _run(capsys, "handysize-bulker", "--speed", "8:16", "--strict")
+    with pytest.raises(InputError, match="cannot be ordered"):
+        _run(capsys, "handysize-bulker", "--speed", "20:22")
+
+
+def test_weather_a_ship_does_not_feel_is_said(capsys):
+    sheet = json.loads(_run(capsys, "vox-olympia", "--hs", 3, "--wind", 10, "--json"))
+    assert [text.split(" given")[0] for text in sheet["warnings"]] == ["waves", "wind"]
+    assert json.loads(_run(capsys, "kvlcc2", "--hs", 3, "--wind", 10, "--json"))["warnings"] == []
+
+
+def test_squat_and_the_water_under_the_keel(capsys, ship_file):
+    sheet = json.loads(_run(capsys, ship_file, "--speed", "8,12", "--water-depth", 11, "--json"))
+    slow, fast = (row["squat"] for row in sheet["conditions"])
+    assert 0.0 < slow["squat_m"] < fast["squat_m"]
+    assert fast["squat_m"] / slow["squat_m"] == pytest.approx(1.5**2.08)
+    assert fast["under_keel_clearance_m"] == pytest.approx(1.0 - fast["squat_m"])
+    deep = json.loads(_run(capsys, ship_file, "--speed", "8", "--json"))
+    assert deep["conditions"][0]["squat"] is None
+
+
+def test_motions_and_the_dangers_of_following_seas(capsys, ship_file):
+    def row(*words):
+        text = _run(capsys, ship_file, "--speed", 16, "--hs", 8, "--tp", 13, *words, "--json")
+        return json.loads(text)["conditions"][0]
+
+    head, astern = row("--wave-from", 0), row("--wave-from", 180)
+    assert head["motions"]["significant_heave_m"] > 0.5
+    name = "bow_acceleration_rms_m_s2"
+    assert head["motions"][name] > 2.0 * astern["motions"][name] > 0.0
+    assert not any("Circ.1228" in note for note in head["warnings"])
+    assert any("successive high waves" in note for note in astern["warnings"])
+
+
+def test_rudder_drag_needs_the_option_and_a_crab_angle(capsys, ship_file):
+    def drag(*words):
+        text = _run(capsys, ship_file, "--speed", 10, *words, "--json")
+        return json.loads(text)["conditions"][0]["resistance_n"]["rudder"]
+
+    text = ship_file.read_text().replace("type: bulk", "rudder_area_m2: 40, type: bulk")
+    ship_file.write_text(text)
+    assert drag("--crab", 8) == 0.0
+    ship_file.write_text(text.replace("wind: ittc", "wind: ittc, rudder: schless_2023"))
+    assert drag() == 0.0
+    assert drag("--crab", 8) == drag("--crab", -8) > 0.0
+    with pytest.raises(InputError, match="crab angle"):
+        drag("--crab", 60)

@@ -26,6 +26,7 @@ def add_ship_command(commands: Any) -> None:
     parser.add_argument("--wave-from", type=float, metavar="DEG", help="off the bow, 0 from ahead")
     parser.add_argument("--wind", type=float, metavar="M/S", help="true wind at 10 m")
     parser.add_argument("--wind-from", type=float, metavar="DEG", help="off the bow, 0 from ahead")
+    parser.add_argument("--crab", type=float, metavar="DEG", help="crab angle, for rudder drag")
     parser.add_argument("--water-depth", type=float, metavar="M", help="depth of the water")
     parser.add_argument("--load-factor", type=float, metavar="0..1", help="0 empty, 1 full")
     parser.add_argument("--strict", action="store_true", help="refuse methods outside their range")
@@ -114,6 +115,14 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
             if not math.isfinite(degrees):
                 raise InputError(f"{name} is {degrees:g}.", "It is in degrees.", "Correct it.")
             found[name] = math.radians(abs((degrees + 180.0) % 360.0 - 180.0))
+    if arguments.crab is not None:
+        if not abs(arguments.crab) <= 35.0:
+            raise InputError(
+                f"The crab angle is {arguments.crab:g} degrees.",
+                "The rudder's curve goes to 35 degrees.",
+                "Give a smaller angle.",
+            )
+        found["crab_angle"] = math.radians(arguments.crab)
     return found
 
 
@@ -121,6 +130,7 @@ def _refuse(sheet: dict[str, Any], strict: bool) -> None:
     from thalweg.core.errors import ModelRangeError
 
     notes = sorted({note for row in sheet["conditions"] for note in row["warnings"]})
+    notes += sheet["warnings"]
     if strict and notes:
         raise ModelRangeError(
             "; ".join(notes) + ".",
@@ -138,8 +148,8 @@ def show_sheet(sheet: dict[str, Any]) -> None:
 
     console = Console()
     console.print(f"[bold]{sheet['name']}[/bold], draught {sheet['draught_m']:.2f} m")
-    table = Table(box=box.SIMPLE, pad_edge=False)
-    composed = any(row["resistance_n"] for row in sheet["conditions"])
+    table = Table(box=box.SIMPLE, pad_edge=False, padding=(0, 1, 0, 0))
+    composed = any(row["resistance_n"]["total"] is not None for row in sheet["conditions"])
     heads = ["speed\nkn"]
     if composed:
         heads += ["resistance\nkN", "waves\nkN", "wind\nkN"]
@@ -165,8 +175,17 @@ def show_sheet(sheet: dict[str, Any]) -> None:
 
 
 def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
-    for note in dict.fromkeys(n for row in sheet["conditions"] for n in row["warnings"]):
-        console.print(f"[yellow]outside range:[/yellow] {note}", highlight=False)
+    for note in sheet["warnings"]:
+        console.print(f"[yellow]warning:[/yellow] {note}", highlight=False)
+    speeds: dict[str, list[float]] = {}
+    for row in sheet["conditions"]:
+        for note in row["warnings"]:
+            speeds.setdefault(note, []).append(row["speed_kn"] or 0.0)
+    for note, where in speeds.items():
+        ends = dict.fromkeys(f"{speed:.4g}" for speed in (min(where), max(where)))
+        console.print(
+            f"[yellow]warning[/yellow] at {' to '.join(ends)} kn: {note}", highlight=False
+        )
     if sheet["estimated"]:
         console.print("Estimated, not given:")
         for one in sheet["estimated"]:

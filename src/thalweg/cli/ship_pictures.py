@@ -74,7 +74,7 @@ def _column(sheet: Mapping[str, Any], name: str) -> np.ndarray:
 
 def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
     rows = sheet["conditions"]
-    if len(rows) < 2 or rows[0]["resistance_n"] is None:
+    if len(rows) < 2 or rows[0]["resistance_n"]["total"] is None:
         return False
     speed = _column(sheet, "speed_kn")
     parts = {

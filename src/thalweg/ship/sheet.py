@@ -12,7 +12,13 @@ from thalweg.core.errors import InputError
 from thalweg.core.units import HOUR, KNOT
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.fuel import fuel_named
-from thalweg.ship.methods.indicators import attained_cii, cii_rating, cii_ship_type
+from thalweg.ship.methods.indicators import (
+    attained_cii,
+    cii_rating,
+    cii_ship_type,
+    required_cii,
+)
+from thalweg.ship.sheet_seaway import Seaway
 from thalweg.ship.ship import Ship
 
 FloatArray = NDArray[np.float64]
@@ -40,13 +46,14 @@ def performance_sheet(
     dict
         Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component,
         ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
-        ``fuel_kg_per_nm``, ``cii``, ``warnings``), ``settings[]`` (what each setting attains in
+        ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``warnings[]`` (speeds
+        left out, weather the ship has no model of), ``settings[]`` (what each setting attains in
         this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
 
     Raises
     ------
     InputError
-        For speeds the ship cannot be asked for.
+        When the ship cannot be asked for any of the speeds.
     """
     conditions = _conditions(ship, weather or {})
     composed = hasattr(ship.model, "power_at_speed")
@@ -57,13 +64,18 @@ def performance_sheet(
             "Speeds are in knots, such as 8:16 or 10,12,14.",
             "Correct them.",
         )
-    rows = _composed_rows if composed else _nominal_rows
+    speeds, left_out = (speeds, []) if composed else _orderable(ship, speeds)
+    rows = (_composed_rows if composed else _nominal_rows)(ship, conditions, speeds)
+    seaway = Seaway.of(ship, conditions)
+    for row in rows:
+        _add_seaway(row, seaway)
     return {
         "name": ship.name,
         "draught_m": ship.draught,
         "load_factor": ship.loading.load_factor,
         "weather": {name: _number(value) for name, value in (weather or {}).items()},
-        "conditions": rows(ship, conditions, speeds),
+        "conditions": rows,
+        "warnings": [*left_out, *_unfelt(ship, weather or {})],
         "settings": _settings(ship, conditions),
         "estimated": [{"key": e.key, "value": e.value, "method": e.method} for e in ship.estimated],
         "sources": list(ship.data.get("sources", ())),
@@ -75,6 +87,61 @@ def performance_sheet(
 def _conditions(ship: Ship, weather: Mapping[str, float]) -> Conditions:
     calm = {name: 0.0 for name in ("wind_speed", "wind_angle", "wave_height", "wave_angle")}
     return Conditions({**calm, "wave_period": 10.0, "depth": np.inf, **weather})
+
+
+def _orderable(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
+    """The speeds a ship with known speeds can be ordered to, and a warning of the others.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if np.array_equal(speeds, ship.speeds):
+        return speeds, []
+    good, bad, reason = [], [], None
+    for speed in speeds:
+        try:
+            ship.with_speeds(speed)
+            good.append(float(speed))
+        except InputError as refusal:
+            bad.append(float(speed))
+            reason = reason or refusal
+    if reason is not None and not good:
+        ship.with_speeds(speeds)
+        raise reason
+    listed = ", ".join(f"{speed / KNOT:.4g}" for speed in bad)
+    why = "" if reason is None else f": {reason.possible}"
+    return np.array(good), [f"{listed} kn left out{why}"] if bad else []
+
+
+#: what the weather must be called, and the conditions a ship reads that feel it
+_FELT = {
+    "wave_height": ("waves", {"wave_height"}),
+    "wind_speed": ("wind", {"wind_speed"}),
+    "depth": ("the depth of the water", {"depth"}),
+}
+
+
+def _unfelt(ship: Ship, weather: Mapping[str, float]) -> list[str]:
+    """Warn of weather that is given and that the ship has no model of."""
+    return [
+        f"{word} given, but this ship's models leave its speed and power as they are"
+        for name, (word, read) in _FELT.items()
+        if weather.get(name, 0.0) > 0.0 and np.isfinite(weather[name]) and not ship.reads & read
+    ]
+
+
+def _add_seaway(row: dict[str, Any], seaway: Seaway) -> None:
+    """Add squat and motions to a row, with their warnings."""
+    speed = row["speed_kn"]
+    if speed is None:
+        row |= {"squat": None, "motions": None}
+        return
+    squat, touching = seaway.squat(speed * KNOT)
+    motions, dangers = seaway.motions(speed * KNOT)
+    row |= {"squat": squat, "motions": motions}
+    row["warnings"] += [*touching, *dangers]
 
 
 def _usual_speeds(ship: Ship) -> FloatArray:
@@ -123,7 +190,7 @@ def _nominal_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> lis
             {
                 **_row(ship, attained, fuel),
                 "ordered_speed_kn": _number(speed / KNOT),
-                "resistance_n": None,
+                "resistance_n": dict.fromkeys(COMPONENTS),
                 "effective_power_kw": None,
                 "brake_power_kw": _number(power / 1e3),
                 "warnings": [str(n) for n in ordered.notes(conditions, k)],
@@ -153,16 +220,26 @@ def _carbon_factor(ship: Ship) -> float:
 def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
     """Carbon intensity of sailing at this speed all the time, and its rating in 2026."""
     hull = ship.data.get("hull", {})
-    deadweight, kind = hull.get("deadweight_t"), str(hull.get("type", "")).replace(" ", "_")
-    if deadweight is None or not (speed > 0 and np.isfinite(co2)):
-        return None
-    attained = float(attained_cii(co2, capacity=deadweight, distance_nm=speed / 1852.0))
+    kind = str(hull.get("type", "")).replace(" ", "_")
     try:
-        cii_ship_type(kind)
+        by_tonnage = cii_ship_type(kind).capacity == "gt"
+        known = True
     except InputError:
-        return {"attained_g_per_t_nm": attained, "rating_2026": None}
-    rating = cii_rating(attained, ship_type=kind, capacity=deadweight, year=2026)
-    return {"attained_g_per_t_nm": attained, "rating_2026": str(rating)}
+        by_tonnage = known = False
+    capacity = hull.get("gross_tonnage" if by_tonnage else "deadweight_t")
+    if capacity is None or not (speed > 0 and np.isfinite(co2)):
+        return None
+    attained = float(attained_cii(co2, capacity=capacity, distance_nm=speed / 1852.0))
+    found: dict[str, Any] = {
+        "attained_g_per_t_nm": attained,
+        "required_2026": None,
+        "rating_2026": None,
+    }
+    if known:
+        here: dict[str, Any] = {"ship_type": kind, "capacity": capacity, "year": 2026}
+        found["required_2026"] = float(required_cii(**here))
+        found["rating_2026"] = str(cii_rating(attained, **here))
+    return found
 
 
 def _settings(ship: Ship, conditions: Conditions) -> list[dict[str, Any]]:
