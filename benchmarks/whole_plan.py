@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 COMMAND = [
-    sys.executable, "-m", "thalweg.cli.main", "plan", "New York", "49.7N 6.5W",
+    sys.executable, "-m", "thalweg.cli.main", "plan", "40.4N 73.8W", "49.7N 6.5W",
     "--ship", "handysize-bulker", "--sea", "storm", "--depart", "1998-08-30T00:00Z", "--json",
 ]  # fmt: skip
 
