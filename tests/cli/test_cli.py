@@ -165,3 +165,48 @@ def test_help_names_every_command():
     text = build_parser().format_help()
     for command in ("plan", "evaluate", "inspect", "ship", "demo"):
         assert command in text
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (["plan", HERE, "--calm", "--json"], "required"),
+        (["plan", HERE, THERE, "--calm", "--speed", "fast", "--json"], "--speed"),
+        (["plna", "--json"], "plna"),
+        (["inspect", "x.nc", "--map", "u", "--json"], "NAME=VARIABLE"),
+    ],
+)
+def test_command_lines_that_are_not_understood(capsys, command, words):
+    assert main(command) == 2
+    found = json.loads(capsys.readouterr().out)
+    assert found["error"] == "InputError"
+    assert words in found["asked"] + found["possible"]
+    assert found["remedy"]
+
+
+def test_a_variable_can_be_mapped(capsys, tmp_path):
+    path = tmp_path / "odd.nc"
+    times = np.array(["2026-01-01", "2026-01-02"], "datetime64[ns]")
+    field = (("time", "lat", "lon"), np.full((2, 3, 3), 1.5), {"units": "m"})
+    axis = [50.0, 51.0, 52.0]
+    xr.Dataset({"odd": field}, {"time": times, "lat": axis, "lon": axis}).to_netcdf(path)
+    assert main(["inspect", str(path)]) == 2
+    name = "sea_surface_wave_significant_height"
+    capsys.readouterr()
+    code, found = run_json(capsys, "inspect", str(path), "--map", f"{name}=odd")
+    assert code == 0 and found["coverage"][0]["variable"] == name
+
+
+def test_half_a_vector_is_no_sea(capsys, tmp_path, currents):
+    half = tmp_path / "half.nc"
+    xr.open_dataset(currents)[["uo"]].to_netcdf(half)
+    assert main(["inspect", str(half)]) == 2
+    assert "partner is missing" in capsys.readouterr().err
+
+
+def test_the_high_north_is_told(capsys, ship):
+    code, found = run_json(
+        capsys, "plan", "75N 0E", "75N 4E", "--ship", ship, "--calm", "--coast", "none"
+    )
+    assert code == 0
+    assert any("ice" in note for note in found["notes"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import NAUTICAL_MILE
@@ -29,6 +29,7 @@ def add_world_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="met-ocean files, first has priority; 'storm' for the embedded modelled storm",
     )
+    add_mapping_option(sea)
     sea.add_argument("--calm", action="store_true", help="no wind, waves or currents at all")
     sea.add_argument(
         "--fill",
@@ -53,6 +54,37 @@ def add_world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", help="folder for files and pictures")
 
 
+def add_mapping_option(parser: Any) -> None:
+    """Add the option that tells which variable of a file is which quantity."""
+    parser.add_argument(
+        "--map",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME=VARIABLE",
+        help="take a quantity from this variable of the files; crs=EPSG:... names a projection",
+    )
+
+
+def mapping_of(arguments: argparse.Namespace) -> dict[str, str]:
+    """Return what ``--map`` tells.
+
+    Raises
+    ------
+    InputError
+        If a part of it is not NAME=VARIABLE.
+    """
+    pairs = [text.partition("=") for text in arguments.map]
+    for name, equals, variable in pairs:
+        if not (name and equals and variable):
+            raise InputError(
+                f"--map {name}{equals}{variable} is not understood.",
+                "It is written NAME=VARIABLE, such as eastward_wind=u or crs=EPSG:32611.",
+                "Write it that way.",
+            )
+    return {name: variable for name, _, variable in pairs}
+
+
 def open_sea(arguments: argparse.Namespace) -> Sea:
     """Build the sea that the options name."""
     from thalweg.sea import Sea
@@ -69,7 +101,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     if arguments.calm:
         return Sea.calm()
     files = [name for name in arguments.sea if name != "storm"]
-    layers = [Sea.open(*files)] if files else []
+    layers = [Sea.open(*files, mapping=mapping_of(arguments))] if files else []
     if "storm" in arguments.sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)

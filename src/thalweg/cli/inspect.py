@@ -6,6 +6,8 @@ import argparse
 import json
 from typing import Any
 
+from thalweg.cli import common
+
 
 def add_command(commands: Any) -> None:
     """Add the command to the parser."""
@@ -15,6 +17,7 @@ def add_command(commands: Any) -> None:
         description="Print what was recognised in a file, its coverage, steps and gaps.",
     )
     parser.add_argument("file", nargs="+", metavar="FILE")
+    common.add_mapping_option(parser)
     parser.add_argument("--time", metavar="T", help="time of the map; the most eventful by default")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.add_argument("--out", metavar="DIR", help="folder for the map")
@@ -27,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.sea import Sea
 
     folder = check_folder(arguments.out) if arguments.out else None
-    sea = Sea.open(*arguments.file)
+    sea = Sea.open(*arguments.file, mapping=common.mapping_of(arguments))
     found = sea.describe().as_dict()
     if arguments.json:
         print(json.dumps(found, indent=2, allow_nan=False))

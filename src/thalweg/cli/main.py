@@ -84,7 +84,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _show_warning(message, category, filename, lineno, file=None, line=None):  # type: ignore[no-untyped-def]
-    print(f"warning: {message}", file=sys.stderr)
+    if issubclass(category, ThalwegWarning):
+        print(f"warning: {message}", file=sys.stderr)
 
 
 def _version() -> str:

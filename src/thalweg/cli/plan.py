@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import common
+from thalweg.cli.exits import DONE, NO_ROUTE
 
 if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
@@ -63,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
         show(found)
         for path in files:
             print(f"wrote {path}")
-    return 0
+    return DONE if found.best.feasible else NO_ROUTE
 
 
 def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:

@@ -33,6 +33,8 @@ from thalweg.ship import Ship
 _OFFSHORE = 15_000.0
 #: ... and doubted when it leaves less than this under the keel [m].
 _DOUBTFUL = 10.0
+#: Poleward of this [deg] ice is mentioned.
+_POLAR = 72.0
 
 
 def plan(
@@ -156,6 +158,7 @@ def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
     )
     notes = [end.note for end in ends if end.note] + list(task.needs.notes)
     notes += [note for passage in passages for note in passage.notes]
+    notes += _ice_notes(route)
     if not math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
         notes += _shallow_notes(task, route)
     return Plan(
@@ -181,6 +184,19 @@ def _shallow_notes(task: Task, route: Route) -> list[str]:
     return [
         f"The coarse depth of the world shows {max(float(depth[worst]), 0.0):.0f} m near "
         f"{format_position(float(lat[worst]), float(lon[worst]))}: check the chart there."
+    ]
+
+
+def _ice_notes(route: Route) -> list[str]:
+    """Warn where ice is likely, which no limit looks at."""
+    lat = route.samples["lat"]
+    worst = int(np.argmax(np.abs(lat)))
+    if abs(float(lat[worst])) < _POLAR:
+        return []
+    place = format_position(float(lat[worst]), float(route.samples["lon"][worst]))
+    return [
+        f"The route comes as far as {place} and sea ice is not considered: give a via point or a "
+        "no-go zone if that water is closed."
     ]
 
 

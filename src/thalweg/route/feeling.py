@@ -77,7 +77,8 @@ def _try(
     cost = cost.reshape(len(moving), trials)
     pick = np.argmin(cost, axis=1)
     row = np.arange(len(moving))
-    spent = cost[:, 0] - (0.0 if sailor.by_length else arrive[0, moving - 1])
+    with np.errstate(invalid="ignore"):  # a line that cannot be sailed never arrives
+        spent = cost[:, 0] - (0.0 if sailor.by_length else arrive[0, moving - 1])
     slack = 1e-10 * np.where(np.isfinite(spent), np.abs(spent), 0.0)
     moved = cost[row, pick] + slack < cost[:, 0]
     chosen = (row * trials + pick)[moved]

@@ -84,6 +84,8 @@ def drafts_of(file: OpenedFile, mapping: Mapping[str, str]) -> tuple[list[Draft]
     ingredients = {role: _ingredient(file, one, mapping, meshes) for role, one in chosen.items()}
     assembly = Assembly(file, ingredients, ignored)
     assembly.all()
+    if not assembly.drafts:
+        raise _nothing(file, assembly.ignored)
     return assembly.drafts, assembly.ignored
 
 
