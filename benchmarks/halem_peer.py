@@ -32,7 +32,7 @@ METRES_PER_DEGREE = 6_372_800.0 * math.pi / 180.0
 PER_LON, PER_LAT = 111319.490793, 110574.2759
 T0 = 1_546_300_800.0
 SPACING = 0.04  # degrees: a little finer than HALEM, so that the error is smaller too
-WORKER = Path(__file__).with_name("halem_worker.py")
+WORKER = Path(__file__).with_name("_halem_worker.py")
 
 
 def degrees(lat, lon):
@@ -126,7 +126,8 @@ def main():
         print(
             f"Thalweg       {nodes} nodes, {directions} directions: prepare + query "
             f"{1000 * middle:.1f} ms (median of 9); passage {passage:.1f} s, "
-            f"{100 * (passage / OPTIMUM - 1):+.2f} % of the optimum; {whole / middle:,.0f} times faster"
+            f"{100 * (passage / OPTIMUM - 1):+.2f} % of the optimum; "
+            f"{whole / middle:,.0f} times faster"
         )
     return 0
 
