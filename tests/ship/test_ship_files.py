@@ -243,6 +243,18 @@ def test_squat_limits_the_speed_as_in_the_corrected_table_of_van_halem(tmp_path)
     assert float(empty.speed_through_water(Conditions(depth=7.6))) > 3.0
 
 
+def test_kwon_takes_the_block_coefficient_from_the_weight(tmp_path):
+    text = DREDGER.replace("squat: van_halem_2019", "speed_loss: kwon_2008")
+    weight, plain = text.replace("10000", "8500"), {"wind_speed": 9.0, "wind_angle": 0.0}
+    block = 8500e3 / 1025 / (80 * 20 * 6.5)
+    given = weight.replace("draught_m: 6.5", f"draught_m: 6.5, block_coefficient: {block}")
+    speeds = [
+        float(Ship.load(_write(tmp_path, one)).speed_through_water(Conditions(plain)))
+        for one in (weight, given)
+    ]
+    assert speeds[0] == pytest.approx(speeds[1]) and speeds[0] < 10 * KNOT
+
+
 def test_a_table_with_squat_follows_the_model_and_ends_at_the_keel(tmp_path):
     ship = Ship.load(_write(tmp_path, DREDGER))
     table, depth = ship.tabulate(), np.linspace(8.5, 300.0, 50)

@@ -132,6 +132,9 @@ def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
     if name == "none":
         return None
     needed = ("length_between_perpendiculars_m", "block_coefficient")
+    if hull.number("displacement_m3") is None and not math.isnan(loading.displacement_full):
+        deep = {"displacement_m3": loading.displacement_full, "draught_m": loading.draught_full}
+        hull = Hull({**hull.values, **deep}, hull.estimated)
     if any(hull.number(key) is None for key in needed):
         from thalweg.ship.hull_estimates import estimate  # reads many regressions
 

@@ -111,8 +111,8 @@ def _orderable(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
         ship.with_speeds(speeds)
         raise reason
     listed = ", ".join(f"{speed / KNOT:.4g}" for speed in bad)
-    why = "" if reason is None else f": {reason.possible}"
-    return np.array(good), [f"{listed} kn left out{why}"] if bad else []
+    why = "" if reason is None else f" {reason.possible}"
+    return np.array(good), [f"{listed} kn left out.{why}"] if bad else []
 
 
 #: what the weather must be called, and the conditions a ship reads that feel it
