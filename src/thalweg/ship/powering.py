@@ -94,7 +94,7 @@ class Balance:
             here = {name: values[index] for name, values in at.items()}
             return np.cbrt(self.brake_power(here, speed)) - target[index]
 
-        return bracketed_root(excess, np.zeros(power.shape), highest, tolerance=1e-5)
+        return bracketed_root(excess, np.zeros(power.shape), highest, tolerance=1e-4)
 
     def notes(self, at: Flat, speed: FloatArray) -> list[RangeNote]:
         """Where methods are outside their ranges."""

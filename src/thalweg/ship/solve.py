@@ -15,7 +15,7 @@ Indexed = Callable[[FloatArray, NDArray[np.intp]], FloatArray]
 def bracketed_root(
     function: Indexed, low: FloatArray, high: FloatArray, *, tolerance: float = 1e-7
 ) -> FloatArray:
-    """Return where functions cross zero from below, by the Illinois method.
+    """Return where functions cross zero from below, by the method of Anderson and Bjorck.
 
     Parameters
     ----------
@@ -34,8 +34,9 @@ def bracketed_root(
 
     Notes
     -----
-    Regula falsi that halves the value of an end that stays twice (Dowell and Jarratt 1971): it
-    never leaves the bracket, so jumps and kinks cost steps but no roots.
+    Regula falsi that lessens the value of an end that stays twice (Anderson and Bjorck 1973): it
+    never leaves the bracket, so jumps and kinks cost steps but no roots. The last step along the
+    secant, shorter than the tolerance, is taken without asking the function again.
     """
     everywhere = np.arange(low.size)
     a, b = low.astype(float).copy(), high.astype(float).copy()
@@ -49,10 +50,14 @@ def bracketed_root(
         x = np.clip(b - fb * (b - a) / (fb - fa), np.minimum(a, b), np.maximum(a, b))
         fx = function(x, active)
         crossed = np.sign(fx) != np.sign(fb)
-        a, fa = np.where(crossed, b, a), np.where(crossed, fb, 0.5 * fa)
-        step = np.abs(x - b)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = 1.0 - fx / fb
+            ahead = fx * (b - x) / (fx - fb)  # the next step along the secant
+        share = np.where((share > 0.0) & (share < 1.0), share, 0.5)
+        a, fa = np.where(crossed, b, a), np.where(crossed, fb, share * fa)
         b, fb = x, fx
-        root[active] = np.where(np.isnan(fx), np.nan, x)
-        going = (fx != 0.0) & ~np.isnan(fx) & (step > tolerance) & (np.abs(b - a) > tolerance)
+        near = np.abs(ahead) < tolerance
+        root[active] = np.where(np.isnan(fx), np.nan, x + np.where(near, ahead, 0.0))
+        going = (fx != 0.0) & ~np.isnan(fx) & ~near & (np.abs(b - a) > tolerance)
         active, a, b, fa, fb = active[going], a[going], b[going], fa[going], fb[going]
     return root

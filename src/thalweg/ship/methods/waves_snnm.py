@@ -110,7 +110,31 @@ def _motion_shape(frequency: FloatArray, hull: tuple[FloatArray, ...]) -> FloatA
 
 def _speed_factor(froude: FloatArray) -> FloatArray:
     fast = np.maximum(froude, 0.0)
-    return np.where(froude < 0.12, 0.0072 + 0.1676 * froude, fast**1.5 * np.exp(-3.5 * fast))
+    quick = fast * np.sqrt(fast) * np.exp(-3.5 * fast)
+    return np.where(froude < 0.12, 0.0072 + 0.1676 * froude, quick)
+
+
+def _ahead_factors(
+    angle: FloatArray, froude: FloatArray, hull: tuple[FloatArray, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """a1 and a2 for waves from ahead to abeam."""
+    _, breadth, draught, _, block, _, _, _ = hull
+    ahead = np.maximum(np.cos(angle), 0.0)
+    first = (0.87 / block) ** ((1.0 + froude) * ahead) * (1.0 + 2.0 * ahead) / 3.0
+    return np.asarray(first / np.log(breadth / draught)), _speed_factor(froude)
+
+
+def _factors_by_row(
+    angle: FloatArray, froude: FloatArray, group: FloatArray, hull: tuple[FloatArray, ...]
+) -> FloatArray:
+    """a1 a2 as `_heading_factors`, which costs much, only for the rows with waves from abaft."""
+    first, second = _ahead_factors(angle, froude, hull)
+    factors = np.array(np.broadcast_to(first * second, group.shape))
+    abaft = np.broadcast_to(angle > 0.5 * np.pi, (group.shape[0], 1))[:, 0]
+    if abaft.any():
+        rows = [a if a.shape[0] == 1 else a[abaft] for a in (angle, froude, *hull)]
+        factors[abaft] = _heading_factors(rows[0], rows[1], group[abaft], tuple(rows[2:]))
+    return factors
 
 
 def _heading_factors(
@@ -124,15 +148,12 @@ def _heading_factors(
     `group` is V over the group speed of the waves.
     """
     _, breadth, draught, _, block, _, _, _ = hull
-    full = 0.87 / block
-    slim = 1.0 / np.log(breadth / draught)
-    ahead = np.maximum(np.cos(angle), 0.0)
-    first = full ** ((1.0 + froude) * ahead) * (1.0 + 2.0 * ahead) / 3.0 * slim
-    second = _speed_factor(froude)
+    full, slim = 0.87 / block, 1.0 / np.log(breadth / draught)
+    first, second = _ahead_factors(angle, froude, hull)
     overtakes = group > 1.0
     relative = froude * (1.0 - 1.0 / np.where(overtakes, group, 1.0))
     power = np.where(overtakes & (relative >= 0.12), 1.0 + relative, 1.0)
-    behind_first = full**power * slim
+    behind_first = np.exp(power * np.log(full)) * slim
     behind_second = np.where(overtakes, _speed_factor(relative), 0.0072 * (2.0 * group - 1.0))
     part = np.clip(2.0 * angle / np.pi - 1.0, 0.0, 1.0)
     mixed = (first + part * (behind_first - first)) * (second + part * (behind_second - second))
@@ -233,7 +254,9 @@ def _spectral_mean(
     reduced = nodes(0.3, 4.0, step=STEP[spectrum])
     omega = reduced / _frequency_scale(angle, fn, ship, gravity)
     energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
-    factors = _heading_factors(angle, fn, 2.0 * speed * omega / gravity, ship)
+    rows = np.broadcast_shapes(*(np.shape(c) for c in (*conditions,)))[0]
+    group = np.broadcast_to(2.0 * speed * omega / gravity, (rows, reduced.size))
+    factors = _factors_by_row(angle, fn, group, ship)
     motion = np.sum(energy * factors * _motion_shape(reduced, ship), axis=1, keepdims=True)
     size = 3859.2 * breadth / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
     above = nodes(1.0, 60.0, step=REFLECTION_STEP[spectrum])
