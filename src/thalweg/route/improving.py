@@ -18,6 +18,7 @@ from thalweg.route.quick import penalty_factors
 from thalweg.route.referee import evaluate
 from thalweg.route.route import Route
 from thalweg.route.smooth import smooth
+from thalweg.route.thinning import thinned
 from thalweg.route.track import Track
 from thalweg.sea.names import CHANNEL_VARIABLES
 
@@ -106,7 +107,9 @@ def better_route(
             wished = track if wished is None else wished
     if best is scored and wished is not None:
         best = blended(scored, wished, score)
-    return shorten_waits(best, score)
+    best = shorten_waits(best, score)
+    most = _rank(scored, objective, chart)[1] if scored.feasible else math.inf
+    return thinned(best, score, lambda item: _rank(item, objective, chart)[1], most=most)
 
 
 def freeze_around(

@@ -1,0 +1,89 @@
+"""Thinning: waypoints that make no difference are left out, by the referee's word."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import MEAN_RADIUS, FloatArray
+from thalweg.route.route import Route
+from thalweg.route.track import Track
+
+_FEW = 16  # waypoints that nobody minds
+#: How far the route may move aside, as shares of its length, widest first.
+_ASIDE = (1e-3, 2e-4, 4e-5, 1e-5, 2e-6)
+_LOSS = 6e-5  # share by which the thinned route may cost more
+
+
+def thinned(
+    route: Route, score: Callable[[Track], Route], cost: Callable[[Route], float], *, most: float
+) -> Route:
+    """Return the route with as few waypoints as it takes.
+
+    Parameters
+    ----------
+    route : Route
+        As the referee found it.
+    score : callable
+        The referee.
+    cost : callable
+        What is made least, of a scored route.
+    most : float
+        What the thinned route may cost at most, whatever the given one costs.
+
+    Returns
+    -------
+    Route
+        The given one, or one through some of its waypoints that keeps every limit and costs at
+        most 6e-5 more. Waypoints where the ship waits or changes its setting stay.
+    """
+    track = route.track
+    if len(track.lat) <= _FEW or not route.feasible:
+        return route
+    allowed = min(most, cost(route) * (1.0 + _LOSS))
+    length = float(route.legs["length"].sum())
+    for share in _ASIDE:
+        keep = _outline(track, share * length)
+        if keep.all():
+            continue
+        fewer = score(_kept(track, keep))
+        if fewer.feasible and cost(fewer) <= allowed:
+            return fewer
+    return route
+
+
+def _kept(track: Track, keep: NDArray[np.bool_]) -> Track:
+    return Track(
+        track.lat[keep], track.lon[keep], track.depart, track.wait[keep], track.setting[keep[:-1]]
+    )
+
+
+def _outline(track: Track, aside: float) -> NDArray[np.bool_]:
+    """Return which waypoints to keep so that none lies farther [m] aside (Douglas-Peucker)."""
+    points = _vectors(track)
+    keep = np.zeros(len(points), bool)
+    keep[[0, -1]] = True
+    keep[np.flatnonzero(track.wait)] = True
+    keep[1:-1] |= np.diff(track.setting) != 0
+    fixed = np.flatnonzero(keep)
+    spans = list(itertools.pairwise(fixed))
+    while spans:
+        a, b = spans.pop()
+        if b - a < 2:
+            continue
+        normal = np.cross(points[a], points[b])
+        size = float(np.linalg.norm(normal))
+        away = np.abs(points[a + 1 : b] @ normal) / size if size > 0.0 else np.ones(b - a - 1)
+        k = int(np.argmax(away))
+        if away[k] * MEAN_RADIUS > aside:
+            keep[a + 1 + k] = True
+            spans += [(a, a + 1 + k), (a + 1 + k, b)]
+    return keep
+
+
+def _vectors(track: Track) -> FloatArray:
+    lat, lon = np.radians(track.lat), np.radians(track.lon)
+    return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=1)
