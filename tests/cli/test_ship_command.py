@@ -167,8 +167,16 @@ def test_speeds_a_ship_cannot_show_are_left_out_and_named(capsys):
 
 def test_weather_a_ship_does_not_feel_is_said(capsys):
     sheet = json.loads(_run(capsys, "vox-olympia", "--hs", 3, "--wind", 10, "--json"))
-    assert [text.split(" given")[0] for text in sheet["warnings"]] == ["waves", "wind"]
+    assert [text.split(" given")[0] for text in sheet["warnings"]] == ["waves are", "the wind is"]
     assert json.loads(_run(capsys, "kvlcc2", "--hs", 3, "--wind", 10, "--json"))["warnings"] == []
+
+
+def test_weather_beyond_the_limits_is_said(capsys):
+    sheet = json.loads(_run(capsys, "kvlcc2", "--hs", 9, "--wind", 30, "--json"))
+    assert [text.split(" are")[0] for text in sheet["warnings"]] == [
+        "waves of 9 m",
+        "wind of 30 m/s",
+    ]
 
 
 def test_squat_and_the_water_under_the_keel(capsys, ship_file):

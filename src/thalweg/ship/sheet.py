@@ -75,7 +75,7 @@ def performance_sheet(
         "load_factor": ship.loading.load_factor,
         "weather": {name: _number(value) for name, value in (weather or {}).items()},
         "conditions": rows,
-        "warnings": [*left_out, *_unfelt(ship, weather or {})],
+        "warnings": [*left_out, *_unfelt(ship, weather or {}), *_beyond(ship, weather or {})],
         "settings": _settings(ship, conditions),
         "estimated": [{"key": e.key, "value": e.value, "method": e.method} for e in ship.estimated],
         "sources": list(ship.data.get("sources", ())),
@@ -117,9 +117,9 @@ def _orderable(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
 
 #: what the weather must be called, and the conditions a ship reads that feel it
 _FELT = {
-    "wave_height": ("waves", {"wave_height"}),
-    "wind_speed": ("wind", {"wind_speed"}),
-    "depth": ("the depth of the water", {"depth"}),
+    "wave_height": ("waves are", {"wave_height"}),
+    "wind_speed": ("the wind is", {"wind_speed"}),
+    "depth": ("the depth of the water is", {"depth"}),
 }
 
 
@@ -129,6 +129,19 @@ def _unfelt(ship: Ship, weather: Mapping[str, float]) -> list[str]:
         f"{word} given, but this ship's models leave its speed and power as they are"
         for name, (word, read) in _FELT.items()
         if weather.get(name, 0.0) > 0.0 and np.isfinite(weather[name]) and not ship.reads & read
+    ]
+
+
+def _beyond(ship: Ship, weather: Mapping[str, float]) -> list[str]:
+    """Warn of weather beyond the ship's limits, into which no plan takes it."""
+    limits = {
+        "wave_height": ("waves of", "m", ship.limits.wave_height),
+        "wind_speed": ("wind of", "m/s", ship.limits.wind_speed),
+    }
+    return [
+        f"{word} {weather[name]:g} {unit} are beyond the ship's limit of {limit:.4g} {unit}"
+        for name, (word, unit, limit) in limits.items()
+        if weather.get(name, 0.0) > limit
     ]
 
 

@@ -320,9 +320,10 @@ def solve_advance(
         step = value / np.where(slope < 0.0, slope, -1.0)
         new = ratio - step
         new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
-        if not np.nanmax(np.abs(new - ratio), initial=0.0) > 1e-14:
-            break
+        moved = np.nanmax(np.abs(new - ratio), initial=0.0)
         ratio = new
+        if not moved > 1e-11:  # Newton's next step would be its square
+            break
     known = (force >= 0.0) & (flow >= 0.0)
     return np.where(known, np.where(flow == 0.0, 0.0, ratio), np.nan)
 
