@@ -30,3 +30,17 @@ def test_two_places_on_the_way(objective):
         assert away.min() < 1e-9
     assert best.distance_nm == pytest.approx(35.43 + 71.03 + 35.44, abs=0.4)
     assert np.all(np.diff(best.samples["time"]) >= 0)
+
+
+def test_a_penalty_zone_is_sailed_round_when_that_costs_less():
+    square = [[2.9, 51.4], [3.3, 51.4], [3.3, 52.4], [2.9, 52.4], [2.9, 51.4]]
+    zone = {
+        "type": "Feature",
+        "properties": {"kind": "penalty", "factor": 20.0, "name": "slow water"},
+        "geometry": {"type": "Polygon", "coordinates": [square]},
+    }
+    chart = Chart.open_water(50.0, 54.0, 1.0, 5.0).with_zones(zone)
+    voyage = Voyage(start=(52.0, 2.5), goal=(52.0, 3.7), depart="2026-01-01")
+    best = plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart).best
+    inside = (best.samples["lon"] > 2.91) & (best.samples["lon"] < 3.29)
+    assert best.samples["lat"][inside].min() > 52.39

@@ -21,6 +21,7 @@ from thalweg.planning.networks import NetworkChoice, build_network
 from thalweg.planning.refusal import no_route
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, better_route, evaluate
+from thalweg.route.improving import rank
 from thalweg.sea import Sea, StationFields
 from thalweg.search import Bound, SearchResult, best_departure, earliest_arrival, lower_bound
 from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
@@ -191,8 +192,8 @@ def _other_way(
     lat, lon = network.station_lat[bound.path], network.station_lon[bound.path]
     settings = np.full(len(lat) - 1, task.setting)
     other = _refined(task, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
-    better = other.feasible and not (route.feasible and value <= _value(task, other))
-    return other if better else route
+    routes = (route, other)  # penalty zones count here as they did in the search
+    return min(routes, key=lambda item: rank(item, task.voyage.objective, task.chart))
 
 
 def _value(task: Task, route: Route) -> float:

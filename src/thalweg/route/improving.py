@@ -100,7 +100,7 @@ def better_route(
             if objective == "distance" or not _touches_rim(track, fields):
                 break
         route = shorten_waits(score(track), score) if track != scored.track else scored
-        best = min(best, route, key=lambda item: _rank(item, objective, chart))
+        best = min(best, route, key=lambda item: rank(item, objective, chart))
         if route.feasible:
             break
         if best is scored and scored.feasible and math.isfinite(route.arrive):
@@ -108,8 +108,8 @@ def better_route(
     if best is scored and wished is not None:
         best = blended(scored, wished, score)
     best = shorten_waits(best, score)
-    most = _rank(scored, objective, chart)[1] if scored.feasible else math.inf
-    return thinned(best, score, lambda item: _rank(item, objective, chart)[1], most=most)
+    most = rank(scored, objective, chart)[1] if scored.feasible else math.inf
+    return thinned(best, score, lambda item: rank(item, objective, chart)[1], most=most)
 
 
 def freeze_around(
@@ -205,7 +205,7 @@ def _with_wait(track: Track, index: int, change: float) -> Track:
     return track.replaced(wait=wait)
 
 
-def _rank(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
+def rank(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
     """Return what routes are compared by: limits kept first, then the objective, then time."""
     if not math.isfinite(route.arrive):
         return True, math.inf, math.inf

@@ -157,7 +157,9 @@ class Sailor:
         if not self.by_length:
             with np.errstate(invalid="ignore"):
                 spent = arrive[:, 1:] - leave[:, :-1]
-        return np.where(np.isfinite(cost), ((factor - 1.0) * spent).sum(axis=1), 0.0)
+        spent = np.where(np.isfinite(cost)[:, None], spent, 0.0)
+        added: FloatArray = ((factor - 1.0) * spent).sum(axis=1)
+        return added
 
     def look(
         self, lat: FloatArray, lon: FloatArray
