@@ -204,3 +204,15 @@ def test_network_unknown_or_absent():
         plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, network="latice")
     with pytest.raises(InputError, match="no mesh"):
         plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, network="mesh")
+
+
+def test_a_wind_speed_without_direction_serves_a_ship_that_looks_at_nothing_else():
+    sea = Sea.from_functions({"wind_speed": lambda t, lat, lon: 10.0 + 0.0 * lat})
+    ship = Ship.from_speed_function(lambda c: 6.0 - 0.1 * c.wind_speed, draught_m=5.0)
+    best = ask(ship=ship, sea=sea).best
+    assert best.distance_nm * 1852.0 / (best.time_h * 3600.0) == pytest.approx(5.0, rel=1e-3)
+    angled = Ship.from_speed_function(
+        lambda c: 6.0 - 0.1 * c.wind_speed * np.cos(c.wind_angle), draught_m=5.0
+    )
+    with pytest.raises(MissingVariableError, match="eastward_wind"):
+        ask(ship=angled, sea=sea)

@@ -24,7 +24,7 @@ from thalweg.planning.networks import Builder, NetworkChoice
 from thalweg.planning.passage import Passage, Task, make_passage, table_of
 from thalweg.planning.plan import Plan, Proof, Surroundings, in_unit
 from thalweg.planning.voyage import Voyage
-from thalweg.route import Route
+from thalweg.route import Route, with_wind_speed
 from thalweg.route import join as join_routes
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -82,6 +82,7 @@ def plan(
     """
     chart = Chart.gshhg("i") if chart is None else chart
     check_kinds(voyage, ship, sea, chart)
+    sea = with_wind_speed(ship, sea)
     choice = NetworkChoice(network, resolution)
     ends = _ends(voyage, chart)
     needs = find_needs(voyage, ship=ship, sea=sea, chart=chart)

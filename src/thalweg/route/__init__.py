@@ -7,6 +7,7 @@ from thalweg.route.referee import evaluate
 from thalweg.route.route import Route, Violation
 from thalweg.route.smooth import smooth
 from thalweg.route.track import Track
+from thalweg.route.wind import with_wind_speed
 
 __all__ = [
     "Route",
@@ -18,6 +19,7 @@ __all__ = [
     "read_track",
     "shorten_waits",
     "smooth",
+    "with_wind_speed",
     "write_csv",
     "write_geojson",
     "write_gpx",

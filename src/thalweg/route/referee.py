@@ -22,6 +22,7 @@ from thalweg.route.route import Route
 from thalweg.route.sailing import sail, spacings
 from thalweg.route.track import Track
 from thalweg.route.verdict import report
+from thalweg.route.wind import with_wind_speed
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -103,7 +104,7 @@ def evaluate(
     _check_given(ship, sea, min_ukc)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
     ship, track = _order(ship, as_track(route, depart), speed_kn)
-    world = open_world(ship, sea, chart)
+    world = open_world(ship, with_wind_speed(ship, sea), chart)
     step = _default_step(world, track) if step is None else _checked_step(step)
     coarse = sail(world, track, step, LEAST_PIECES, None)
     fine = sail(world, track, 0.5 * step, 2 * LEAST_PIECES, coarse)
