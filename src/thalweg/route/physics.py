@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 
 CURRENTS = (EASTWARD_CURRENT, NORTHWARD_CURRENT)
 _TURNS = 60  # corrections of the heading at most
-_SPEED_TOLERANCE = 1e-11  # relative change of speed that ends them
+_SPEED_TOLERANCE = 1e-11  # relative change of speed that ends them ...
+_SPEED_NOISE = 1e-5  # ... or one below this that shrinks no more: ships that solve for their speed
 
 
 @dataclass(frozen=True)
@@ -216,6 +217,7 @@ def _triangle(
     fixed = not ship.reads & HEADING_DEPENDENT or not np.any(across)
     drift = np.zeros_like(across) if guess is None or fixed else _drift(across, guess)
     speed = np.full_like(across, math.nan)
+    change = math.inf
     for _ in range(_TURNS):
         before = speed
         here = conditions_at(
@@ -223,10 +225,20 @@ def _triangle(
         )
         speed = np.broadcast_to(ship.speed_through_water(here, points.setting), across.shape)
         drift = _drift(across, speed)
-        settled = np.abs(speed - before) <= _SPEED_TOLERANCE * np.abs(speed)
-        if fixed or np.all(settled | np.isnan(speed)):
+        if fixed:
+            break
+        last_change, change = change, _largest_change(before, speed)
+        if change <= _SPEED_TOLERANCE or (change < _SPEED_NOISE and change > 0.3 * last_change):
             break
     return speed, drift
+
+
+def _largest_change(before: FloatArray, speed: FloatArray) -> float:
+    """Return the largest relative change of the speeds that are known; inf at first."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        change = np.abs(speed - before) / np.abs(speed)
+    change = np.where(speed == before, 0.0, change)[~np.isnan(speed)]
+    return math.inf if np.isnan(change).any() else float(change.max(initial=0.0))
 
 
 def _drift(across: FloatArray, speed: FloatArray) -> FloatArray:
