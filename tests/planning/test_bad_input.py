@@ -216,3 +216,12 @@ def test_a_wind_speed_without_direction_serves_a_ship_that_looks_at_nothing_else
     )
     with pytest.raises(MissingVariableError, match="eastward_wind"):
         ask(ship=angled, sea=sea)
+
+
+def test_the_clearance_of_the_ship_file_holds_unless_the_voyage_says_otherwise():
+    ship = Ship.load("hopper-dredger").with_load_factor(1.0)  # 6.5 m, and 1 m of clearance
+    shallow = WATER.with_depth(lambda lat, lon: 7.0 + 0.0 * lat)
+    with pytest.raises(NoRouteError) as caught:
+        ask(ship=ship, chart=shallow)
+    assert caught.value.reasons["under-keel clearance"] > 0
+    assert ask(ship=ship, chart=shallow, min_ukc_m=0.2).best.min_ukc_m == pytest.approx(0.5)

@@ -93,7 +93,14 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
     if not known:
         notes.append("No depth in the data: under-keel clearance was not checked.")
         return -math.inf
-    return float(ship.draught) + (voyage.min_ukc_m or 0.0)
+    return float(ship.draught) + least_clearance(voyage, ship)
+
+
+def least_clearance(voyage: Voyage, ship: Ship) -> float:
+    """Return the least under-keel clearance [m]: the voyage's, else the ship file's own limit."""
+    if voyage.min_ukc_m is not None:
+        return voyage.min_ukc_m
+    return float(ship.data.get("limits", {}).get("min_under_keel_clearance_m", 0.0))
 
 
 def check_period(voyage: Voyage, sea: Sea, needs: Needs) -> float:

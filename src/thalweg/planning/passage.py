@@ -16,7 +16,7 @@ from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.planning import warming
 from thalweg.planning.ends import End
-from thalweg.planning.needs import Needs
+from thalweg.planning.needs import Needs, least_clearance
 from thalweg.planning.networks import NetworkChoice, build_network
 from thalweg.planning.refusal import no_route
 from thalweg.planning.voyage import Voyage
@@ -63,7 +63,7 @@ class Task:
     @property
     def min_ukc(self) -> float:
         """The least under-keel clearance asked [m]."""
-        return self.voyage.min_ukc_m or 0.0
+        return least_clearance(self.voyage, self.ship)
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,8 @@ class Voyage:
     speed_kn : float, optional
         Ordered speed through water in calm water [kn]; the ship's highest when not given.
     min_ukc_m : float, optional
-        Least under-keel clearance [m]; zero when not given. Where the chart or the sea tells any
+        Least under-keel clearance [m]; when not given, the limit of the ship file, else zero. Where
+        the chart or the sea tells any
         depth, water of unknown depth is forbidden; where nothing tells depth, a clearance cannot
         be asked, and the plan notes that none was checked.
     seed : int
