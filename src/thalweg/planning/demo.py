@@ -17,7 +17,8 @@ def demo_voyage() -> Voyage:
     """Return the voyage of ``make demo``.
 
     The shortest way meets Danielle (1998) south-west of Ireland, where the storm, fresh from its
-    turn to the north-east, overtakes the ship.
+    turn to the north-east, overtakes the ship. The departure was chosen for that: most others
+    miss the storm, and the routes with and without the weather are then the same.
     """
     return Voyage(start="Halifax", goal="49.7N 6.5W", depart="1998-08-31T12:00Z")
 

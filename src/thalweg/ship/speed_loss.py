@@ -265,6 +265,7 @@ def _between_sectors(by_sector: FloatArray, angle: FloatArray, *, classes: bool)
         sector = np.searchsorted(_EDGES, angle, side="left")
         return np.take_along_axis(by_sector, np.minimum(sector, 3)[None], axis=0)[0]
     place = np.interp(angle, MIDDLES, np.arange(4.0))
+    # only the index of an unknown angle is made up: its value stays NaN through ``place`` below
     cell = np.minimum(np.nan_to_num(place).astype(np.intp), 2)
     low = np.take_along_axis(by_sector, cell[None], axis=0)[0]
     high = np.take_along_axis(by_sector, cell[None] + 1, axis=0)[0]
