@@ -144,7 +144,8 @@ def _make_passages(task: Task, ends: list[End]) -> list[Passage]:
 
 def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
     voyage = task.voyage
-    route = passages[0].route if len(passages) == 1 else _joined(task, passages)
+    routes = [passage.route for passage in passages]
+    route = routes[0] if len(routes) == 1 else join_routes(routes)
     refused: Counter[str] = Counter()
     for passage in passages:
         refused.update(passage.network.meta.rejected)
@@ -199,10 +200,6 @@ def _ice_notes(route: Route) -> list[str]:
         f"The route comes as far as {place} and sea ice is not considered: give a via point or a "
         "no-go zone if that water is closed."
     ]
-
-
-def _joined(task: Task, passages: list[Passage]) -> Route:
-    return join_routes([passage.route for passage in passages])
 
 
 def _surroundings(task: Task, passages: list[Passage]) -> Surroundings:

@@ -33,7 +33,8 @@ class Voyage:
     depart : str, datetime or float, optional
         Time of departure, ISO 8601 in UTC (or seconds since 1970). Not needed with a window.
     depart_window : pair of times, optional
-        Earliest and latest departure; the one with the shortest passage is chosen.
+        Earliest and latest departure; the one with the shortest passage is chosen (with via points
+        the shortest passage to the first of them).
     objective : {"time", "distance"}
         What to make least.
     via : sequence of places
@@ -46,9 +47,8 @@ class Voyage:
         Ordered speed through water in calm water [kn]; the ship's highest when not given.
     min_ukc_m : float, optional
         Least under-keel clearance [m]; when not given, the limit of the ship file, else zero. Where
-        the chart or the sea tells any
-        depth, water of unknown depth is forbidden; where nothing tells depth, a clearance cannot
-        be asked, and the plan notes that none was checked.
+        the chart or the sea tells any depth, water of unknown depth is forbidden; where nothing
+        tells depth, a clearance cannot be asked, and the plan notes that none was checked.
     seed : int
         Seed of everything random.
 
