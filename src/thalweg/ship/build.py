@@ -21,6 +21,7 @@ from thalweg.ship.squat_part import build_squat
 
 FloatArray = NDArray[np.float64]
 Data = Mapping[str, Any]
+HOTEL_SFOC: Final = 195.0  #: of auxiliary engines, when the ship file does not tell [g/kWh]
 
 
 def simple_data(*, name: str, speeds_kn: list[float], **sections: Data) -> dict[str, Any]:
@@ -46,6 +47,24 @@ def build_limits(data: Data) -> ShipLimits:
     factor = KNOT if "max_wind_speed_kn" in given else 1.0
     waves = given.get("max_significant_wave_height_m", math.inf)
     return ShipLimits(wave_height=waves, wind_speed=wind * factor)
+
+
+def hotel_fuel(data: Data) -> float:
+    """Fuel rate of the hotel load [kg/s]; 0 when the ship file states none."""
+    engine = data.get("engine", {})
+    power_kw = float(engine.get("hotel_load_kw", 0.0))
+    return power_kw * float(engine.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC)) / 3.6e6
+
+
+def fuel_is_from_power(data: Data) -> bool:
+    """Whether a ship with known speeds gives its fuel by power and consumption.
+
+    Then the hotel load comes on top; fuel that is given itself is the whole ship's.
+    """
+    known = "fuel_t_per_day" in data.get("table", {}) or "reference_t_per_day" in data.get(
+        "fuel", {}
+    )
+    return "sfoc_g_per_kwh" in data.get("engine", {}) and not known
 
 
 def build_loading(data: Data, hull: Hull) -> Loading:
@@ -120,7 +139,8 @@ def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
     fuel, power = _LAWS[law](data, full)
     check_rising(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
     loss, squat = build_loss(data, hull, loading), build_squat(data, hull, loading)
-    return NominalModel(full, empty, fuel, power, law, loss, squat)
+    hotel = hotel_fuel(data) if fuel_is_from_power(data) else 0.0
+    return NominalModel(full, empty, fuel, power, law, loss, squat, hotel)
 
 
 def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
@@ -224,10 +244,11 @@ def _cubic(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
         )
     power_kw = engine.get("reference_power_kw", math.nan)
     burnt = fuel.get("reference_t_per_day", math.nan) * TONNE / DAY
-    if math.isnan(burnt) and "sfoc_g_per_kwh" in engine:
-        burnt = power_kw * engine["sfoc_g_per_kwh"] / 3.6e6
+    hotel = 0.0
+    if fuel_is_from_power(data):
+        burnt, hotel = power_kw * engine["sfoc_g_per_kwh"] / 3.6e6, hotel_fuel(data)
     return (
-        cubic_law(speeds, reference_speed=reference, reference_value=burnt),
+        hotel + cubic_law(speeds, reference_speed=reference, reference_value=burnt),
         cubic_law(speeds, reference_speed=reference, reference_value=power_kw * 1000.0),
     )
 
@@ -254,8 +275,8 @@ def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     blank = [math.nan] * len(order)
     power = np.array(table.get("power_kw", blank), float)[order] * 1000.0
     fuel = np.array(table.get("fuel_t_per_day", blank), float)[order] * TONNE / DAY
-    if np.isnan(fuel).all() and "sfoc_g_per_kwh" in data.get("engine", {}):
-        fuel = power * data["engine"]["sfoc_g_per_kwh"] / 3.6e9
+    if fuel_is_from_power(data):
+        fuel = power * data["engine"]["sfoc_g_per_kwh"] / 3.6e9 + hotel_fuel(data)
     return fuel, power
 
 

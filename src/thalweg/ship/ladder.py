@@ -44,14 +44,21 @@ class WaveTable:
 
         Every second speed is the mean of its neighbours.
         """
-        timed = "wave_period" in waves.reads
-        periods = np.geomspace(SHORTEST_PERIOD, LONGEST_PERIOD, 48 if timed else 2)
-        angles = _angles(waves, float(speeds[len(speeds) // 2]))
+        periods, angles = _grid(waves, float(speeds[len(speeds) // 2]))
         v, t, a = np.meshgrid(speeds[::2], periods, angles, indexing="ij", sparse=True)
         coarse = waves.force(v, np.ones(()), t, a)
         values = np.empty((len(speeds), *coarse.shape[1:]))
         values[::2], values[1::2] = coarse, 0.5 * (coarse[:-1] + coarse[1:])
         return cls(speeds, periods, angles, values)
+
+    @classmethod
+    def at_all(cls, waves: Waves, speeds: FloatArray) -> WaveTable:
+        """Tabulate the force of a wave method at any speeds [m/s]."""
+        periods, angles = _grid(waves, float(speeds[len(speeds) // 2]))
+        v, t, a = np.meshgrid(speeds, periods, angles, indexing="ij", sparse=True)
+        shape = np.broadcast_shapes(v.shape, t.shape, a.shape)
+        values = np.broadcast_to(waves.force(v, np.ones(()), t, a), shape)
+        return cls(speeds, periods, angles, np.array(values))
 
     def at_speed(self, rung: int, period: FloatArray, angle: FloatArray) -> FloatArray:
         """Return the interpolated force per square of wave height at one of the speeds [N/m2]."""
@@ -61,6 +68,13 @@ class WaveTable:
         near = v[j, k] + h * (v[j, k + 1] - v[j, k])
         far = v[j + 1, k] + h * (v[j + 1, k + 1] - v[j + 1, k])
         return near + g * (far - near)
+
+
+def _grid(waves: Waves, speed: float) -> tuple[FloatArray, FloatArray]:
+    """Periods [s] and angles [rad] between which the force is interpolated."""
+    timed = "wave_period" in waves.reads
+    periods = np.geomspace(SHORTEST_PERIOD, LONGEST_PERIOD, 48 if timed else 2)
+    return periods, _angles(waves, speed)
 
 
 def _angles(waves: Waves, speed: float) -> FloatArray:
@@ -124,7 +138,8 @@ class Ladder:
         able = self.able.astype(np.float32)
         alive = np.ones(size, bool)
         for rung, speed in enumerate(self.speeds):
-            asked = np.asarray(self._asked(rung, speed, where), np.float32)[..., None]
+            force = resistance_on_grid(self.balance, self.waves, rung, float(speed), where)
+            asked = np.asarray(force, np.float32)[..., None]
             np.subtract(asked, able[rung], out=lack)
             short = lack < 0.0
             if rung > 0:
@@ -139,18 +154,25 @@ class Ladder:
             return np.minimum(np.where(alive, np.inf, found), self.calm)
         return np.minimum(found, FASTEST * self.calm)
 
-    def _asked(self, rung: int, speed: float, where: Mapping[str, FloatArray]) -> FloatArray:
-        """Resistance at a rung [N]."""
-        own = np.asarray(speed)
-        total = self.balance.calm.total(own, np.asarray(where.get("depth", np.inf), float))
-        if self.waves is not None and "wave_height" in where:
-            period = np.asarray(where.get("wave_period", 10.0), float)
-            force = self.waves.at_speed(rung, period, np.asarray(where["wave_angle"], float))
-            total = total + np.asarray(where["wave_height"], float) ** 2 * force
-        if self.balance.wind is not None:
-            blow, angle = where.get("wind_speed", 0.0), where.get("wind_angle", 0.0)
-            total = total + self.balance.wind.force(own, np.asarray(blow), np.asarray(angle))
-        return total
+
+def resistance_on_grid(
+    balance: Balance,
+    waves: WaveTable | None,
+    rung: int,
+    speed: float,
+    where: Mapping[str, FloatArray],
+) -> FloatArray:
+    """Resistance [N] at a speed [m/s], the ``rung``-th of the wave table, in conditions by name."""
+    own = np.asarray(speed)
+    total = balance.calm.total(own, np.asarray(where.get("depth", np.inf), float))
+    if waves is not None and "wave_height" in where:
+        period = np.asarray(where.get("wave_period", 10.0), float)
+        force = waves.at_speed(rung, period, np.asarray(where["wave_angle"], float))
+        total = total + np.asarray(where["wave_height"], float) ** 2 * force
+    if balance.wind is not None:
+        blow, angle = where.get("wind_speed", 0.0), where.get("wind_angle", 0.0)
+        total = total + balance.wind.force(own, np.asarray(blow), np.asarray(angle))
+    return np.asarray(total)
 
 
 def _climb(

@@ -88,6 +88,8 @@ class NominalModel:
         Involuntary speed loss.
     squat : Squat, optional
         Limits the speed in shallow water; power and fuel stay those of the setting.
+    hotel : float
+        Part of the fuel rates that does not follow the speed [kg/s].
     """
 
     speeds_full: FloatArray
@@ -97,6 +99,7 @@ class NominalModel:
     law: str = "none"
     loss: KwonLoss | None = None
     squat: Squat | None = None
+    hotel: float = 0.0
 
     @property
     def reads(self) -> frozenset[str]:
@@ -168,6 +171,12 @@ class NominalModel:
         part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
         return (part,), error
 
+    def tabulate_fuel(
+        self, load_factor: float, tolerance: float
+    ) -> tuple[tuple[TablePart, ...], TableError]:
+        """One constant: the setting's own fuel rate, whatever the weather."""
+        return (constant_part(self.fuel_rates),), TableError(0.0, 0.0, 0.0, 0)
+
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where the speed loss is used outside its range."""
         return [] if self.loss is None else self.loss.notes(conditions)
@@ -197,7 +206,7 @@ class NominalModel:
             speeds_empty=np.interp(speeds, own, self.speeds_empty)
             if self.law == "table"
             else full * ratio,
-            fuel_rates=self._follow(self.fuel_rates, full),
+            fuel_rates=self.hotel + self._follow(self.fuel_rates - self.hotel, full),
             powers=self._follow(self.powers, full),
         )
 

@@ -157,7 +157,12 @@ class ResistanceModel:
     @property
     def identity(self) -> Mapping[str, object]:
         """What tells this model from others."""
-        return {"kind": "resistance", "orders": repr(self.orders), "facts": self.facts}
+        return {
+            "kind": "resistance",
+            "orders": repr(self.orders),
+            "plant": repr(self.plant),
+            "facts": self.facts,
+        }
 
     @property
     def estimated(self) -> tuple[Estimate, ...]:
@@ -195,7 +200,7 @@ class ResistanceModel:
     def power(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Brake power [W]."""
         index = setting_index(setting, len(self.orders.values))
-        return self._by_loading(conditions, index, self._power)
+        return self._by_loading(conditions, index, self.power_of)
 
     def fuel_rate(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Fuel rate [kg/s], hotel load included."""
@@ -238,15 +243,34 @@ class ResistanceModel:
         parts, error, _ = self._table(load_factor, tolerance)
         return parts, error
 
-    def _table(self, load_factor: float, tolerance: float) -> Kept:
-        """The table and the greatest speeds, from this object, from disk or built."""
-        key = ("table", float(load_factor), float(tolerance))
-        if key not in self._kept:
-            from thalweg.ship.tabulate_sum import tabulate_balance
+    def tabulate_fuel(
+        self, load_factor: float, tolerance: float
+    ) -> tuple[tuple[TablePart, ...], TableError]:
+        """Parts whose sum is the fuel rate [kg/s]; see `thalweg.ship.tabulate_fuel`."""
+        from thalweg.ship.tabulate_fuel import tabulate_fuel_of_balance
 
+        parts, error, _ = self._stored("fuel", load_factor, tolerance, tabulate_fuel_of_balance)
+        return parts, error
+
+    def _table(self, load_factor: float, tolerance: float) -> Kept:
+        """The table of speeds and the greatest speeds."""
+        from thalweg.ship.tabulate_sum import tabulate_balance
+
+        return self._stored("table", load_factor, tolerance, tabulate_balance)
+
+    def _stored(
+        self,
+        what: str,
+        load_factor: float,
+        tolerance: float,
+        build: Callable[[ResistanceModel, float, float], Kept],
+    ) -> Kept:
+        """A table from this object, from disk or built."""
+        key = (what, float(load_factor), float(tolerance))
+        if key not in self._kept:
             facts = [self.identity, repr(self.limits), key]
             self._kept[key] = kept_table(
-                facts, lambda: tabulate_balance(self, float(load_factor), tolerance)
+                facts, lambda: build(self, float(load_factor), float(tolerance))
             )
         found: Kept = self._kept[key]
         return found
@@ -306,8 +330,13 @@ class ResistanceModel:
         speed[weak] = balance.speed_at_power(here, limit, calm[weak])
         return speed
 
-    def _power(self, balance: Balance, at: Flat, which: FloatArray, lf: float) -> FloatArray:
-        return balance.brake_power(at, self.speed_of(balance, at, which, lf))
+    def power_of(self, balance: Balance, at: Flat, which: FloatArray, lf: float) -> FloatArray:
+        """Brake power [W] in flat conditions; no more than ordered where weather stops the ship."""
+        power = balance.brake_power(at, self.speed_of(balance, at, which, lf))
+        ordered: FloatArray = np.asarray(self.plant.largest_power)
+        if self.orders.kind == "power":
+            ordered = np.array(self.orders.values)[which.astype(np.intp)]
+        return np.minimum(power, ordered)
 
     def _by_loading(
         self,

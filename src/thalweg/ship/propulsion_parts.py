@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
+from thalweg.ship.build import HOTEL_SFOC
 from thalweg.ship.calm_parts import stern_shape
 from thalweg.ship.hull import Hull
 from thalweg.ship.hull_estimates import estimated_or_error
@@ -268,7 +269,7 @@ class Plant:
     sfoc: float = float("nan")
     curve: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
     hotel_power: float = 0.0
-    hotel_sfoc: float = 195.0
+    hotel_sfoc: float = HOTEL_SFOC
     estimated: tuple[Estimate, ...] = ()
 
     @property
@@ -333,7 +334,7 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
         sfoc=sfoc,
         curve=(tuple(loads), tuple(curve)),
         hotel_power=given.get("hotel_load_kw", 0.0) * 1000.0,
-        hotel_sfoc=given.get("hotel_sfoc_g_per_kwh", 195.0),
+        hotel_sfoc=given.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC),
         estimated=guessed,
     )
 

@@ -49,7 +49,7 @@ _SHARED: Final = {
     "wave_period": (17, 9),
     "depth": (13, 13),
 }  # without and with depth
-_CHECKS: Final = 1500
+CHECKS: Final = 1500  #: random conditions that errors are measured at
 _MARGIN: Final = 1.005
 _LARGEST_ALONE: Final = 8_000_000  #: bytes
 _LARGEST_SHARED: Final = 16_000_000  #: bytes
@@ -85,42 +85,80 @@ def tabulate_balance(model: ResistanceModel, load_factor: float, tolerance: floa
     balance = model.balance(load_factor)
     check_power_rises(model, load_factor)
     ladder = Ladder.of(model, load_factor)
-    ranges = axes_of(balance, model.limits)
-    groups = [[ranges[n] for n in names if n in ranges] for names in _GROUPS]
-    groups = [group for group in groups if group]
+    groups = grouped(axes_of(balance, model.limits))
     calm = model.speeds(load_factor)
-    parts = [constant_part(calm)]
+    if not groups:
+        return (constant_part(calm),), TableError(0.0, 0.0, 0.0, 0), calm
     shift = calm - ladder({"depth": np.asarray(np.inf)})
 
-    def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
-        return ladder(where) + shift
+    def truth(points: Mapping[str, FloatArray]) -> FloatArray:
+        at, which, shape = flattened(points, len(model.orders.values))
+        return model.speed_of(balance, at, which, load_factor).reshape(shape)
 
+    parts, error, points, true = add_up(
+        lambda where: ladder(where) + shift, calm, groups, truth, tolerance
+    )
+    return tuple(parts), error, greatest_speed(parts, true, _total(parts, points))
+
+
+def add_up(
+    values: Tabulated,
+    calm: FloatArray,
+    groups: list[list[Axis]],
+    truth: Tabulated,
+    tolerance: float,
+) -> tuple[list[TablePart], TableError, Mapping[str, FloatArray], FloatArray]:
+    """Tabulate a function as a constant, a part for each group of axes, and parts for several.
+
+    Parameters
+    ----------
+    values : callable
+        The function as it is tabulated, cheap on grids; shape ``(*shape, settings)``.
+    calm : ndarray
+        Its values where weather and depth cost nothing, per setting.
+    groups : list of list of Axis
+        At least one.
+    truth : callable
+        The function itself, which the error is measured against.
+    tolerance : float
+
+    Returns
+    -------
+    parts : list of TablePart
+    error : TableError
+    points, true : mapping, ndarray
+        Where the error was measured, and the true values there.
+    """
+    parts = [constant_part(calm)]
     for group in groups:
         part, _ = tabulate_dense(
-            lambda where: speeds(where) - calm,
+            lambda where: values(where) - calm,
             group,
             tolerance=tolerance / 5,
             largest=_LARGEST_ALONE,
             base=calm,
         )
         parts.append(part)
-    axes = [axis for group in groups for axis in group]
-    if not axes:
-        return tuple(parts), TableError(0.0, 0.0, 0.0, 0), calm
-    points = random_conditions(axes, _CHECKS, 7)
-    truth = _speeds(model, balance, load_factor, points)
-    error = table_error(_total(parts, points), truth)
+    points = random_conditions([axis for group in groups for axis in group], CHECKS, 7)
+    true = truth(points)
+    error = table_error(_total(parts, points), true)
     alone = parts
     for strictness in (0.85, 0.35):
         if error.p99 <= tolerance or len(groups) < 2:
             break
         parts = list(alone)
         for together in _growing(groups):
-            parts.append(_together(speeds, together, parts, strictness * tolerance))
-        error = table_error(_total(parts, points), truth)
+            parts.append(_together(values, together, parts, strictness * tolerance))
+        error = table_error(_total(parts, points), true)
         if sum(part.values.nbytes for part in parts) > _LARGEST_SHARED / 4:
             break
-    return tuple(parts), error, greatest_speed(parts, truth, _total(parts, points))
+    return parts, error, points, true
+
+
+def grouped(axes: Mapping[str, Axis]) -> list[list[Axis]]:
+    """Return the axes of wind, of waves and of depth, as far as there are any."""
+    groups = [[axes[name] for name in names if name in axes] for names in _GROUPS]
+    return [group for group in groups if group]
 
 
 def axes_of(balance: Balance, limits: ShipLimits) -> dict[str, Axis]:
@@ -190,19 +228,18 @@ def _rest(name: str) -> float:
     return {"wave_period": 10.0, "depth": np.inf}.get(name, 0.0)
 
 
-def _speeds(
-    model: ResistanceModel, balance: Balance, load_factor: float, where: Mapping[str, FloatArray]
-) -> FloatArray:
-    """Speeds of all settings, shape ``(*shape, settings)``."""
+def flattened(
+    where: Mapping[str, FloatArray], count: int
+) -> tuple[dict[str, FloatArray], FloatArray, tuple[int, ...]]:
+    """Return flat conditions for every setting, the settings, and the shape of the answer."""
     shape = np.broadcast_shapes(*(np.shape(values) for values in where.values()))
-    count = len(model.orders.values)
     names = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
     at = {
         name: np.repeat(np.broadcast_to(where.get(name, _rest(name)), shape).ravel(), count)
         for name in names
     }
     which = np.tile(np.arange(float(count)), int(np.prod(shape)))
-    return model.speed_of(balance, at, which, load_factor).reshape(*shape, count)
+    return at, which, (*shape, count)
 
 
 def _total(parts: list[TablePart], points: Mapping[str, FloatArray]) -> FloatArray:
@@ -215,7 +252,7 @@ def _together(
     """The part over two groups of axes: what they cost together beyond what each costs alone."""
     deep = any(axis.name == "depth" for axis in axes)
     coarse = [_coarse(axis, deep) for axis in axes]
-    points = random_conditions(coarse, 2 * _CHECKS, 5)
+    points = random_conditions(coarse, 2 * CHECKS, 5)
     truth = speeds(points)
     with_rest = {**_at_rest(parts, points), **points}
 
