@@ -11,7 +11,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.chart import canals as canal_data
 from thalweg.chart import geojson
+from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.depth import Depths, warning_depth
 from thalweg.chart.drawing import coastline_lines, land_polygons
 from thalweg.chart.gshhg import read_land
@@ -26,7 +28,7 @@ from thalweg.chart.zones import Zones
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.kernels.coast import CoastArrays
-from thalweg.kernels.codes import OK
+from thalweg.kernels.codes import LAND, OK
 from thalweg.kernels.cube import IndexArrays
 from thalweg.kernels.shore import shore_distances
 from thalweg.kernels.soundings import DepthArrays
@@ -96,6 +98,7 @@ class Chart:
     area: Area = WORLD
     zones: Zones = NO_ZONES
     depths: Depths = NO_DEPTHS
+    canals: tuple[Canal, ...] = ()
 
     @classmethod
     def gshhg(cls, resolution: str = "i") -> Chart:
@@ -105,7 +108,8 @@ class Chart:
         ----------
         resolution : str
             'c' (crude, 25 km), 'l' (5 km), 'i' (1 km), 'h' (0.2 km) or 'f' (full); h and f need
-            ``pip install "thalweg[hires]"``. Lakes are land; Suez and Panama are closed.
+            ``pip install "thalweg[hires]"``. Lakes are land. Ship canals are closed to legs, but
+            can be passed from end to end (`canals`, `without_canals`).
 
         Raises
         ------
@@ -113,7 +117,8 @@ class Chart:
             If the resolution is unknown or not installed.
         """
         index = gshhg_index(resolution)
-        return cls(Land(f"GSHHG {resolution}", index, lambda: read_land(resolution)))
+        land = Land(f"GSHHG {resolution}", index, lambda: read_land(resolution))
+        return cls(land, canals=CANALS)
 
     @classmethod
     def open_water(
@@ -193,6 +198,25 @@ class Chart:
         """Return this chart cut to a box that no leg may leave [deg]."""
         return replace(self, area=Area(float(south), float(north), float(west), float(east)))
 
+    def without_canals(self, *names: str) -> Chart:
+        """Return this chart with canals closed, by name; "all" closes all of them.
+
+        Raises
+        ------
+        InputError
+            If there is no canal of that name; near matches are named.
+        """
+        return replace(self, canals=canal_data.without(self.canals, names))
+
+    def canal_of_legs(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> NDArray[np.int64]:
+        """Return the index in `canals` of legs [deg] from one end of a canal to the other, or -1.
+
+        The ends of the leg lie within 2 m of those of the canal, in either direction.
+        """
+        return canal_data.of_legs(self.canals, lat1, lon1, lat2, lon2)
+
     @cached_property
     def _coast(self) -> CoastArrays:
         return CoastArrays(self.land.index, self.zones.index, self.area.array())
@@ -211,15 +235,19 @@ class Chart:
         """Return the status code of each geodesic leg [deg] (see `thalweg.kernels.codes`).
 
         OK, LAND, NO_GO (a no-go zone, or it leaves the chart's area) or NO_DATA (a position
-        that is not a number). A leg touching an outline is blocked. Arguments broadcast.
+        that is not a number). A leg touching an outline is blocked, unless it runs from one end of
+        a canal to the other (`canal_of_legs`). Arguments broadcast.
         """
-        return leg_status(self._coast, lat1, lon1, lat2, lon2)
+        status = leg_status(self._coast, lat1, lon1, lat2, lon2)
+        if self.canals and (status == LAND).any():
+            status[(status == LAND) & (self.canal_of_legs(lat1, lon1, lat2, lon2) >= 0)] = OK
+        return status
 
     def legs_blocked(
         self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
     ) -> NDArray[np.bool_]:
         """Return which geodesic legs [deg] touch land or a no-go zone or leave the area."""
-        return np.asarray(leg_status(self._coast, lat1, lon1, lat2, lon2) != OK)
+        return np.asarray(self.leg_status(lat1, lon1, lat2, lon2) != OK)
 
     def shore_distance(
         self, lat: ArrayLike, lon: ArrayLike, *, cap: float = 50_000.0
@@ -315,6 +343,7 @@ class Chart:
         digest = hashlib.sha256(self.land.name.encode())
         for array in (*self.land.index[1:], self.area.array()):
             digest.update(np.ascontiguousarray(array).tobytes())
-        for text in (*self.zones.texts(), *(layer.fingerprint() for layer in self.depths.layers)):
+        layers = (layer.fingerprint() for layer in self.depths.layers)
+        for text in (*self.zones.texts(), *layers, *map(repr, self.canals)):
             digest.update(text.encode())
         return digest.hexdigest()[:16]

@@ -32,6 +32,8 @@ class NetworkArrays(NamedTuple):
         An arrival belongs to the state if ``opens <= arrival < closes`` [s].
     until : float64[M]
         A ship may wait until then [s].
+    fixed_time : float64[E]
+        Time of edges that do not depend on the sea [s]; NaN for those that are sailed.
     """
 
     indptr: np.ndarray
@@ -50,6 +52,7 @@ class NetworkArrays(NamedTuple):
     opens: np.ndarray
     closes: np.ndarray
     until: np.ndarray
+    fixed_time: np.ndarray
 
 
 class SeaArrays(NamedTuple):
@@ -169,6 +172,25 @@ def sample_between(sea, a, b, weight, k, t, out, spare):
 
 
 @inlined
+def pass_canal(network, edge, t, last_time):
+    """Pass an edge of fixed time, departing at t: return (arrival, status)."""
+    t += network.fixed_time[edge]
+    if t > last_time:
+        return math.inf, OUTSIDE_PERIOD
+    head = network.target[edge]
+    if not network.opens[head] <= t < network.closes[head]:
+        return t, DEPTH
+    return t, OK
+
+
+@inlined
+def least_time(network, edge, slowness):
+    """Return a lower bound of the time of an edge [s], given that of a metre under way [s/m]."""
+    fixed = network.fixed_time[edge]
+    return fixed if fixed == fixed else network.length[edge] * slowness
+
+
+@inlined
 def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least):
     """Sail one edge: return (arrival, status).
 
@@ -201,8 +223,11 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
     The edge is marched over its samples. A piece of length d between two samples takes
     ``d (1/G0 + 1/G1) / 2`` with the speeds over ground G0 at its start and G1 at its end, that
     at the time predicted with G0 (Heun's method: second order in the piece). Any blocked sample
-    blocks the edge.
+    blocks the edge. An edge of fixed time is passed in that time, whatever the sea is.
     """
+    fixed = network.fixed_time[edge]
+    if fixed == fixed:
+        return pass_canal(network, edge, t, sea.times[-1])
     east, north = course_vector(float(network.course[edge]))
     depth = float(network.depth[edge])
     table, setting, limits, needs = ship

@@ -17,6 +17,7 @@ from thalweg.kernels.codes import (
 )
 from thalweg.kernels.edges import (
     interval_of,
+    least_time,
     sail_edge,
     sample_station,
     wait_for_edge,
@@ -103,9 +104,8 @@ def new_workspace(n_nodes):
 
 
 @woven
-def _worth(query, cost, time, length, factor, goal_distance, labels, node):
+def _worth(query, cost, time, length, quickest, factor, goal_distance, labels, node):
     """Return how much waiting plus weighted sailing [s] may at most be; not positive: no use."""
-    quickest = length * query.slowness
     if query.by_distance:
         here = cost + length * factor
         known = labels.cost[node]
@@ -127,7 +127,7 @@ def _sail(network, sea, ship, query, node, edge, k, time, enough, work):
     """Return (departure, arrival, status) of the best use of an edge from a node since a time."""
     factor = 1.0 if query.by_distance else float(network.factor[edge])
     latest = math.inf if query.by_distance else time + enough / factor
-    least, quickest = query.slowness, network.length[edge] * query.slowness
+    least, quickest = query.slowness, least_time(network, edge, query.slowness)
     arrival, status = sail_edge(
         network, sea, ship, edge, k, time, work[0], work[2], work[3], latest, least
     )
@@ -152,7 +152,8 @@ def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, 
         return size
     cost, time = labels.cost[node], labels.time[node]
     length, factor, left = network.length[edge], float(network.factor[edge]), distances[to]
-    enough = _worth(query, cost, time, length, factor, left, labels, to)
+    quickest = least_time(network, edge, query.slowness)
+    enough = _worth(query, cost, time, length, quickest, factor, left, labels, to)
     if enough <= 0.0:
         return size
     memory.counts[SAILED] += 1

@@ -36,6 +36,7 @@ _AROUND = (
     3  # the distance to this nearest node, over this many pieces, is how close links are sampled
 )
 _MOST_LINKS = 400
+_COLUMNS = ("target", "length", "course", "depth", "factor", "price", "fixed_time", "fee")
 
 
 def check_ends(chart: Chart, start: Position, goal: Position) -> tuple[Position, Position]:
@@ -266,10 +267,7 @@ def _merge(old: Network, new: Network) -> Network:
     forward = np.zeros(len(order), bool)
     vias = (both(name) for name in ("via_a", "via_b", "via_w", "via_s"))
     via_ptr, via_a, via_b, via_w, via_s = graph.mirror_vias(order, forward, ptr, *vias)
-    columns: dict[str, Any] = {
-        name: both(name)[order]
-        for name in ("target", "length", "course", "depth", "factor", "price")
-    }
+    columns: dict[str, Any] = {name: both(name)[order] for name in _COLUMNS}
     return replace(
         new, indptr=old.indptr + new.indptr, can_wait=old.can_wait,
         via_ptr=via_ptr, via_a=via_a, via_b=via_b, via_w=via_w, via_s=via_s, **columns,

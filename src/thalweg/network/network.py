@@ -82,6 +82,11 @@ class Network:
         Nodes where a ship may wait.
     meta : NetworkMeta
         What the network is and how it was made.
+    fixed_time : ndarray (E,)
+        Time of edges that take the same time whatever the sea is (canals) [s]; NaN for edges that
+        are sailed. Their ``length`` is that of the canal. Left out: all are sailed.
+    fee : ndarray (E,)
+        Money that an edge costs [USD]. Left out: nothing.
     """
 
     station_lat: FloatArray
@@ -101,6 +106,16 @@ class Network:
     via_s: Float32Array
     can_wait: BoolArray
     meta: NetworkMeta
+    fixed_time: FloatArray = field(default_factory=lambda: np.empty(0))
+    fee: FloatArray = field(default_factory=lambda: np.empty(0))
+
+    def __post_init__(self) -> None:
+        edges = len(self.target)
+        # left out, or nothing but defaults for another number of edges
+        if len(self.fixed_time) != edges and np.isnan(self.fixed_time).all():
+            object.__setattr__(self, "fixed_time", np.full(edges, np.nan))
+        if len(self.fee) != edges and not self.fee.any():
+            object.__setattr__(self, "fee", np.zeros(edges))
 
     @property
     def n_edges(self) -> int:
@@ -122,6 +137,10 @@ class Network:
         """Longitudes of the nodes [deg]."""
         return self.station_lon[: self.n_nodes]
 
+    def times(self, speed: float) -> FloatArray:
+        """Return the time of every edge [s] at one speed over ground [m/s]; canals take theirs."""
+        return np.where(np.isnan(self.fixed_time), self.length / speed, self.fixed_time)
+
     def tails(self) -> Int32Array:
         """Return the node every edge leaves from."""
         return np.repeat(np.arange(self.n_nodes, dtype=np.int32), np.diff(self.indptr))
@@ -139,7 +158,7 @@ def shortest(
     start, goal : int
         Nodes; without a goal (-1) all nodes are labelled and the path is empty.
     weight : ndarray (E,), optional
-        Non-negative weight of each edge (default: its length [m]).
+        Non-negative weight of each edge (default: its length [m]; `Network.times` for time).
 
     Returns
     -------
@@ -201,6 +220,7 @@ def _shape_faults(net: Network) -> Iterator[str]:
         "factor": (edges, np.float32), "price": (edges, np.float32),
         "via_ptr": (edges + 1, np.int64), "via_a": (vias, np.int32), "via_b": (vias, np.int32),
         "via_w": (vias, np.float32), "via_s": (vias, np.float32), "can_wait": (n, np.bool_),
+        "fixed_time": (edges, np.float64), "fee": (edges, np.float64),
     }  # fmt: skip
     for name, (size, kind) in wanted.items():
         array = getattr(net, name)
@@ -233,6 +253,12 @@ def _edge_faults(net: Network) -> Iterator[str]:
         yield "a penalty factor is below 1"
     if not np.all(net.price >= 0.0):
         yield "a price factor is negative"
+    if not np.all(
+        np.isnan(net.fixed_time) | ((net.fixed_time > 0.0) & np.isfinite(net.fixed_time))
+    ):
+        yield "a fixed time is neither positive nor NaN"
+    if not np.all((net.fee >= 0.0) & np.isfinite(net.fee)):
+        yield "a fee is negative or no number"
     for name in ("start", "goal"):
         if not -1 <= getattr(net.meta, name) < net.n_nodes:
             yield f"the {name} is not a node"
@@ -264,8 +290,11 @@ def _geometry_faults(net: Network, sample: int) -> Iterator[str]:
     tail, head = net.tails()[edge], net.target[edge]
     lat, lon = net.station_lat, net.station_lon
     length, first, _ = geodesy.inverse(lat[tail], lon[tail], lat[head], lon[head])
-    if np.any(np.abs(net.length[edge] - length) > 1e-6 * length):
+    sailed = np.isnan(net.fixed_time[edge])
+    if np.any(np.abs(net.length[edge] - length)[sailed] > 1e-6 * length[sailed]):
         yield "a length is not that of the geodesic"
+    if np.any(net.length[edge][~sailed] < (1.0 - 1e-9) * length[~sailed]):
+        yield "a canal is shorter than the geodesic"
     half = geodesy.direct(lat[tail], lon[tail], first, 0.5 * length)
     middle = geodesy.inverse(*half, lat[head], lon[head])[1]
     wrong = np.abs(np.angle(np.exp(1j * (net.course[edge] - middle))))

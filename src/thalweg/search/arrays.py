@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING
+from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, distance
 from thalweg.kernels.codes import CHANNELS, LIMIT_REQUIRED_DEPTH, LIMITS
 from thalweg.kernels.edges import NetworkArrays, SeaArrays, ShipArrays
 from thalweg.kernels.extremes import largest_current, largest_speed_field, tidal_extremes
@@ -93,6 +93,7 @@ def network_arrays(network: Network) -> NetworkArrays:
         np.full(count, -np.inf),
         np.full(count, np.inf),
         np.full(count, np.inf),
+        plain(network.fixed_time, np.float64),
     )
 
 
@@ -207,6 +208,21 @@ def problem(
         keep = ends[0], -1 if ends[1] is None else ends[1]
         arrays = tidal_states(arrays, sea, ship.limits, keep)
     return Problem(arrays, sea, ship, fastest, float(largest_current(sea)))
+
+
+def canal_speed(network: Network) -> float:
+    """Return the largest speed [m/s], as the crow flies, of edges of fixed time; 0 without any.
+
+    A bound by speed holds only with at least this one: a slow ship may gain on it in a canal.
+    """
+    edge = np.flatnonzero(~np.isnan(network.fixed_time))
+    if len(edge) == 0:
+        return 0.0
+    tail = np.searchsorted(network.indptr, edge, side="right") - 1
+    head = network.target[edge]
+    lat, lon = network.station_lat, network.station_lon
+    away = distance(lat[tail], lon[tail], lat[head], lon[head])
+    return float(np.max(away / network.fixed_time[edge]))
 
 
 def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float) -> FloatArray:

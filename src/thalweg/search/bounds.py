@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.geodesy import distance
 from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, LIMIT_WAVE_HEIGHT, LIMIT_WIND_SPEED
 from thalweg.kernels.tables import TableArrays
-from thalweg.search.arrays import SHRINK, Problem, problem
+from thalweg.search.arrays import SHRINK, Problem, canal_speed, problem
 from thalweg.search.earliest_arrival import Objective, solve
 
 if TYPE_CHECKING:
@@ -166,13 +166,13 @@ def free_space_bound(
     """Bound by the geodesic at the largest speed over ground that the data allow anywhere.
 
     Rigorous for the given fields: no route is shorter than the geodesic and none is sailed faster
-    than the top speed through water plus the strongest current.
+    than the top speed through water plus the strongest current, or than canals are passed.
     """
     lat, lon = network.station_lat, network.station_lon
     geodesic = SHRINK * float(distance(lat[start], lon[start], lat[goal], lon[goal]))
     if objective == "distance":
         return Bound(geodesic, _FREE_DISTANCE)
-    return Bound(geodesic / given.fastest, _FREE)
+    return Bound(geodesic / max(given.fastest, canal_speed(network)), _FREE)
 
 
 def network_bound(
@@ -206,7 +206,7 @@ def network_bound(
         return Bound(0.0, kind, 0.0)
     arrays = given.network
     shorter = arrays._replace(
-        length=arrays.length * kappa,
+        length=np.where(np.isnan(arrays.fixed_time), kappa, 1.0) * arrays.length,
         factor=np.ones_like(arrays.factor),
         can_wait=np.ones_like(arrays.can_wait),
     )

@@ -22,7 +22,7 @@ from thalweg.kernels.label_setting import (
     new_workspace,
 )
 from thalweg.kernels.tables import TableArrays
-from thalweg.search.arrays import SHRINK, Problem, distance_bounds, problem
+from thalweg.search.arrays import SHRINK, Problem, canal_speed, distance_bounds, problem
 from thalweg.search.result import SearchResult, SearchWork
 
 if TYPE_CHECKING:
@@ -100,7 +100,9 @@ def earliest_arrival(
     falls dry has a label for each time it is afloat (`thalweg.search.tides`).
 
     A* uses a lower bound of the geodesic distance to the goal divided by the largest speed over
-    ground (top speed plus largest current in the fields), which obeys the triangle inequality.
+    ground (top speed plus largest current in the fields, or what a canal gives if that is more),
+    which obeys the triangle inequality. Edges of fixed time are passed in that time whatever the
+    sea is.
     """
     goal = -1 if goal is None else int(goal)
     _check(network.n_nodes, start, goal, depart, objective, method)
@@ -147,6 +149,7 @@ def solve(
     _check(network.n_nodes, start, goal, depart, objective, method)
     station = given.network.station
     slowness = SHRINK / given.fastest
+    soonest = SHRINK / max(given.fastest, canal_speed(network))
     away = np.zeros(len(station))
     lat, lon = network.station_lat, network.station_lon
     if goal >= 0 and method == "astar":
@@ -160,7 +163,7 @@ def solve(
         by_distance=objective == "distance",
         wait=bool(wait),
         slowness=slowness,
-        per_metre=SHRINK if objective == "distance" else slowness,
+        per_metre=SHRINK if objective == "distance" else soonest,
     )
     labels, memory = new_labels(len(station)), new_workspace(len(station))
     label_setting(given.network, given.sea, given.ship, query, away, labels, memory)

@@ -74,7 +74,8 @@ def _depths(network: NetworkArrays, sea: SeaArrays) -> NDArray[np.float32]:
     # a node lies on every edge that leaves it, so it is at least as deep as the deepest of them
     if has_edges.any():
         first = network.indptr[:-1][has_edges]
-        charted[has_edges] = np.fmax.reduceat(network.depth, first)
+        sailed = np.where(np.isnan(network.fixed_time), network.depth, np.float32(-np.inf))
+        charted[has_edges] = np.fmax.reduceat(sailed, first)
     level, bed = sea.channel_index[WATER_LEVEL], sea.channel_index[BED_DEPTH]
     depth = np.broadcast_to(charted[:, None], (count, len(sea.times)))
     if bed >= 0:
@@ -149,7 +150,8 @@ def _copy_edges(network: NetworkArrays, states: NetworkArrays, begin: FloatArray
     head = order[_ranges(where[network.target[edge]], ways)]
     tail, edge = np.repeat(tail, ways), np.repeat(edge, ways)
     latest = np.where(network.can_wait[states.station[tail]], states.until[tail], np.inf)
-    latest = np.maximum(latest, states.closes[tail]) + network.length[edge] / _SLOWEST
+    longest = np.fmax(network.length[edge] / _SLOWEST, network.fixed_time[edge])
+    latest = np.maximum(latest, states.closes[tail]) + longest
     follow = (states.closes[head] > states.opens[tail]) & (begin[head] <= latest)
     tail, edge, head = tail[follow], edge[follow], head[follow]
     samples = np.diff(network.via_ptr)[edge]
@@ -161,6 +163,7 @@ def _copy_edges(network: NetworkArrays, states: NetworkArrays, begin: FloatArray
         course=network.course[edge],
         depth=network.depth[edge],
         factor=network.factor[edge],
+        fixed_time=network.fixed_time[edge],
         via_ptr=np.concatenate(([0], np.cumsum(samples))).astype(np.int64),
         via_a=network.via_a[via],
         via_b=network.via_b[via],

@@ -1,0 +1,162 @@
+"""Edges of fixed time: canals are passed in their time, whatever the sea is."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.search.small import NO_LIMITS, limits, make_fields, make_network, steady
+from thalweg.core import geodesy
+from thalweg.core.errors import InputError
+from thalweg.network import check_network, shortest
+from thalweg.search import best_departure, earliest_arrival, lower_bound
+
+TIMES = np.linspace(0.0, 400_000.0, 9)
+HOUR = 3600.0
+
+
+def with_canal(network, pairs, time, *, length=None, fee=0.0):
+    """Return the network with edges between pairs of nodes that take a fixed time."""
+    fixed, fees = network.fixed_time.copy(), network.fee.copy()
+    lengths = network.length.copy()
+    tails = network.tails()
+    for a, b in pairs:
+        edge = np.flatnonzero((tails == a) & (network.target == b))
+        fixed[edge], fees[edge] = time, fee
+        if length is not None:
+            lengths[edge] = length
+    return dataclasses.replace(network, fixed_time=fixed, fee=fees, length=lengths)
+
+
+def square(**options):
+    """Return four corners 0-1-2-3 of a square of 20 nm, and a canal across 0-2."""
+    lat, lon = [0.0, 1 / 3, 1 / 3, 0.0], [0.0, 0.0, 1 / 3, 1 / 3]
+    ring = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    edges = ring + [(b, a) for a, b in ring] + [(0, 2), (2, 0)]
+    return make_network(lat, lon, edges, pieces=3, **options)
+
+
+def search(network, fields, speed=5.0, **options):
+    options = {"setting": 0, "limits": NO_LIMITS, "start": 0, "goal": 2, "depart": 0.0, **options}
+    return earliest_arrival(network, fields, steady(speed), top_speed=speed, **options)
+
+
+def test_defaults_are_sailed_edges_without_fees():
+    network = square()
+    check_network(network)
+    assert np.isnan(network.fixed_time).all() and (network.fee == 0.0).all()
+    assert len(network.fixed_time) == network.n_edges
+
+
+def test_a_canal_is_passed_in_its_time_through_any_sea():
+    network = with_canal(square(), [(0, 2), (2, 0)], 2.5 * HOUR, length=60_000.0, fee=1000.0)
+    check_network(network)
+    fields = make_fields(network, TIMES, current_east=-20.0, current_north=-20.0)
+    blocked = search(network, fields, speed=1.0)
+    assert blocked.path.tolist() == [0, 2]
+    assert blocked.arrive == 2.5 * HOUR
+    unknown = make_fields(network, TIMES, current_east=np.nan, current_north=0.0)
+    assert search(network, unknown).arrive == 2.5 * HOUR
+    shallow = search(square(depth=3.0), make_fields(network, TIMES, water_level=0.0))
+    assert shallow.found
+    deep = with_canal(square(depth=3.0), [(0, 2)], 2.5 * HOUR)
+    result = search(deep, make_fields(deep, TIMES, water_level=0.0), limits=limits(depth=10.0))
+    assert result.path.tolist() == [0, 2] and result.arrive == 2.5 * HOUR
+
+
+def test_the_slower_canal_is_left_alone_and_the_quicker_one_is_taken():
+    base = square()
+    fields = make_fields(base, TIMES, current_east=0.0, current_north=0.0)
+    around = search(with_canal(base, [(0, 2)], 1e5), fields)
+    assert len(around.path) == 3
+    assert around.arrive == pytest.approx(base.length[0] / 5.0 * 2, rel=1e-2)
+    through = search(with_canal(base, [(0, 2)], around.arrive - 1.0), fields)
+    assert through.path.tolist() == [0, 2]
+
+
+def test_the_length_of_a_canal_counts_by_distance():
+    network = with_canal(square(), [(0, 2)], HOUR, length=90_000.0)
+    fields = make_fields(network, TIMES, current_east=0.0, current_north=0.0)
+    assert len(search(network, fields, objective="distance").path) == 3
+    assert len(shortest(network, 0, 2)[1]) == 3
+    assert shortest(network, 0, 2, weight=network.times(5.0))[1] == [0, 2]
+
+
+@pytest.mark.parametrize("method", ["astar", "dijkstra"])
+def test_a_canal_faster_than_the_ship_does_not_mislead_astar(method):
+    # goal 3 beyond the canal 1-2; the way round by 4 looks nearer to a bound by the ship's speed
+    lat = [0.0, 1.0, 1.0, 0.0, 0.2]
+    lon = [0.0, 0.0, 5.0, 5.0, 2.5]
+    edges = [(0, 1), (1, 2), (2, 3), (0, 4), (4, 3)]
+    network = with_canal(make_network(lat, lon, edges, pieces=4), [(1, 2)], 0.5 * HOUR)
+    fields = make_fields(network, np.linspace(0, 2e6, 5), current_east=0.0, current_north=0.0)
+    result = search(network, fields, speed=1.0, goal=3, method=method)
+    assert result.path.tolist() == [0, 1, 2, 3]
+
+
+@given(st.integers(0, 10_000))
+def test_astar_equals_dijkstra_on_random_networks_with_canals(seed):
+    rng = np.random.default_rng(seed)
+    lat, lon = rng.uniform(-3, 3, 14), rng.uniform(176, 184, 14)
+    pairs = {tuple(pair) for pair in rng.integers(0, 14, (60, 2)) if pair[0] != pair[1]}
+    network = make_network(lat, lon, sorted(pairs), pieces=2)
+    fixed = np.where(rng.random(network.n_edges) < 0.2, rng.uniform(1e3, 2e5), np.nan)
+    stretch = np.where(np.isnan(fixed), 1.0, rng.uniform(1.0, 1.5, network.n_edges))
+    network = dataclasses.replace(network, fixed_time=fixed, length=network.length * stretch)
+    fields = make_fields(network, np.linspace(0, 3e6, 5), current_east=0.3, current_north=-0.2)
+    for objective in ("time", "distance"):
+        results = [
+            search(network, fields, speed=4.0, goal=13, method=method, objective=objective)
+            for method in ("astar", "dijkstra")
+        ]
+        assert results[0].cost == pytest.approx(results[1].cost, rel=1e-12)
+        if results[0].found:
+            bound = lower_bound(
+                network, fields, steady(4.0), start=0, goal=13, depart=0.0, setting=0,
+                limits=NO_LIMITS, top_speed=4.0, objective=objective,
+            )  # fmt: skip
+            assert bound.value <= results[0].cost * (1 + 1e-9)
+
+
+def test_departure_windows_pass_canals_too():
+    network = with_canal(square(), [(0, 2)], HOUR)
+    fields = make_fields(network, TIMES, current_east=0.0, current_north=0.0)
+    result = best_departure(
+        network, fields, steady(5.0), start=0, goal=2, window=(0.0, 7200.0), setting=0,
+        limits=NO_LIMITS, top_speed=5.0,
+    )  # fmt: skip
+    assert result.duration == HOUR
+
+
+def test_canals_and_nodes_that_fall_dry():
+    # node 1 is dry but for two tides; the canal 0-1 arrives in the dry: the ship waits for water
+    network = make_network([0.0, 0.0, 0.0], [0.0, 0.1, 0.2], [(0, 1), (1, 2)], depth=5.0)
+    network = with_canal(network, [(0, 1)], 2.0 * HOUR)
+    times = np.arange(0.0, 40 * HOUR, 900.0)
+    tide = 3.0 * np.cos(2 * np.pi * times / (12.42 * HOUR))
+    fields = make_fields(network, times, water_level=np.broadcast_to(tide, (3, len(times))))
+    result = search(network, fields, limits=limits(depth=7.0), depart=5 * HOUR)
+    assert result.found
+    lock = result.path_depart[0]
+    assert result.path_arrive[1] == pytest.approx(lock + 2 * HOUR)
+
+
+def test_broken_fixed_times_are_named():
+    base = square()
+    for name, value, said in (
+        ("fixed_time", -1.0, "fixed time"),
+        ("fee", np.nan, "fee"),
+        ("fee", -2.0, "fee"),
+    ):
+        column = getattr(base, name).copy()
+        column[0] = value
+        with pytest.raises(InputError, match=said):
+            check_network(dataclasses.replace(base, **{name: column}))
+    short = with_canal(base, [(0, 2)], HOUR, length=10_000.0)
+    assert float(geodesy.distance(0.0, 0.0, 1 / 3, 1 / 3)) > 10_000.0
+    with pytest.raises(InputError, match="canal is shorter than the geodesic"):
+        check_network(short)
+    with pytest.raises(InputError, match="fixed_time has 3 entries"):
+        check_network(dataclasses.replace(base, fixed_time=np.full(3, 9.0)))
