@@ -148,8 +148,8 @@ def test_layouts_that_are_no_fields() -> None:
     refused("single points", points)
     months = regular().rename(time="month").drop_vars("month").assign_coords(month=[1, 2, 3])
     refused("climatology", months)
-    members = regular().expand_dims(number=[0, 1])
-    refused("ensemble", members)
+    strange = regular().expand_dims(percentile=[10, 90])
+    refused("neither time, place nor level", strange)
     winds = regular(
         fields={"u10": {"units": "m/s"}, "v10": {"units": "m/s"}},
         field=lambda t, y, x: 1.0 + 0 * (t + y + x),

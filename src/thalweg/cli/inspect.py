@@ -37,13 +37,16 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         _show(found)
     if folder:
-        picture = draw_sea(sea, folder / "sea.png", time=arguments.time)
+        shown = sea.member(0) if sea.members else sea
+        picture = draw_sea(shown, folder / "sea.png", time=arguments.time)
         if not arguments.json:
             print(f"wrote {picture}")
     return 0
 
 
 def _show(found: dict[str, Any]) -> None:
+    if found["members"]:
+        print(f"Ensemble of {found['members']} members, of which the first is shown")
     print("Recognised")
     for row in _merged(found["recognised"], ("file_variables", "units", "how")):
         names = ", ".join(row["file_variables"])

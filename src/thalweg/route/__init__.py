@@ -1,5 +1,6 @@
 """Routes: tracks to sail, the referee that scores them, and the formats they travel in."""
 
+from thalweg.route.ensemble import Distribution, Spread, cvar, evaluate_members
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.route.improving import better_route, shorten_waits
 from thalweg.route.joining import join
@@ -10,11 +11,15 @@ from thalweg.route.track import Track
 from thalweg.route.wind import with_wind_speed
 
 __all__ = [
+    "Distribution",
     "Route",
+    "Spread",
     "Track",
     "Violation",
     "better_route",
+    "cvar",
     "evaluate",
+    "evaluate_members",
     "join",
     "read_track",
     "shorten_waits",

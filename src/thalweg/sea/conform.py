@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -68,7 +68,26 @@ class Draft:
     recognised: list[Recognised] = field(default_factory=list)
 
 
-def drafts_of(file: OpenedFile, mapping: Mapping[str, str]) -> tuple[list[Draft], list[Ignored]]:
+@dataclass(eq=False)
+class Memo:
+    """Positions worked out before, for files that lie on the same ones (members of an ensemble).
+
+    Attributes
+    ----------
+    meshes : list of MeshLayout or None
+        Meshes of the file.
+    places : dict
+        Where each variable lies.
+    """
+
+    meshes: list[ugrid.MeshLayout] | None = None
+    places: dict[str, Placement] = field(default_factory=dict)
+
+
+Drafted: TypeAlias = tuple[list[Draft], list[Ignored]]
+
+
+def drafts_of(file: OpenedFile, mapping: Mapping[str, str], memo: Memo | None = None) -> Drafted:
     """Return what one file holds, by grid and time axis, and what is ignored in it.
 
     Raises
@@ -80,8 +99,10 @@ def drafts_of(file: OpenedFile, mapping: Mapping[str, str]) -> tuple[list[Draft]
     chosen, ignored = recognise(file.dataset, mapping=mapping, source=file.source, skip=skip)
     if not chosen:
         raise _nothing(file, ignored)
-    meshes = ugrid.mesh_layouts(file.dataset, mapping, file.source)
-    ingredients = {role: _ingredient(file, one, mapping, meshes) for role, one in chosen.items()}
+    memo = memo or Memo()
+    if memo.meshes is None:
+        memo.meshes = ugrid.mesh_layouts(file.dataset, mapping, file.source)
+    ingredients = {role: _ingredient(file, one, mapping, memo) for role, one in chosen.items()}
     assembly = Assembly(file, ingredients, ignored)
     assembly.all()
     if not assembly.drafts:
@@ -114,14 +135,17 @@ def _nothing(file: OpenedFile, ignored: Sequence[Ignored]) -> NothingRecognised:
 
 
 def _ingredient(
-    file: OpenedFile, chosen: Chosen, mapping: Mapping[str, str], meshes: list[ugrid.MeshLayout]
+    file: OpenedFile, chosen: Chosen, mapping: Mapping[str, str], memo: Memo
 ) -> Ingredient:
     dataset, source = file.dataset, file.source
     array = dataset[chosen.variable]
     clock = co.time_of(dataset, array)
     if clock is None:
         _refuse_undated(dataset, array, source)
-    place = placement(dataset, array, mapping, source, meshes)
+    place = memo.places.get(chosen.variable)
+    if place is None:
+        place = placement(dataset, array, mapping, source, memo.meshes or [])
+        memo.places[chosen.variable] = place
     time_dim = str(clock.dims[0]) if clock is not None else ""
     keep = frozenset((*place.dims, time_dim))
     array = co.pick_surface(dataset, array, keep, chosen.role, source)

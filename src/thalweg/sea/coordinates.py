@@ -32,7 +32,6 @@ VERTICAL: Final = (
     "isobaric", "pressure",
 )  # fmt: skip
 WIND_HEIGHT: Final = 10.0  #: [m] height at which wind is used
-MEMBERS: Final = ("number", "member", "ensemble", "realization", "realisation")
 CLIMATE: Final = ("month", "season", "dayofyear", "climatology")
 
 
@@ -159,10 +158,6 @@ def _level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
             source, name, f"is a climatology along {dim!r}: a mean year has no dates",
             "Make a file with real dates, one for each month you sail in.",
         )  # fmt: skip
-    if lower in MEMBERS:
-        raise _layout_fault(
-            source, name, f"holds an ensemble along {dim!r}", "Select one member into a file first."
-        )
     attributes = levels.attrs if levels is not None else {}
     is_vertical = (
         any(lower.startswith(word) for word in VERTICAL)

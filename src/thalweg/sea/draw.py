@@ -77,6 +77,7 @@ def draw(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    sea.check_single()
     panels = [p for p in PANELS if sea.knows(p.values)]
     if not panels:
         raise InputError(

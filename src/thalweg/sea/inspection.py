@@ -76,6 +76,8 @@ class Inspection:
         to 8 times spread over the period.
     gaps : tuple of Gap
         Holes in time axes, which are not bridged.
+    members : int
+        Size of the ensemble, of which the first member is shown; 0 if it is one sea.
     """
 
     recognised: tuple[Recognised, ...]
@@ -83,6 +85,7 @@ class Inspection:
     coverage: tuple[Coverage, ...]
     missing: dict[str, float]
     gaps: tuple[Gap, ...]
+    members: int = 0
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data, ready for JSON; times as ISO 8601."""
@@ -92,6 +95,7 @@ class Inspection:
             "coverage": [asdict(c) for c in self.coverage],
             "missing_fraction": dict(self.missing),
             "gaps": [asdict(g) for g in self.gaps],
+            "members": self.members,
         }
         for row in plain["coverage"]:
             row["start"], row["end"] = (_text(row[k]) for k in ("start", "end"))
@@ -108,7 +112,8 @@ def inspect(sea: Sea) -> Inspection:
     """Return what is known about the data behind a sea; reads a few levels of every file."""
     from thalweg.sea.gridded import GridLayer
 
-    layers = [layer for layer in sea.layers if isinstance(layer, GridLayer)]
+    one = sea.member(0) if sea.members else sea
+    layers = [layer for layer in one.layers if isinstance(layer, GridLayer)]
     missing: dict[str, float] = {}
     for layer in layers:
         for name, share in _missing(layer).items():
@@ -117,9 +122,10 @@ def inspect(sea: Sea) -> Inspection:
     return Inspection(
         tuple(r for layer in layers for r in layer.record.recognised),
         tuple(ignored),
-        tuple(sea.coverage()),
+        tuple(one.coverage()),
         missing,
         tuple(gap for layer in layers for gap in _gaps(layer)),
+        sea.members,
     )
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.sea import names as nm
+from thalweg.sea.ensemble import member_of, not_one_sea, size_of
 from thalweg.sea.fields import Coverage, FloatArray, Mesh
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.merge import edges, merged, point_reader, series_reader
@@ -24,7 +25,8 @@ class LayeredSea:
     """Layers by priority, read as one sea.
 
     For each variable the first layer that knows a value wins; both components of a vector come
-    from the same layer. What no layer knows is NaN.
+    from the same layer. What no layer knows is NaN. Layers may hold an ensemble; then only its
+    members have values.
 
     Attributes
     ----------
@@ -36,6 +38,29 @@ class LayeredSea:
 
     layers: tuple[Layer, ...]
     assumptions: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        size_of(self.layers)
+
+    @property
+    def members(self) -> int:
+        """How many members the sea has as an ensemble; 0 if it is one sea."""
+        return size_of(self.layers)
+
+    def member(self, index: int) -> Self:
+        """Return one member of an ensemble, a sea like any other.
+
+        Parameters
+        ----------
+        index : int
+            From 0 to ``members - 1``.
+
+        Raises
+        ------
+        InputError
+            If the sea is no ensemble or has no such member.
+        """
+        return replace(self, layers=member_of(self.layers, index))
 
     @property
     def variables(self) -> frozenset[str]:
@@ -69,7 +94,13 @@ class LayeredSea:
         dict of str to float64 array
             One array of the broadcast shape per name; NaN where nothing is known (see
             `why_missing`).
+
+        Raises
+        ------
+        InputError
+            If the sea is an ensemble (see `member`).
         """
+        self.check_single()
         names = [names] if isinstance(names, str) else names
         arrays = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in (time, lat, lon)))
         shape = arrays[0].shape
@@ -83,9 +114,15 @@ class LayeredSea:
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> dict[str, FloatArray]:
         """Return values (S, T) at stations (S,) for every time (T,); faster than `sample`."""
+        self.check_single()
         read = series_reader(times, lat, lon)
         base = merged(self.layers, self._base(names), read, (lat.size, times.size))
         return {name: self._derive(name, base) for name in names}
+
+    def check_single(self) -> None:
+        """Raise `InputError` if the sea is an ensemble, where one sea is needed."""
+        if self.members:
+            raise not_one_sea(self.members)
 
     def why_missing(self, name: str, time: float, lat: float, lon: float) -> str:
         """Return why a value is NaN: "variable", "area", "period" or "gap" (a hole in the data)."""

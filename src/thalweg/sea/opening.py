@@ -6,13 +6,16 @@ import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.sea import conform, grib, joining, netcdf3
-from thalweg.sea.conform import OpenedFile
+from thalweg.sea.conform import Drafted, OpenedFile
 from thalweg.sea.gridded import GridLayer
+from thalweg.sea.layer import Layer
+from thalweg.sea.member_files import check_sizes, member_file, merged_versions
 from thalweg.sea.recognise import Ignored, check_mapping
 from thalweg.sea.store import READ_ERRORS, Window
 
@@ -26,7 +29,7 @@ FIRST_ROWS: Final = (
 SMALL_LEVEL: Final = 200_000  #: values of a level up to which all of it is read on opening
 
 
-def open_layers(sources: Sequence[Any], mapping: Mapping[str, str] | None) -> list[GridLayer]:
+def open_layers(sources: Sequence[Any], mapping: Mapping[str, str] | None) -> list[Layer]:
     """Return the layers of files (see `Sea.open`), the first file's first.
 
     Raises
@@ -43,23 +46,47 @@ def open_layers(sources: Sequence[Any], mapping: Mapping[str, str] | None) -> li
     mapping = dict(mapping or {})
     files = [part for source in sources for part in open_file(source)]
     check_mapping(mapping, frozenset(str(n) for f in files for n in f.dataset.variables))
+    ensembles = {k: found for k, f in enumerate(files) if (found := member_file(f)) is not None}
+    if not ensembles:
+        return list(_looked_at(_drafted(files, lambda k: conform.drafts_of(files[k], mapping))))
+    plain: dict[int, Drafted] = {}
+
+    def draft(k: int, index: int) -> Drafted:
+        if k in ensembles:
+            return ensembles[k].drafts(index, mapping)
+        if k not in plain:
+            plain[k] = conform.drafts_of(files[k], mapping)
+        return plain[k]
+
+    count = check_sizes(list(ensembles.values()))
+    return merged_versions(
+        [_looked_at(_drafted(files, partial(draft, index=i))) for i in range(count)]
+    )
+
+
+def _drafted(files: Sequence[OpenedFile], draft: Callable[[int], Drafted]) -> list[GridLayer]:
+    """Return the layers of files; a part of a file may hold nothing if another part does."""
     drafts: list[conform.Draft] = []
     ignored: dict[str, list[Ignored]] = {}
     faults: dict[str, DatasetError] = {}
     useful: set[str] = set()
-    for file in files:
+    for k, file in enumerate(files):
         try:
-            found, left = conform.drafts_of(file, mapping)
+            found, left = draft(k)
         except conform.NothingRecognised as fault:
             faults.setdefault(file.source, fault)
             continue
         useful.add(file.source)
         drafts += found
-        ignored.setdefault(file.source, []).extend(left)
+        for source in {file.source, *(d.file.source for d in found)}:
+            ignored.setdefault(source, []).extend(left)
     for source, nothing in faults.items():
         if source not in useful:
             raise nothing
-    layers = joining.layers_of(drafts, ignored)
+    return joining.layers_of(drafts, ignored)
+
+
+def _looked_at(layers: list[GridLayer]) -> list[GridLayer]:
     for layer in layers:
         first_look(layer)
     return layers

@@ -150,6 +150,8 @@ def repeated(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> Sea:
     """
     from thalweg.sea.sea import Sea as SeaClass
 
+    sea.check_single()
+
     off = {n: drift_deg(period_h, n) for n in ("M2", "S2")}
     worst = max(abs(x) for x in off.values())
     if not (np.isfinite(period_h) and period_h > 24.0 and worst <= LARGEST_DRIFT):

@@ -14,6 +14,7 @@ from thalweg.core.time import TimeLike, parse_time
 from thalweg.sea import freeze, inspection, storm
 from thalweg.sea import functions as formulas
 from thalweg.sea.arguments import area_of, period_of, step_of
+from thalweg.sea.ensemble import together
 from thalweg.sea.fields import GridFields, StationFields
 from thalweg.sea.inspection import Inspection
 from thalweg.sea.layered import LayeredSea
@@ -50,7 +51,7 @@ class Sea(LayeredSea):
         curvilinear grids, projected grids, and UGRID meshes with values at nodes or faces. Of
         files with one layout that follow each other in time one layer is made; otherwise the first
         file goes before the second. Of vertical levels the one nearest to the surface is taken, of
-        wind the one at 10 m.
+        wind the one at 10 m. A dimension of members (number, realization, ...) makes an ensemble.
 
         Variables are recognised by CF standard name, else by the spellings of ECMWF, GFS, CMEMS,
         MET Norway, DHI, 52North, NEMO, COADS and Delft3D-FM; units are converted to SI; speed and
@@ -87,6 +88,43 @@ class Sea(LayeredSea):
         from thalweg.sea.opening import open_layers
 
         return cls(tuple(open_layers(paths, mapping)))
+
+    @classmethod
+    def ensemble(
+        cls,
+        *members: Sea | str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+        mapping: Mapping[str, str] | None = None,
+    ) -> Sea:
+        """Return one sea in several versions, each as likely as the others.
+
+        A file with a dimension for its members needs no more than `Sea.open`. An ensemble has no
+        values of its own: take `member` 0 to ``members - 1``, or score a route in all of them with
+        `thalweg.route.evaluate_members`. Put over or under other seas with ``+``, its members
+        share those.
+
+        Parameters
+        ----------
+        *members : Sea, path-like or sequence of path-like
+            Two or more; what is no Sea is opened, each by itself.
+        mapping : mapping of str to str, optional
+            For the files, as in `open`.
+
+        Raises
+        ------
+        InputError
+            If members differ in variables, grid, times or area, or there are fewer than two.
+        """
+        seas = [
+            member if isinstance(member, Sea) else cls._opened(member, mapping)
+            for member in members
+        ]
+        told = tuple(dict.fromkeys(text for sea in seas for text in sea.assumptions))
+        return cls(together(seas), told)
+
+    @classmethod
+    def _opened(cls, paths: Any, mapping: Mapping[str, str] | None) -> Sea:
+        several = isinstance(paths, (list, tuple))
+        return cls.open(*(paths if several else (paths,)), mapping=mapping)
 
     @classmethod
     def from_functions(

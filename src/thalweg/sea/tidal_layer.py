@@ -204,6 +204,7 @@ def tidal_sea(
         source = source.constituents
     if isinstance(source, Constituents):
         return SeaClass((_of_constituents(source, area),))
+    source.check_single()
     layers: list[Any] = []
     for layer in source.layers:
         if isinstance(layer, GridLayer) and has_tides(layer):

@@ -46,6 +46,7 @@ def tidal_analysis(
     cache: bool = True,
 ) -> tides.TideAnalysis:
     """Return the tides of the first layer of a sea that has any; as `analyse_layer`."""
+    sea.check_single()
     layer = next((x for x in sea.layers if has_tides(x)), None)
     if not isinstance(layer, GridLayer):
         raise no_tides()
