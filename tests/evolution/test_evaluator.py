@@ -1,0 +1,218 @@
+"""The fitness of a population: the shared kernel, the same numbers as the referee's."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.evolution import jet
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.evolution import Genome, Population
+from thalweg.evolution.genome import joined
+from thalweg.kernels import fitness
+from thalweg.route.quick import Bundle
+from thalweg.route.track import Track
+
+rng = np.random.default_rng(7)
+
+
+def wavy(points: int = 14, seed: int = 0) -> Genome:
+    random = np.random.default_rng(seed)
+    base = jet.straight(6, points)
+    lat, lon = np.array(base.lat), np.array(base.lon)
+    lat[1:-1] += random.normal(0.0, 0.002, points - 2)
+    return Genome(lat, lon, random.integers(5, 12, points - 1))
+
+
+def test_the_referee_agrees():
+    evaluator = jet.evaluator()
+    genomes = [jet.straight(0), jet.straight(11), wavy(seed=1), wavy(seed=2)]
+    time, cost, violation = evaluator(genomes)
+    told = np.array([jet.refereed(genome)[:2] for genome in genomes])
+    assert jet.objectives(np.column_stack([time, cost])) == pytest.approx(told, rel=3e-4)
+    assert (violation == 0.0).all()
+
+
+def test_the_quick_sailor_agrees_to_rounding():
+    evaluator = jet.evaluator()
+    genome = wavy(seed=3)
+    n = len(genome)
+    population = evaluator.population([genome])
+    pieces = np.full((1, n - 1), 7)
+    population.genes[0, : n - 1, fitness.PIECES] = 7
+    _, arrive = evaluator.sail(population)
+    still = np.full((1, n), -np.inf)
+    bundle = Bundle(
+        genome.lat[None], genome.lon[None], still, genome.setting[None], depart=np.zeros(1)
+    )
+    quick, _ = evaluator.sailor.sail(bundle, pieces=pieces)
+    assert arrive[0, :n] == pytest.approx(quick[0], rel=1e-12)
+
+
+def test_a_population_is_sailed_as_each_track_alone_whatever_the_threads():
+    evaluator = jet.evaluator()
+    genomes = [wavy(int(rng.integers(3, 30)), seed) for seed in range(80)]
+    together = np.column_stack(evaluator(genomes))
+    alone = np.array([np.column_stack(evaluator([genome]))[0] for genome in genomes])
+    assert (together == alone).all()
+
+
+def test_time_waits_and_fees_have_their_price():
+    genome = jet.straight(6, 6)
+    waiting = Genome(genome.lat, genome.lon, genome.setting, [5.0, 0, 7.0, 0, 0, 0])
+    plain = jet.evaluator()
+    time, cost, _ = plain([genome, waiting])
+    assert time[1] - time[0] == pytest.approx(12.0, abs=2.0)  # the tide turns meanwhile
+    priced = jet.evaluator(
+        time_price=0.5, waiting_fuel=0.01, weight_outside=2.0, weight_inside=3.0, waiting_weight=4.0
+    )
+    _, dear, _ = priced([genome, waiting])
+    expected = 2.0 * cost + 0.5 * time + np.array([0.0, 12.0]) * 0.01 * 4.0
+    assert dear == pytest.approx(expected, rel=1e-12)
+
+
+def test_what_cannot_be_sailed_is_measured_as_a_share_of_the_length():
+    south, west = jet.position(200.0, 150.0)
+    north, east = jet.position(260.0, 300.0)
+    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+    land = {
+        "type": "Feature",
+        "properties": {},
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+    chart = Chart.from_geojson({"type": "FeatureCollection", "features": [land]})
+    evaluator = jet.evaluator(chart=chart)
+    track = jet.straight(6, 11)  # ten equal legs of 30 nm from x = 100 to 400: 3 touch the land
+    _, _, violation = evaluator([track])
+    assert violation[0] == pytest.approx(0.3, abs=1e-3)
+
+
+def test_lateness_and_the_end_of_the_data_are_violations():
+    genome = jet.straight(0)
+    time = jet.evaluator()([genome])[0][0]
+    late = jet.evaluator(latest=jet.T0 + 0.8 * time)([genome])[2][0]
+    assert late == pytest.approx(0.25, rel=1e-6)  # a fifth of the passage over four fifths of it
+    cut = jet.fields()
+    half = int(np.searchsorted(cut.times, jet.T0 + 0.5 * time))
+    short = replace(cut, times=cut.times[:half], values=cut.values[:half])
+    gone = jet.evaluator(fields=short)([genome])[2][0]
+    assert gone == pytest.approx(0.5, abs=0.05)
+
+
+def test_no_data_is_no_calm():
+    cut = jet.fields()
+    values = cut.values.copy()
+    values[:, :, 100:110] = math.nan
+    gone = jet.evaluator(fields=replace(cut, values=values))([jet.straight(6)])[2][0]
+    assert gone > 0.05
+
+
+def test_only_changed_legs_are_looked_up():
+    evaluator = jet.evaluator()
+    asked = []
+
+    class Counting(type(evaluator.sailor)):
+        def look(self, lat, lon):
+            asked.append(len(lat))
+            return super().look(lat, lon)
+
+    fields = evaluator.sailor.__dict__
+    evaluator = type(evaluator)(
+        evaluator.world, Counting(**fields), evaluator.prices, evaluator.depart, evaluator.latest
+    )
+    population = evaluator.population([wavy(10), wavy(12, seed=4)])
+    evaluator.score(population)
+    evaluator.score(population)
+    assert asked == [9 + 11]
+    population.genes[1, 4:6, fitness.KNOWN] = 0.0
+    evaluator.score(population)
+    assert asked == [20, 2]
+
+
+def test_canal_legs_take_their_time_and_fee_whatever_the_sea():
+    evaluator = jet.evaluator(weight_outside=2.0)
+    genome = jet.straight(6, 4)
+    length = 30.0 * jet.NM / jet.SHRINK
+    canal = SimpleNamespace(length=length, transit_time=length / (9.0 * jet.KNOT), fee=40.0)
+
+    class WithCanal:
+        has_depth = False
+        zones = SimpleNamespace(penalty=(), price=(), eca=())
+        canals = (canal,)
+
+        def legs_blocked(self, lat1, lon1, lat2, lon2):
+            return np.zeros(len(lat1), bool)
+
+        def canal_of_legs(self, lat1, lon1, lat2, lon2):
+            return np.where(lat1 == genome.lat[1], 0, -1)
+
+    given = {"chart": WithCanal(), "latest": math.inf}
+    free, feeless = jet.evaluator(**given), jet.evaluator(fees=False, **given)
+    population = evaluator.population([genome])
+    _, before = jet.evaluator(latest=math.inf).sail(population)
+    _, cost, violation = free([genome])
+    _, arrive = free.sail(free.population([genome]))
+    assert violation[0] == 0.0
+    assert arrive[0, 2] - arrive[0, 1] == pytest.approx(canal.transit_time, rel=1e-9)
+    assert arrive[0, 1] == before[0, 1]
+    assert cost[0] - feeless([genome])[1][0] == pytest.approx(40.0)
+    burnt = jet.FUEL_T_DAY[1] / 86.4 * canal.transit_time  # 9 kn needs the setting of 9.5 kn
+    sailed = np.diff(arrive[0])[[0, 2]] * jet.FUEL_T_DAY[6] / 86.4
+    assert cost[0] == pytest.approx(40.0 + burnt + sailed.sum(), rel=1e-6)
+
+
+def test_price_and_penalty_zones_and_control_areas():
+    class Zoned:
+        has_depth = False
+        zones = SimpleNamespace(penalty=(1,), price=(1,), eca=(1,))
+
+        def legs_blocked(self, lat1, lon1, lat2, lon2):
+            return np.zeros(len(lat1), bool)
+
+        def eca_share(self, lat1, lon1, lat2, lon2):
+            return np.full(len(lat1), 0.25)
+
+        def zone_factor(self, lat1, lon1, lat2, lon2):
+            return np.full(len(lat1), 1.1), np.full(len(lat1), 3.0)
+
+    genome = jet.straight(6)
+    time, cost, _ = jet.evaluator()([genome])
+    both = jet.evaluator(chart=Zoned(), weight_inside=2.0)([genome])
+    assert both[0][0] == pytest.approx(1.1 * time[0])
+    assert both[1][0] == pytest.approx(1.1 * 3.0 * (0.25 * 2.0 + 0.75) * cost[0])
+
+
+def test_genomes_go_to_tracks_and_back():
+    track = Track([1.0, 1.5, 2.0], [179.0, -179.5, -178.0], 0.0, [3.0, 4.0, 0.0], [-1, 2])
+    genome = Genome.from_track(track, settings=5, via=[(1.5, 180.5)])
+    assert genome.setting.tolist() == [4, 2]
+    assert genome.via.tolist() == [True, True, True]
+    population = joined(Population.of([genome]), Population.of([wavy(9)], room=20))
+    assert population.room == 20
+    back = population.genome(0)
+    assert back.to_track(0.0) == track.replaced(setting=[4, 2])
+    assert population.take([1]).genome(0).lat.tolist() == wavy(9).lat.tolist()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        lambda: jet.evaluator(latest=jet.T0),
+        lambda: jet.evaluator(weight_inside=-1.0),
+        lambda: jet.evaluator(time_price=math.nan),
+        lambda: jet.evaluator(fuel=jet.constant_table([1.0, 2.0])),
+        lambda: jet.evaluator()([jet.straight(12)]),
+        lambda: jet.evaluator()([]),
+        lambda: Genome([1.0], [2.0], []),
+        lambda: Genome([1.0, 2.0], [2.0, 3.0], [1, 2]),
+        lambda: Genome.from_track(Track([0.0, 1.0], [0.0, 1.0], 0.0), settings=3, via=[(0.5, 0.5)]),
+    ],
+)
+def test_what_cannot_be_is_an_error(wrong):
+    with pytest.raises(InputError) as caught:
+        wrong()
+    assert caught.value.possible
+    assert caught.value.remedy
