@@ -94,15 +94,10 @@ def test_swapped_or_broken_coordinates_are_refused(tmp_path):
     assert not OPEN.with_zones(path).is_navigable(0.5, 0.5)
 
 
-def test_a_self_crossing_polygon_is_repaired_with_a_warning():
+def test_a_self_crossing_land_polygon_is_repaired_with_a_warning():
     bow = [[0, 0], [1, 1], [1, 0], [0, 1], [0, 0]]
-    feature = {
-        "type": "Feature",
-        "properties": {"kind": "no-go"},
-        "geometry": {"type": "Polygon", "coordinates": [bow]},
-    }
     with pytest.warns(ThalwegWarning, match="repaired"):
-        chart = OPEN.with_zones(feature)
+        chart = Chart.from_geojson({"type": "Polygon", "coordinates": [bow]})
     assert chart.is_navigable([0.5, 0.5, 0.9], [0.1, 0.9, 0.5]).tolist() == [False, False, True]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -16,6 +16,7 @@ from thalweg.chart import geojson
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.depth import Depths, warning_depth
 from thalweg.chart.drawing import coastline_lines, land_polygons
+from thalweg.chart.eca import EcaZone, chosen_areas
 from thalweg.chart.gshhg import read_land
 from thalweg.chart.index import build_index, empty_index
 from thalweg.chart.legs import leg_status, point_status
@@ -24,9 +25,11 @@ from thalweg.chart.rings import Rings
 from thalweg.chart.snapping import nearest_navigable
 from thalweg.chart.soundings import Float32Array, make_layer
 from thalweg.chart.store import gshhg_index
+from thalweg.chart.zone_raster import ZoneRaster, zone_raster
 from thalweg.chart.zones import Zones
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
+from thalweg.core.time import TimeLike
 from thalweg.kernels.coast import CoastArrays
 from thalweg.kernels.codes import LAND, OK
 from thalweg.kernels.cube import IndexArrays
@@ -186,13 +189,69 @@ class Chart:
         zones : path, dict or list
             GeoJSON areas with the property ``kind``: "no-go", "penalty" (with ``factor`` >= 1)
             or "price" (with ``factor`` > 0). Where zones of a kind overlap the largest counts.
+            "eca" without a factor is an emission control area, inside which the ship burns (and
+            pays for) its other fuel; with a factor it is a price zone. Rings may cross the
+            antimeridian.
 
         Raises
         ------
         InputError
-            If it cannot be read, or a kind or factor makes no sense.
+            If it cannot be read, an outline crosses itself, or a kind or factor makes no sense.
         """
         return replace(self, zones=self.zones.joined(Zones.read(zones)))
+
+    def with_eca(
+        self, names: str | Iterable[str] | None = None, *, date: TimeLike | None = None
+    ) -> Chart:
+        """Return this chart with emission control areas of MARPOL Annex VI.
+
+        Parameters
+        ----------
+        names : str or iterable of str, optional
+            Such as "north-sea", "baltic-sea", "mediterranean", "us-caribbean", "north-america";
+            see `thalweg.chart.eca.emission_areas`. By default all whose limit on sulphur counts.
+        date : time, optional
+            When; by default the day the package's dates were looked up (2026-11-21).
+
+        Raises
+        ------
+        InputError
+            If there is no such area, its limits are unknown, or it does not count at ``date``.
+
+        Warns
+        -----
+        ThalwegWarning
+            If an area counts at ``date`` but its limits are not in the package.
+        """
+        areas = chosen_areas(names, date=date)
+        zones = tuple(EcaZone(area.name, area.rings) for area in areas)
+        return replace(self, zones=self.zones.joined(Zones(eca=zones)))
+
+    def in_eca(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
+        """Return which positions [deg] lie inside any emission control area of the chart."""
+        return self.zones.in_eca(lat, lon)
+
+    def eca_share(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> FloatArray:
+        """Return the share (0 to 1) of each leg inside any emission control area.
+
+        Shares are of the length of the geodesic, each crossing of an outline being found to
+        0.25 m. Arguments [deg] broadcast; NaN where a position is no number. About 1 us for a leg
+        that touches no outline, 0.1 ms for one that does (many at once; 2 ms for one alone).
+        """
+        return self.zones.eca_share(lat1, lon1, lat2, lon2)
+
+    def zone_raster(
+        self, south: float, north: float, west: float, east: float, spacing: float
+    ) -> ZoneRaster:
+        """Return a raster of a box [deg] that tells kernels where fuel has which price.
+
+        See `thalweg.chart.zone_raster.ZoneRaster`: cells wholly outside or inside the emission
+        control areas, and mixed ones, for which ``zones.eca_index`` (exact, for
+        `thalweg.kernels.cube.inside`) or `eca_share` decides.
+        """
+        return zone_raster(self.zones, Area(south, north, west, east).array(), spacing)
 
     def within(self, south: float, north: float, west: float, east: float) -> Chart:
         """Return this chart cut to a box that no leg may leave [deg]."""

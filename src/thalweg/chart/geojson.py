@@ -69,13 +69,14 @@ def _features(
         )
 
 
-def polygons(geometry: Mapping[str, Any], what: str) -> list[Any]:
+def polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> list[Any]:
     """Return the shapely polygons of a geometry, repaired (with a warning) where invalid.
 
     Raises
     ------
     InputError
-        If the coordinates are not positions (lon, lat) of closed rings.
+        If the coordinates are not positions (lon, lat) of closed rings; without ``repair`` also
+        if an outline crosses or touches itself.
     """
     import shapely
 
@@ -90,12 +91,27 @@ def polygons(geometry: Mapping[str, Any], what: str) -> list[Any]:
         shape: Any = shapely.polygons(rings[0], holes=rings[1:] or None)
         if not shapely.is_valid(shape):
             reason = shapely.is_valid_reason(shape)
+            if not repair:
+                raise _crooked(reason, what)
             warnings.warn(
                 ThalwegWarning(f"A polygon of the {what} was repaired: {reason}."), stacklevel=3
             )
             shape = shapely.make_valid(shape)
         found += [p for p in shapely.get_parts(shape) if p.geom_type == "Polygon" and p.area > 0]
     return found
+
+
+def _crooked(reason: str, what: str) -> InputError:
+    """Build the error for a polygon that is none, with the place (lon, lat) of the fault."""
+    fault, _, place = reason.partition("[")
+    numbers = place.rstrip("]").split()
+    where = f" near longitude {numbers[0]}, latitude {numbers[1]}" if len(numbers) == 2 else ""
+    return InputError(
+        f"A polygon of the {what} is invalid: {fault.strip().lower()}{where}.",
+        "An outline may not cross or touch itself, and holes lie inside it.",
+        "Put its points in order along the outline, or give several polygons.",
+        value=reason,
+    )
 
 
 def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:

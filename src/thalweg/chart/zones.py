@@ -1,7 +1,9 @@
 """Zones: where a ship may not go, where a mile counts for more, where fuel has another price.
 
-A GeoJSON feature has the properties ``kind`` ("no-go", "penalty" or "price") and, for the last
-two, ``factor``. Where zones of one kind overlap, the largest factor counts.
+A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "eca") and, for
+penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
+zone without a factor is an emission control area: what fuel costs there is the ship's to say; with
+one it is a price zone.
 """
 
 from __future__ import annotations
@@ -15,7 +17,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart import geojson
+from thalweg.chart.eca import EcaZone
 from thalweg.chart.index import build_index, empty_index
+from thalweg.chart.shares import outlines_only, points_inside, shares_inside
+from thalweg.chart.store import stored
+from thalweg.core.cache import cache_folder
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray, direct, inverse, wrap_longitude
 from thalweg.kernels.coast import outlines_touched
@@ -30,7 +36,9 @@ KINDS: Final = {
     "exclusion": "no-go",
     "penalty": "penalty",
     "price": "price",
-    "eca": "price",
+    "eca": "eca",
+    "emissioncontrol": "eca",
+    "seca": "eca",
 }
 
 
@@ -84,11 +92,21 @@ class Group:
 
 @dataclass(frozen=True)
 class Zones:
-    """Zones of a chart: shapely polygons, and (polygon, factor) pairs that do not overlap."""
+    """Zones of a chart.
+
+    Attributes
+    ----------
+    no_go : tuple of shapely polygons
+    penalty, price : tuple of (shapely polygon, factor)
+        They do not overlap.
+    eca : tuple of EcaZone
+        Emission control areas; they may overlap.
+    """
 
     no_go: tuple[Any, ...] = ()
     penalty: tuple[tuple[Any, float], ...] = ()
     price: tuple[tuple[Any, float], ...] = ()
+    eca: tuple[EcaZone, ...] = ()
 
     @classmethod
     def read(cls, source: geojson.Source) -> Zones:
@@ -97,15 +115,21 @@ class Zones:
         Raises
         ------
         InputError
-            If it is not GeoJSON of areas, or a kind or factor is missing or makes no sense.
+            If it is not GeoJSON of areas, an outline crosses itself, or a kind or factor is
+            missing or makes no sense.
         """
         found: dict[str, list[tuple[Any, float]]] = {"no-go": [], "penalty": [], "price": []}
+        eca: list[EcaZone] = []
         for geometry, properties in geojson.read(source, "zones"):
             kind = _kind(properties)
+            shapes = geojson.polygons(geometry, "zones", repair=False)
+            if kind == "eca":
+                eca.append(EcaZone(str(properties.get("name") or "eca"), geojson.rings_of(shapes)))
+                continue
             factor = 1.0 if kind == "no-go" else _factor(kind, properties)
-            found[kind] += [(shape, factor) for shape in geojson.polygons(geometry, "zones")]
+            found[kind] += [(shape, factor) for shape in shapes]
         no_go = tuple(shape for shape, _ in found["no-go"])
-        return cls(no_go, _apart(found["penalty"]), _apart(found["price"]))
+        return cls(no_go, _apart(found["penalty"]), _apart(found["price"]), tuple(eca))
 
     def joined(self, other: Zones) -> Zones:
         """Return these zones and another chart's."""
@@ -113,6 +137,7 @@ class Zones:
             self.no_go + other.no_go,
             _apart([*self.penalty, *other.penalty]),
             _apart([*self.price, *other.price]),
+            self.eca + tuple(zone for zone in other.eca if zone not in self.eca),
         )
 
     @cached_property
@@ -121,6 +146,41 @@ class Zones:
         if not self.no_go:
             return empty_index()
         return build_index(geojson.rings_of(list(self.no_go)), SIDE)
+
+    @cached_property
+    def eca_index(self) -> IndexArrays:
+        """The emission control areas for kernels: ``cube.inside(index, *unit_vector(lat, lon))``.
+
+        Kept on disk from run to run.
+        """
+        if not self.eca:
+            return empty_index()
+        rings = self.eca[0].rings
+        for zone in self.eca[1:]:
+            rings = rings.joined(zone.rings)
+        path = cache_folder("coast") / f"eca-{rings.fingerprint()}-{SIDE}-v1.npz"
+        return stored(path, lambda: build_index(rings, SIDE))
+
+    @cached_property
+    def _eca_outlines(self) -> IndexArrays:
+        return outlines_only(self.eca_index)
+
+    def eca_share(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> FloatArray:
+        """Return the share of the length of legs [deg] inside any emission control area."""
+        ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+        if not self.eca:
+            return np.where(np.isfinite(sum(ends)), 0.0, np.nan)
+        legs = [np.ascontiguousarray(x).ravel() for x in ends]
+        return shares_inside(self.eca_index, self._eca_outlines, *legs).reshape(ends[0].shape)
+
+    def in_eca(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
+        """Return which positions [deg] lie inside any emission control area."""
+        a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
+        if not self.eca:
+            return np.zeros(a.shape, np.bool_)
+        return points_inside(self.eca_index, a.ravel(), b.ravel()).reshape(a.shape)
 
     @cached_property
     def _groups(self) -> tuple[Group, Group]:
@@ -158,9 +218,11 @@ class Zones:
     def texts(self) -> list[str]:
         """Return everything as text, for a fingerprint."""
         pairs = [*self.penalty, ("price", 0.0), *self.price]
-        return [shape.wkb_hex for shape in self.no_go] + [
-            f"{getattr(shape, 'wkb_hex', shape)}*{factor}" for shape, factor in pairs
-        ]
+        return (
+            [shape.wkb_hex for shape in self.no_go]
+            + [f"{getattr(shape, 'wkb_hex', shape)}*{factor}" for shape, factor in pairs]
+            + [f"eca {zone.name} {zone.rings.fingerprint()}" for zone in self.eca]
+        )
 
 
 def _kind(properties: Mapping[str, Any]) -> str:
@@ -168,10 +230,12 @@ def _kind(properties: Mapping[str, Any]) -> str:
     plain = "".join(c for c in written.casefold() if c.isalnum())
     for ending in ("zone", "area", "factor"):
         plain = plain.removesuffix(ending)
+    if plain == "eca" and {"factor", "eca_factor", "price_factor"} & properties.keys():
+        return "price"
     if plain not in KINDS:
         raise InputError(
             f"A zone has the kind {written!r}." if written else "A zone has no kind.",
-            "Kinds are 'no-go', 'penalty' and 'price'.",
+            "Kinds are 'no-go', 'penalty' and 'price', and 'eca'.",
             "Give every feature the property kind.",
             value=written,
         )
@@ -180,6 +244,8 @@ def _kind(properties: Mapping[str, Any]) -> str:
 
 def _factor(kind: str, properties: Mapping[str, Any]) -> float:
     written = properties.get("factor", properties.get(f"{kind}_factor"))
+    if written is None and kind == "price":
+        written = properties.get("eca_factor")
     try:
         factor = float(written)  # type: ignore[arg-type]
     except (TypeError, ValueError):
