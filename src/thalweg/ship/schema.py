@@ -156,6 +156,7 @@ _WATER: Final = {
     "kinematic_viscosity_m2_s": Key(low=6e-7, high=2.2e-6),
 }
 _COSTS: Final = {
+    "hire_per_day": _not_negative(1e9),
     "per_week": _not_negative(1e9),
     "per_second_per_cubed_speed": _not_negative(1e6),
     "currency": Key("text"),
