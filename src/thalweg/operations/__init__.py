@@ -1,0 +1,1 @@
+"""Operations: work that repeats voyages between the same places, planned and measured."""

@@ -1,0 +1,103 @@
+"""``thalweg waiting``: tables, files and refusals."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from thalweg.cli.main import main
+
+ENDS = ["52.1,3.97", "52.1,4.26"]
+NEAP = [*ENDS, "--ship", "vox-olympia", "--north-sea", "neap", "--depart", "2026-01-01"]
+QUICK = ["--coast", "none", "--step", "20"]
+
+
+def test_json_tells_savings_and_break_even_powers(capsys):
+    assert main(["waiting", *NEAP, *QUICK, "--hotel-kw", "0", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    frame = pd.DataFrame(found["rows"])
+    assert found["trips"] == ["there", "back"] * 5
+    best = frame[frame.rule == "optimum"].groupby("start").saving_percent.max()
+    assert len(best) == 4 and (best > 4.0).all() and (best < 6.0).all()
+    by_rule = frame.groupby("rule").energy_kwh.min()
+    assert by_rule["optimum"] <= by_rule.min()
+    assert all(5.0 < kw < 200.0 for powers in found["break_even_kw"].values() for kw in powers)
+
+
+def test_the_hotel_load_of_the_ship_ends_all_waiting(capsys):
+    assert main(["waiting", *NEAP, *QUICK, "--starts", "1", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["hotel_power_kw"] == 327.1
+    rows = pd.DataFrame(found["rows"])
+    assert rows[rows.rule == "current"].saving_percent.max() <= 0.0
+    assert rows[rows.rule == "optimum"].saving_percent.max() < 0.01
+
+
+def test_files_and_the_table(tmp_path, capsys):
+    out = tmp_path / "study"
+    assert main(["waiting", *NEAP, *QUICK, "--cycles", "0", "--out", str(out)]) == 0
+    printed = capsys.readouterr().out
+    assert "optimum" in printed and "wrote" in printed
+    assert {p.name for p in out.iterdir()} == {"waiting.csv", "waiting.json", "waiting.png"}
+    frame = pd.read_csv(out / "waiting.csv")
+    assert set(frame.rule) == {"none", "current", "next trip", "optimum"}
+    assert (out / "waiting.png").stat().st_size > 20_000
+
+
+def test_a_sea_from_a_file_must_last_long_enough(tmp_path, capsys):
+    xr = pytest.importorskip("xarray")
+    times = np.datetime64("2026-01-01", "ns") + np.arange(30) * np.timedelta64(1, "h")
+    lat, lon = np.array([52.0, 52.2]), np.array([3.9, 4.3])
+    tide = 0.5 * np.sin(2 * np.pi * np.arange(30) / 12.42)[:, None, None] * np.ones((1, 2, 2))
+    data = {
+        name: (("time", "lat", "lon"), values, {"units": "m s-1", "standard_name": standard})
+        for name, values, standard in (
+            ("u", tide, "eastward_sea_water_velocity"),
+            ("v", 0.0 * tide, "northward_sea_water_velocity"),
+        )
+    }
+    data["h"] = (
+        ("lat", "lon"),
+        np.full((2, 2), 20.0),
+        {"units": "m", "standard_name": "sea_floor_depth_below_geoid"},
+    )
+    coords = {
+        "time": times,
+        "lat": ("lat", lat, {"units": "degrees_north", "standard_name": "latitude"}),
+        "lon": ("lon", lon, {"units": "degrees_east", "standard_name": "longitude"}),
+    }
+    path = tmp_path / "tide.nc"
+    xr.Dataset(data, coords).to_netcdf(path)
+    asked = [*ENDS, "--ship", "vox-olympia", "--sea", str(path), "--fill", "wind=0", "waves=0"]
+    asked += ["--depart", "2026-01-01T01:00Z", *QUICK]
+    assert main(["waiting", *asked, "--cycles", "1", "--most-wait", "6", "--json"]) == 0
+    rows = pd.DataFrame(json.loads(capsys.readouterr().out)["rows"])
+    assert rows.energy_kwh.notna().all()
+    assert main(["waiting", *asked, "--cycles", "3"]) == 3
+    assert "not known" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        (["--cycles", "-1"], "cycles"),
+        (["--most-wait", "-1"], "most-wait"),
+        (["--most-wait", "nan"], "most-wait"),
+        (["--starts", "0"], "starts"),
+        (["--hotel-kw", "-3"], "hotel-kw"),
+        (["--calm"], "Choose one"),
+        (["--step", "0"], "step"),
+    ],
+)
+def test_what_cannot_be_is_refused(wrong, told, capsys):
+    assert main(["waiting", *NEAP, "--coast", "none", *wrong]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_places(capsys):
+    asked = NEAP[2:]
+    assert main(["waiting", "52.1,3.97", "Rotterdam", *asked]) == 2
+    assert "not a position" in capsys.readouterr().err
+    assert main(["waiting", "52.1,3.97", "52.1,5.2", *asked]) == 2
+    assert "blocked" in capsys.readouterr().err

@@ -1,0 +1,173 @@
+"""Tables of one trip over all departures."""
+
+import numpy as np
+import pytest
+
+from thalweg.chart import Chart
+from thalweg.core.errors import CoverageError, InputError
+from thalweg.core.geodesy import distance
+from thalweg.operations.trips import TripTable, trip_table
+from thalweg.route import evaluate
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
+DEPTH = "sea_floor_depth_below_geoid"
+WEST_END, EAST_END = (52.0, 3.0), (52.0, 3.3)
+TIDE = 44700.0
+
+
+def sea_of(east=0.0, north=0.0, depth=20.0, **more):
+    def field(value):
+        return value if callable(value) else (lambda t, la, lo: value + 0.0 * la)
+
+    named = {EAST: field(east), NORTH: field(north), DEPTH: field(depth)}
+    return Sea.from_functions({**named, **more}).filled(wind=0.0, waves=0.0)
+
+
+def vox():
+    return Ship.load("vox-olympia")
+
+
+def test_still_water_takes_length_over_speed():
+    ship = vox()
+    table = trip_table(
+        [WEST_END, EAST_END],
+        ship=ship,
+        sea=sea_of(depth=1e4),
+        start=0.0,
+        period=TIDE,
+        step=TIDE / 4,
+    )
+    length = float(distance(*WEST_END, *EAST_END))
+    assert table.duration == pytest.approx(length / ship.speeds[-1], rel=1e-4)
+    assert table.energy == pytest.approx(3500e3 * table.duration, rel=2e-3)
+    assert table.current == pytest.approx(0.0, abs=1e-15)
+
+
+def test_a_tide_is_met_as_the_referee_meets_it():
+    ship = vox()
+    sea = sea_of(
+        lambda t, la, lo: 0.6 * np.sin(2 * np.pi * t / TIDE) + 0.0 * la,
+        lambda t, la, lo: 0.8 * np.cos(2 * np.pi * t / TIDE) + 0.0 * la,
+        depth=lambda t, la, lo: 20.0 - 30.0 * (lo - 3.0),
+    )
+    table = trip_table(
+        [WEST_END, EAST_END], ship=ship, sea=sea, start=0.0, period=TIDE, step=TIDE / 12
+    )
+    for depart, took in zip(table.times, table.duration):
+        route = evaluate([WEST_END, EAST_END], ship=ship, sea=sea, depart=depart)
+        assert took == pytest.approx(route.arrive - depart, abs=0.5)
+    sent = table.current
+    assert sent == pytest.approx(0.6 * np.sin(2 * np.pi * table.times / TIDE), abs=0.01)
+
+
+def test_a_bar_at_low_water_closes_departures():
+    level = {
+        "sea_surface_height_above_geopotential_datum": lambda t, la, lo: (
+            1.5 * np.sin(2 * np.pi * t / TIDE) + 0.0 * la
+        )
+    }
+    sea = sea_of(depth=6.0, **level)
+    table = trip_table(
+        [WEST_END, EAST_END],
+        ship=vox(),
+        sea=sea,
+        start=0.0,
+        period=TIDE,
+        step=TIDE / 60,
+        min_ukc=1.5,
+    )
+    start, end = table.times, table.times + np.where(np.isfinite(table.duration), table.duration, 0)
+    inside = [np.sin(2 * np.pi * t / TIDE) * 1.5 - 0.5 for t in (start, end)]
+    open_ = np.isfinite(table.duration)
+    assert open_.any() and not open_.all()
+    assert min(inside[0][open_].min(), inside[1][open_].min()) > -0.02
+    assert (table.steps[~open_] == -1).all() and (table.steps[open_] > 0).all()
+    finer = table.refined(3)
+    assert np.isfinite(finer.duration[::3]).tolist() == open_.tolist()
+
+
+def test_a_current_that_is_too_strong_is_no_departure_and_no_data_is_an_error():
+    ahead = trip_table(
+        [WEST_END, EAST_END], ship=vox(), sea=sea_of(east=-9.0), start=0.0, period=TIDE, step=TIDE
+    )
+    assert np.isposinf(ahead.duration).all() and np.isposinf(ahead.energy).all()
+    short = (
+        Sea.from_functions(
+            {n: (lambda t, la, lo: 0.0 * la) for n in (EAST, NORTH)}, period=(0.0, 3600.0)
+        )
+        + sea_of()
+    )
+    both = Sea.layered(
+        Sea.from_functions({DEPTH: lambda t, la, lo: 20.0 + 0.0 * la}, period=(0.0, 3600.0)),
+        Sea.from_functions({n: (lambda t, la, lo: 0.0 * la) for n in (EAST, NORTH)}),
+    ).filled(wind=0.0, waves=0.0)
+    assert short.sample([EAST], 1e6, *WEST_END)[EAST] == 0.0
+    with pytest.raises(CoverageError, match="not known"):
+        trip_table([WEST_END, EAST_END], ship=vox(), sea=both, start=0.0, end=7200.0, step=600.0)
+
+
+def test_charted_depth_counts():
+    chart = Chart.open_water(51.0, 53.0, 2.0, 5.0).with_depth(
+        lambda lat, lon: np.where(lon > 3.1, 5.5, 20.0)
+    )
+    sea = Sea.calm()
+    asked = {"ship": vox(), "sea": sea, "start": 0.0, "period": TIDE, "step": TIDE, "chart": chart}
+    assert np.isfinite(trip_table([WEST_END, EAST_END], **asked, min_ukc=0.4).duration).all()
+    assert np.isinf(trip_table([WEST_END, EAST_END], **asked, min_ukc=0.6).duration).all()
+
+
+def test_rudder_drag_slows_a_ship_that_crabs_and_only_then():
+    text = dict(vox().data)
+    dragged = Ship.from_dict({**text, "models": {**text["models"], "rudder": "schless_2023"}})
+    for north, slower in ((0.0, False), (1.0, True)):
+        plain, drag = (
+            trip_table(
+                [WEST_END, EAST_END],
+                ship=s,
+                sea=sea_of(north=north),
+                start=0.0,
+                period=TIDE,
+                step=TIDE,
+            ).duration[0]
+            for s in (vox(), dragged)
+        )
+        assert bool(drag > plain * 1.005) is slower
+        assert drag < plain * 1.03
+
+
+@pytest.mark.parametrize(
+    "window",
+    [
+        {},
+        {"end": 3600.0, "period": TIDE},
+        {"end": -5.0},
+        {"end": 3600.0, "step": 0.0},
+        {"end": 3600.0, "step": float("nan")},
+        {"period": 1e9, "step": 1.0},
+    ],
+)
+def test_windows_that_make_no_table_are_refused(window):
+    with pytest.raises(InputError):
+        trip_table([WEST_END, EAST_END], ship=vox(), sea=sea_of(), start=0.0, **window)
+
+
+def test_a_ship_without_power_is_refused():
+    with pytest.raises(InputError, match="power"):
+        trip_table(
+            [WEST_END, EAST_END], ship=Ship.simple(8.0), sea=Sea.calm(), start=0.0, period=TIDE
+        )
+
+
+def test_refining_keeps_what_was_sailed_and_is_smooth_between():
+    at = np.arange(100) / 100
+    wave = 1000.0 + 50.0 * np.sin(2 * np.pi * at)
+    table = TripTable("a", 0.0, 447.0, wave, 3.0 * wave, wave, periodic=True)
+    finer = table.refined(10)
+    assert len(finer) == 1000 and finer.step == pytest.approx(44.7)
+    assert finer.duration[::10] == pytest.approx(wave, rel=1e-12)
+    exact = 1000.0 + 50.0 * np.sin(2 * np.pi * np.arange(1000) / 1000)
+    assert np.abs(finer.duration - exact).max() < 1e-4
+    with pytest.raises(InputError):
+        table.refined(0)
