@@ -208,6 +208,38 @@ def guided_point_speed(
 
 
 @inlined
+def fuel_rate_known(sample, index, course, fuel, setting, static_depth, limits, needs, speed):
+    """Return (fuel rate [kg/s], ok) of a ship whose speed through water is known.
+
+    The heading follows from the course, the current across it and the speed, as in
+    `point_speed`; the limits are taken as kept. ``needs = axes_needed(fuel)``.
+    """
+    east, north = course
+    if needs == 0:
+        return sum_of_parts(fuel, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), setting)
+    current = (0.0, 0.0)
+    if index[CURRENT_EAST] >= 0 and index[CURRENT_NORTH] >= 0:
+        current = (sample[CURRENT_EAST], sample[CURRENT_NORTH])
+    depth, waves, wind, status = _conditions(sample, index, current, needs, static_depth, limits)
+    if status != OK:
+        return 0.0, False
+    wind_speed, wind_angle, wave_angle = 0.0, 0.0, 0.0
+    if needs & _WIND_AXES:
+        wind_speed = math.sqrt(wind[0] * wind[0] + wind[1] * wind[1])
+    if needs & _ANGLE_AXES:
+        sine = -(current[1] * east - current[0] * north) / speed
+        cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
+        head_east = east * cosine - north * sine
+        head_north = north * cosine + east * sine
+        if needs & (1 << AXIS_WIND_ANGLE):
+            wind_angle = bow_angle(head_east, head_north, wind[0], wind[1])
+        if needs & (1 << AXIS_WAVE_ANGLE):
+            wave_angle = bow_angle(head_east, head_north, waves[1], waves[2])
+    values = (wind_speed, wind_angle, waves[0], wave_angle, waves[3], depth)
+    return sum_of_parts(fuel, values, setting)
+
+
+@inlined
 def point_speed_known(
     sample, channel_index, east, north, table, setting, static_depth, limits, needs
 ):

@@ -4,17 +4,24 @@ from thalweg.search.bounds import Bound, direction_factor, lower_bound
 from thalweg.search.departure import best_departure
 from thalweg.search.earliest_arrival import earliest_arrival
 from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
+from thalweg.search.front import front
+from thalweg.search.front_points import Front, FrontPoint, FrontWork, cheapest
 from thalweg.search.result import SearchResult, SearchWork
 
 __all__ = [
     "Bound",
     "FifoReport",
+    "Front",
+    "FrontPoint",
+    "FrontWork",
     "SearchResult",
     "SearchWork",
     "best_departure",
+    "cheapest",
     "direction_factor",
     "earliest_arrival",
     "earliest_arrivals_with_waiting",
     "fifo_report",
+    "front",
     "lower_bound",
 ]

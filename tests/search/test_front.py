@@ -1,0 +1,350 @@
+"""The front of time against cost: real ways, brute force, laws of speed, refusals."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_network, make_table
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.search import cheapest, earliest_arrival, front
+from thalweg.search.front_ways import Way, sail_way
+from thalweg.search.front_world import Request, gather
+
+SPEEDS = np.array([4.0, 6.0, 8.0])
+STILL = {"current_east": 0.0, "current_north": 0.0}
+
+
+def ship(speeds=SPEEDS, per_cube=1e-3):
+    speeds = np.asarray(speeds, float)
+    return make_table(((), (), speeds)), make_table(((), (), per_cube * speeds**3))
+
+
+def search(network, fields, goal, latest, *, tables=None, **options):
+    table, fuel = ship() if tables is None else tables
+    options = {"limits": NO_LIMITS, "depart": 0.0, "start": 0, **options}
+    return front(network, fields, table, fuel, goal=goal, latest=latest, **options)
+
+
+def world_of(network, fields, latest, *, tables=None, wait=True, weight=1.0, **prices):
+    """Return what sails ways one by one, for brute force."""
+    table, fuel = ship() if tables is None else tables
+    weights = np.broadcast_to(np.asarray(weight, float), (network.n_edges,))
+    request = Request(
+        0, network.n_nodes - 1, 0.0, latest, np.arange(table.n_settings), weights,
+        prices.get("time_price", 0.0), prices.get("waiting_fuel", 0.0), wait,
+    )  # fmt: skip
+    return gather(
+        network, fields, table, fuel, request=request, limits=NO_LIMITS, top_speed=None
+    ), request
+
+
+def random_world(seed, *, columns=4, calm=False):
+    """Return a network without circles, in currents that change in time and place."""
+    rng = np.random.default_rng(seed)
+    n = 2 * columns
+    lat = np.repeat([0.0, 0.08], columns)[np.argsort(np.tile(np.arange(columns), 2))]
+    lon = 0.1 * (np.arange(n) // 2)
+    lat = 0.08 * (np.arange(n) % 2)
+    lat, lon = lat + 0.02 * rng.random(n), lon + 0.02 * rng.random(n)
+    edges = [(i, j) for i in range(n) for j in range(i + 1, min(i + 4, n)) if rng.random() < 0.8]
+    edges += [(i, i + 2) for i in range(n - 2) if (i, i + 2) not in edges]
+    network = make_network(lat, lon, sorted(set(edges)), pieces=2)
+    times = np.linspace(0.0, 60_000.0, 31)
+    strength = 0.0 if calm else 1.5
+    phase = 6.28 * rng.random((2, network.n_stations, 1))
+    flow = strength * np.sin(2 * np.pi * times / 25_000.0 + phase)
+    return network, make_fields(network, times, current_east=flow[0], current_north=flow[1])
+
+
+def all_paths(network, goal):
+    """Yield every way from node 0 to the goal of a network without circles, as edges."""
+    stack = [(0, ())]
+    while stack:
+        node, edges = stack.pop()
+        if node == goal:
+            yield edges
+            continue
+        for e in range(network.indptr[node], network.indptr[node + 1]):
+            stack.append((int(network.target[e]), (*edges, e)))
+
+
+def brute_force(network, fields, latest, *, pauses=(0.0,), **prices):
+    """Return (time, cost) of all ways, settings and pauses before edges."""
+    got, request = world_of(network, fields, latest, **prices)
+    found = []
+    for edges in all_paths(network, request.goal):
+        edges = np.array(edges)
+        states = np.append(got.tails[edges], request.goal)
+        for choice in itertools.product(range(len(request.settings)), repeat=len(edges)):
+            for pause in itertools.product(pauses, repeat=len(edges) if len(pauses) > 1 else 1):
+                point = _sail_pausing(got, request, states, edges, np.array(choice), pause)
+                if point is not None and point.time <= latest:
+                    found.append((point.time, point.cost))
+    return np.array(sorted(found))
+
+
+def _sail_pausing(got, request, states, edges, choices, pause):
+    leave = np.full(len(edges), -np.inf)
+    point = sail_way(got, request, Way(states, edges, choices, leave))
+    if point is None or not any(pause):
+        return point
+    for i, length in enumerate(pause):  # each pause begins upon the arrival found so far
+        leave[i] = point.path_arrive[i] + length if length else -np.inf
+        point = sail_way(got, request, Way(states, edges, choices, leave))
+        if point is None:
+            return None
+    return point
+
+
+def least(points, time):
+    """Return the least cost of (time, cost) rows up to a time."""
+    return points[points[:, 0] <= time * (1 + 1e-12), 1].min(initial=np.inf)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_front_is_that_of_brute_force_without_waiting(seed):
+    network, fields = random_world(seed)
+    latest = 16_000.0
+    found = search(network, fields, 7, latest, wait=False, bin_s=4.0, lower=False)
+    every = brute_force(network, fields, latest, wait=False)
+    assert len(found.points) > 8
+    for point in found.points:  # a real way beats no real way
+        assert point.cost >= least(every, point.time) * (1 - 1e-9)
+    for time, cost in every[np.minimum.accumulate(every[:, 1]) == every[:, 1]]:
+        reached = found.cost[found.time <= time + 3 * found.bin_s].min(initial=np.inf)
+        assert reached <= cost * (1 + 1e-3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_points_are_real_ways(seed):
+    network, fields = random_world(seed)
+    weight = 1.0 + np.arange(network.n_edges) / network.n_edges
+    prices = {"time_price": 0.01, "waiting_fuel": 0.02}
+    found = search(network, fields, 7, 20_000.0, bin_s=20.0, weight=weight, lower=False, **prices)
+    got, request = world_of(network, fields, 20_000.0, weight=weight, **prices)
+    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(got.tails, network.target))}
+    for point in found.points:
+        time, cost = 0.0, 0.0
+        for i, setting in enumerate(point.setting):
+            edge = pairs[int(point.path[i]), int(point.path[i + 1])]
+            pause = point.path_depart[i] - point.path_arrive[i]
+            leg = sail_way(
+                got,
+                request._replace(depart=point.path_depart[i]),
+                Way(
+                    point.path[i : i + 2],
+                    np.array([edge]),
+                    np.array([setting]),
+                    np.array([-np.inf]),
+                ),
+            )
+            time += pause + leg.time
+            cost += pause * 0.03 + leg.cost
+        assert point.path[0] == 0 and point.path[-1] == 7
+        assert point.time == pytest.approx(time, rel=1e-12)
+        assert point.cost == pytest.approx(cost, rel=1e-12)
+        assert point.arrive == pytest.approx(point.time)
+    assert np.all(np.diff(found.time) > 0.0) and np.all(np.diff(found.cost) < 0.0)
+
+
+def test_legs_are_those_of_the_earliest_arrival():
+    network, fields = random_world(5)
+    table, _ = ship()
+    fastest = earliest_arrival(
+        network, fields, table,
+        start=0, goal=7, depart=0.0, setting=2, limits=NO_LIMITS, top_speed=8.0,
+    )  # fmt: skip
+    found = search(network, fields, 7, 20_000.0, lower=False)
+    assert found.fastest.time == pytest.approx(fastest.duration, rel=1e-12)
+    again, request = world_of(network, fields, 20_000.0)
+    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(again.tails, network.target))}
+    edges = np.array([pairs[a, b] for a, b in itertools.pairwise(fastest.path.tolist())])
+    leave = np.where(fastest.path_depart > fastest.path_arrive, fastest.path_depart, -np.inf)[:-1]
+    way = Way(fastest.path, edges, np.full(len(edges), 2), leave)
+    assert sail_way(again, request, way).path_arrive == pytest.approx(
+        fastest.path_arrive, rel=1e-14
+    )
+
+
+KNOT = 1852.0 / 3600.0
+
+
+def chain_of(distances_nm, currents_kn, parts):
+    """Return stretches with a current each, joined by edges of one metre."""
+    lengths, flow = [], []
+    for distance, current in zip(distances_nm, currents_kn):
+        lengths += [*[distance * 1852.0 / parts] * parts, 1.0]
+        flow += [current * KNOT] * (parts + 1)
+    lengths = np.array(lengths[:-1])
+    n = len(flow)
+    lon = np.concatenate(([0.0], np.cumsum(lengths))) / 111319.490793
+    network = make_network(np.zeros(n), lon, [(i, i + 1) for i in range(n - 1)], length=lengths)
+    flow = np.array(flow)[:, None] * np.ones(2)
+    return network, make_fields(network, [0.0, 1e6], current_east=flow, current_north=0.0)
+
+
+@pytest.mark.parametrize(
+    ("distances", "currents", "hours", "speeds", "fuel"),
+    [
+        ((100, 100), (2, -2), 16, (11.574586, 13.583066), 33058.9008),
+        ((100, 100), (2, -2), 20, (9.091126, 11.104332), 21813.8565),
+        ((120, 60, 90), (1.5, -1, 0), 20, (12.566179, 13.794702, 13.275398), 45099.6158),
+    ],
+)
+def test_cubic_law(distances, currents, hours, speeds, fuel):
+    """With fuel k V^3, 2 V^3 + 3 w V^2 is the same on every stretch; both within 0.05 %."""
+    parts = 4
+    network, fields = chain_of(distances, currents, parts)
+    offered = np.concatenate([np.arange(s - 0.06, s + 0.06, 0.002) for s in sorted(speeds)])
+    tables = ship(offered * KNOT, per_cube=1.0 / KNOT**3 / 3600.0)
+    found = search(
+        network, fields, network.n_nodes - 1, hours * 3600.0 * 1.001,
+        tables=tables, lower=False, bin_s=1.0,
+    )  # fmt: skip
+    assert cheapest(found, hours * 3600.0).cost == pytest.approx(fuel, rel=5e-4)
+    near = [p for p in found.points if abs(p.time / 3600.0 / hours - 1) < 1e-3]
+    for k, speed in enumerate(speeds):
+        stretch = slice(k * (parts + 1), k * (parts + 1) + parts)
+        used = [offered[p.setting[stretch]].mean() for p in near]
+        assert np.mean(used) == pytest.approx(speed, rel=5e-4)
+
+
+@pytest.mark.parametrize("head", [2.0, 4.0])
+def test_speed_against_a_head_current(head):
+    """Without a limit of time the cheapest speed against a current h is 1.5 h."""
+    network, fields = chain_of((50,), (-head,), 2)
+    offered = np.arange(1.2 * head, 2.0 * head, 0.005)
+    tables = ship(offered * KNOT, per_cube=1.0)
+    latest = 3600.0 * 50 / (0.25 * head)
+    found = search(network, fields, 2, latest, tables=tables, lower=False)
+    assert offered[found.cheapest.setting] == pytest.approx(1.5 * head, abs=0.006)
+
+
+def test_canals_take_their_time_and_fee_at_the_speed_they_need():
+    network = line(4, 20_000.0)
+    fixed, fee = np.full(network.n_edges, np.nan), np.zeros(network.n_edges)
+    canal = int(network.indptr[1]) + int(np.argmax(network.target[network.indptr[1] :] == 2))
+    fixed[canal], fee[canal] = 20_000.0 / 5.0, 40.0
+    network = replace(network, fixed_time=fixed, fee=fee)
+    fields = make_fields(network, [0.0, 1e6], **STILL)
+    found = search(network, fields, 3, 20_000.0)
+    for point in found.points:
+        assert point.setting[1] == 1  # 6 m/s is the slowest that keeps 5 m/s
+        assert point.path_arrive[2] - point.path_depart[1] == pytest.approx(4000.0)
+    best = found.cheapest
+    assert best.cost == pytest.approx(40.0 + 4000.0 * 0.216 + 10_000.0 * 0.064, rel=1e-6)
+
+
+def test_waiting_for_a_fair_current_saves_fuel():
+    """The current turns fair at half the time; the ship that may wait does."""
+    network = line(3, 20_000.0)
+    times = np.arange(0.0, 90_001.0, 1000.0)
+    flow = np.where(times < 30_000.0, -2.0, 2.0)[None, :] * np.ones((3, 1))
+    fields = make_fields(network, times, current_east=flow, current_north=0.0)
+    waited = search(network, fields, 2, 60_000.0, lower=False)
+    at_once = search(network, fields, 2, 60_000.0, lower=False, wait=False)
+    best = waited.cheapest
+    assert best.path_depart[0] == pytest.approx(30_000.0, abs=1000.0)
+    assert best.cost == pytest.approx(0.064 * 40_000.0 / 6.0, rel=2e-3)
+    assert all(point.waiting == 0.0 for point in at_once.points)
+    assert at_once.cheapest.cost > 1.2 * best.cost
+    dear = search(network, fields, 2, 60_000.0, lower=False, waiting_fuel=0.064)
+    assert dear.cheapest.waiting < 1000.0
+
+
+def test_a_bar_is_passed_when_the_tide_allows():
+    network = line(4, 10_000.0, depth=5.0)
+    times = np.arange(0.0, 100_001.0, 600.0)
+    level = 2.0 * np.sin(2 * np.pi * (times - 20_000.0) / 44_712.0)
+    fields = make_fields(
+        network, times, water_level=level[None, :] * np.array([[5.0], [5.0], [1.0], [5.0]]) + 0.0,
+        **STILL,
+    )  # fmt: skip
+    found = search(network, fields, 3, 60_000.0, limits=limits(depth=6.0), lower=False)
+    table, _ = ship()
+    fastest = earliest_arrival(
+        network, fields, table,
+        start=0, goal=3, depart=0.0, setting=2, limits=limits(depth=6.0), top_speed=8.0,
+    )  # fmt: skip
+    assert found.fastest.time == pytest.approx(fastest.duration, abs=1e-6)
+    open_from = 20_000.0 + 44_712.0 * np.arcsin(0.5) / (2 * np.pi)
+    for point in found.points:  # the bar, node 2, is reached and left at high water
+        assert point.path_arrive[2] >= open_from - 5.0
+    assert set(found.cheapest.setting) == {0}
+    assert found.cheapest.cost == pytest.approx(0.064 * 30_000.0 / 4.0)
+
+
+def test_the_same_twice():
+    network, fields = random_world(8)
+    one, two = (search(network, fields, 7, 20_000.0, lower=False) for _ in range(2))
+    assert one.time.tolist() == two.time.tolist() and one.cost.tolist() == two.cost.tolist()
+    assert all(np.array_equal(a.path, b.path) for a, b in zip(one.points, two.points))
+
+
+def test_choosing_from_a_front():
+    network, fields = random_world(1)
+    found = search(network, fields, 7, 20_000.0, lower=False)
+    assert cheapest(found) is found.cheapest is found.points[-1]
+    middle = found.points[len(found.points) // 2]
+    assert cheapest(found, middle.arrive) is middle
+    assert found.fastest.cost > found.knee().cost > found.cheapest.cost
+    few = found.spread(5)
+    assert 2 < len(few) <= 5 and few[0] is found.fastest and few[-1] is found.cheapest
+    with pytest.raises(InputError, match="earliest arrival") as caught:
+        cheapest(found, found.fastest.arrive - 1.0)
+    assert caught.value.details["earliest"] == found.fastest.arrive
+
+
+def test_too_late_says_the_earliest_arrival():
+    network = line(3, 20_000.0)
+    fields = make_fields(network, [0.0, 1e6], **STILL)
+    with pytest.raises(InputError, match="earliest arrival is 5000 s") as caught:
+        search(network, fields, 2, 4000.0)
+    assert caught.value.details["earliest"] == pytest.approx(5000.0)
+
+
+def test_memory_is_told_before_it_is_taken():
+    network, fields = random_world(1)
+    with pytest.raises(InputError, match="GB of memory") as caught:
+        search(network, fields, 7, 50_000.0, bin_s=0.01, memory_limit=1e6)
+    assert caught.value.details["memory"] > 1e6
+    fitting = search(network, fields, 7, 20_000.0, lower=False, memory_limit=1e5)
+    free = search(network, fields, 7, 20_000.0, lower=False)
+    assert fitting.bin_s > free.bin_s and fitting.work.memory <= 1e5
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"latest": -1.0}, "not after the departure"),
+        ({"settings": [0, 3]}, "not all the ship's"),
+        ({"goal": 99}, "no way from node"),
+        ({"weight": -1.0}, "weight of fuel"),
+        ({"time_price": -1.0}, "price of time"),
+        ({"waiting_fuel": np.nan}, "price of waiting"),
+        ({"bin_s": 0.0}, "bins"),
+    ],
+)
+def test_bad_requests(wrong, words):
+    network = line(3, 20_000.0)
+    fields = make_fields(network, [0.0, 1e6], **STILL)
+    with pytest.raises(InputError, match=words):
+        search(network, fields, **{"goal": 2, "latest": 20_000.0, **wrong})
+
+
+def test_no_way_gives_the_reasons():
+    network = line(3, 20_000.0, depth=5.0)
+    fields = make_fields(network, [0.0, 1e6], **STILL)
+    with pytest.raises(NoRouteError, match="under-keel clearance"):
+        search(network, fields, 2, 1e5, limits=limits(depth=6.0))
+
+
+def test_settings_can_be_chosen():
+    network = grid(3, 4)
+    fields = make_fields(network, [0.0, 1e6], **STILL)
+    found = search(network, fields, 11, 20_000.0, settings=[0, 2])
+    assert {int(s) for p in found.points for s in p.setting} == {0, 2}

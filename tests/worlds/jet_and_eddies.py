@@ -1,0 +1,158 @@
+"""A meandering jet, two moving eddies and a tide on a plane of 500 x 500 nm, shrunk 100 times.
+
+Lengths and times are shrunk by the same factor, so speeds stay and fuel is divided by it; laid on
+the equator the case is planar to about 1e-5. Helpers speak of the case in its own units (nm, h, kn,
+t) unless they say otherwise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.search.small import make_table
+from thalweg import Sea
+from thalweg.kernels import codes
+from thalweg.kernels.tables import TableArrays
+from thalweg.network.network import Network, NetworkMeta
+from thalweg.sea.fields import StationFields
+
+SHRINK = 100.0
+KNOT = 1852.0 / 3600.0
+NM = 1852.0 / SHRINK  # [m] of the shrunk case
+HOUR = 3600.0 / SHRINK  # [s] of the shrunk case
+M_PER_LON, M_PER_LAT = 111319.490793, 110574.2759
+SIDE, START, GOAL, LATEST = 500.0, (100.0, 200.0), (400.0, 300.0), 32.0
+T0 = 1_767_225_600.0
+
+# Seuren (2020), table 5.3: speed [kn], fuel [t/day]
+SPEEDS = np.array([8.8, 9.5, 9.9, 10.3, 10.6, 10.8, 14.1, 14.3, 14.5, 14.8, 15.0, 15.2])
+FUEL = np.array([14.3, 15.5, 16.4, 17.6, 18.9, 20.1, 28.9, 30.3, 32.0, 34.4, 36.8, 39.0])
+
+
+def current(t, x, y):
+    """Return (u, v) [kn] at t [h], (x, y) [nm]."""
+    phase = 2 * np.pi * (x / 320.0 - t / 260.0)
+    axis, slope = 250.0 + 45.0 * np.sin(phase), 45.0 * (2 * np.pi / 320.0) * np.cos(phase)
+    jet = 2.6 * np.exp(-(((y - axis) / 28.0) ** 2) / 2) / np.sqrt(1 + slope**2)
+    u, v = jet, jet * slope
+    for k in (0, 1):
+        turn = 0.045 * (1 - 2 * k)
+        cx, cy = 160.0 + 180.0 * k + 0.6 * t * (1 - 2 * k), 330.0 - 170.0 * k
+        e = np.exp(-((x - cx) ** 2 + (y - cy) ** 2) / (2 * 55.0**2))
+        u, v = u - turn * (y - cy) * e, v + turn * (x - cx) * e
+    tide = 0.5 * np.cos(2 * np.pi * t / 12.42)
+    return u + 0.6 * tide, v + 0.8 * tide
+
+
+def position(x, y):
+    """Return (lat, lon) [deg] of (x, y) [nm]."""
+    return np.asarray(y) * NM / M_PER_LAT, np.asarray(x) * NM / M_PER_LON
+
+
+def xy(lat, lon):
+    """Return (x, y) [nm] of positions [deg]."""
+    return np.asarray(lon) * M_PER_LON / NM, np.asarray(lat) * M_PER_LAT / NM
+
+
+def sea() -> Sea:
+    """Return the current as a sea, in shrunk time and space."""
+
+    def component(k):
+        def value(time_s, lat, lon):
+            x, y = xy(lat, lon)
+            return KNOT * current((np.asarray(time_s) - T0) / HOUR, x, y)[k]
+
+        return value
+
+    return Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": component(0),
+            "northward_sea_water_velocity": component(1),
+        },
+        time_step=HOUR / 3.0,
+    )
+
+
+def tables() -> tuple[TableArrays, TableArrays]:
+    """Return the tables of speed [m/s] and fuel rate [kg/s]; of these only the time is shrunk."""
+    return make_table(((), (), SPEEDS * KNOT)), make_table(((), (), FUEL * 1000.0 / 86400.0))
+
+
+def tonnes(fuel_kg: float) -> float:
+    """Return the fuel of the case [t] for that of the shrunk one [kg]."""
+    return fuel_kg * SHRINK / 1000.0
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A square grid of the case with all coprime offsets within a reach."""
+
+    spacing: float = 5.0
+    reach: int = 3
+
+    @property
+    def side(self) -> int:
+        return round(SIDE / self.spacing) + 1
+
+    def node(self, place) -> int:
+        return round(place[0] / self.spacing) + self.side * round(place[1] / self.spacing)
+
+    def offsets(self) -> list[tuple[int, int]]:
+        steps = range(-self.reach, self.reach + 1)
+        return [(i, j) for i in steps for j in steps if np.gcd(i, j) == 1]
+
+    def network(self) -> Network:
+        """Return the network; edges are sampled where they cross lines of the grid."""
+        side, offsets = self.side, self.offsets()
+        row, column = np.divmod(np.arange(side * side), side)
+        i, j = (np.array(part)[None, :] for part in zip(*offsets))
+        inside = (row[:, None] + i >= 0) & (row[:, None] + i < side)
+        inside &= (column[:, None] + j >= 0) & (column[:, None] + j < side)
+        tail, which = np.nonzero(inside)
+        di, dj = i[0, which], j[0, which]
+        samples = np.maximum(abs(di), abs(dj)) - 1
+        via = np.repeat(np.arange(len(tail)), samples)
+        nth = np.arange(len(via)) - np.repeat(np.cumsum(samples) - samples, samples) + 1
+        s = nth / (samples[via] + 1)
+        y, x = row[tail[via]] + s * di[via], column[tail[via]] + s * dj[via]
+        upright = abs(di[via]) >= abs(dj[via])  # crosses rows: between two neighbours of a row
+        y0 = np.where(upright, np.round(y), np.floor(y)).astype(np.int64)
+        x0 = np.where(upright, np.floor(x), np.round(x)).astype(np.int64)
+        a = x0 + side * y0
+        b = np.where(upright, x0 + 1 + side * y0, x0 + side * (y0 + 1))
+        lat, lon = position(self.spacing * column, self.spacing * row)
+        lat, lon = position(self.spacing * column, self.spacing * row)
+        length = self.spacing * NM * np.hypot(di, dj)
+        edges = len(tail)
+        return Network(
+            station_lat=np.ascontiguousarray(lat, float),
+            station_lon=np.ascontiguousarray(lon, float),
+            n_nodes=side * side,
+            indptr=np.searchsorted(tail, np.arange(side * side + 1)).astype(np.int64),
+            target=(tail + di * side + dj).astype(np.int32),
+            length=length,
+            course=(np.arctan2(dj, di) % (2 * np.pi)).astype(np.float32),
+            depth=np.full(edges, np.inf, np.float32),
+            factor=np.ones(edges, np.float32),
+            price=np.ones(edges, np.float32),
+            via_ptr=np.concatenate(([0], np.cumsum(samples))).astype(np.int64),
+            via_a=a.astype(np.int32),
+            via_b=np.where((upright & (x == x0)) | (~upright & (y == y0)), a, b).astype(np.int32),
+            via_w=np.where(upright, x - x0, y - y0).astype(np.float32),
+            via_s=s.astype(np.float32),
+            can_wait=np.ones(side * side, bool),
+            meta=NetworkMeta("square", self.spacing * NM, len(offsets), 0.3),
+        )
+
+
+def freeze(network: Network, step_h: float = 1.0 / 3.0) -> StationFields:
+    """Return the current at the nodes, every ``step_h`` [h]."""
+    hours = np.arange(0.0, LATEST + 6.0, step_h)
+    x, y = xy(network.station_lat, network.station_lon)
+    u, v = current(hours[None, :], x[:, None], y[:, None])
+    index = np.full(codes.CHANNELS, -1, np.int64)
+    index[[codes.CURRENT_EAST, codes.CURRENT_NORTH]] = 0, 1
+    values = np.ascontiguousarray(KNOT * np.stack([u, v], axis=-1), np.float32)
+    return StationFields(T0 + HOUR * hours, values, index)
