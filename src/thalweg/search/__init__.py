@@ -6,6 +6,7 @@ from thalweg.search.earliest_arrival import earliest_arrival
 from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
 from thalweg.search.front import front
 from thalweg.search.front_points import Front, FrontPoint, FrontWork, cheapest
+from thalweg.search.profile import Passage, Passages, Profile, Waters
 from thalweg.search.result import SearchResult, SearchWork
 
 __all__ = [
@@ -14,8 +15,12 @@ __all__ = [
     "Front",
     "FrontPoint",
     "FrontWork",
+    "Passage",
+    "Passages",
+    "Profile",
     "SearchResult",
     "SearchWork",
+    "Waters",
     "best_departure",
     "cheapest",
     "direction_factor",

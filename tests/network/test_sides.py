@@ -1,0 +1,60 @@
+"""Samples on the sides of triangles: they lie on their edges and tell a linear field exactly."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart
+from thalweg.network import check_network
+from thalweg.network.mesh import mesh
+from thalweg.network.sides import least_over, sampled_on_sides
+
+
+@pytest.fixture(scope="module")
+def network():
+    draw = np.random.default_rng(4)
+    lat, lon = 52.0 + draw.uniform(0.0, 0.2, 400), 3.0 + draw.uniform(0.0, 0.3, 400)
+    return sampled_on_sides(mesh(Chart.open_water(51.9, 52.3, 2.9, 3.4), lat, lon, rings=3))
+
+
+def test_it_is_a_sound_network_whose_stations_are_its_nodes(network):
+    check_network(network, sample=network.n_edges)
+    assert network.n_stations == network.n_nodes
+    assert len(network.via_a) > network.n_edges / 2
+
+
+def test_samples_lie_on_their_edges(network):
+    tails = network.tails()
+    of = np.repeat(np.arange(network.n_edges), np.diff(network.via_ptr))
+    w, s = network.via_w.astype(float), network.via_s.astype(float)
+    for values in (network.lat, network.lon):
+        sampled = (1 - w) * values[network.via_a] + w * values[network.via_b]
+        straight = (1 - s) * values[tails[of]] + s * values[network.target[of]]
+        assert sampled == pytest.approx(
+            straight, abs=1e-4
+        )  # 11 m; Mercator against degrees on 10 km
+
+
+def test_every_crossing_is_of_a_side(network):
+    """Nodes joined by the sample are neighbours: a ring-1 edge crosses none."""
+    pairs = set(zip(network.tails().tolist(), network.target.tolist()))
+    assert all(pair in pairs for pair in zip(network.via_a.tolist(), network.via_b.tolist()))
+
+
+def test_least_along_an_edge_is_found_inside(network):
+    depth = np.full(network.n_nodes, 10.0)
+    depth[7] = 2.0
+    least = least_over(network, depth)
+    tails = network.tails()
+    ends = np.minimum(depth[tails], depth[network.target])
+    assert np.all(least <= ends)
+    touched = (tails != 7) & (network.target != 7) & (least < 9.0)
+    assert touched.any()  # edges that pass near the shoal feel it
+
+
+def test_edges_and_lengths_stay(network):
+    draw = np.random.default_rng(4)
+    lat, lon = 52.0 + draw.uniform(0.0, 0.2, 400), 3.0 + draw.uniform(0.0, 0.3, 400)
+    plain = mesh(Chart.open_water(51.9, 52.3, 2.9, 3.4), lat, lon, rings=3)
+    assert np.array_equal(plain.target, network.target)
+    assert np.array_equal(plain.length, network.length)
+    assert plain.n_stations > 10 * network.n_stations

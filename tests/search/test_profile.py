@@ -1,0 +1,174 @@
+"""Profile search: the same answers as separate searches, for every departure."""
+
+import numpy as np
+import pytest
+
+from tests.search.small import NO_LIMITS, limits, make_fields, make_network, steady
+from thalweg.core.errors import InputError
+from thalweg.core.time import parse_time
+from thalweg.kernels import codes
+from thalweg.kernels.profile import SECTORS
+from thalweg.network.mesh import mesh
+from thalweg.network.sides import sampled_on_sides
+from thalweg.operations.estuary import synthetic_estuary
+from thalweg.search import earliest_arrival
+from thalweg.search.profile import Waters
+from thalweg.ship import Ship
+
+T0 = parse_time("2026-06-01T00:00Z")
+CHANNELS = (codes.CURRENT_EAST, codes.CURRENT_NORTH, codes.WATER_LEVEL)
+
+
+@pytest.fixture(scope="module")
+def world():
+    estuary = synthetic_estuary(1200.0)
+    nodes = estuary.sea.mesh()
+    lat = np.concatenate([[estuary.load[0], estuary.unload[0]], nodes.lat])
+    lon = np.concatenate([[estuary.load[1], estuary.unload[1]], nodes.lon])
+    network = sampled_on_sides(mesh(estuary.chart, lat, lon, rings=2))
+    fields = estuary.sea.freeze_stations(
+        network.station_lat, network.station_lon, T0, T0 + 36 * 3600.0, CHANNELS
+    )
+    return network, fields
+
+
+@pytest.fixture(scope="module")
+def dredger():
+    data = dict(Ship.load("hopper-dredger").data)
+    return Ship.from_dict({**data, "models": {"squat": "van_halem_2019"}})
+
+
+def ask(ship, load_factor, **more):
+    loaded = ship.with_load_factor(load_factor)
+    return {
+        "table": loaded.tabulate(),
+        "setting": 0,
+        "limits": np.array([loaded.draught + 1.0, np.inf, np.inf]),
+        "top_speed": loaded.top_speed(0),
+        **more,
+    }
+
+
+def separately(world, depart, *, start, goal, table, **more):
+    network, fields = world
+    return earliest_arrival(network, fields, table, start=start, goal=goal, depart=depart, **more)
+
+
+@pytest.mark.parametrize(("load_factor", "start", "goal"), [(1.0, 0, 1), (0.6, 0, 1), (0.0, 1, 0)])
+def test_every_departure_has_the_answer_of_a_separate_search(
+    world, dredger, load_factor, start, goal
+):
+    asked = ask(dredger, load_factor, start=start, goal=goal)
+    table = asked.pop("table")
+    passages = Waters.prepare(*world).passages(table, **asked)
+    departures = T0 + 3600.0 * np.array([0.5, 3.0, 5.25, 7.0, 9.1, 11.0, 13.3, 16.0, 19.0, 22.0])
+    waited = 0
+    for depart in departures:
+        one = separately(world, depart, table=table, **asked)
+        found = passages.sail(depart)
+        assert found.found == one.found
+        assert found.arrive == pytest.approx(one.arrive, abs=1e-6)
+        # the path arrives when it says, by its own waits
+        assert np.all(np.diff(found.node_arrive) > 0)
+        assert np.all(found.node_depart >= found.node_arrive - 1e-9)
+        waited += found.waiting > 600.0
+    assert load_factor < 1.0 or waited >= 2  # a full ship meets closed tides in this world
+
+
+def test_all_departures_at_once_are_those_one_by_one(world, dredger):
+    asked = ask(dredger, 1.0, start=0, goal=1)
+    passages = Waters.prepare(*world).passages(asked.pop("table"), **asked)
+    departures = T0 + 600.0 * np.arange(0, 150)
+    profile = passages.profile(departures)
+    one_by_one = np.array([passages.sail(t).arrive for t in departures])
+    assert np.array_equal(profile.departures, departures)
+    # who waits for the same opening arrives together, and openings are found to 0.1 s
+    assert profile.arrivals == pytest.approx(one_by_one, abs=0.26)
+    # who leaves later arrives later, but for departures between the times of the data, at which a
+    # ship that waits leaves (see `wait_for_edge`)
+    assert np.all(np.diff(profile.arrivals) >= -30.0)
+    assert profile.searched < len(departures)  # plateaus of waiting are not searched
+    for passage in profile.passages:
+        assert passage.node_arrive[0] == passage.depart
+        assert passage.arrive == passage.node_arrive[-1]
+
+
+def test_waiting_forbidden_is_never_waited(world, dredger):
+    asked = ask(dredger, 0.6, start=0, goal=1, wait=False)
+    table = asked.pop("table")
+    passages = Waters.prepare(*world).passages(table, **asked)
+    for depart in T0 + 3600.0 * np.array([1.0, 6.0, 12.0]):
+        one = separately(world, depart, table=table, **asked)
+        found = passages.sail(depart)
+        assert found.arrive == pytest.approx(one.arrive, abs=1e-6)
+        assert found.waiting == 0.0
+
+
+def test_a_known_arrival_changes_nothing(world, dredger):
+    asked = ask(dredger, 1.0, start=0, goal=1)
+    passages = Waters.prepare(*world).passages(asked.pop("table"), **asked)
+    depart = T0 + 4.0 * 3600.0
+    free = passages.sail(depart)
+    for known in (free.arrive, free.arrive + 3600.0, free.arrive - 1200.0):  # even a wrong one
+        assert passages.sail(depart, known=known).arrive == free.arrive
+
+
+def test_bounds_are_below_every_passage(world, dredger):
+    waters = Waters.prepare(*world)
+    for load_factor in (0.0, 1.0):
+        asked = ask(dredger, load_factor, start=0, goal=1)
+        passages = waters.passages(asked.pop("table"), **asked)
+        for depart in T0 + 3600.0 * np.array([2.0, 8.0, 14.0]):
+            found = passages.sail(depart)
+            to_go = found.arrive - found.node_arrive
+            assert np.all(passages.ahead.node[found.nodes] <= to_go + 1e-6)
+
+
+def test_strongest_currents_bound_every_direction(world):
+    waters = Waters.prepare(*world)
+    values, index = waters.sea.values, waters.sea.channel_index
+    u, v = values[:, :, index[codes.CURRENT_EAST]], values[:, :, index[codes.CURRENT_NORTH]]
+    angle = 2.0 * np.pi * np.arange(SECTORS) / SECTORS
+    for k, a in enumerate(angle):
+        truth = (np.sin(a) * u + np.cos(a) * v).max(axis=1)
+        assert np.all(waters.strongest[:, k] >= truth - 1e-6)
+        assert np.all(waters.strongest[:, k] <= truth + 1e-4)
+
+
+def test_penalties_count_as_in_separate_searches():
+    lat, lon = [0.0, 0.05, 0.0, -0.05], [0.0, 0.05, 0.1, 0.05]
+    edges = [(0, 1), (1, 2), (0, 3), (3, 2)]
+    network = make_network(lat, lon, edges, factor=[3.0, 1.0, 1.0, 1.0], pieces=3)
+    fields = make_fields(network, T0 + 3600.0 * np.arange(10), CURRENT_EAST=0.5, CURRENT_NORTH=0.2)
+    table = steady(4.0)
+    asked = {"start": 0, "goal": 2, "setting": 0, "limits": NO_LIMITS, "top_speed": 4.0}
+    found = Waters.prepare(network, fields).passages(table, **asked).sail(T0 + 60.0)
+    one = earliest_arrival(network, fields, table, depart=T0 + 60.0, **asked)
+    assert found.nodes.tolist() == one.path.tolist() == [0, 3, 2]
+    assert found.arrive == pytest.approx(one.arrive, abs=1e-9)
+
+
+def test_a_way_no_tide_opens_is_known_before_searching():
+    network = make_network([0.0, 0.0], [0.0, 0.1], [(0, 1)], depth=5.0)
+    fields = make_fields(network, T0 + 600.0 * np.arange(20), WATER_LEVEL=0.5)
+    asked = {"start": 0, "goal": 1, "setting": 0, "top_speed": 4.0}
+    waters = Waters.prepare(network, fields)
+    shut = waters.passages(steady(4.0), limits=limits(depth=6.0), **asked)
+    assert shut.shortest == np.inf
+    assert not shut.sail(T0).found
+    assert waters.passages(steady(4.0), limits=limits(depth=5.4), **asked).sail(T0).found
+
+
+def test_bad_questions():
+    network = make_network([0.0, 0.0], [0.0, 0.1], [(0, 1)])
+    fields = make_fields(network, T0 + 600.0 * np.arange(20), CURRENT_EAST=0.0, CURRENT_NORTH=0.0)
+    waters = Waters.prepare(network, fields)
+    asked = {"setting": 0, "limits": NO_LIMITS, "top_speed": 4.0}
+    with pytest.raises(InputError, match="no passages from node 0 to node 0"):
+        waters.passages(steady(4.0), start=0, goal=0, **asked)
+    passages = waters.passages(steady(4.0), start=0, goal=1, **asked)
+    with pytest.raises(InputError, match="do not ascend"):
+        passages.profile([T0 + 60.0, T0])
+    other = make_network([0.0, 0.0, 0.0], [0.0, 0.1, 0.2], [(0, 1)])
+    with pytest.raises(InputError, match="stations"):
+        Waters.prepare(other, fields)
