@@ -1,12 +1,17 @@
 """Performance tables: look-up, sums of parts, errors, and agreement with the kernels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
 from thalweg.kernels.tables import table_value
 from thalweg.ship import PerformanceTable, TableError, TablePart
+from thalweg.ship.finish import Finish
 from thalweg.ship.tabulate import Axis, tabulate_dense
 
 NO_ERROR = TableError(0.0, 0.0, 0.0)
@@ -171,3 +176,73 @@ def test_a_table_of_one_setting_gives_the_same_numbers():
     alone = _affine_table().at_setting(1)
     assert alone.settings.tolist() == [6.0]
     assert alone.lookup(where, 0) == pytest.approx(_affine_table().lookup(where, 1))
+
+
+def _crossing():
+    """Wind asks for 2 x (1 + v), waves for 3 Hs^2; three settings can spare (4, 8, 12) - 4 v."""
+    wind, angle, speeds = np.linspace(0, 10, 3), np.linspace(0, np.pi, 3), np.linspace(0, 4, 5)
+    blown = 2.0 * wind[:, None] * (1.0 + speeds)
+    rough = np.full((3, 5), 3.0)
+    parts = (
+        TablePart((0,), (wind,), blown),
+        TablePart((3,), (angle,), rough, 2.0),
+    )
+    fine = np.linspace(0.0, 4.0, 33)
+    spare = np.array([4.0, 8.0, 12.0])[:, None] - 4.0 * fine
+    calm = np.array([1.0, 2.0, 3.0])
+    finish = Finish(
+        "crossing", np.zeros(3), np.full(3, 0.125), spare, np.full(3, 3.5), calm.astype(int)
+    )
+    return PerformanceTable(parts, calm, "crossing", NO_ERROR, finish)
+
+
+@given(st.floats(0, 10), st.floats(0, np.pi), st.floats(0, 2), st.integers(0, 2))
+def test_a_crossing_is_where_the_sum_meets_the_curve(wind, angle, height, setting):
+    """2 w (1 + v) + 3 Hs^2 = p - 4 v, so v = (p - 2 w - 3 Hs^2) / (4 + 2 w), not below 0."""
+    table = _crossing()
+    power = 4.0 * (setting + 1)
+    expected = max((power - 2 * wind - 3 * height**2) / (4 + 2 * wind), 0.0)
+    where = {"wind_speed": wind, "wave_angle": angle, "wave_height": height}
+    assert float(table.lookup(where, setting)) == pytest.approx(expected, abs=1e-5)
+    at = (wind, 0.0, height, angle, 0.0, 0.0)
+    value, ok = table_value(table.kernel_arrays(), at, setting)
+    assert ok and value == pytest.approx(expected, abs=1e-5)
+    assert value <= table.largest(setting) + 1e-9
+
+
+def test_a_crossing_ends_at_the_top_speed_and_refuses_outside():
+    table = _crossing()
+    push = replace(table.parts[0], values=-10.0 * np.ones((3, 5)))
+    table = replace(table, parts=(push, table.parts[1]))
+    where = {"wind_speed": 1.0, "wave_angle": 0.0, "wave_height": 0.0}
+    assert float(table.lookup(where, 2)) == 3.5 == table.largest(2)
+    assert table_value(table.kernel_arrays(), (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 2) == (3.5, True)
+    for bad in ({"wave_height": 2.1}, {"wind_speed": 11.0}, {"wave_angle": np.nan}):
+        c = {**where, **bad}
+        assert np.isnan(table.lookup(c, 2))
+        at = (c["wind_speed"], 0.0, c["wave_height"], c["wave_angle"], 0.0, 0.0)
+        assert not table_value(table.kernel_arrays(), at, 2)[1]
+
+
+def test_a_curve_follows_the_sum():
+    grid = np.linspace(0.0, 10.0, 11)
+    part = TablePart((0,), (grid,), np.repeat(grid[:, None], 2, axis=1))
+    points = np.array([[0.0, 1.0, 4.0, 9.0], [5.0, 5.0, 6.0, 6.0]])
+    nothing = np.zeros(2)
+    finish = Finish("curve", np.array([1.0, 0.0]), np.ones(2), points, nothing, nothing.astype(int))
+    table = PerformanceTable((part,), np.array([5.0, 6.0]), "curve", NO_ERROR, finish)
+    winds = [0.0, 1.0, 2.5, 4.0, 10.0]
+    expected = ([0.0, 0.0, 2.5, 9.0, 9.0], [5.0, 5.0, 6.0, 6.0, 6.0])
+    for setting in (0, 1):
+        found = table.lookup({"wind_speed": winds}, setting)
+        assert found.tolist() == pytest.approx(expected[setting])
+        for wind, value in zip(winds, expected[setting]):
+            at = (wind, 0.0, 0.0, 0.0, 0.0, 0.0)
+            assert table_value(table.kernel_arrays(), at, setting)[0] == pytest.approx(value)
+    assert (table.largest(0), table.largest(1)) == (9.0, 6.0)
+
+
+def test_a_crossing_takes_no_more_than_kernels_can_follow():
+    table = _crossing()
+    with pytest.raises(InputError, match="too many parts"):
+        replace(table, parts=(*table.parts, *table.parts))

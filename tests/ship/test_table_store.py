@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from thalweg.ship import TableError, TablePart
+from thalweg.ship import PerformanceTable, TableError, TablePart
+from thalweg.ship.finish import Finish
 from thalweg.ship.table_store import MOST_FILES, kept_table
 
 
@@ -18,7 +19,8 @@ def _table(calls=None):
         calls.append(1)
     grid = np.linspace(0.0, 10.0, 5)
     part = TablePart((2,), (grid,), np.arange(10.0).reshape(5, 2))
-    return (part,), TableError(0.1, 0.2, 0.3, 40), np.array([5.0, 9.0])
+    table = PerformanceTable((part,), np.array([5.0, 9.0]), "", TableError(0.1, 0.2, 0.3, 40))
+    return table, np.array([5.0, 9.0])
 
 
 def test_a_kept_table_is_read_back_without_building(folder):
@@ -26,10 +28,31 @@ def test_a_kept_table_is_read_back_without_building(folder):
     first = kept_table({"ship": 1}, lambda: _table(calls))
     again = kept_table({"ship": 1}, lambda: _table(calls))
     assert len(calls) == 1
-    assert again[1] == first[1] and again[2].tolist() == [5.0, 9.0]
-    assert again[0][0].axes == (2,)
-    assert np.array_equal(again[0][0].values, first[0][0].values)
-    assert np.array_equal(again[0][0].grids[0], first[0][0].grids[0])
+    assert again[0].error == first[0].error and again[1].tolist() == [5.0, 9.0]
+    (kept,), (built,) = again[0].parts, first[0].parts
+    assert kept.axes == (2,) and again[0].finish is None
+    assert np.array_equal(kept.values, built.values)
+    assert np.array_equal(kept.grids[0], built.grids[0])
+    assert np.isnan(kept.square_stop)
+
+
+@pytest.mark.parametrize("kind", ["curve", "crossing"])
+def test_what_follows_the_sum_is_kept_too(folder, kind):
+    grid = np.linspace(0.0, 10.0, 5)
+    part = TablePart((3,), (grid,), np.ones((5, 2)), 6.0)
+    ends = np.array([5.0, 9.0])
+    guess = np.array([0, 1])
+    points = np.linspace(9.0, 0.0, 9)[None].repeat(2, axis=0)
+    finish = Finish(kind, np.zeros(2), np.full(2, 0.5), points, ends, guess)
+    table = PerformanceTable((part,), ends, "", TableError(0, 0, 0), finish)
+    for _ in range(2):
+        kept, _ = kept_table({"kind": kind}, lambda: (table, ends))
+    assert kept.finish.kind == kind and kept.parts[0].square_stop == 6.0
+    for name in ("start", "step", "points", "top", "guess"):
+        assert np.array_equal(getattr(kept.finish, name), getattr(finish, name))
+    where = {"wave_height": [0.0, 1.0, 2.5, 7.0], "wave_angle": 4.0}
+    assert kept.lookup(where, 0).tolist()[:3] == table.lookup(where, 0).tolist()[:3]
+    assert np.isnan(kept.lookup(where, 0)[3])
 
 
 def test_another_ship_has_its_own_table(folder):
@@ -65,5 +88,5 @@ def test_a_disk_that_is_full_only_costs_time(folder, monkeypatch):
     calls = []
     for _ in range(2):
         found = kept_table({"ship": 1}, lambda: _table(calls))
-        assert found[2].tolist() == [5.0, 9.0]
+        assert found[1].tolist() == [5.0, 9.0]
     assert len(calls) == 2

@@ -1,18 +1,25 @@
-"""Performance tables in kernels: a sum of multilinear look-ups on uniform axes."""
+"""Performance tables in kernels: sums of multilinear look-ups on uniform axes, and what follows."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from thalweg.kernels.bare import bare, inlined
-from thalweg.kernels.codes import AXES, AXIS_DEPTH
+from thalweg.kernels.codes import AXES, AXIS_DEPTH, AXIS_WAVE_HEIGHT
 
 MOST_AXES = 6  # of one part
+CURVE, CROSSING = 1, 2  # what may follow the sum
+FINER = 8  # points of a curve for each column of a crossing
+MOST_PLANES = 3  # parts of a table with a crossing, each of at most two axes
 _EDGE = 1e-6  # rounding allowed beyond the first and last grid point [grid steps]
 
 
 class TableArrays(NamedTuple):
-    """A performance table as kernels see it: speed is the sum over parts of multilinear look-ups.
+    """A performance table as kernels see it: a sum over parts of multilinear look-ups.
+
+    The sum is the value (speed through water, fuel rate), or leads to it: by a curve, or by the
+    speed at which a curve crosses it (see `thalweg.ship.finish.Finish`).
 
     Attributes
     ----------
@@ -28,9 +35,23 @@ class TableArrays(NamedTuple):
     value_offset : int64[P]
         Where the values of each part start in ``values``.
     n_settings : int
-        Number of settings; the setting is the innermost axis of every part.
+        Number of settings.
     values : float32[:]
-        Values of all parts, C order, one part after another [m/s]; NaN where the model refuses.
+        Values of all parts, C order, one part after another; NaN where the model refuses. The
+        innermost axis of every part is the setting, or the column of a crossing.
+    n_columns : int
+        Length of the innermost axis; 0 when it is that of the settings.
+    square_stop : float64[P]
+        Parts are multiplied by the square of the wave height, up to this height [m]; NaN: not
+        multiplied. Empty when none is.
+    finish : int
+        0 when the sum is the value, else `CURVE` or `CROSSING`.
+    curve_start, curve_inv_step, curve_top : float64[settings]
+        Where each curve begins and one over the step of its points; greatest value.
+    curve : float64[settings, points]
+        Points of the curves; before a crossing `FINER` steps to a column.
+    curve_guess : int64[settings]
+        Column at which a search for the crossing begins.
     """
 
     part_axes: np.ndarray
@@ -40,6 +61,31 @@ class TableArrays(NamedTuple):
     value_offset: np.ndarray
     n_settings: int
     values: np.ndarray
+    n_columns: int = 0
+    square_stop: np.ndarray = np.empty(0)
+    finish: int = 0
+    curve_start: np.ndarray = np.empty(0)
+    curve_inv_step: np.ndarray = np.empty(0)
+    curve_top: np.ndarray = np.empty(0)
+    curve: np.ndarray = np.empty((0, 0))
+    curve_guess: np.ndarray = np.empty(0, np.int64)
+
+
+#: The type of every array of `TableArrays`.
+ARRAY_TYPES = {
+    "part_axes": np.int64,
+    "axis_start": np.float64,
+    "axis_inv_step": np.float64,
+    "axis_size": np.int64,
+    "value_offset": np.int64,
+    "values": np.float32,
+    "square_stop": np.float64,
+    "curve_start": np.float64,
+    "curve_inv_step": np.float64,
+    "curve_top": np.float64,
+    "curve": np.float64,
+    "curve_guess": np.int64,
+}
 
 
 @bare
@@ -52,7 +98,28 @@ def axes_needed(table):
             if axis < 0:
                 break
             mask |= 1 << axis
+    for part in range(table.square_stop.shape[0]):
+        if table.square_stop[part] == table.square_stop[part]:
+            mask |= 1 << AXIS_WAVE_HEIGHT
     return mask
+
+
+@inlined
+def _columns(table):
+    """Return the length of the innermost axis."""
+    return table.n_columns if table.n_columns > 0 else table.n_settings
+
+
+@inlined
+def _square_of_height(table, part, axis_values):
+    """Return (factor, ok): what a part is multiplied by."""
+    if table.square_stop.shape[0] == 0:
+        return 1.0, True
+    stop = table.square_stop[part]
+    if stop != stop:
+        return 1.0, True
+    height = axis_values[AXIS_WAVE_HEIGHT]
+    return height * height, height >= 0.0 and height <= stop * (1.0 + _EDGE)
 
 
 @inlined
@@ -81,7 +148,10 @@ def part_value(table, part, axis_values, setting):
     f0, f1, f2, f3, f4, f5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # fractions, the last axis first
     s0, s1, s2, s3, s4, s5 = 0, 0, 0, 0, 0, 0  # strides
     corners = 1  # of the axes before the last two
-    base, stride = table.value_offset[part] + setting, table.n_settings
+    base, stride = table.value_offset[part] + setting, _columns(table)
+    factor, inside = _square_of_height(table, part, axis_values)
+    if not inside:
+        return 0.0, False
     for k in range(AXES - 1, -1, -1):
         axis = table.part_axes[part, k]
         if axis < 0:
@@ -108,24 +178,152 @@ def part_value(table, part, axis_values, setting):
         if weight > 0.0:
             at = base + up2 * s2 + up3 * s3 + up4 * s4 + up5 * s5
             total += weight * _square(table.values, at, s1, f1, s0, f0)
-    return total, True
+    return factor * total, True
+
+
+@inlined
+def _plane(table, part, axis_values):
+    """Return (ok, four places in the values, their four weights) of a part of at most two axes.
+
+    Corners of weight 0 are replaced by others, so that unknown values there do not count.
+    """
+    if part >= table.part_axes.shape[0]:
+        return True, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0
+    f0, f1, s0, s1 = 0.0, 0.0, 0, 0
+    base, stride = table.value_offset[part], table.n_columns
+    for k in (1, 0):
+        axis = table.part_axes[part, k]
+        if axis < 0:
+            continue
+        last = table.axis_size[part, k] - 1
+        x = (axis_values[axis] - table.axis_start[part, k]) * table.axis_inv_step[part, k]
+        if axis == AXIS_DEPTH and x > last:
+            x = float(last)
+        if not (x >= -_EDGE and x <= last + _EDGE):
+            return False, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0
+        x = min(max(x, 0.0), float(last))
+        cell = int(x)
+        base += cell * stride
+        f1, s1 = f0, s0
+        f0 = x - cell
+        s0 = stride if f0 > 0.0 else 0
+        stride *= table.axis_size[part, k]
+    factor, inside = _square_of_height(table, part, axis_values)
+    near, far = factor * (1.0 - f0), factor * f0
+    return (
+        inside,
+        base,
+        base + s1,
+        base + s0,
+        base + s0 + s1,
+        near * (1.0 - f1),
+        near * f1,
+        far * (1.0 - f1),
+        far * f1,
+    )
+
+
+@inlined
+def _column_of(values, plane, column):
+    """Return one column of a part at its place."""
+    total = values[plane[1] + column] * plane[5] + values[plane[2] + column] * plane[6]
+    return total + values[plane[3] + column] * plane[7] + values[plane[4] + column] * plane[8]
+
+
+@inlined
+def _asked(table, planes, column):
+    """Return the sum over the parts at one column."""
+    count = table.part_axes.shape[0]
+    total = _column_of(table.values, planes[0], column)
+    if count > 1:
+        total += _column_of(table.values, planes[1], column)
+    if count > 2:
+        total += _column_of(table.values, planes[2], column)
+    return total
+
+
+@inlined
+def _crossing(table, axis_values, setting):
+    """Return (speed, ok) at which the sum rises through the curve; 0 where it is above it all."""
+    first = _plane(table, 0, axis_values)
+    second = _plane(table, 1, axis_values)
+    third = _plane(table, 2, axis_values)
+    if not (first[0] and second[0] and third[0]):
+        return 0.0, False
+    planes = (first, second, third)
+    low, high = -1, table.n_columns
+    under, over = 0.0, 0.0
+    guess = table.curve_guess[setting]
+    column = guess
+    while high - low > 1:
+        asked = _asked(table, planes, column)
+        if asked != asked:
+            return 0.0, False
+        if asked < table.curve[setting, column * FINER]:
+            low, under = column, asked
+        else:
+            high, over = column, asked
+        if low < 0:  # down in growing steps, up one by one, then in halves
+            column = high - 1 if high == guess else high >> 1
+        else:
+            column = low + 1 if high == table.n_columns else (low + high) >> 1
+    top = table.curve_top[setting]
+    if low < 0:
+        return 0.0, True
+    if high == table.n_columns:
+        return top, True
+    place = low * FINER + _within(table, setting, low * FINER, under, over)
+    return min(table.curve_start[setting] + place / table.curve_inv_step[setting], top), True
+
+
+@inlined
+def _within(table, setting, base, under, over):
+    """Return where a line from ``under`` to ``over`` meets the curve of a setting [points]."""
+    low, high = 0, FINER
+    slope = (over - under) / FINER
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if under + middle * slope < table.curve[setting, base + middle]:
+            low = middle
+        else:
+            high = middle
+    before = under + low * slope - table.curve[setting, base + low]
+    after = under + high * slope - table.curve[setting, base + high]
+    return low + before / (before - after)
+
+
+@inlined
+def _on_curve(table, total, setting):
+    """Return the point of the curve of a setting at a sum; the ends hold beyond them."""
+    last = table.curve.shape[1] - 1
+    x = (total - table.curve_start[setting]) * table.curve_inv_step[setting]
+    x = min(max(x, 0.0), float(last))
+    cell = min(int(x), last - 1)
+    low, high = table.curve[setting, cell], table.curve[setting, cell + 1]
+    return low + (x - cell) * (high - low)
 
 
 @inlined
 def sum_of_parts(table, axis_values, setting):
     """Do as `table_value`, inside kernels."""
+    if table.finish == CROSSING:
+        return _crossing(table, axis_values, setting)
     total = 0.0
     for part in range(table.part_axes.shape[0]):
         value, ok = part_value(table, part, axis_values, setting)
         if not ok:
             return 0.0, False
         total += value
-    return total, total == total
+    if total != total:
+        return math.nan, False
+    if table.finish == CURVE:
+        total = _on_curve(table, total, setting)
+    return total, True
 
 
 @bare
 def table_value(table, axis_values, setting):
-    """Return the value of a table: the sum over its parts of multilinear look-ups.
+    """Return the value of a table: the sum over its parts of multilinear look-ups, or what follows.
 
     Parameters
     ----------
@@ -138,7 +336,7 @@ def table_value(table, axis_values, setting):
     Returns
     -------
     value : float
-        Speed through water [m/s].
+        Speed through water [m/s], or fuel rate [kg/s].
     ok : bool
         False outside an axis (no extrapolation; only depth beyond the deepest grid point counts as
         that point), for NaN on an axis and where the table itself holds NaN.

@@ -12,7 +12,7 @@ from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, distance
 from thalweg.kernels.codes import CHANNELS, LIMIT_REQUIRED_DEPTH, LIMITS
 from thalweg.kernels.edges import NetworkArrays, SeaArrays, ShipArrays
 from thalweg.kernels.extremes import largest_current, largest_speed_field, tidal_extremes
-from thalweg.kernels.tables import TableArrays, axes_needed
+from thalweg.kernels.tables import ARRAY_TYPES, TableArrays, axes_needed
 from thalweg.search.tides import tidal_states
 
 if TYPE_CHECKING:
@@ -148,15 +148,10 @@ def ship_arrays(
         raise InputError(
             f"The ship has no setting {setting}.", f"It has settings 0 to {count - 1}.", ""
         )
-    arrays = TableArrays(
-        plain(raw.part_axes, np.int64),
-        plain(raw.axis_start, np.float64),
-        plain(raw.axis_inv_step, np.float64),
-        plain(raw.axis_size, np.int64),
-        plain(raw.value_offset, np.int64),
-        count,
-        plain(raw.values, np.float32),
-    )
+    kinds: dict[str, Any] = {
+        name: plain(getattr(raw, name), kind) for name, kind in ARRAY_TYPES.items()
+    }
+    arrays = raw._replace(n_settings=count, **kinds)
     bounds = plain(limits, np.float64)
     if bounds.shape != (LIMITS,) or np.any(np.isnan(bounds)):
         raise InputError(

@@ -12,8 +12,9 @@ from thalweg.ship.conditions import Conditions
 from thalweg.ship.function_model import FunctionModel
 from thalweg.ship.model import ShipModel
 from thalweg.ship.ship import Ship
+from thalweg.ship.table import PerformanceTable
 from thalweg.ship.tabulate import DEFAULT_AXES
-from thalweg.ship.variables import AXIS_OF, CONDITION_OF
+from thalweg.ship.variables import AXIS_OF
 
 FloatArray = NDArray[np.float64]
 _COUNT = 64
@@ -173,21 +174,19 @@ def _bounded(model: ShipModel, conditions: Conditions, load_factor: float) -> li
 
 def _table_is_true(model: ShipModel, load_factor: float, tolerance: float) -> list[str]:
     """The table's parts, summed, stray no further than the table says."""
-    parts, error = model.tabulate(load_factor, tolerance)
-    axes = {axis for part in parts for axis in part.axes}
-    undeclared = {CONDITION_OF[axis] for axis in axes} - model.reads
+    parts, error, *finish = model.tabulate(load_factor, tolerance)
+    table = PerformanceTable(parts, model.speeds(load_factor), "", error, *finish)
+    undeclared = table.axes - model.reads
     if undeclared:
         return [f"the table has axes {', '.join(sorted(undeclared))}, which it does not read"]
     draw = np.random.default_rng(23)
     where: dict[str, FloatArray | float] = {"load_factor": load_factor, "spare": np.zeros(400)}
-    for axis in axes:
-        grids = [g for part in parts for a, g in zip(part.axes, part.grids) if a == axis]
-        low, high = max(g[0] for g in grids), min(g[-1] for g in grids)
-        usual = _SPAN.get(CONDITION_OF[axis], DEFAULT_AXES[CONDITION_OF[axis]].stop)
-        where[CONDITION_OF[axis]] = draw.uniform(low, max(min(high, usual), low), 400)
+    for name, (low, high) in sorted(table.ranges.items()):
+        usual = _SPAN.get(name, DEFAULT_AXES[name].stop)
+        where[name] = draw.uniform(low, max(min(high, usual), low), 400)
     conditions = Conditions(where)
     truth = model.speed_through_water(conditions, 0)
-    found = sum(part.lookup(conditions, np.zeros(400, int)) for part in parts)
+    found = table.lookup(conditions, np.zeros(400, int))
     scale = np.maximum(truth, 0.25 * np.nanmax(truth))
     strays = float(np.nanquantile(np.abs(found - truth) / scale, 0.98))
     if strays > max(2.0 * error.p99, tolerance):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.finish import Finish
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.table import TableError, TablePart
 
@@ -74,8 +75,15 @@ class ShipModel(Protocol):
 
     def tabulate(
         self, load_factor: float, tolerance: float
-    ) -> tuple[tuple[TablePart, ...], TableError]:
-        """Parts whose sum is the speed through water [m/s], and their measured error."""
+    ) -> (
+        tuple[tuple[TablePart, ...], TableError]
+        | tuple[tuple[TablePart, ...], TableError, Finish | None]
+    ):
+        """Parts whose sum is, or leads to, the speed through water [m/s]; their measured error.
+
+        Third comes what follows the sum, if anything does. A model whose fuel does not follow from
+        its setting alone may offer ``tabulate_fuel`` in the same form.
+        """
         ...
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.ship.calm_parts import CalmWater
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.finish import Finish
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.methods.current_rudder import rudder_drag
 from thalweg.ship.methods.notes import RangeNote
@@ -24,6 +25,8 @@ from thalweg.ship.weather_parts import Waves, Wind
 
 FloatArray = NDArray[np.float64]
 Flat = Mapping[str, FloatArray]
+#: parts, their error, and what follows their sum
+Tabulated: TypeAlias = tuple[tuple[TablePart, ...], TableError, Finish | None]
 FASTEST: Final = 1.25  #: weather never takes a ship beyond this many times its calm-water speed
 _CALM: Final = {
     "wind_speed": 0.0,
@@ -228,29 +231,25 @@ class ResistanceModel:
 
     def top_speed(self, setting: int, load_factor: float) -> float:
         """Greatest speed over the table and over random conditions [m/s]."""
-        return float(self._table(load_factor, 0.01)[2][setting])
+        return float(self._table(load_factor, 0.01)[1][setting])
 
-    def tabulate(
-        self, load_factor: float, tolerance: float
-    ) -> tuple[tuple[TablePart, ...], TableError]:
-        """Parts whose sum is the speed; see `thalweg.ship.tabulate_sum`.
+    def tabulate(self, load_factor: float, tolerance: float) -> Tabulated:
+        """Tabulate the speed; see `thalweg.ship.tabulate_sum`.
 
         Raises
         ------
         ModelRangeError
             If power does not rise with speed.
         """
-        parts, error, _ = self._table(load_factor, tolerance)
-        return parts, error
+        table, _ = self._table(load_factor, tolerance)
+        return table.parts, table.error, table.finish
 
-    def tabulate_fuel(
-        self, load_factor: float, tolerance: float
-    ) -> tuple[tuple[TablePart, ...], TableError]:
-        """Parts whose sum is the fuel rate [kg/s]; see `thalweg.ship.tabulate_fuel`."""
+    def tabulate_fuel(self, load_factor: float, tolerance: float) -> Tabulated:
+        """Tabulate the fuel rate [kg/s]; see `thalweg.ship.tabulate_fuel`."""
         from thalweg.ship.tabulate_fuel import tabulate_fuel_of_balance
 
-        parts, error, _ = self._stored("fuel", load_factor, tolerance, tabulate_fuel_of_balance)
-        return parts, error
+        table, _ = self._stored("fuel", load_factor, tolerance, tabulate_fuel_of_balance)
+        return table.parts, table.error, table.finish
 
     def _table(self, load_factor: float, tolerance: float) -> Kept:
         """The table of speeds and the greatest speeds."""

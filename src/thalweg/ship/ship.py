@@ -385,8 +385,8 @@ class Ship:
         -------
         PerformanceTable
         """
-        parts, error = self.model.tabulate(self.loading.load_factor, tolerance)
-        return PerformanceTable(parts, self.speeds, self.fingerprint(), error)
+        parts, error, *finish = self.model.tabulate(self.loading.load_factor, tolerance)
+        return PerformanceTable(parts, self.speeds, self.fingerprint(), error, *finish)
 
     def tabulate_fuel(self, *, tolerance: float = 0.01) -> PerformanceTable:
         """Tabulate the fuel rate [kg/s] at the ship's load factor, hotel load included.

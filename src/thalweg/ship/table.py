@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.kernels.codes import AXES, AXIS_DEPTH
 from thalweg.kernels.tables import TableArrays
+from thalweg.ship.finish import Finish
 from thalweg.ship.variables import CONDITION_OF
 
 FloatArray = NDArray[np.float64]
@@ -26,7 +28,7 @@ class TableError:
     ----------
     mean, p99, max : float
         Absolute difference over the model's value, the latter not taken below a quarter of
-        the greatest value of its setting.
+        the greatest value of its setting; 1 where only one of both knows a value.
     samples : int
         Number of random conditions measured.
     """
@@ -49,6 +51,9 @@ class TablePart:
         Uniform, ascending grid points of each axis, SI.
     values : float32 ndarray
         Shape ``(len(grid) for each axis..., settings)``; NaN where the model has no value.
+        Before a crossing the last axis runs over its columns instead.
+    square_stop : float, optional
+        The part is multiplied by the square of the wave height, up to this height [m].
 
     Raises
     ------
@@ -59,6 +64,7 @@ class TablePart:
     axes: tuple[int, ...]
     grids: tuple[FloatArray, ...]
     values: NDArray[np.float32]
+    square_stop: float = math.nan
 
     def __post_init__(self) -> None:
         grids = tuple(np.ascontiguousarray(grid, float) for grid in self.grids)
@@ -90,7 +96,7 @@ class TablePart:
         for weight, index in self._corners(where):
             value = self.values[(*np.broadcast_arrays(*index, chosen),)]
             total = total + np.where(weight == 0.0, 0.0, weight * value)
-        return total
+        return self._factor(where) * total
 
     def lookup_all(self, where: Mapping[str, ArrayLike]) -> FloatArray:
         """Return the look-up of every setting, in a last axis."""
@@ -99,7 +105,27 @@ class TablePart:
             value = self.values[(*index,)] if index else self.values
             column = np.asarray(weight)[..., None]
             total = total + np.where(column == 0.0, 0.0, column * value)
-        return total
+        return np.asarray(self._factor(where))[..., None] * total
+
+    def least(self) -> FloatArray:
+        """Return the least value of every setting, anywhere."""
+        flat = self.values.reshape(-1, self.values.shape[-1])
+        low = np.fmin.reduce(flat, axis=0).astype(float)
+        if math.isnan(self.square_stop):
+            return np.asarray(low)
+        return np.minimum(low * self.square_stop**2, 0.0)
+
+    def greatest(self) -> FloatArray:
+        """Return the greatest value of every setting, anywhere."""
+        return -replace(self, values=-self.values).least()
+
+    def _factor(self, where: Mapping[str, ArrayLike]) -> FloatArray | float:
+        """What the look-up is multiplied by."""
+        if math.isnan(self.square_stop):
+            return 1.0
+        height = np.asarray(where["wave_height"], float)
+        inside = (height >= 0.0) & (height <= self.square_stop * (1.0 + _EDGE))
+        return np.where(inside, height * height, np.nan)
 
     def _corners(
         self, where: Mapping[str, ArrayLike]
@@ -122,7 +148,7 @@ class TablePart:
 
 @dataclass(frozen=True, eq=False)
 class PerformanceTable:
-    """A ship tabulated: its speed through water is the sum over parts of multilinear look-ups.
+    """A ship tabulated: a sum over parts of multilinear look-ups, and what follows from the sum.
 
     Attributes
     ----------
@@ -134,24 +160,42 @@ class PerformanceTable:
         Of the ship the table was made from.
     error : TableError
         Measured against the ship itself.
+    finish : Finish, optional
+        What turns the sum into the value; without it the sum is the value.
     """
 
     parts: tuple[TablePart, ...]
     settings: FloatArray
     fingerprint: str
     error: TableError
+    finish: Finish | None = None
 
     def __post_init__(self) -> None:
         if not self.parts:
             raise _bad_part("is missing: a table has at least one")
-        count = len(self.settings)
+        count = len(self.settings) if self.finish is None else self.finish.columns
         if any(part.values.shape[-1] != count for part in self.parts):
             raise _bad_part(f"has another number of settings than the table's {count}")
+        if self.finish is not None:
+            self.finish.check(self.parts)
 
     @property
     def axes(self) -> frozenset[str]:
         """The conditions the table looks at."""
-        return frozenset(CONDITION_OF[axis] for part in self.parts for axis in part.axes)
+        return frozenset(self.ranges)
+
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """From where to where each condition may go, SI; depth also beyond."""
+        found: dict[str, tuple[float, float]] = {}
+        for part in self.parts:
+            own = {CONDITION_OF[a]: (g[0], g[-1]) for a, g in zip(part.axes, part.grids)}
+            if not math.isnan(part.square_stop):
+                own["wave_height"] = (0.0, part.square_stop)
+            for name, (low, high) in own.items():
+                before = found.get(name, (low, high))
+                found[name] = (max(low, before[0]), min(high, before[1]))
+        return found
 
     @property
     def nbytes(self) -> int:
@@ -168,19 +212,29 @@ class PerformanceTable:
         setting : array_like of int
             Index of the setting.
         """
-        return reduce(np.add, (part.lookup(where, setting) for part in self.parts))
+        if self.finish is None:
+            return reduce(np.add, (part.lookup(where, setting) for part in self.parts))
+        total = reduce(np.add, (part.lookup_all(where) for part in self.parts))
+        return self.finish.value(total, np.asarray(setting).astype(np.intp))
 
     def largest(self, setting: int) -> float:
-        """Return an upper bound of the table's value at a setting [m/s]."""
-        return float(sum(np.nanmax(part.values[..., setting]) for part in self.parts))
+        """Return an upper bound of the table's value at a setting, in its unit."""
+        if self.finish is not None and self.finish.falls:
+            low = reduce(np.add, (part.least() for part in self.parts))
+            return float(self.finish.value(low, np.asarray(setting)))
+        high = reduce(np.add, (part.greatest() for part in self.parts))
+        if self.finish is not None:
+            return float(self.finish.value(high, np.asarray(setting)))
+        return float(high[setting])
 
     def at_setting(self, setting: int) -> PerformanceTable:
         """Return the table of one setting alone, which is smaller and so quicker to look up."""
-        parts = tuple(
-            TablePart(part.axes, part.grids, part.values[..., setting : setting + 1])
-            for part in self.parts
-        )
-        return replace(self, parts=parts, settings=self.settings[setting : setting + 1])
+        chosen = slice(setting, setting + 1)
+        finish = None if self.finish is None else self.finish.at(chosen)
+        parts = self.parts
+        if finish is None or not finish.falls:
+            parts = tuple(replace(part, values=part.values[..., chosen]) for part in parts)
+        return replace(self, parts=parts, settings=self.settings[chosen], finish=finish)
 
     def kernel_arrays(self) -> TableArrays:
         """Return the arrays that kernels look up (see `thalweg.kernels.tables`)."""
@@ -193,6 +247,7 @@ class PerformanceTable:
             for k, (axis, grid) in enumerate(zip(part.axes, part.grids)):
                 axes[p, k], start[p, k], size[p, k] = axis, grid[0], len(grid)
                 inverse[p, k] = (len(grid) - 1) / (grid[-1] - grid[0])
+        stops = np.array([part.square_stop for part in self.parts])
         return TableArrays(
             part_axes=axes,
             axis_start=start,
@@ -201,6 +256,8 @@ class PerformanceTable:
             value_offset=np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64),
             n_settings=len(self.settings),
             values=np.concatenate([part.values.ravel() for part in self.parts]),
+            square_stop=stops if np.isfinite(stops).any() else np.empty(0),
+            **({} if self.finish is None else self.finish.kernel_arrays()),
         )
 
 

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.cache import cache_folder
-from thalweg.ship.table import TableError, TablePart
+from thalweg.ship.finish import FIELDS, Finish
+from thalweg.ship.table import PerformanceTable, TableError, TablePart
 
 FloatArray = NDArray[np.float64]
-#: parts, their error, and the greatest speed of every setting
-Kept: TypeAlias = tuple[tuple[TablePart, ...], TableError, FloatArray]
+#: a table (its fingerprint empty), and the greatest value of every setting
+Kept: TypeAlias = tuple[PerformanceTable, FloatArray]
 MOST_FILES: Final = 24
 
 
@@ -34,8 +35,8 @@ def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
 
     Returns
     -------
-    parts, error, top
-        Read-only; the same numbers as built.
+    table, top
+        The same numbers as built.
     """
     text = json.dumps([facts, _code_stamp()], sort_keys=True, default=str)
     name = hashlib.sha256(text.encode()).hexdigest()[:32]
@@ -63,18 +64,27 @@ def _read(path: Path) -> Kept | None:
         for p in range(int(data["count"])):
             axes = tuple(int(axis) for axis in data[f"axes{p}"])
             grids = tuple(data[f"grid{p}_{k}"] for k in range(len(axes)))
-            parts.append(TablePart(axes, grids, data[f"values{p}"]))
+            parts.append(TablePart(axes, grids, data[f"values{p}"], float(data["square_stop"][p])))
         mean, p99, largest, samples = data["error"]
-        return tuple(parts), TableError(mean, p99, largest, int(samples)), data["top"]
+        error = TableError(float(mean), float(p99), float(largest), int(samples))
+        finish = None
+        if "finish_points" in data:
+            arrays = (data[f"finish_{name}"] for name in FIELDS)
+            finish = Finish("crossing" if data["falls"] else "curve", *arrays)
+        return PerformanceTable(tuple(parts), data["settings"], "", error, finish), data["top"]
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
 
 
 def _write(path: Path, kept: Kept) -> None:
     """Keep a table; a disk that is full or closed costs nothing but the time of the next run."""
-    parts, error, top = kept
+    table, top = kept
+    parts, error, finish = table.parts, table.error, table.finish
     arrays: dict[str, Any] = {
         "count": np.array(len(parts)),
+        "settings": table.settings,
+        "square_stop": np.array([part.square_stop for part in parts]),
+        "falls": np.array(finish is not None and finish.falls),
         "error": np.array([error.mean, error.p99, error.max, error.samples]),
         "top": top,
     }
@@ -82,6 +92,8 @@ def _write(path: Path, kept: Kept) -> None:
         arrays[f"axes{p}"] = np.array(part.axes, np.int64)
         arrays[f"values{p}"] = part.values
         arrays |= {f"grid{p}_{k}": grid for k, grid in enumerate(part.grids)}
+    if finish is not None:
+        arrays |= {f"finish_{name}": getattr(finish, name) for name in FIELDS}
     draft = path.with_suffix(f".{os.getpid()}.tmp")
     try:
         with draft.open("wb") as file:

@@ -132,13 +132,16 @@ def random_conditions(axes: Sequence[Axis], count: int, seed: int) -> dict[str, 
 
 
 def table_error(found: FloatArray, truth: FloatArray) -> TableError:
-    """Measure how far looked-up values are from the model's; unknown ones do not count."""
-    known = np.isfinite(truth) & np.isfinite(found)
+    """Measure how far looked-up values are from the model's.
+
+    Where one of both is unknown the table is wrong by all of it; where both are, nothing counts.
+    """
+    sound, known = np.isfinite(truth), np.isfinite(truth) | np.isfinite(found)
     if not known.any():
         return TableError(0.0, 0.0, 0.0, 0)
-    top = np.where(known, np.abs(truth), 0.0).reshape(-1, truth.shape[-1]).max(axis=0)
-    scale = np.maximum(np.abs(truth), FLOOR * top)
-    relative = np.abs(found - truth)[known] / np.maximum(scale, 1e-12)[known]
+    top = np.where(sound, np.abs(truth), 0.0).reshape(-1, truth.shape[-1]).max(axis=0)
+    scale = np.maximum(np.maximum(np.abs(truth), FLOOR * top), 1e-12)
+    relative = np.nan_to_num(np.abs(found - truth) / scale, nan=1.0)[known]
     return TableError(
         mean=float(relative.mean()),
         p99=float(np.quantile(relative, 0.99)),
