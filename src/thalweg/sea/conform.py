@@ -9,18 +9,19 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import DatasetError
+from thalweg.sea import combining, levels, ugrid
 from thalweg.sea import coordinates as co
 from thalweg.sea import names as nm
 from thalweg.sea import spellings as sp
-from thalweg.sea import ugrid
+from thalweg.sea.combining import Combine
 from thalweg.sea.fields import FloatArray
 from thalweg.sea.inspection import Recognised
 from thalweg.sea.positions import NEMO_U, Placement, placement
 from thalweg.sea.recognise import Chosen, Ignored, recognise
-from thalweg.sea.store import Piece, Quantity, Variable, Window
+from thalweg.sea.store import Piece, Quantity, Variable
 
-Combine = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
 NO_TIMES = np.empty(0)
+CURRENT_ROLES = frozenset((*nm.CURRENT.pair, sp.X_CURRENT, sp.Y_CURRENT))
 
 
 class NothingRecognised(DatasetError):
@@ -39,11 +40,14 @@ class OpenedFile:
         Its name, for messages.
     facts : mapping
         Name, size and time of change.
+    draught : float or None
+        Draught [m] over which currents in layers are averaged; None: the surface layer is taken.
     """
 
     dataset: Any
     source: str
     facts: Mapping[str, Any]
+    draught: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +59,7 @@ class Ingredient:
     place: Placement
     times: FloatArray
     rotated: bool
+    layers: levels.Layers | None = None
 
 
 @dataclass(eq=False)
@@ -114,10 +119,13 @@ def _coordinates(dataset: Any) -> frozenset[str]:
     names = {
         str(n) for n in dataset.variables if str(n) in dataset.coords or str(n) in dataset.dims
     }
+    places = ugrid.place_dimensions(dataset)
     for n in dataset.variables:
         array = dataset[n]
         if co.is_latitude(array, str(n)) or co.is_longitude(array, str(n)) or co.is_time(array):
             names.add(str(n))
+        if array.ndim == 1 and array.dims[0] not in places and "positive" in array.attrs:
+            names.add(str(n))  # heights of layers
         for key in ("bounds", "climatology"):
             if key in array.attrs:
                 names.add(str(array.attrs[key]))
@@ -148,9 +156,14 @@ def _ingredient(
         memo.places[chosen.variable] = place
     time_dim = str(clock.dims[0]) if clock is not None else ""
     keep = frozenset((*place.dims, time_dim))
+    layers = None
+    if file.draught is not None and chosen.role in CURRENT_ROLES:
+        layers = levels.find_layers(dataset, array, keep, source)
+    deep = [] if layers is None else [layers.dim]
+    keep = keep | frozenset(deep)
     array = co.pick_surface(dataset, array, keep, chosen.role, source)
     has_time = time_dim in array.dims
-    array = array.transpose(*([time_dim] if has_time else []), *place.dims)
+    array = array.transpose(*([time_dim] if has_time else []), *deep, *place.dims)
     if place.flipped:
         array = array.isel({place.dims[1]: slice(None, None, -1)})
     times = NO_TIMES if clock is None else co.read_times(clock, source)
@@ -167,7 +180,7 @@ def _ingredient(
         chosen.variable, (piece,), times.size > 0, place.mesh is not None, source, shift
     )
     rotated = int(array.attrs.get("GRIB_uvRelativeToGrid", 0)) == 1
-    return Ingredient(chosen, variable, place, times, rotated)
+    return Ingredient(chosen, variable, place, times, rotated, layers)
 
 
 def _refuse_undated(dataset: Any, array: Any, source: str) -> None:
@@ -204,7 +217,7 @@ class Assembly:
             told = one.chosen.how
             if one.times.size == 0 and role not in (nm.BED_DEPTH,):
                 told += "; without dates: holds always"
-            self._add((role,), [one], _same, told)
+            self._add((role,), [one], combining.same, told)
 
     def _vector(self, vector: nm.Vector, along_grid: tuple[str, str]) -> None:
         """Make a vector of components, of components along the grid, or of speed and direction."""
@@ -239,14 +252,50 @@ class Assembly:
             told += "; averaged from cell sides to centres"
         if turn:
             told += "; turned from grid to true east and north"
-        self._add(vector.pair, pair, _same, told, turn=turn)
+        if pair[0].layers is None:
+            self._add(vector.pair, pair, combining.same, told, turn=turn)
+            return
+        draught = self.file.draught or 0.0
+        column, depth = self._column(pair)
+        told += f"; mean over the upper {draught:g} m of {pair[0].layers.describe()}"
+        combine = levels.averaging(pair[0].layers, draught, depth)
+        self._add(vector.pair, [*pair, *column], combine, told, turn=turn)
+
+    def _column(
+        self, pair: list[Ingredient]
+    ) -> tuple[list[Ingredient], Callable[[Sequence[FloatArray]], FloatArray]]:
+        """Return what tells the water column where a vector lies, and how it is made from it."""
+        level, total, bed, height = (
+            self._beside(pair[0], role)
+            for role in (nm.WATER_LEVEL, nm.TOTAL_DEPTH, nm.BED_DEPTH, sp.BED_LEVEL)
+        )
+        if pair[0].layers is not None and not pair[0].layers.is_sigma:
+            if level is None:
+                return [], lambda arrays: np.zeros_like(arrays[0][:, 0])
+            return [level], lambda arrays: arrays[2]
+        if total is not None:
+            return [total], lambda arrays: arrays[2]
+        sign = 1.0 if bed is not None else -1.0 if _points_up(height) else 1.0
+        bed = bed or height
+        if bed is None:
+            raise levels.no_depth_of_layers([p.chosen.variable for p in pair], self.file.source)
+        if level is None:
+            return [bed], lambda arrays: sign * arrays[2]
+        return [bed, level], lambda arrays: sign * arrays[2] + arrays[3]
+
+    def _beside(self, one: Ingredient, role: str) -> Ingredient | None:
+        """Return what plays a role on the grid and at the times of another, or at all times."""
+        other = self.left.get(role)
+        if other is None or other.place.key != one.place.key:
+            return None
+        return other if not other.times.size or np.array_equal(other.times, one.times) else None
 
     def _polar(self, vector: nm.Vector, direction: str) -> None:
         pair = [self.left.pop(vector.speed), self.left.pop(direction)]
         sign = -1.0 if direction == vector.origin else 1.0
         word = "from" if direction == vector.origin else "to"
         told = f"{pair[0].chosen.how}; speed and direction {word} to components"
-        self._add(vector.pair, pair, _polar(sign), told)
+        self._add(vector.pair, pair, combining.polar(sign), told)
 
     def _waves(self) -> None:
         for role, sign in ((nm.WAVES.origin, -1.0), (nm.WAVES.towards, 1.0)):
@@ -258,7 +307,7 @@ class Assembly:
             one = self.left.pop(role)
             word = "from" if sign < 0 else "to"
             told = f"{one.chosen.how}; direction {word} to unit vector towards"
-            self._add(nm.WAVES.pair, [one], _unit_vector(sign), told)
+            self._add(nm.WAVES.pair, [one], combining.unit_vector(sign), told)
 
     def _bed_and_level(self) -> None:
         """Make bed depth and water level from what there is of depth, bed level and total depth."""
@@ -267,26 +316,28 @@ class Assembly:
         sign = 1.0
         if bed is None and sp.BED_LEVEL in self.left:
             bed = self.left.pop(sp.BED_LEVEL)
-            down = str(bed.variable.pieces[0].array.attrs.get("positive", "up")).lower() == "down"
-            sign = 1.0 if down else -1.0
+            sign = -1.0 if _points_up(bed) else 1.0
         elif sp.BED_LEVEL in self.left:
             self._leave(sp.BED_LEVEL, "the bed depth is used")
         if bed is not None:
-            self._add((nm.BED_DEPTH,), [bed], _times(sign), bed.chosen.how + _turned(sign))
+            self._add((nm.BED_DEPTH,), [bed], combining.times(sign), bed.chosen.how + _turned(sign))
         if total is None:
             return
         self.left[nm.TOTAL_DEPTH] = total
         other = bed if bed is not None else level
         if other is None:
             self._add(
-                (nm.BED_DEPTH,), [self.left.pop(nm.TOTAL_DEPTH)], _same, "total depth, no level"
+                (nm.BED_DEPTH,),
+                [self.left.pop(nm.TOTAL_DEPTH)],
+                combining.same,
+                "total depth, no level",
             )
         elif bed is None and self._both((nm.TOTAL_DEPTH, nm.WATER_LEVEL)):
             pair = [self.left.pop(nm.TOTAL_DEPTH), other]
-            self._add((nm.BED_DEPTH,), pair, _minus(1.0), "total depth minus water level")
+            self._add((nm.BED_DEPTH,), pair, combining.minus(1.0), "total depth minus water level")
         elif level is None and total.place.key == other.place.key:
             pair = [self.left.pop(nm.TOTAL_DEPTH), other]
-            self._add((nm.WATER_LEVEL,), pair, _minus(sign), "total depth minus bed depth")
+            self._add((nm.WATER_LEVEL,), pair, combining.minus(sign), "total depth minus bed depth")
         else:
             self._leave(nm.TOTAL_DEPTH, "bed depth and water level are used")
 
@@ -305,8 +356,9 @@ class Assembly:
         """Add a quantity to the draft of its grid and time axis."""
         place = parts[0].place
         times = next((p.times for p in parts if p.times.size), NO_TIMES)
-        make = _maker([p.chosen.factor for p in parts], combine, place, turn)
-        quantity = Quantity(made, tuple(p.variable for p in parts), make, self.file.source)
+        make = combining.maker([p.chosen.factor for p in parts], combine, place, turn)
+        layers = max(1 if p.layers is None else p.layers.top.size for p in parts)
+        quantity = Quantity(made, tuple(p.variable for p in parts), make, self.file.source, layers)
         draft = self._draft(place, times)
         draft.quantities.append(quantity)
         units = ", ".join(dict.fromkeys(p.chosen.units or "not said" for p in parts))
@@ -324,62 +376,13 @@ class Assembly:
         return self.drafts[-1]
 
 
+def _points_up(height: Ingredient | None) -> bool:
+    """Return whether a bed level counts upwards, as it does unless its file says otherwise."""
+    if height is None:
+        return True
+    told = height.variable.pieces[0].array.attrs.get("positive", "up")
+    return str(told).lower() != "down"
+
+
 def _turned(sign: float) -> str:
     return "; height made depth" if sign < 0 else ""
-
-
-def _same(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
-    return arrays
-
-
-def _times(sign: float) -> Combine:
-    return lambda arrays: [sign * arrays[0]]
-
-
-def _minus(sign: float) -> Combine:
-    return lambda arrays: [arrays[0] - sign * arrays[1]]
-
-
-def _polar(sign: float) -> Combine:
-    def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
-        length, angle = sign * arrays[0], np.radians(arrays[1])
-        return [length * np.sin(angle), length * np.cos(angle)]
-
-    return combine
-
-
-def _unit_vector(sign: float) -> Combine:
-    def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
-        angle = np.radians(arrays[0])
-        return [sign * np.sin(angle), sign * np.cos(angle)]
-
-    return combine
-
-
-def _maker(factors: list[float], combine: Combine, place: Placement, turn: bool) -> Any:
-    """Return what turns raw arrays of a window into canonical ones."""
-    angle = place.angle if turn else None
-
-    def make(raws: Sequence[FloatArray], window: Window) -> Sequence[FloatArray]:
-        scaled = [raw if f == 1.0 else raw * f for raw, f in zip(raws, factors)]
-        made = combine(scaled)
-        if angle is not None:
-            made = _rotate(made[0], made[1], _part(angle, window, place.mesh is not None))
-        if place.mesh is not None and place.mesh.averaging is not None:
-            made = [place.mesh.averaging.with_nodes(value) for value in made]
-        return made
-
-    return make
-
-
-def _part(angle: FloatArray, window: Window, is_mesh: bool) -> FloatArray:
-    if is_mesh:
-        return angle
-    columns = np.arange(window.x0, window.x0 + window.width) % angle.shape[1]
-    return angle[window.y0 : window.y1][:, columns]
-
-
-def _rotate(u: FloatArray, v: FloatArray, angle: FloatArray) -> list[FloatArray]:
-    """Turn components along the grid into true east and north."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return [u * cosine - v * sine, u * sine + v * cosine]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError
 from thalweg.sea.fields import FloatArray
+from thalweg.sea.levels import is_sigma, level_coordinate
 
 LATITUDES: Final = (
     "latitude",
@@ -146,7 +147,7 @@ def pick_surface(dataset: Any, array: Any, keep: frozenset[str], role: str, sour
         if size == 1:
             array = array.isel({dim: 0})
             continue
-        levels = dataset[dim] if dim in dataset.variables else None
+        levels = level_coordinate(dataset, str(dim))
         array = array.isel({dim: _level(dim, levels, role, str(array.name), source)})
     return array
 
@@ -163,6 +164,7 @@ def _level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
         any(lower.startswith(word) for word in VERTICAL)
         or attributes.get("axis") == "Z"
         or "positive" in attributes
+        or (levels is not None and is_sigma(levels))
     )
     if levels is None or not is_vertical:
         raise _layout_fault(
@@ -239,7 +241,7 @@ def crs_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: str) ->
         raise DatasetError(
             f"{source}: its projection cannot be understood ({error}).",
             "An EPSG code, WKT, PROJ text or CF grid mapping is read.",
-            "Give it with mapping={'crs': 'EPSG:...'}.",
+            "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
             file=source,
         ) from error
     return None

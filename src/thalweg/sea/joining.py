@@ -82,4 +82,4 @@ def _joined(a: Quantity, b: Quantity, source: str) -> Quantity:
         replace(v, pieces=(*v.pieces, *w.pieces), source=source) if v.timed else v
         for v, w in zip(a.variables, b.variables)
     )
-    return Quantity(a.names, variables, a.make, source)
+    return replace(a, variables=variables, source=source)

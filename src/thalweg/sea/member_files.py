@@ -82,10 +82,11 @@ class MemberFile:
     def drafts(self, index: int, mapping: Mapping[str, str]) -> Drafted:
         """Return what one member holds; what no member has of its own is the same every time."""
         whole = self.file
-        one = OpenedFile(
-            whole.dataset.isel({self.dim: index}),
-            f"{whole.source}, member {index}",
-            {**whole.facts, "member": index},
+        one = replace(
+            whole,
+            dataset=whole.dataset.isel({self.dim: index}),
+            source=f"{whole.source}, member {index}",
+            facts={**whole.facts, "member": index},
         )
         drafts, ignored = drafts_of(one, mapping, self.memo)
         if not self.shared:

@@ -6,9 +6,12 @@ import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
+
+import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.sea import conform, grib, joining, netcdf3
@@ -29,7 +32,9 @@ FIRST_ROWS: Final = (
 SMALL_LEVEL: Final = 200_000  #: values of a level up to which all of it is read on opening
 
 
-def open_layers(sources: Sequence[Any], mapping: Mapping[str, str] | None) -> list[Layer]:
+def open_layers(
+    sources: Sequence[Any], mapping: Mapping[str, str] | None, draught: float | None = None
+) -> list[Layer]:
     """Return the layers of files (see `Sea.open`), the first file's first.
 
     Raises
@@ -45,6 +50,8 @@ def open_layers(sources: Sequence[Any], mapping: Mapping[str, str] | None) -> li
         )
     mapping = dict(mapping or {})
     files = [part for source in sources for part in open_file(source)]
+    if draught is not None:
+        files = [_averaged(file, _checked_draught(draught)) for file in files]
     check_mapping(mapping, frozenset(str(n) for f in files for n in f.dataset.variables))
     ensembles = {k: found for k, f in enumerate(files) if (found := member_file(f)) is not None}
     if not ensembles:
@@ -62,6 +69,22 @@ def open_layers(sources: Sequence[Any], mapping: Mapping[str, str] | None) -> li
     return merged_versions(
         [_looked_at(_drafted(files, partial(draft, index=i))) for i in range(count)]
     )
+
+
+def _averaged(file: OpenedFile, draught: float) -> OpenedFile:
+    return replace(file, draught=draught, facts={**file.facts, "draught_m": draught})
+
+
+def _checked_draught(draught: float) -> float:
+    number = isinstance(draught, (int, float, np.number)) and not isinstance(draught, bool)
+    if not (number and 0.0 < float(draught) < 100.0):
+        raise InputError(
+            f"A draught of {draught!r} m cannot be averaged over.",
+            "It lies between 0 and 100 m.",
+            "Correct it, or leave it out to take the surface layer.",
+            field="draught_m",
+        )
+    return float(draught)
 
 
 def _drafted(files: Sequence[OpenedFile], draft: Callable[[int], Drafted]) -> list[GridLayer]:

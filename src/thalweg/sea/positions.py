@@ -66,7 +66,7 @@ def placement(
         return _curvilinear(dataset, lat, lon)
     if lat.ndim == 1 and lon.ndim == 1 and lat.dims != lon.dims:
         return _rectilinear(lat, lon, source)
-    raise _no_field(array, source, "lies at single points, not on a grid")
+    raise _no_field(array, source, "lies at single points, not on a grid, and no mesh joins them")
 
 
 def _position(dataset: Any, array: Any, test: Any, order: tuple[str, ...]) -> Any:
@@ -177,7 +177,7 @@ def no_projection(source: str) -> DatasetError:
     return DatasetError(
         f"{source}: positions are in metres of a projection that the file does not name.",
         "Positions need latitude and longitude, or a projection.",
-        "Give it with mapping={'crs': 'EPSG:...'}.",
+        "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
         file=source,
     )
 
@@ -186,7 +186,8 @@ def _no_field(array: Any, source: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source}: {array.name!r} {fault} (dimensions {', '.join(map(str, array.dims))}).",
         "A sea needs fields on a grid or mesh; one cannot sail on series at buoys or lines.",
-        "Give a gridded file, or wrap the series in Sea.from_functions.",
+        "Give a gridded file, a mesh with its face_node_connectivity, or wrap the series in "
+        "Sea.from_functions.",
         file=source,
         variable=str(array.name),
     )

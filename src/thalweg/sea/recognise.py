@@ -10,7 +10,7 @@ from typing import Any
 from thalweg.core.errors import DatasetError, InputError, near_matches
 from thalweg.sea import names as nm
 from thalweg.sea import spellings, units
-from thalweg.sea.coordinates import wind_height_fault
+from thalweg.sea.coordinates import time_of, wind_height_fault
 
 _BRACKETS = re.compile(r"\[([^\[\]]+)\]\s*$")
 
@@ -108,7 +108,7 @@ def recognise(
     for name in fields:
         if name in mapped.values():
             continue
-        found = _candidate(dataset[name], name)
+        found = _candidate(dataset, name)
         if isinstance(found, tuple) and "wind" in found[0]:
             fault = wind_height_fault(dataset, dataset[name])
             found = Ignored(name, fault) if fault else found
@@ -161,9 +161,10 @@ def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
             )
 
 
-def _candidate(array: Any, name: str) -> tuple[str, Candidate] | Ignored:
+def _candidate(dataset: Any, name: str) -> tuple[str, Candidate] | Ignored:
     """Return the role a variable may play, or why none."""
-    standard = str(array.attrs.get("standard_name", "")).strip().lower()
+    array = dataset[name]
+    standard = "_".join(str(array.attrs.get("standard_name", "")).lower().split())
     spelled = spellings.role_of_spelling(name)
     if name.lower() in spellings.NOT_USED:
         return Ignored(name, spellings.NOT_USED[name.lower()])
@@ -175,9 +176,17 @@ def _candidate(array: Any, name: str) -> tuple[str, Candidate] | Ignored:
             ("", 0) if not spelled or spelled[0] != role[0] else (spelled[2], spelled[1])
         )
         return role[0], Candidate(name, role[1], origin, place, f"standard_name {standard}")
+    if spelled is None and name.lower() in spellings.MOVING_DEPTHS and _moves(dataset, array):
+        told = f"spelled {name}, and changes in time: depth below the moving surface"
+        return nm.TOTAL_DEPTH, Candidate(name, 2, "", 0, told)
     if spelled is None:
         return Ignored(name, "no standard_name, and no spelling that is known")
     return spelled[0], Candidate(name, 2, spelled[2], spelled[1], f"spelled as by {spelled[2]}")
+
+
+def _moves(dataset: Any, array: Any) -> bool:
+    clock = time_of(dataset, array)
+    return clock is not None and array.sizes.get(clock.dims[0], 1) > 1
 
 
 def _best(several: list[Candidate], role: str, dataset: Any, source: str) -> Candidate:

@@ -43,7 +43,10 @@ class Sea(LayeredSea):
 
     @classmethod
     def open(
-        cls, *paths: str | os.PathLike[str] | Any, mapping: Mapping[str, str] | None = None
+        cls,
+        *paths: str | os.PathLike[str] | Any,
+        mapping: Mapping[str, str] | None = None,
+        draught_m: float | None = None,
     ) -> Sea:
         """Open files of met-ocean data; nothing is loaded until it is asked for.
 
@@ -72,6 +75,9 @@ class Sea(LayeredSea):
             (``{"sea_surface_wave_from_direction": "p107"}``), for any file that has it. The key
             "crs" gives the projection of a file that does not name it (``"EPSG:32611"``). Other
             keys make plain variables that a ship's function may read.
+        draught_m : float, optional
+            Average currents given in sigma or z layers from the surface down to this draught [m];
+            by default the layer nearest to the surface is taken.
 
         Returns
         -------
@@ -87,13 +93,14 @@ class Sea(LayeredSea):
         """
         from thalweg.sea.opening import open_layers
 
-        return cls(tuple(open_layers(paths, mapping)))
+        return cls(tuple(open_layers(paths, mapping, draught_m)))
 
     @classmethod
     def ensemble(
         cls,
         *members: Sea | str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
         mapping: Mapping[str, str] | None = None,
+        draught_m: float | None = None,
     ) -> Sea:
         """Return one sea in several versions, each as likely as the others.
 
@@ -106,7 +113,7 @@ class Sea(LayeredSea):
         ----------
         *members : Sea, path-like or sequence of path-like
             Two or more; what is no Sea is opened, each by itself.
-        mapping : mapping of str to str, optional
+        mapping, draught_m
             For the files, as in `open`.
 
         Raises
@@ -114,17 +121,14 @@ class Sea(LayeredSea):
         InputError
             If members differ in variables, grid, times or area, or there are fewer than two.
         """
-        seas = [
-            member if isinstance(member, Sea) else cls._opened(member, mapping)
-            for member in members
-        ]
+
+        def opened(paths: Any) -> Sea:
+            several = paths if isinstance(paths, (list, tuple)) else (paths,)
+            return cls.open(*several, mapping=mapping, draught_m=draught_m)
+
+        seas = [one if isinstance(one, Sea) else opened(one) for one in members]
         told = tuple(dict.fromkeys(text for sea in seas for text in sea.assumptions))
         return cls(together(seas), told)
-
-    @classmethod
-    def _opened(cls, paths: Any, mapping: Mapping[str, str] | None) -> Sea:
-        several = isinstance(paths, (list, tuple))
-        return cls.open(*(paths if several else (paths,)), mapping=mapping)
 
     @classmethod
     def from_functions(

@@ -24,6 +24,8 @@ STANDARD_NAMES: Final[dict[str, str]] = {
     "surface_northward_sea_water_velocity": nm.NORTHWARD_CURRENT,
     "x_sea_water_velocity": X_CURRENT,
     "y_sea_water_velocity": Y_CURRENT,
+    "eastward_water_velocity": nm.EASTWARD_CURRENT,
+    "northward_water_velocity": nm.NORTHWARD_CURRENT,
     "direction_of_sea_water_velocity": nm.CURRENT.towards,
     "significant_height_of_wind_and_swell_waves": nm.WAVE_HEIGHT,
     "sea_surface_wave_period_at_variance_spectral_density_maximum": nm.WAVE_PERIOD,
@@ -34,6 +36,7 @@ STANDARD_NAMES: Final[dict[str, str]] = {
     "bedrock_altitude": BED_LEVEL,
     "ground_level_altitude": BED_LEVEL,
     "depth": nm.BED_DEPTH,
+    "depth_below_geoid": nm.BED_DEPTH,
 }
 
 #: spellings by source; all in lower case, in order of preference within a role
@@ -85,9 +88,14 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
         "mslp": nm.PRESSURE,
     },
     "Delft3D-FM": {
-        "mesh2d_ucx": X_CURRENT, "mesh2d_ucy": Y_CURRENT, "mesh2d_s1": nm.WATER_LEVEL,
+        "mesh2d_ucx": X_CURRENT, "mesh2d_ucy": Y_CURRENT, "mesh2d_ucxa": X_CURRENT,
+        "mesh2d_ucya": Y_CURRENT, "mesh2d_s1": nm.WATER_LEVEL,
         "mesh2d_waterdepth": nm.TOTAL_DEPTH, "mesh2d_node_z": BED_LEVEL,
         "mesh2d_flowelem_bl": BED_LEVEL, "mesh2d_face_z": BED_LEVEL,
+    },
+    "ADCIRC": {"u-vel": nm.EASTWARD_CURRENT, "v-vel": nm.NORTHWARD_CURRENT},
+    "Matroos": {
+        "velu": nm.EASTWARD_CURRENT, "velv": nm.NORTHWARD_CURRENT, "sep": nm.WATER_LEVEL,
     },
     "GEBCO and ETOPO": {"elevation": BED_LEVEL, "topo": BED_LEVEL, "band1": BED_LEVEL},
 }  # fmt: skip
@@ -103,6 +111,9 @@ SECOND_CHOICE: Final[dict[str, str]] = {
 
 #: names too common to insist on: with units that do not fit they are something else
 WEAK: Final = frozenset({"z", "band1", "topo", "elevation", "ff", "dd", "hs", "tp", "ci", "zeta"})
+
+#: names of a depth that changes in time, and so is that of the water, not of the bed
+MOVING_DEPTHS: Final = frozenset({"depth", "water_depth", "waterdepth", "h_water"})
 
 #: why known variables are not used
 NOT_USED: Final[dict[str, str]] = {

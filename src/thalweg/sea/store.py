@@ -21,6 +21,7 @@ from thalweg.sea.fields import FloatArray
 
 Raw: TypeAlias = NDArray[Any]
 READ_ERRORS = (OSError, RuntimeError, ValueError, IndexError, KeyError, EOFError, OverflowError)
+LARGEST_LAYERED = 4_000_000  #: values in layers that are read at once
 LARGEST_UNION = 30_000_000  #: values of a block above which old and new are not read together
 
 
@@ -176,15 +177,28 @@ class Quantity:
         ``make(arrays, window) -> arrays``: unit conversion, components, rotation.
     source : str
         File names.
+    layers : int
+        Values that are read over the depth for each one that is made.
     """
 
     names: tuple[str, ...]
     variables: tuple[Variable, ...]
     make: Make
     source: str
+    layers: int = 1
 
     def read(self, window: Window, columns: int) -> dict[str, Raw]:
         """Return arrays (levels, places) by canonical name, checked for sense."""
+        at_once = max(1, LARGEST_LAYERED // max(1, self.layers * window.size // _count(window)))
+        if self.layers == 1 or _count(window) <= at_once:
+            return self._read(window, columns)
+        parts = [
+            self._read(window._replace(t0=t, t1=min(t + at_once, window.t1)), columns)
+            for t in range(window.t0, window.t1, at_once)
+        ]
+        return {name: np.concatenate([part[name] for part in parts]) for name in self.names}
+
+    def _read(self, window: Window, columns: int) -> dict[str, Raw]:
         raws = [np.asarray(v.read(window, columns), np.float64) for v in self.variables]
         kind = np.float64 if any(v.is_double for v in self.variables) else np.float32
         made = {}
@@ -192,6 +206,10 @@ class Quantity:
             limits.check_plausible(name, value, [v.name for v in self.variables], self.source)
             made[name] = np.ascontiguousarray(value.reshape(value.shape[0], -1), kind)
         return made
+
+
+def _count(window: Window) -> int:
+    return max(1, window.t1 - window.t0)
 
 
 class Block(NamedTuple):

@@ -83,33 +83,97 @@ class Topology:
     face_dim: str
 
 
-def mesh_names(dataset: Any) -> list[str]:
-    """Return the names of the mesh topologies in a dataset."""
-    return [str(n) for n in dataset.variables if dataset[n].attrs.get("cf_role") == "mesh_topology"]
+#: names of connectivity in files that tell no topology (ADCIRC, FVCOM)
+_BARE = ("element", "elements", "nv", "tri")
+
+
+def topologies(dataset: Any) -> dict[str, Mapping[str, Any]]:
+    """Return the two-dimensional meshes of a dataset: name and what it tells of each.
+
+    Where no topology is told, connectivity between nodes at positions makes one.
+    """
+    told = {
+        str(n): dataset[n].attrs
+        for n in dataset.variables
+        if dataset[n].attrs.get("cf_role") == "mesh_topology"
+    }
+    if told:
+        return {
+            name: attributes
+            for name, attributes in told.items()
+            if int(attributes.get("topology_dimension", attributes.get("dimension", 2))) == 2
+        }
+    return _bare_topology(dataset)
+
+
+def _bare_topology(dataset: Any) -> dict[str, Mapping[str, Any]]:
+    for name in dataset.variables:
+        table = dataset[name]
+        role = table.attrs.get("cf_role") == "face_node_connectivity"
+        if table.ndim != 2 or not (role or str(name).lower() in _BARE):
+            continue
+        places = _bare_nodes(dataset, frozenset(map(str, table.dims)))
+        if places and min(table.shape) in (3, 4):
+            face_dim = str(table.dims[int(np.argmax(table.shape))])
+            return {
+                str(name): {
+                    "face_node_connectivity": str(name),
+                    "node_coordinates": " ".join(places),
+                    "face_dimension": face_dim,
+                }
+            }
+    return {}
+
+
+def _bare_nodes(dataset: Any, not_along: frozenset[str]) -> list[str]:
+    """Return longitude and latitude of nodes: on one dimension that is not that of the faces."""
+    along = [
+        (str(n), dataset[n])
+        for n in dataset.variables
+        if dataset[n].ndim == 1 and dataset[n].dims[0] not in not_along
+    ]
+    x = next(((n, a) for n, a in along if co.is_longitude(a, n)), None)
+    y = next(((n, a) for n, a in along if co.is_latitude(a, n)), None)
+    return [x[0], y[0]] if x and y and x[1].dims == y[1].dims else []
 
 
 def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[MeshLayout]:
     """Return the layouts for node and face data of every two-dimensional mesh of a dataset."""
-    layouts: list[MeshLayout] = []
-    for name in mesh_names(dataset):
-        if int(dataset[name].attrs.get("topology_dimension", 2)) == 2:
-            layouts += _layouts(dataset, name, mapping, source)
-    return layouts
+    return [
+        layout
+        for name, attributes in topologies(dataset).items()
+        for layout in _layouts(dataset, name, attributes, mapping, source)
+    ]
 
 
 def auxiliary(dataset: Any) -> frozenset[str]:
     """Return the variables that describe meshes and carry no field."""
     names: set[str] = set()
-    for mesh in mesh_names(dataset):
+    for mesh, attributes in topologies(dataset).items():
         names.add(mesh)
-        for key, value in dataset[mesh].attrs.items():
+        for key, value in attributes.items():
             if key.endswith(("_coordinates", "_connectivity")):
                 names.update(str(value).split())
     return frozenset(names)
 
 
-def _layouts(dataset: Any, name: str, mapping: Mapping[str, str], source: str) -> list[MeshLayout]:
-    attributes = dataset[name].attrs
+def place_dimensions(dataset: Any) -> frozenset[str]:
+    """Return the dimensions of nodes and of faces of every mesh, as far as they are told."""
+    dims: set[str] = set()
+    for attributes in topologies(dataset).values():
+        for key in ("node_coordinates", "face_coordinates", "face_node_connectivity"):
+            for name in str(attributes.get(key, "")).split()[:1]:
+                dims.update(map(str, dataset[name].dims if name in dataset.variables else ()))
+    return frozenset(dims)
+
+
+def _layouts(
+    dataset: Any,
+    name: str,
+    attributes: Mapping[str, Any],
+    mapping: Mapping[str, str],
+    source: str,
+) -> list[MeshLayout]:
     connectivity = _needed(dataset, attributes, "face_node_connectivity", source)[0]
     axes = _needed(dataset, attributes, "node_coordinates", source)
     x, y, crs = _node_positions(dataset, axes, mapping, source)
