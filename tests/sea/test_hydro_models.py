@@ -9,6 +9,7 @@ import xarray as xr
 from tests.sea import hydro
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
+from thalweg.sea.grids import TriangleGrid
 
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
 LEVEL = "sea_surface_height_above_geopotential_datum"
@@ -237,3 +238,26 @@ def test_a_moving_depth_needs_no_standard_name(tmp_path) -> None:
     assert got[LEVEL] == pytest.approx(hydro.level(0.0), abs=1e-5)
     told = next(r.how for r in sea.describe().recognised if r.variable == LEVEL)
     assert "total depth minus bed depth" in told
+
+
+@pytest.mark.parametrize("west", [-117.3, -117.123456789, 3.0, 359.9, 179.95])
+def test_a_small_mesh_is_searched_in_small_bins(west) -> None:
+    """Rounding at the western edge must not spread the bins round the world."""
+    lat, lon = hydro.nodes()
+    grid = TriangleGrid(lat, lon - hydro.LON0 + west, hydro.triangles(), (1, lat.size))
+    bins = grid._bins
+    assert bins.frame[2] * bins.shape[1] == pytest.approx(hydro.STEP * 11, rel=1e-6)
+    assert np.diff(bins.start).max() < 30
+
+
+def test_crowded_triangles_get_more_bins() -> None:
+    lat, lon = hydro.nodes()
+    dense = np.concatenate([lat, lat * 1e-3 + 60.0]), np.concatenate([lon, lon * 1e-3 + 20.0])
+    triangles = np.concatenate([hydro.triangles(), hydro.triangles() + lat.size])
+    grid = TriangleGrid(*dense, triangles, (1, 2 * lat.size))
+    assert grid._bins.shape[0] > int(np.sqrt(len(triangles)))
+    middle = dense[0][triangles].mean(axis=1), dense[1][triangles].mean(axis=1)
+    found = grid.locate(*middle)
+    assert np.array_equal(np.sort(found.corner, axis=1), np.sort(triangles, axis=1))
+    again = grid.locate(*(a.copy() for a in middle))
+    assert again is found  # the same points are not searched twice

@@ -30,6 +30,12 @@ def add_world_options(parser: argparse.ArgumentParser) -> None:
         help="met-ocean files, first has priority; 'storm' for the embedded modelled storm",
     )
     add_mapping_option(sea)
+    sea.add_argument(
+        "--average-over",
+        type=float,
+        metavar="M",
+        help="average currents given in layers from the surface down to this draught",
+    )
     sea.add_argument("--calm", action="store_true", help="no wind, waves or currents at all")
     sea.add_argument(
         "--fill",
@@ -101,7 +107,11 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     if arguments.calm:
         return Sea.calm()
     files = [name for name in arguments.sea if name != "storm"]
-    layers = [Sea.open(*files, mapping=mapping_of(arguments))] if files else []
+    options: dict[str, Any] = {
+        "mapping": mapping_of(arguments),
+        "draught_m": arguments.average_over,
+    }
+    layers = [Sea.open(*files, **options)] if files else []
     if "storm" in arguments.sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)

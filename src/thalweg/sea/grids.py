@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from thalweg.kernels import sampling
 from thalweg.sea.fields import Area, FloatArray, IntArray, Mesh
 
+CROWD = 12.0  #: triangles in a typical bin above which bins are made smaller ...
+MOST_BINS, MOST_ITEMS = 1500, 20.0  #: ... up to so many a side, or entries for each triangle
 RIM = 2e-5  #: [deg] how far outside a point may lie and still count: float32 rounding of axes
 
 
@@ -203,6 +205,19 @@ class TriangleGrid:
 
     def locate(self, lat: FloatArray, lon: FloatArray) -> Located:
         """Return the three corners of each point's triangle and the barycentric weights."""
+        last = self._last.get("points")
+        if last and np.array_equal(last[0], lat) and np.array_equal(last[1], lon):
+            return last[2]
+        found = self._locate(lat, lon)
+        self._last["points"] = (lat.copy(), lon.copy(), found)
+        return found
+
+    @cached_property
+    def _last(self) -> dict[str, tuple[FloatArray, FloatArray, Located]]:
+        """What was asked last: several layers lie on one mesh and are asked for the same points."""
+        return {}
+
+    def _locate(self, lat: FloatArray, lon: FloatArray) -> Located:
         x, y = self._plane.of(lat, lon)
         triangle = np.empty(lat.size, np.int64)
         weight = np.zeros((lat.size, 3))
@@ -267,16 +282,32 @@ def make_bins(plane: Plane, lat: FloatArray, lon: FloatArray, triangles: IntArra
     x, y, corners = x[whole], y[whole], triangles[whole]
     if plane.pole == 0:
         x, y, corners = _over_the_seam(plane, x, y, corners)
-    n = max(1, int(np.sqrt(len(x))))
-    low, high = (x.min(), y.min()), (x.max(), y.max())
-    width, height = max((high[0] - low[0]) / n, 1e-9), max((high[1] - low[1]) / n, 1e-9)
-    frame = np.array([low[0], low[1], width, height])
-    counts = np.zeros((n, n), np.int64)
-    sampling.count_bins(x, y, frame, counts)
+    frame, counts = _fine_enough(x, y)
+    n = len(counts)
     start = np.concatenate([[0], np.cumsum(counts.ravel())]).astype(np.int64)
     items = np.empty(start[-1], np.int64)
     sampling.fill_bins(x, y, frame, (n, n), start[:-1].copy(), items)
     return Bins(x, y, np.ascontiguousarray(corners), frame, (n, n), start, items)
+
+
+def _fine_enough(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return bins, as many as triangles or more where these crowd in some, and their counts.
+
+    Coastal meshes have small triangles in a bay and large ones off it: what counts is how many
+    triangles a point in a small one has to be compared with.
+    """
+    n = max(1, int(np.sqrt(len(x))))
+    low, high = (x.min(), y.min()), (x.max(), y.max())
+    while True:
+        width, height = max((high[0] - low[0]) / n, 1e-9), max((high[1] - low[1]) / n, 1e-9)
+        frame = np.array([low[0], low[1], width, height])
+        counts = np.zeros((n, n), np.int64)
+        sampling.count_bins(x, y, frame, counts)
+        total = float(counts.sum())
+        crowd = float((counts.astype(np.float64) ** 2).sum()) / total
+        if crowd <= CROWD or n >= MOST_BINS or total > MOST_ITEMS * max(len(x), 1000):
+            return frame, counts
+        n *= 2
 
 
 def _over_the_seam(
@@ -284,7 +315,7 @@ def _over_the_seam(
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Repeat triangles that stick out over either edge of the map on its other side."""
     right = x.max(axis=1) > plane.west + 360.0 - 2.0 * RIM
-    left = x.min(axis=1) < plane.west
+    left = x.min(axis=1) < plane.west - RIM + 1e-9  # points begin a rim before the edge
     return (
         np.concatenate([x, x[right] - 360.0, x[left] + 360.0]),
         np.concatenate([y, y[right], y[left]]),

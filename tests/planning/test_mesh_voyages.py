@@ -1,0 +1,83 @@
+"""Voyages on the meshes of real hydrodynamic models, from the command line, checked by hand."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.conftest import data_file
+from thalweg import Sea, Ship, evaluate
+from thalweg.cli.main import main
+from thalweg.core.errors import DatasetError
+from thalweg.route import read_track
+
+HERWART = "metocean/northsea_storm_herwart_20171027_29_dhi_ugrid.nc"
+SAN_DIEGO = "tide/adh_sandiego_waterlevel_ugrid_30min.nc"
+
+
+def planned(capsys, *words: str) -> dict:
+    """Run ``thalweg plan`` and return its JSON answer."""
+    assert main(["plan", *words, "--ship", "hopper-dredger", "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_the_storm_mesh_of_herwart(capsys) -> None:
+    """Off the Dutch coast on the mesh itself; level and current are those of the nearest face."""
+    path = data_file(HERWART)
+    answer = planned(
+        capsys, "51.5,1.6", "52.2,4.2", "--sea", str(path), "--depart", "2017-10-28T00:00Z"
+    )
+    assert answer["provenance"]["networks"][0]["kind"] == "mesh"
+    best = answer["routes"][0]
+    assert best["feasible"] and best["min_ukc_m"] > 0.0
+    # 10 kn calm water; head current of the first hours, fair current later
+    assert best["time_h"] == pytest.approx(best["distance_nm"] / 10.0, rel=0.03)
+    assert answer["lower_bound"] <= best["time_h"] + 1e-9
+    raw = xr.open_dataset(path)
+    faces = raw.mesh2d_face_nodes.values.astype(int)
+    lat = raw.mesh2d_node_lat.values[faces].mean(axis=1)
+    lon = raw.mesh2d_node_lon.values[faces].mean(axis=1)
+    place = int(np.argmin((lat - 51.7) ** 2 + (lon - 2.6) ** 2))
+    step = raw.isel(time=9, mesh2d_nFaces=place)
+    second = float(step.time.values.astype("datetime64[s]").astype(float))
+    got = Sea.open(path).sample(
+        ["sea_surface_height_above_geopotential_datum", "eastward_sea_water_velocity"],
+        second, lat[place], lon[place],
+    )  # fmt: skip
+    assert got["sea_surface_height_above_geopotential_datum"] == pytest.approx(float(step.zeta))
+    assert got["eastward_sea_water_velocity"] == pytest.approx(float(step.ucur))
+
+
+def test_san_diego_names_what_it_lacks() -> None:
+    with pytest.raises(DatasetError, match=r"--map crs=EPSG") as caught:
+        Sea.open(data_file(SAN_DIEGO))
+    assert "projection" in str(caught.value)
+
+
+@pytest.mark.slow
+def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys) -> None:
+    """9140 nodes of which 1225 fall dry; the south bay is reached as the second tide rises."""
+    path = data_file(SAN_DIEGO)
+    words = ["--sea", str(path), "--map", "crs=EPSG:32611", "--coast", "none"]
+    words += ["--depart", "2000-01-01T01:00Z", "--load-factor", "0", "--out", str(tmp_path)]
+    answer = planned(capsys, "32.65,-117.25", "32.63,-117.11", *words, "--ukc", "0.5")
+    assert answer["provenance"]["networks"][0]["nodes"] > 8000
+    best = answer["routes"][0]
+    assert best["feasible"]
+    assert best["waiting_h"] > 5.0
+    assert best["min_ukc_m"] >= 0.5 - 1e-6
+    assert best["time_h"] <= 8.2
+    sea = Sea.open(path, mapping={"crs": "EPSG:32611"})
+    ship = Ship.load("hopper-dredger").with_load_factor(0.0)
+    waits = np.array([row["waiting_h"] or 0.0 for row in best["waypoints"]])
+    track = read_track(tmp_path / "route.csv").replaced(wait=3600.0 * waits)
+    again = evaluate(track, ship=ship, sea=sea, min_ukc=0.5, step=5.0)
+    assert again.feasible and again.min_ukc_m >= 0.5 - 1e-6
+    assert again.time_h == pytest.approx(best["time_h"], abs=1e-3)
+    # Nobody gets there while the flats are dry: without waiting there is no way.
+    asked = ["32.65,-117.25", "32.63,-117.11", "--ship", "hopper-dredger", "--ukc", "0.5"]
+    assert main(["plan", *asked, "--no-wait", *words]) == 4
+    assert "No route" in capsys.readouterr().err
