@@ -62,7 +62,8 @@ class Islands:
     """
 
     has_depth = False
-    zones = SimpleNamespace(penalty=())
+    zones = SimpleNamespace(penalty=(), price=(), eca=())
+    canals = ()
 
     def __init__(self, *polygons):
         self.land = shapely.union_all(list(polygons))

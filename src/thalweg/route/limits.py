@@ -15,7 +15,7 @@ from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.kernels.codes import REASONS
 from thalweg.route.physics import Motion, World
-from thalweg.route.pieces import Points
+from thalweg.route.pieces import Pieces, Points
 from thalweg.route.route import Violation
 from thalweg.route.track import Track
 from thalweg.ship.variables import (
@@ -76,6 +76,18 @@ def land_violations(world: World, track: Track, times: FloatArray) -> list[Viola
         reason = REASONS.get(int(status[leg]), REASONS[codes.LAND])
         where = f"{reason}: leg {leg + 1}"
         found.append(Violation(where, float(times[leg]), float(lat), float(lon)))
+    return found
+
+
+def canal_violations(world: World, pieces: Pieces, times: FloatArray) -> list[Violation]:
+    """Return the canals that the ship may not pass, each at the entrance it takes."""
+    beam = world.ship.data.get("hull", {}).get("breadth_m")
+    found = []
+    for leg in pieces.canals.legs:
+        why = pieces.canals.of(leg).why_not(draught=world.ship.draught, beam=beam)
+        if why:
+            place = (float(pieces.track.lat[leg]), float(pieces.track.lon[leg]))
+            found.append(Violation(f"canal: {why}", float(times[leg]), *place))
     return found
 
 

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import WGS84, FloatArray, inverse, wrap_longitude
+from thalweg.route.canal_legs import CanalLegs, canal_legs
 from thalweg.route.track import Track
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
 
 IntArray = NDArray[np.int64]
 
@@ -78,6 +83,8 @@ class Pieces:
         Its length [m].
     wait : float64 array (p,)
         Wait after it [s]: at the end of a leg, else 0.
+    canals : CanalLegs
+        Which legs are canals; their length is that of the canal.
     """
 
     track: Track
@@ -87,6 +94,7 @@ class Pieces:
     start: FloatArray
     step: FloatArray
     wait: FloatArray
+    canals: CanalLegs
 
     def __len__(self) -> int:
         return len(self.leg)
@@ -97,10 +105,15 @@ class Pieces:
         lon, lat, back = WGS84.fwd(
             track.lon[leg], track.lat[leg], np.degrees(self.course[leg]), along
         )
+        lat, lon = np.asarray(lat), wrap_longitude(lon)
+        course = np.radians(np.asarray(back) + 180.0) % (2.0 * math.pi)
+        for canal in self.canals.legs:
+            on = leg == canal
+            lat[on], lon[on], course[on] = self.canals.places(canal, along[on])
         return Points(
-            np.asarray(lat),
-            wrap_longitude(lon),
-            np.radians(np.asarray(back) + 180.0) % (2.0 * math.pi),
+            lat,
+            lon,
+            course,
             track.setting[leg],
             leg,
             along,
@@ -124,7 +137,7 @@ class Pieces:
         return np.append(self.leg[1:] != self.leg[:-1], True)
 
 
-def cut(track: Track, step: float, least: int) -> Pieces:
+def cut(track: Track, step: float, least: int, chart: Chart | None = None) -> Pieces:
     """Cut every leg into equal pieces.
 
     Parameters
@@ -134,12 +147,16 @@ def cut(track: Track, step: float, least: int) -> Pieces:
         Greatest length of a piece [m].
     least : int
         Least number of pieces of a leg.
+    chart : Chart, optional
+        Whose canals legs may run through.
     """
+    canals = canal_legs(track, chart)
     length, course, _ = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    length = np.where(canals.number >= 0, canals.length, length)
     count = np.maximum(least, np.ceil(length / step - 1e-9)).astype(np.int64)
     leg = np.repeat(np.arange(len(length)), count)
     number = np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)
     piece = length / count
     wait = np.zeros(len(leg))
     wait[np.cumsum(count) - 1] = track.wait[1:]
-    return Pieces(track, length, course, leg, number * piece[leg], piece[leg], wait)
+    return Pieces(track, length, course, leg, number * piece[leg], piece[leg], wait, canals)

@@ -23,6 +23,7 @@ from thalweg.route.sailing import sail, spacings
 from thalweg.route.track import Track
 from thalweg.route.verdict import report
 from thalweg.route.wind import with_wind_speed
+from thalweg.ship.fuel_terms import FuelTerms
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -48,6 +49,7 @@ def evaluate(
     load_factor: float | None = None,
     speed_kn: float | None = None,
     strict: bool = True,
+    terms: FuelTerms | None = None,
 ) -> Route:
     """Sail a route in small steps with the ship's own formulas, and check every limit.
 
@@ -75,6 +77,9 @@ def evaluate(
     strict : bool
         Raise if the data end before the route does. Otherwise that is listed among the violations
         and the totals are NaN.
+    terms : FuelTerms, optional
+        What fuel and time cost; by default what the ship file says. Unknown prices make the cost
+        unknown.
 
     Returns
     -------
@@ -96,19 +101,26 @@ def evaluate(
     that; the second is what is told and the difference is its ``tolerance_s``. Limits are looked at
     more closely, at up to 10,000 places; for a route that waits, the time between two of them is
     part of the tolerance, as its waits can be that much too short. Wind acts relative
-    to the moving water, weather at angles from the heading. Waiting costs time but no fuel, and
-    the ship does not drift (it lies at anchor); only its clearance is checked meanwhile, and
+    to the moving water, weather at angles from the heading. Waiting burns the hotel load, and the
+    ship does not drift (it lies at anchor); only its clearance is checked meanwhile, and
     not at the first waypoint, where it lies at its berth. Without currents in the sea (no such
     variable at all) still water is assumed, which is told.
+
+    Fuel is priced per piece: the exact share of each inside the chart's emission control areas at
+    the terms inside, the rest at those outside, times the factor of price zones. A leg from one end
+    of a canal of the chart to the other takes the canal's length, time and dues, at the fuel rate
+    of calm water at the slowest setting that keeps up; sea, land and depth are not looked at there,
+    but the canal's limits of draught and beam are.
     """
     _check_given(ship, sea, min_ukc)
+    terms = _checked_terms(ship, terms)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
     ship, track = _order(ship, as_track(route, depart), speed_kn)
     world = open_world(ship, with_wind_speed(ship, sea), chart)
     step = _default_step(world, track) if step is None else _checked_step(step)
     coarse = sail(world, track, step, LEAST_PIECES, None)
     fine = sail(world, track, 0.5 * step, 2 * LEAST_PIECES, coarse)
-    result = report(fine, min_ukc, abs(fine.arrive - coarse.arrive))
+    result = report(fine, min_ukc, abs(fine.arrive - coarse.arrive), terms)
     if strict and not math.isfinite(result.arrive):
         gaps = [violation for violation in result.violations if is_gap(violation)]
         if gaps:
@@ -177,6 +189,19 @@ def _check_given(ship: Ship, sea: Sea, min_ukc: float | None) -> None:
             "Correct it.",
             field="min_ukc",
         )
+
+
+def _checked_terms(ship: Ship, terms: FuelTerms | None) -> FuelTerms:
+    if terms is None:
+        return ship.fuel_terms
+    if not isinstance(terms, FuelTerms):
+        raise InputError(
+            f"The terms are {terms!r}, which are no FuelTerms.",
+            "A ship tells its own (ship.fuel_terms); with_prices changes them.",
+            "Give ship.fuel_terms.with_prices(...).",
+            field="terms",
+        )
+    return terms
 
 
 def _checked_step(step: float) -> float:

@@ -21,7 +21,8 @@ def waypoint_rows(route: Route) -> list[dict[str, Any]]:
 
     ``time`` is the arrival at the waypoint; a ship leaves it ``waiting_h`` later. Courses, headings
     and conditions are those on leaving (at the last waypoint: on arriving); speeds are means over
-    the time of the leg that begins there, ``ukc_m`` the least clearance on it.
+    the time of the leg that begins there, ``ukc_m`` the least clearance on it. Distance, fuel, CO2
+    and cost are sums up to the waypoint; those of each leg are in ``route.legs``.
     """
     columns = waypoint_columns(route)
     times = columns.pop("time")
@@ -54,7 +55,7 @@ def waypoint_columns(route: Route) -> dict[str, FloatArray]:
     length, sailing = legs["length"], legs["arrive"] - legs["depart"]
     with np.errstate(invalid="ignore", divide="ignore"):
         over_ground = np.where(sailing > 0.0, length / sailing, math.nan)
-    fuel = np.concatenate([[0.0], np.cumsum(legs["fuel"])]) / TONNE
+    fuel = legs["fuel"] + legs["waiting_fuel"]
     return {
         "lat": track.lat,
         "lon": track.lon,
@@ -65,10 +66,17 @@ def waypoint_columns(route: Route) -> dict[str, FloatArray]:
         "heading_deg": np.degrees(samples["heading"][at]),
         "speed_through_water_kn": np.append(_mean_over_time(route), math.nan) / KNOT,
         "speed_over_ground_kn": np.append(over_ground, math.nan) / KNOT,
-        "fuel_t": fuel,
+        "fuel_t": _so_far(fuel) / TONNE,
+        "co2_t": _so_far(legs["co2"]) / TONNE,
+        route.cost_name: _so_far(legs["cost"]),
         **_conditions(route, at),
         "ukc_m": np.append(legs["under_keel_clearance"], math.nan),
     }
+
+
+def _so_far(values: FloatArray) -> FloatArray:
+    """Return a sum over the legs up to each waypoint."""
+    return np.concatenate([[0.0], np.cumsum(values)])
 
 
 def _sample_of_waypoint(leg: FloatArray) -> np.ndarray:

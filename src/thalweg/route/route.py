@@ -69,7 +69,9 @@ class Route:
         What was sailed; settings are indices from the bottom.
     legs : mapping of str to ndarray
         Per leg: ``length`` [m], ``course`` (at its start) [rad], ``depart``, ``arrive`` [s since
-        1970], ``fuel`` [kg] (NaN if unknown), ``under_keel_clearance`` (least) [m].
+        1970], ``under_keel_clearance`` (least) [m]; NaN if unknown: ``fuel`` of sailing it and
+        ``waiting_fuel`` of lying still before it [kg], and of both ``fuel_in_eca`` [kg], ``co2``
+        [kg] and ``cost`` [``currency``] (with canal dues and the price of time).
     samples : mapping of str to ndarray
         The fine samples along the route, in order: ``time, leg, lat, lon, distance, course,
         heading, speed_through_water, speed_over_ground, depth, under_keel_clearance, fuel_rate``
@@ -80,6 +82,10 @@ class Route:
         Difference of the sailing time between the last two step sizes [s].
     assumptions : tuple of str
         What was taken for granted where the data say nothing.
+    fuel_zones : mapping of str to float
+        Fuel [kg] by emission control area, and ``outside`` them.
+    currency : str
+        Of the cost.
     """
 
     track: Track
@@ -88,6 +94,8 @@ class Route:
     violations: tuple[Violation, ...] = ()
     tolerance_s: float = float("nan")
     assumptions: tuple[str, ...] = field(default=())
+    fuel_zones: Mapping[str, float] = field(default_factory=dict)
+    currency: str = "USD"
 
     def __post_init__(self) -> None:
         for name in ("legs", "samples"):
@@ -95,6 +103,7 @@ class Route:
             for values in columns.values():
                 values.setflags(write=False)
             object.__setattr__(self, name, MappingProxyType(columns))
+        object.__setattr__(self, "fuel_zones", MappingProxyType(dict(self.fuel_zones)))
 
     @property
     def depart(self) -> float:
@@ -119,8 +128,35 @@ class Route:
     @property
     def fuel_t(self) -> float | None:
         """Fuel burnt [t]; None if the ship has no fuel model or the route is not sailed out."""
-        total = float(self.legs["fuel"].sum()) / TONNE
-        return total if np.isfinite(total) else None
+        total = self._sum("fuel")
+        return None if total is None else (total + float(self.legs["waiting_fuel"].sum())) / TONNE
+
+    @property
+    def fuel_eca_t(self) -> float | None:
+        """Fuel burnt inside emission control areas [t]; None where fuel is unknown."""
+        total = self._sum("fuel_in_eca")
+        return None if total is None or self.fuel_t is None else total / TONNE
+
+    @property
+    def fuel_by_zone_t(self) -> dict[str, float] | None:
+        """Fuel [t] by emission control area, and ``outside`` them; None where fuel is unknown."""
+        if self.fuel_t is None:
+            return None
+        return {name: value / TONNE for name, value in self.fuel_zones.items()}
+
+    @property
+    def co2_t(self) -> float | None:
+        """Carbon dioxide emitted [t]; None where fuel or its carbon factor is unknown."""
+        total = self._sum("co2")
+        return None if total is None else total / TONNE
+
+    @property
+    def cost(self) -> float | None:
+        """Fuel, canal dues and time [``currency``]; None where fuel or a price is unknown."""
+        return self._sum("cost")
+
+    def _sum(self, name: str) -> float | None:
+        return none_if_nan(float(self.legs[name].sum())) if name in self.legs else None
 
     @property
     def waiting_h(self) -> float:
@@ -157,6 +193,11 @@ class Route:
 
         return pd.DataFrame(dict(self.samples))
 
+    @property
+    def cost_name(self) -> str:
+        """Name of the cost in tables and JSON, such as ``cost_usd``."""
+        return f"cost_{self.currency.casefold()}"
+
     def as_dict(self) -> dict[str, Any]:
         """Return totals, waypoints and violations as plain data for a JSON answer."""
         return {
@@ -165,6 +206,10 @@ class Route:
             "time_h": none_if_nan(self.time_h),
             "distance_nm": self.distance_nm,
             "fuel_t": self.fuel_t,
+            "fuel_eca_t": self.fuel_eca_t,
+            "fuel_by_zone_t": self.fuel_by_zone_t,
+            "co2_t": self.co2_t,
+            self.cost_name: self.cost,
             "waiting_h": self.waiting_h,
             "min_ukc_m": self.min_ukc_m,
             "feasible": self.feasible,
@@ -176,6 +221,7 @@ class Route:
 
     def __str__(self) -> str:
         fuel = "" if self.fuel_t is None else f", {self.fuel_t:.2f} t fuel"
+        fuel += "" if self.cost is None else f", {self.cost:,.0f} {self.currency}"
         state = "" if self.feasible else f", {len(self.violations)} limits broken"
         return f"Route: {self.time_h:.4f} h, {self.distance_nm:.2f} nm{fuel}{state}"
 

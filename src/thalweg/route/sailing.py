@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
+from thalweg.route.canal_legs import CanalLegs
 from thalweg.route.passage_times import Passage, find_times
-from thalweg.route.physics import World, move
+from thalweg.route.physics import Motion, World, move
 from thalweg.route.pieces import Pieces, Points, cut
 from thalweg.route.track import Track
 
@@ -57,14 +58,14 @@ class Sailed:
 
 def sail(world: World, track: Track, step: float, least: int, coarse: Sailed | None) -> Sailed:
     """Cut and sail a track; a coarser answer gives the first guess."""
-    pieces = cut(track, step, least)
+    pieces = cut(track, step, least, world.chart)
     charted = _charted(world, pieces)
     gauss = replace(pieces.gauss_points(), charted=np.repeat(charted, 2))
 
     def slowness(
         first: int, last: int, time: FloatArray, guess: FloatArray | None
     ) -> tuple[FloatArray, FloatArray]:
-        motion = move(world, gauss.part(slice(first, last)), time, guess)
+        motion = move_along(world, pieces.canals, gauss.part(slice(first, last)), time, guess)
         return 1.0 / motion.over_ground, motion.through_water
 
     passage = find_times(
@@ -77,17 +78,49 @@ def sail(world: World, track: Track, step: float, least: int, coarse: Sailed | N
     return Sailed(world, pieces, charted, gauss, passage)
 
 
+def move_along(
+    world: World,
+    canals: CanalLegs,
+    points: Points,
+    time: FloatArray,
+    guess: FloatArray | None = None,
+) -> Motion:
+    """Return what the ship does at points of a track, some of which may lie in canals.
+
+    There the speed is the canal's, whatever the sea does, and nothing of the sea is told.
+    """
+    fixed = canals.speed[points.leg]
+    free = np.flatnonzero(np.isnan(fixed))
+    if len(free) == len(points):
+        return move(world, points, time, guess)
+    unknown = {name: np.full(len(points), math.nan) for name in world.names}
+    motion = Motion(
+        unknown, np.full(len(points), math.nan), points.course.copy(), fixed, fixed.copy()
+    )
+    if not len(free):
+        return motion
+    part = move(world, points.part(free), time[free], None if guess is None else guess[free])
+    for name, values in part.sampled.items():
+        motion.sampled.setdefault(name, np.full(len(points), math.nan))[free] = values
+    for name in ("depth", "heading", "through_water", "over_ground"):
+        getattr(motion, name)[free] = getattr(part, name)
+    return motion
+
+
 def _first_guess(world: World, pieces: Pieces, coarse: Sailed | None) -> FloatArray:
     """Return a slowness to begin with at the Gauss points of every piece [s/m]."""
+    canal = pieces.canals.speed[pieces.leg]
     if coarse is not None:
         middle = pieces.start + 0.5 * pieces.step
         ends = np.cumsum(np.bincount(coarse.pieces.leg))
         first = np.concatenate([[0], ends[:-1]])[pieces.leg]
         nearest = first + (middle / coarse.pieces.step[first]).astype(np.int64)
         mean = coarse.passage.slowness.mean(axis=1)
-        return np.repeat(mean[np.minimum(nearest, ends[pieces.leg] - 1), None], 2, axis=1)
+        mean = mean[np.minimum(nearest, ends[pieces.leg] - 1)]
+        return np.repeat(np.where(np.isnan(canal), mean, 1.0 / canal)[:, None], 2, axis=1)
     speeds = world.ship.speeds[pieces.track.setting[pieces.leg]]
     usual = np.where(np.isfinite(speeds) & (speeds > 0.0), speeds, 5.0)
+    usual = np.where(np.isnan(canal), usual, canal)
     return np.repeat(1.0 / usual[:, None], 2, axis=1)
 
 
@@ -98,7 +131,7 @@ def _charted(world: World, pieces: Pieces) -> FloatArray:
     low = pieces.points(pieces.leg, pieces.start)
     high = pieces.points(pieces.leg, pieces.start + pieces.step)
     depth = world.chart.depth_along(low.lat, low.lon, high.lat, high.lon)
-    return np.asarray(depth, dtype=np.float64)
+    return np.where(pieces.canals.number[pieces.leg] >= 0, math.inf, np.asarray(depth, float))
 
 
 def spacings(world: World, share: float) -> list[float]:

@@ -8,20 +8,21 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.route.limits import broken_limits, land_violations, stops
-from thalweg.route.passage_times import Passage
-from thalweg.route.physics import Motion, World, conditions_at, look, move
+from thalweg.route.limits import broken_limits, canal_violations, land_violations, stops
+from thalweg.route.physics import Motion, World, conditions_at, look
 from thalweg.route.pieces import IntArray, Pieces, Points
+from thalweg.route.pricing import bill
 from thalweg.route.route import Route, Violation
-from thalweg.route.sailing import Sailed, spacings
+from thalweg.route.sailing import Sailed, move_along, spacings
 from thalweg.route.track import Track
+from thalweg.ship.fuel_terms import FuelTerms
 
 MOST_LOOKS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
 LOOKS_PER_CELL = 8  #: of gridded data
 _WAIT_LOOKS = 300.0  # longest time between two looks at the depth while waiting [s]
 
 
-def report(sailed: Sailed, min_ukc: float | None, tolerance: float) -> Route:
+def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelTerms) -> Route:
     """Look at every point once more, check the limits and put the route together.
 
     Parameters
@@ -31,12 +32,14 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float) -> Route:
         Least under-keel clearance [m]; None: depth is not looked at.
     tolerance : float
         Of the time of sailing [s].
+    terms : FuelTerms
+        What fuel and time cost.
     """
     world, pieces = sailed.world, sailed.pieces
     points, time, order = _all_points(sailed)
     looked_at = np.where(np.isfinite(time), time, pieces.track.depart)
-    motion = move(world, points, looked_at)
-    rate = _fuel_rate(world, points, looked_at, motion)
+    motion = move_along(world, pieces.canals, points, looked_at)
+    rate = _fuel_rate(world, pieces, points, time=looked_at, motion=motion)
     near, moments = _looks(sailed, points, time)
     violations, least = _judged(sailed, near, moments, min_ukc)
     violations += stops(world, points, time, motion)
@@ -47,13 +50,23 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float) -> Route:
         "course": pieces.course,
         "depart": departs,
         "arrive": arrives,
-        "fuel": _leg_fuel(pieces, sailed.passage, rate[order]),
         "under_keel_clearance": least,
     }
+    spent = bill(sailed, rate[order], terms)
     if np.any(pieces.track.wait) and world.has_depth:
         tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
     samples = _samples(sailed, points, time, motion=motion, rate=rate)
-    return Route(pieces.track, legs, samples, tuple(violations), tolerance, world.assumptions)
+    told = (*world.assumptions, *spent.notes)
+    return Route(
+        pieces.track,
+        {**legs, **spent.legs},
+        samples,
+        tuple(violations),
+        tolerance,
+        told,
+        spent.zones,
+        terms.currency or "USD",
+    )
 
 
 def _judged(
@@ -64,6 +77,7 @@ def _judged(
     sampled, depth = look(world, near, np.where(np.isfinite(moments), moments, track.depart))
     found = broken_limits(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
     found += _grounded_waits(sailed, min_ukc)
+    found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += land_violations(world, track, sailed.leg_times()[0])
     clearance = _finite(depth - world.ship.draught)
     return found, _leg_least(near.leg, clearance, moments, len(track) - 1)
@@ -114,7 +128,9 @@ def _all_points(sailed: Sailed) -> tuple[Points, FloatArray, IntArray]:
     return both.part(order), time[order], place[: len(sailed.gauss)]
 
 
-def _fuel_rate(world: World, points: Points, time: FloatArray, motion: Motion) -> FloatArray:
+def _fuel_rate(
+    world: World, pieces: Pieces, points: Points, *, time: FloatArray, motion: Motion
+) -> FloatArray:
     """Return the fuel rate [kg/s] at points; NaN where the ship has no fuel model."""
     here = conditions_at(
         world,
@@ -124,17 +140,11 @@ def _fuel_rate(world: World, points: Points, time: FloatArray, motion: Motion) -
         depth=motion.depth,
         heading=motion.heading,
     )
-    rate = world.ship.fuel_rate(here, points.setting)
-    return np.array(np.broadcast_to(rate, len(points)), dtype=float)
-
-
-def _leg_fuel(pieces: Pieces, passage: Passage, rate: FloatArray) -> FloatArray:
-    """Return the fuel of each leg [kg]: rate times slowness, integrated over the pieces."""
-    burnt = 0.5 * pieces.step * (rate.reshape(-1, 2) * passage.slowness).sum(axis=1)
-    if passage.first_bad < len(pieces):
-        burnt[passage.first_bad :] = math.nan
-    total = np.bincount(pieces.leg, weights=burnt, minlength=len(pieces.length))
-    return total.astype(np.float64)
+    rate = np.broadcast_to(world.ship.fuel_rate(here, points.setting), len(points))
+    if pieces.canals.any:
+        fixed = pieces.canals.number[points.leg] >= 0
+        rate = np.where(fixed, pieces.canals.fuel_rate(world.ship)[points.leg], rate)
+    return np.array(rate, dtype=float)
 
 
 def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
@@ -162,7 +172,9 @@ def _looks(sailed: Sailed, points: Points, time: FloatArray) -> tuple[Points, Fl
         number = np.where(step[leg] > 0.0, near.along / step[leg], 0.0).astype(np.int64)
     near = replace(near, charted=sailed.charted[np.minimum(first + number, last)])
     key = _key(points.leg, points.along, pieces.length)
-    return near, np.interp(_key(leg, near.along, pieces.length), key, time)
+    moments = np.interp(_key(leg, near.along, pieces.length), key, time)
+    sea = pieces.canals.number[leg] < 0
+    return near.part(sea), moments[sea]
 
 
 def _key(leg: IntArray, along: FloatArray, length: FloatArray) -> FloatArray:

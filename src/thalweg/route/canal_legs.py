@@ -1,0 +1,126 @@
+"""Legs of a track that run through ship canals: their lines, times, dues and fuel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.variables import WAVE_NORTH, WAVE_PERIOD
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
+    from thalweg.route.track import Track
+    from thalweg.ship import Ship
+
+_DEEP = 1e4  # depth of calm water [m]
+_PERIOD = 9.0  # of no waves [s]
+
+
+@dataclass(frozen=True)
+class CanalLegs:
+    """Which legs of a track run through canals.
+
+    Attributes
+    ----------
+    number : int64 array (legs,)
+        Index into ``canals``; -1 for legs at sea.
+    canals : tuple of Canal
+        Those of the chart.
+    backward : bool array (legs,)
+        Whether the canal is passed from its last position to its first.
+    """
+
+    number: NDArray[np.int64]
+    canals: tuple[Canal, ...]
+    backward: NDArray[np.bool_]
+
+    @property
+    def any(self) -> bool:
+        """Whether there is a canal at all."""
+        return bool((self.number >= 0).any())
+
+    @property
+    def legs(self) -> list[int]:
+        """The legs through canals, ascending."""
+        return [int(leg) for leg in np.flatnonzero(self.number >= 0)]
+
+    def of(self, leg: int) -> Canal:
+        """Return the canal of a leg that has one."""
+        return self.canals[self.number[leg]]
+
+    @property
+    def speed(self) -> FloatArray:
+        """Mean speed through the canal of each leg [m/s]; NaN at sea."""
+        return self._filled(lambda canal: canal.length / canal.transit_time)
+
+    @property
+    def length(self) -> FloatArray:
+        """Length of the canal of each leg [m]; NaN at sea."""
+        return self._filled(lambda canal: canal.length)
+
+    @property
+    def fee(self) -> FloatArray:
+        """Dues of each leg [USD]; 0 at sea."""
+        fee = self._filled(lambda canal: canal.fee)
+        return np.where(np.isnan(fee), 0.0, fee)
+
+    def fuel_rate(self, ship: Ship) -> FloatArray:
+        """Fuel rate of each leg [kg/s], as `canal_fuel_rate`; NaN at sea."""
+        rates = {k: canal_fuel_rate(ship, self.canals[k]) for k in set(self.number.tolist()) - {-1}}
+        return np.array([rates.get(k, math.nan) for k in self.number.tolist()])
+
+    def places(self, leg: int, along: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return (lat, lon [deg], course [rad]) at distances [m] from where a leg begins."""
+        path = np.array(self.of(leg).path, float)
+        if self.backward[leg]:
+            path = path[::-1]
+        lat, lon = path.T
+        lengths, courses, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        start = np.concatenate([[0.0], np.cumsum(lengths)])
+        part = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(lengths) - 1)
+        there = direct(lat[part], lon[part], courses[part], along - start[part])
+        return *there, courses[part]
+
+    def _filled(self, value: object) -> FloatArray:
+        values = np.array([value(canal) for canal in self.canals] + [math.nan])  # type: ignore[operator]
+        return np.asarray(values[self.number])
+
+
+def canal_legs(track: Track, chart: Chart | None) -> CanalLegs:
+    """Return which legs of a track run from one end of a canal of the chart to the other."""
+    none = np.full(len(track) - 1, -1, np.int64)
+    if chart is None or not chart.canals:
+        return CanalLegs(none, (), none < -1)
+    a, b, c, d = track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:]
+    number = np.asarray(chart.canal_of_legs(a, b, c, d))
+    backward = np.zeros(len(number), np.bool_)
+    for leg in np.flatnonzero(number >= 0):
+        first, last = chart.canals[number[leg]].ends
+        here = (track.lat[leg], track.lon[leg])
+        backward[leg] = inverse(*here, *last)[0] < inverse(*here, *first)[0]
+    return CanalLegs(number, chart.canals, backward)
+
+
+def canal_fuel_rate(ship: Ship, canal: Canal) -> float:
+    """Return the fuel rate [kg/s] of a ship in a canal; NaN if it has no fuel model.
+
+    That of calm, deep water at the slowest setting that reaches the canal's mean speed; at the
+    highest if none does. Ships whose speed is a field take their only setting.
+    """
+    speeds = np.asarray(ship.speeds, float)
+    fast = np.flatnonzero(speeds >= canal.length / canal.transit_time)
+    setting = int(fast[0]) if len(fast) else len(speeds) - 1
+    calm = {name: np.zeros(1) for name in ship.needs}
+    calm |= {n: np.full(1, v) for n, v in ((WAVE_NORTH, 1.0), (WAVE_PERIOD, _PERIOD)) if n in calm}
+    lat, lon = canal.path[0]
+    conditions = Conditions.from_sea(
+        calm, heading=np.zeros(1), time=np.zeros(1), lat=lat, lon=lon, depth=_DEEP
+    )
+    return float(np.asarray(ship.fuel_rate(conditions, setting)).reshape(-1)[0])
