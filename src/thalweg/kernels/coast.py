@@ -121,7 +121,7 @@ def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
 
 
 @bare
-def _row_touched(index, row, m, e, n, k, tan_half, near, unsure):
+def edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure):
     """Test the edges of one cell: 0 clear, 1 touched, 2 unsure."""
     xyz, first = index.xyz, index.first
     nx, ny, nz = n
@@ -154,12 +154,29 @@ def _way_out(direction, side, column, mu, eu, mw, ew, tau):
 
 
 @bare
+def cell_exit(m, e, face, i, j, side, tau):
+    """Return where an arc leaves cell (i, j) of a face, as the tangent of the angle."""
+    mu, mv, mw = on_face(m[0], m[1], m[2], face)
+    eu, ev, ew = on_face(e[0], e[1], e[2], face)
+    out_u = _way_out(eu * mw - mu * ew, side, i, mu, eu, mw, ew, tau)
+    out_v = _way_out(ev * mw - mv * ew, side, j, mv, ev, mw, ew, tau)
+    return min(out_u, out_v)
+
+
+@bare
+def arc_frame(m, n, tan_half):
+    """Return the geodesic's curvature against the plane n, and how near the plane matters."""
+    k = -FLATTENING * n[2]
+    return k, abs(k) * tan_half * tan_half * (1.01 * abs(m[2]) + 0.4 * tan_half) + BULGE
+
+
+@bare
 def _arc_touched(index, m, e, tan_half, unsure):
     """Walk an arc of at most `LONGEST_ARC`: 0 clear, 1 touched, 2 unsure."""
     side, cell = index.side, index.cell
     n = (m[1] * e[2] - m[2] * e[1], m[2] * e[0] - m[0] * e[2], m[0] * e[1] - m[1] * e[0])
-    k = -FLATTENING * n[2]
-    near = abs(k) * tan_half * tan_half * (1.01 * abs(m[2]) + 0.4 * tan_half) + BULGE + unsure
+    k, near = arc_frame(m, n, tan_half)
+    near += unsure
     big = min(3.0 / side, 0.1)
     answer = 0
     tau = -tan_half
@@ -176,15 +193,11 @@ def _arc_touched(index, m, e, tan_half, unsure):
             if value > FIRST_ROW:
                 return 1
             row = int(FIRST_ROW - value)
-            touched = _row_touched(index, row, m, e, n, k, tan_half, near, unsure)
+            touched = edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure)
             if touched == 1:
                 return 1
             answer = max(answer, touched)
-        mu, mv, mw = on_face(m[0], m[1], m[2], face)
-        eu, ev, ew = on_face(e[0], e[1], e[2], face)
-        out_u = _way_out(eu * mw - mu * ew, side, i, mu, eu, mw, ew, tau)
-        out_v = _way_out(ev * mw - mv * ew, side, j, mv, ev, mw, ew, tau)
-        tau = min(out_u, out_v)
+        tau = cell_exit(m, e, face, i, j, side, tau)
     return answer
 
 
@@ -243,7 +256,7 @@ def point_code(coast, lat, lon):
 
 
 @bare
-def _geodesic_point(a, b, share):
+def geodesic_point(a, b, share):
     """Return the unit vector at a share of the leg's angle, on the geodesic to first order."""
     mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]
     ex, ey, ez = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -278,7 +291,7 @@ def _touched(index, a, b, chord, unsure):
     answer = 0
     p = a
     for i in range(arcs):
-        q = b if i == arcs - 1 else _geodesic_point(a, b, (i + 1.0) / arcs)
+        q = b if i == arcs - 1 else geodesic_point(a, b, (i + 1.0) / arcs)
         m, e, tan_half = _between(p, q)
         touched = _arc_touched(index, m, e, tan_half, unsure)
         if touched == 1:

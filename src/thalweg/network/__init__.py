@@ -1,6 +1,7 @@
 """Networks of ways over the sea, as plain arrays, and the builders that make them."""
 
 from thalweg.network.endpoints import with_endpoints
+from thalweg.network.globe import globe
 from thalweg.network.lattice import default_spacing, lattice
 from thalweg.network.mesh import mesh
 from thalweg.network.network import Network, NetworkMeta, check_network, shortest
@@ -11,6 +12,7 @@ __all__ = [
     "NetworkMeta",
     "check_network",
     "default_spacing",
+    "globe",
     "lattice",
     "mesh",
     "shortest",

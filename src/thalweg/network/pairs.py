@@ -70,7 +70,11 @@ def free_legs(
     first: NDArray[np.integer],
     second: NDArray[np.integer],
 ) -> tuple[BoolArray, Rejected]:
-    """Return which legs between positions the chart allows, and counts of refusals by reason."""
+    """Return which legs between positions the chart allows, and counts of refusals by reason.
+
+    Canals are no legs to sail: builders that know them add them as edges of their own.
+    """
+    chart = chart.without_canals("all")
     free = np.empty(len(first), bool)
     rejected: Rejected = {}
     for begin in range(0, len(first), _CHUNK):

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, distance
+from thalweg.core.geodesy import distance
 from thalweg.kernels.codes import CHANNELS, LIMIT_REQUIRED_DEPTH, LIMITS
 from thalweg.kernels.edges import NetworkArrays, SeaArrays, ShipArrays
 from thalweg.kernels.extremes import largest_current, largest_speed_field, tidal_extremes
 from thalweg.kernels.tables import ARRAY_TYPES, TableArrays, axes_needed
+from thalweg.network.bounding import BOUND_RADIUS, SHRINK, distance_bounds
 from thalweg.search.tides import tidal_states
 
 if TYPE_CHECKING:
@@ -22,12 +23,18 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-# The least radius of curvature of the meridian: a sphere of this radius with the same latitudes and
-# longitudes is nowhere longer than the ellipsoid, so its distances are lower bounds that obey the
-# triangle inequality together with geodesic edge lengths.
-BOUND_RADIUS = EQUATORIAL_RADIUS * (1.0 - FLATTENING) ** 2
-
-SHRINK = 1.0 - 1e-9  # keeps bounds below the truth in floating point
+__all__ = [
+    "BOUND_RADIUS",
+    "SHRINK",
+    "Problem",
+    "canal_speed",
+    "distance_bounds",
+    "network_arrays",
+    "plain",
+    "problem",
+    "sea_arrays",
+    "ship_arrays",
+]
 
 
 class Problem(NamedTuple):
@@ -218,17 +225,3 @@ def canal_speed(network: Network) -> float:
     lat, lon = network.station_lat, network.station_lon
     away = distance(lat[tail], lon[tail], lat[head], lon[head])
     return float(np.max(away / network.fixed_time[edge]))
-
-
-def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float) -> FloatArray:
-    """Return lower bounds of the geodesic distance [m] from positions to one position [deg].
-
-    Great-circle distances on the sphere of the ellipsoid's least radius of curvature: at most
-    0.6 % below the mean-radius sphere, never above the geodesic, and consistent for A*.
-    """
-    phi, to_phi = np.radians(np.asarray(lat, float)), np.radians(to_lat)
-    half_dlon = 0.5 * np.radians(np.asarray(lon, float) - to_lon)
-    square = np.sin(0.5 * (phi - to_phi)) ** 2
-    square += np.cos(phi) * np.cos(to_phi) * np.sin(half_dlon) ** 2
-    bound = 2.0 * BOUND_RADIUS * SHRINK * np.arcsin(np.sqrt(np.minimum(square, 1.0)))
-    return np.asarray(bound)
