@@ -1,0 +1,246 @@
+"""Cleaning of measured tracks: order, doubles, impossible jumps and gaps, all of it told."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, distance, wrap_longitude
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT
+
+
+@dataclass(frozen=True)
+class Cleaning:
+    """What counts as a gap and as an impossible jump.
+
+    Attributes
+    ----------
+    longest_gap : float
+        Time between positions above which the track is taken to be broken [s].
+    fastest : float
+        Greatest speed between two positions [m/s]; positions that need more are outliers.
+    most_outliers : int
+        So many positions in a row, and no more, are dropped as outliers; a longer run that lies
+        elsewhere is kept, and the track is taken to be broken before and after it.
+    """
+
+    longest_gap: float = 1800.0
+    fastest: float = 40.0 * KNOT
+    most_outliers: int = 5
+
+    def __post_init__(self) -> None:
+        good = all(math.isfinite(x) and x > 0.0 for x in (self.longest_gap, self.fastest))
+        if not (good and self.most_outliers >= 0):
+            raise InputError(
+                f"Tracks cannot be cleaned by {self}.",
+                "Gap and speed are positive numbers; outliers in a row are not negative.",
+                "Correct them.",
+            )
+
+
+class RawTrack(NamedTuple):
+    """Columns of a track as read: times [s], positions [deg], other values [SI] by name."""
+
+    time: FloatArray
+    lat: FloatArray
+    lon: FloatArray
+    values: dict[str, FloatArray]
+
+    def part(self, index: NDArray[np.bool_] | NDArray[np.int64]) -> RawTrack:
+        """Return some of the rows."""
+        values = {name: column[index] for name, column in self.values.items()}
+        return RawTrack(self.time[index], self.lat[index], self.lon[index], values)
+
+
+@dataclass(frozen=True, eq=False)
+class TrackLog:
+    """The cleaned track of one ship.
+
+    Attributes
+    ----------
+    time : float64 array (n,)
+        [s since 1970-01-01T00:00Z], strictly ascending.
+    lat, lon : float64 array (n,)
+        [deg].
+    values : dict of str to float64 array (n,)
+        ``speed`` over ground [m/s], ``course`` [rad], ``draught`` [m], ``power`` [W], as far as
+        there are; NaN where unknown.
+    broken : bool array (n - 1,)
+        Intervals in which the ship was not seen: gaps, and jumps that no ship can make.
+    vessel : str or None
+    notes : tuple of str
+        What was assumed and what was done.
+    removed : dict of str to int
+        Rows left out, by reason.
+    """
+
+    time: FloatArray
+    lat: FloatArray
+    lon: FloatArray
+    values: dict[str, FloatArray]
+    broken: NDArray[np.bool_]
+    vessel: str | None
+    notes: tuple[str, ...]
+    removed: dict[str, int]
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def speeds(self) -> FloatArray:
+        """Return the speed over ground at every position [m/s].
+
+        As measured; where that is unknown, from the position before to the one after.
+        """
+        before = np.maximum(np.arange(len(self)) - 1, 0)
+        after = np.minimum(np.arange(len(self)) + 1, len(self) - 1)
+        way = distance(self.lat[before], self.lon[before], self.lat[after], self.lon[after])
+        derived = way / (self.time[after] - self.time[before])
+        measured = self.values.get("speed")
+        if measured is None:
+            return np.asarray(derived)
+        return np.where(np.isfinite(measured), measured, derived)
+
+
+def clean(
+    raw: RawTrack,
+    rules: Cleaning,
+    *,
+    vessel: str | None = None,
+    source: str = "the track",
+    notes: list[str] | None = None,
+) -> TrackLog:
+    """Sort a track, drop what cannot be, and mark where it is broken.
+
+    Parameters
+    ----------
+    raw : RawTrack
+    rules : Cleaning
+    vessel, source : str
+        For messages.
+    notes : list of str, optional
+        What was said already.
+
+    Returns
+    -------
+    TrackLog
+
+    Raises
+    ------
+    InputError
+        If fewer than two positions remain.
+    """
+    told, removed = list(notes or ()), {}
+    for reason, step in (
+        ("without a readable time", _untimed),
+        ("without a position on the globe", _unplaced),
+    ):
+        keep = step(raw)
+        removed[reason] = int((~keep).sum())
+        raw = raw.part(keep)
+    backwards = int((np.diff(raw.time) < 0.0).sum())
+    if backwards:
+        told.append(f"Rows were not in order of time ({backwards} steps back); they were sorted.")
+    raw = raw.part(np.argsort(raw.time, kind="stable"))
+    raw = _without_doubles(raw, removed)
+    keep, jumps = _plausible(raw, rules)
+    removed["that no ship could reach"] = int((~keep).sum())
+    raw, count = raw.part(keep), len(raw.time)
+    if len(raw.time) < 2:
+        raise InputError(
+            f"Only {len(raw.time)} of the positions of {source} can be used.",
+            _told(removed) or f"It has {count}.",
+            "A track needs two positions at different times; check columns and units.",
+            removed=removed,
+        )
+    gaps = np.diff(raw.time) > rules.longest_gap
+    broken = gaps | jumps[keep][1:]
+    _tell(told, removed, raw, gaps, broken, rules)
+    lon = wrap_longitude(raw.lon)
+    removed = {reason: rows for reason, rows in removed.items() if rows}
+    return TrackLog(raw.time, raw.lat, lon, raw.values, broken, vessel, tuple(told), removed)
+
+
+def _untimed(raw: RawTrack) -> NDArray[np.bool_]:
+    return np.isfinite(raw.time)
+
+
+def _unplaced(raw: RawTrack) -> NDArray[np.bool_]:
+    with np.errstate(invalid="ignore"):
+        return np.asarray((np.abs(raw.lat) <= 90.0) & (np.abs(raw.lon) <= 180.0 + 1e-9))
+
+
+def _without_doubles(raw: RawTrack, removed: dict[str, int]) -> RawTrack:
+    """Keep the first row of every time."""
+    first = np.append(True, np.diff(raw.time) > 0.0)[: len(raw.time)]
+    of = np.maximum.accumulate(np.where(first, np.arange(len(first)), 0))
+    same = (raw.lat == raw.lat[of]) & (raw.lon == raw.lon[of])
+    removed["that repeat a time and position"] = int((~first & same).sum())
+    removed["that give a time another position"] = int((~first & ~same).sum())
+    return raw.part(first)
+
+
+def _plausible(raw: RawTrack, rules: Cleaning) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return (positions to keep, whether a jump lies before each of those)."""
+    count = len(raw.time)
+    keep, jumps = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
+    if count < 2:
+        return keep, jumps
+    way = distance(raw.lat[:-1], raw.lon[:-1], raw.lat[1:], raw.lon[1:])
+    cuts = np.flatnonzero(way > rules.fastest * np.diff(raw.time)) + 1
+    starts = np.concatenate([[0], cuts])
+    ends = np.concatenate([cuts, [count]])
+    long = ends - starts > rules.most_outliers
+    if not long.any():
+        long[np.argmax(ends - starts)] = True
+    runs = list(zip(starts.tolist(), ends.tolist(), long.tolist()))
+    anchor = int(np.argmax(long))  # the first run that is surely no outlier
+    first = runs[anchor][0]
+    for start, end, _ in reversed(runs[:anchor]):
+        keep[start:end] = _reachable(raw, end - 1, first, rules)
+        first = start if keep[start] else first
+    last = runs[anchor][1] - 1
+    for start, end, whole in runs[anchor + 1 :]:
+        fits = _reachable(raw, last, start, rules)
+        keep[start:end] = whole or fits
+        jumps[start] = whole and not fits
+        last = end - 1 if keep[start] else last
+    return keep, jumps
+
+
+def _reachable(raw: RawTrack, i: int, j: int, rules: Cleaning) -> bool:
+    way = float(distance(raw.lat[i], raw.lon[i], raw.lat[j], raw.lon[j]))
+    return way <= rules.fastest * float(raw.time[j] - raw.time[i])
+
+
+def _tell(
+    told: list[str],
+    removed: dict[str, int],
+    raw: RawTrack,
+    gaps: NDArray[np.bool_],
+    broken: NDArray[np.bool_],
+    rules: Cleaning,
+) -> None:
+    if _told(removed):
+        told.append(_told(removed))
+    if gaps.any():
+        lengths = np.diff(raw.time)[gaps]
+        worst = int(np.argmax(np.where(gaps, np.diff(raw.time), 0.0)))
+        told.append(
+            f"{int(gaps.sum())} gaps of more than {rules.longest_gap / 60.0:g} min, "
+            f"{lengths.sum() / HOUR:.1f} h in all, the longest {lengths.max() / HOUR:.1f} h from "
+            f"{format_time(float(raw.time[worst]))}."
+        )
+    jumps = int((broken & ~gaps).sum())
+    if jumps:
+        told.append(f"{jumps} jumps faster than {rules.fastest / KNOT:g} kn break the track.")
+
+
+def _told(removed: dict[str, int]) -> str:
+    parts = [f"{rows} {reason}" for reason, rows in removed.items() if rows]
+    return f"Rows left out: {', '.join(parts)}." if parts else ""
