@@ -21,7 +21,8 @@ from thalweg.ship.methods.waves import (
     stawave2,
     stawave2_validity,
 )
-from thalweg.ship.methods.waves_snnm import SnnmHull, snnm, snnm_validity
+from thalweg.ship.methods.waves_snnm import SnnmHull, snnm_validity
+from thalweg.ship.methods.waves_snnm_table import SnnmTable
 from thalweg.ship.methods.wind import (
     BLENDERMANN,
     ITTC_CURVES,
@@ -158,10 +159,12 @@ def _snnm(hull: Hull) -> Waves:
         pitch_gyration=hull.number("pitch_gyration") or 0.25,
     )
 
+    table = SnnmTable.of(vessel, shortest=SHORTEST_PERIOD, longest=LONGEST_PERIOD)
+
     def force(
         speed: FloatArray, height: FloatArray, period: FloatArray, angle: FloatArray
     ) -> FloatArray:
-        return snnm(speed, height, _tame(period), angle, vessel)
+        return table(speed, height, _tame(period), angle)
 
     def notes(speed: FloatArray, height: FloatArray) -> list[RangeNote]:
         return snnm_validity(speed, vessel)

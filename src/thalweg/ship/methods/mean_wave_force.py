@@ -85,7 +85,9 @@ def nodes(low: float, high: float, *, step: float) -> FloatArray:
     return np.asarray(np.exp(step * np.arange(first, last + 1.0)))
 
 
-def in_blocks(function: Callable[..., FloatArray], *arguments: ArrayLike) -> FloatArray:
+def in_blocks(
+    function: Callable[..., FloatArray], *arguments: ArrayLike, block: int = _BLOCK
+) -> FloatArray:
     """Apply a function of flat arrays block by block, so that memory stays small.
 
     Parameters
@@ -95,6 +97,8 @@ def in_blocks(function: Callable[..., FloatArray], *arguments: ArrayLike) -> Flo
         argument of one element comes as one element.
     *arguments : array_like
         Broadcast against each other.
+    block : int
+        Elements at a time.
 
     Returns
     -------
@@ -108,8 +112,8 @@ def in_blocks(function: Callable[..., FloatArray], *arguments: ArrayLike) -> Flo
         for array in arrays
     ]
     result = np.empty(int(np.prod(shape)))
-    for start in range(0, result.size, _BLOCK):
-        part = slice(start, start + _BLOCK)
+    for start in range(0, result.size, block):
+        part = slice(start, start + block)
         result[part] = function(*(array if array.size == 1 else array[part] for array in flat))
     return result.reshape(shape)
 

@@ -32,7 +32,7 @@ from thalweg.ship.methods.mean_wave_force import (
 )
 from thalweg.ship.methods.notes import RangeNote, range_notes
 
-_LONGEST: Final = 2.5  #: wave length over ship length beyond which nothing is reflected
+LONGEST: Final = 2.5  #: wave length over ship length beyond which nothing is reflected
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def entrance_length(breadth: ArrayLike, *, entrance_angle_deg: ArrayLike) -> Flo
     return np.asarray(0.495 * np.asarray(breadth) / np.tan(np.radians(entrance_angle_deg)))
 
 
-def _frequency_scale(
+def frequency_scale(
     angle: FloatArray,
     froude: FloatArray,
     hull: tuple[FloatArray, ...],
@@ -95,7 +95,7 @@ def _frequency_scale(
     return np.asarray(scale * fullness * heading)
 
 
-def _motion_shape(frequency: FloatArray, hull: tuple[FloatArray, ...]) -> FloatArray:
+def motion_shape(frequency: FloatArray, hull: tuple[FloatArray, ...]) -> FloatArray:
     """w^b1 exp{b1/d1 (1 - w^d1)}; NaN for a trim at which d1 changes its sign."""
     length, breadth, _, trim, block, _, _, _ = hull
     steep = 4.0 - 125.0 * trim
@@ -108,27 +108,28 @@ def _motion_shape(frequency: FloatArray, hull: tuple[FloatArray, ...]) -> FloatA
     return np.asarray(np.exp(b1 * log + b1 / d1 * (1.0 - np.exp(d1 * log))))
 
 
-def _speed_factor(froude: FloatArray) -> FloatArray:
+def speed_factor(froude: FloatArray) -> FloatArray:
+    """a2 of waves from ahead over the Froude number."""
     fast = np.maximum(froude, 0.0)
     quick = fast * np.sqrt(fast) * np.exp(-3.5 * fast)
     return np.where(froude < 0.12, 0.0072 + 0.1676 * froude, quick)
 
 
-def _ahead_factors(
+def ahead_factors(
     angle: FloatArray, froude: FloatArray, hull: tuple[FloatArray, ...]
 ) -> tuple[FloatArray, FloatArray]:
     """a1 and a2 for waves from ahead to abeam."""
     _, breadth, draught, _, block, _, _, _ = hull
     ahead = np.maximum(np.cos(angle), 0.0)
     first = (0.87 / block) ** ((1.0 + froude) * ahead) * (1.0 + 2.0 * ahead) / 3.0
-    return np.asarray(first / np.log(breadth / draught)), _speed_factor(froude)
+    return np.asarray(first / np.log(breadth / draught)), speed_factor(froude)
 
 
 def _factors_by_row(
     angle: FloatArray, froude: FloatArray, group: FloatArray, hull: tuple[FloatArray, ...]
 ) -> FloatArray:
     """a1 a2 as `_heading_factors`, which costs much, only for the rows with waves from abaft."""
-    first, second = _ahead_factors(angle, froude, hull)
+    first, second = ahead_factors(angle, froude, hull)
     factors = np.array(np.broadcast_to(first * second, group.shape))
     abaft = np.broadcast_to(angle > 0.5 * np.pi, (group.shape[0], 1))[:, 0]
     if abaft.any():
@@ -149,18 +150,18 @@ def _heading_factors(
     """
     _, breadth, draught, _, block, _, _, _ = hull
     full, slim = 0.87 / block, 1.0 / np.log(breadth / draught)
-    first, second = _ahead_factors(angle, froude, hull)
+    first, second = ahead_factors(angle, froude, hull)
     overtakes = group > 1.0
     relative = froude * (1.0 - 1.0 / np.where(overtakes, group, 1.0))
     power = np.where(overtakes & (relative >= 0.12), 1.0 + relative, 1.0)
     behind_first = np.exp(power * np.log(full)) * slim
-    behind_second = np.where(overtakes, _speed_factor(relative), 0.0072 * (2.0 * group - 1.0))
+    behind_second = np.where(overtakes, speed_factor(relative), 0.0072 * (2.0 * group - 1.0))
     part = np.clip(2.0 * angle / np.pi - 1.0, 0.0, 1.0)
     mixed = (first + part * (behind_first - first)) * (second + part * (behind_second - second))
     return np.asarray(mixed)
 
 
-def _reflection_terms(
+def reflection_terms(
     speed: FloatArray,
     angle: FloatArray,
     froude: FloatArray,
@@ -169,16 +170,19 @@ def _reflection_terms(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
     """Constant and linear (in w) terms of the bow, the same of the stern, and T* of the stern."""
     draught, block, bow, stern = hull[2], hull[4], hull[6], hull[7]
-    ahead = np.cos(angle)
+    ahead, aside = np.cos(angle), np.sin(angle)
 
-    def pair(end: FloatArray, turned: FloatArray, inside: Any) -> tuple[FloatArray, FloatArray]:
-        square = np.where(inside, np.sin(turned) ** 2, 0.0)
-        return square, np.where(inside, ahead - np.cos(end) * np.cos(turned), 0.0)
+    def pair(end: FloatArray, side: float, inside: Any) -> tuple[FloatArray, FloatArray]:
+        """Terms of one side of an end; sine and cosine of its angle plus or less that of waves."""
+        sine = np.sin(end) * ahead + side * np.cos(end) * aside
+        cosine = np.cos(end) * ahead - side * np.sin(end) * aside
+        square = np.where(inside, sine * sine, 0.0)
+        return square, np.where(inside, ahead - np.cos(end) * cosine, 0.0)
 
-    first = pair(bow, bow + angle, angle <= np.pi - bow)
-    second = pair(bow, bow - angle, angle <= bow)
-    third = pair(stern, stern - angle, angle >= stern)
-    fourth = pair(stern, stern + angle, angle >= np.pi - stern)
+    first = pair(bow, 1.0, angle <= np.pi - bow)
+    second = pair(bow, -1.0, angle <= bow)
+    third = pair(stern, -1.0, angle >= stern)
+    fourth = pair(stern, 1.0, angle >= np.pi - stern)
     front = (0.87 / block) ** ((1.0 + 4.0 * np.sqrt(froude)) * np.where(angle <= bow, ahead, 0.0))
     root = np.sqrt(np.abs(ahead))
     deep = draught * np.where(block <= 0.75, (4.0 + root) / 5.0, (2.0 + root) / 3.0)
@@ -192,7 +196,8 @@ def _reflection_terms(
     )
 
 
-def _wrapped(wave_angle: ArrayLike) -> FloatArray:
+def wrapped(wave_angle: ArrayLike) -> FloatArray:
+    """Return angles folded into 0 to pi [rad]."""
     return np.asarray(np.arccos(np.clip(np.cos(wave_angle), -1.0, 1.0)))
 
 
@@ -229,15 +234,15 @@ def snnm_transfer(
     particulars = hull.arrays()
     length, breadth, draught, trim, block, gyration = particulars[:6]
     omega, velocity = np.asarray(frequency, dtype=float), ship_speed(speed)
-    angle = _wrapped(wave_angle)
+    angle = wrapped(wave_angle)
     fn = froude_number(velocity, length=length, gravity=gravity)
-    scale = _frequency_scale(angle, fn, particulars, gravity)
+    scale = frequency_scale(angle, fn, particulars, gravity)
     group = 2.0 * velocity * omega / gravity
     motion = 3859.2 * breadth**2 / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
     motion = motion * _heading_factors(angle, fn, group, particulars)
-    motion = motion * _motion_shape(omega * scale, particulars)
-    excess = np.maximum(2.0 * (omega**2 / gravity - 2.0 * np.pi / (_LONGEST * length)), 0.0)
-    b0, b1, s0, s1, deep = _reflection_terms(velocity, angle, fn, particulars, gravity)
+    motion = motion * motion_shape(omega * scale, particulars)
+    excess = np.maximum(2.0 * (omega**2 / gravity - 2.0 * np.pi / (LONGEST * length)), 0.0)
+    b0, b1, s0, s1, deep = reflection_terms(velocity, angle, fn, particulars, gravity)
     bow = -np.expm1(-draught * excess) * (b0 + b1 * omega)
     stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
     weight = density * gravity
@@ -252,19 +257,19 @@ def _spectral_mean(
     ship = tuple(sizes)
     length, breadth, draught, trim, block, gyration = ship[:6]
     reduced = nodes(0.3, 4.0, step=STEP[spectrum])
-    omega = reduced / _frequency_scale(angle, fn, ship, gravity)
+    omega = reduced / frequency_scale(angle, fn, ship, gravity)
     energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
     rows = np.broadcast_shapes(*(np.shape(c) for c in (*conditions,)))[0]
     group = np.broadcast_to(2.0 * speed * omega / gravity, (rows, reduced.size))
     factors = _factors_by_row(angle, fn, group, ship)
-    motion = np.sum(energy * factors * _motion_shape(reduced, ship), axis=1, keepdims=True)
+    motion = np.sum(energy * factors * motion_shape(reduced, ship), axis=1, keepdims=True)
     size = 3859.2 * breadth / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
     above = nodes(1.0, 60.0, step=REFLECTION_STEP[spectrum])
-    lowest = 2.0 * np.pi / (_LONGEST * length)
+    lowest = 2.0 * np.pi / (LONGEST * length)
     omega = above * np.sqrt(gravity * lowest)
     energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
     excess = 2.0 * lowest * (above**2 - 1.0)
-    b0, b1, s0, s1, deep = _reflection_terms(speed, angle, fn, ship, gravity)
+    b0, b1, s0, s1, deep = reflection_terms(speed, angle, fn, ship, gravity)
     bow = -np.expm1(-draught * excess) * (b0 + b1 * omega)
     stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
     reflection = np.sum(energy * (bow - stern), axis=1, keepdims=True)
@@ -308,7 +313,7 @@ def snnm(
         something is unknown.
     """
     particulars = hull.arrays()
-    velocity, angle = ship_speed(speed), _wrapped(wave_angle)
+    velocity, angle = ship_speed(speed), wrapped(wave_angle)
     period = np.asarray(wave_period, dtype=float)
     peak = 2.0 * np.pi / np.where(period > 0.0, period, np.nan)
     fn = froude_number(velocity, length=particulars[0], gravity=gravity)
