@@ -21,6 +21,24 @@ FILLABLE = ("currents", "wind", "waves")
 def add_world_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that name ship, sea and chart."""
     parser.add_argument("--ship", required=True, metavar="NAME|FILE", help="library ship or YAML")
+    add_sea_options(parser)
+    chart = parser.add_argument_group("chart")
+    chart.add_argument("--depth", action="append", default=[], metavar="FILE", help="depth grid")
+    chart.add_argument("--zones", action="append", default=[], metavar="FILE", help="GeoJSON zones")
+    chart.add_argument(
+        "--coast",
+        default="i",
+        choices=("c", "l", "i", "h", "f", "none"),
+        help="GSHHG coastline resolution (h and f need thalweg[hires]; none: open water)",
+    )
+    parser.add_argument("--ukc", type=float, metavar="M", help="least under-keel clearance")
+    parser.add_argument("--load-factor", type=float, metavar="0..1", help="0 empty, 1 full")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--out", metavar="DIR", help="folder for files and pictures")
+
+
+def add_sea_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that name a sea; `open_sea` reads them."""
     sea = parser.add_argument_group("sea")
     sea.add_argument(
         "--sea",
@@ -45,19 +63,6 @@ def add_world_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help=f"take unknown {'/'.join(FILLABLE)} as this value (recorded in the plan)",
     )
-    chart = parser.add_argument_group("chart")
-    chart.add_argument("--depth", action="append", default=[], metavar="FILE", help="depth grid")
-    chart.add_argument("--zones", action="append", default=[], metavar="FILE", help="GeoJSON zones")
-    chart.add_argument(
-        "--coast",
-        default="i",
-        choices=("c", "l", "i", "h", "f", "none"),
-        help="GSHHG coastline resolution (h and f need thalweg[hires]; none: open water)",
-    )
-    parser.add_argument("--ukc", type=float, metavar="M", help="least under-keel clearance")
-    parser.add_argument("--load-factor", type=float, metavar="0..1", help="0 empty, 1 full")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    parser.add_argument("--out", metavar="DIR", help="folder for files and pictures")
 
 
 def add_mapping_option(parser: Any) -> None:

@@ -40,11 +40,7 @@ def add_command(commands: Any) -> None:
     parser.add_argument(
         "--slow", type=float, default=2.0, metavar="KN", help="slower on the way is waiting"
     )
-    parser.add_argument("--sea", nargs="+", action="extend", metavar="FILE", help="with currents")
-    common.add_mapping_option(parser)
-    parser.add_argument(
-        "--fill", nargs="+", action="extend", default=[], metavar="NAME=VALUE", help="as in plan"
-    )
+    common.add_sea_options(parser)
     parser.add_argument("--ship", metavar="NAME|FILE", help="ship model to compare (needs --sea)")
     parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed of the ship")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
@@ -63,11 +59,11 @@ def run(arguments: argparse.Namespace) -> int:
         from thalweg.planning.output import check_folder
 
         check_folder(arguments.out)
-    if arguments.ship and not arguments.sea:
+    if arguments.ship and not (arguments.sea or arguments.calm):
         raise InputError(
             "A ship is to be compared, but no sea is given.",
             "The ship model needs the currents (and its weather) along the track.",
-            "Add --sea FILE...",
+            "Add --sea FILE..., or ask for --calm.",
         )
     analysis = analyse_tracks(
         arguments.file,
@@ -94,9 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _sea(arguments: argparse.Namespace) -> Sea | None:
-    if not arguments.sea:
-        return None
-    return common.open_sea(argparse.Namespace(**{**vars(arguments), "calm": False}))
+    return common.open_sea(arguments) if arguments.sea or arguments.calm else None
 
 
 def _columns(texts: list[str]) -> dict[str, str]:
