@@ -13,7 +13,7 @@ from thalweg.operations.synthetic_tracks import Cycle, synthetic_track
 from thalweg.operations.track_model import calibrate, leg_speeds, over_ground, spread
 from thalweg.operations.tracks import analyse_tracks
 from thalweg.sea import Sea
-from thalweg.ship import Ship
+from thalweg.ship import Conditions, Ship
 
 TIDE = 44700.0
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
@@ -145,6 +145,28 @@ def test_gaps_in_a_track_are_told(made):
     found = analyse_tracks(frame, CYCLE.areas, sea=TIDAL)
     assert any("was not seen" in note for note in found.notes)
     assert found.calibration.factor == pytest.approx(1.4, abs=0.02)
+
+
+def test_a_ship_at_its_measured_power_goes_as_fast_as_it_went():
+    """The speed at a power and the power at a speed of one ship undo each other."""
+    ship = Ship.load("vox-olympia")
+    bed = {"sea_floor_depth_below_geoid": lambda t, la, lo: 30.0 + 0.0 * la}
+    sea = Sea.from_functions(bed) + TIDAL.filled(wind=0.0, waves=0.0)
+    cycle = Cycle((52.3, 4.0), (52.1, 4.2), full_kn=9.0, empty_kn=11.0)
+    track = synthetic_track(cycle, sea=TIDAL, start=0.0, cycles=4, interval_s=120.0)
+    calm = {"wind_speed": 0.0, "wind_angle": 0.0, "wave_height": 0.0, "wave_angle": 0.0}
+    met = Conditions(**calm, wave_period=8.0, depth=30.0)
+    power = {
+        draught: float(ship.power_at_speed(met, knots * KNOT)) / 1e3
+        for draught, knots in ((8.0, 9.0), (5.0, 11.0))
+    }
+    frame = track.frame.assign(power_kw=track.frame.draught_m.map(power))
+    found = analyse_tracks(frame, cycle.areas, sea=sea, ship=ship)
+    fit = found.spreads()["ship, measured power"]
+    assert fit.count == 8
+    assert fit.rmse_rel < 0.5 and fit.slope == pytest.approx(1.0, abs=0.02)
+    without = analyse_tracks(track.frame, cycle.areas, sea=sea, ship=ship)
+    assert "ship, measured power" not in without.models
 
 
 def test_spread_of_a_hand_computed_example():

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.geodesy import FloatArray
 from thalweg.operations.track_pieces import KINDS, Pieces
-
-if TYPE_CHECKING:
-    from thalweg.sea import Sea
-    from thalweg.ship import Ship
 
 _LEAST = 3  # points of a spread, legs of a calibration
 _TURNS = 50
@@ -201,52 +196,6 @@ def leg_speeds(pieces: Pieces, speed: ArrayLike) -> FloatArray:
     _, length = pieces.by_leg(way)
     _, time = pieces.by_leg(way / np.asarray(speed, dtype=np.float64))
     return np.asarray(length / time)
-
-
-def ship_speeds(
-    pieces: Pieces, ship: Ship, sea: Sea, *, speed_kn: float | None = None
-) -> FloatArray:
-    """Return the speed through water [m/s] that a ship model gives on every piece.
-
-    Parameters
-    ----------
-    pieces : Pieces
-    ship : Ship
-        Full while sailing full (load factor 1), empty while sailing empty (0).
-    sea : Sea
-    speed_kn : float, optional
-        Ordered speed; by default, for each activity, the setting of the ship whose calm-water speed
-        is nearest to the measured speed through water.
-
-    Returns
-    -------
-    ndarray
-        NaN where the sea does not tell what the model needs.
-    """
-    from thalweg.core.units import KNOT
-    from thalweg.route.physics import move, open_world
-    from thalweg.route.pieces import Points
-    from thalweg.route.wind import with_wind_speed
-
-    found = np.full(len(pieces), np.nan)
-    wanted = mean_speeds(pieces, 1.0)
-    wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(pieces, 0.0))
-    for kind, load_factor in ((0, 1.0), (1, 0.0)):
-        here = pieces.part(pieces.kind == kind)
-        if not len(here):
-            continue
-        loaded = ship.with_load_factor(load_factor)
-        if speed_kn is not None:
-            loaded = loaded.with_speeds([speed_kn * KNOT])
-        setting = int(np.argmin(np.abs(loaded.speeds - wanted[pieces.kind == kind][0])))
-        count = np.zeros(len(here), dtype=np.int64)
-        points = Points(
-            *(here.lat, here.lon, here.course, count + setting, count),
-            *(np.zeros(len(here)), np.full(len(here), math.inf)),
-        )
-        world = open_world(loaded, with_wind_speed(loaded, sea), None)
-        found[pieces.kind == kind] = move(world, points, here.time).through_water
-    return found
 
 
 def _slope_one(pieces: Pieces) -> float:

@@ -33,10 +33,10 @@ from thalweg.operations.track_model import (
     leg_speeds,
     mean_speeds,
     over_ground,
-    ship_speeds,
     spread,
 )
 from thalweg.operations.track_pieces import KINDS, PIECE, Pieces, cut_pieces
+from thalweg.operations.track_ship import ship_speeds, speeds_at_measured_power
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -219,7 +219,8 @@ def analyse_tracks(
         "still water".
     ship : Ship, optional
         With a sea: the model "ship", the ship's own speed in the conditions met, and "ship,
-        calibrated".
+        calibrated"; with measured powers and a ship made from its resistance "ship, measured
+        power".
     speed_kn : float, optional
         Ordered speed of the ship; by default that of its settings which lies nearest.
     cutting : CuttingRules, optional
@@ -261,6 +262,9 @@ def analyse_tracks(
         models["ship"] = over_ground(pieces, water, 1.0)
         if calibration is not None:
             models["ship, calibrated"] = over_ground(pieces, water, calibration.factor)
+        powered = speeds_at_measured_power(log, pieces, ship, sea)
+        if powered is not None:
+            models["ship, measured power"] = over_ground(pieces, powered, 1.0)
     return TrackAnalysis(log, places, activities, pieces, models, calibration, tuple(notes))
 
 
