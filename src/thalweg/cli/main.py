@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
-from thalweg.cli import demo, evaluate, inspect, plan, ship, tides, tracks, waiting
+from thalweg.cli import demo, evaluate, inspect, plan, project, ship, tides, tracks, waiting
 from thalweg.cli.exits import report
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
@@ -19,6 +19,7 @@ _COMMANDS = (
     inspect.add_command,
     ship.add_ship_command,
     tides.add_command,
+    project.add_command,
     waiting.add_command,
     tracks.add_command,
     demo.add_command,

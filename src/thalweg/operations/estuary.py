@@ -91,7 +91,7 @@ def synthetic_estuary(spacing_m: float = 300.0) -> Estuary:
         )
     lat, lon = _nodes(spacing_m / 1000.0)
     chart = Chart.open_water(*_box()).with_depth(bed_depth, spacing_deg=0.0005)
-    gully = ((2.0, 5.0), (-8.0, 1.0), (-9.0, -2.5), (-6.0, -4.3), (0.0, -4.8), (7.0, -4.5))
+    gully = ((2.0, 5.0), (-7.8, -0.4), (-7.8, -3.0), (-6.0, -4.3), (0.0, -4.8), (7.0, -4.5))
     places = tuple(_position(x, y) for x, y in gully)
     return Estuary(
         sea=Sea.from_tides(_constants(lat, lon)),

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from threading import Lock
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -151,8 +152,8 @@ class Waters:
         return found
 
     @cached_property
-    def _windows(self) -> dict[tuple[int, int], SeaArrays]:
-        return {}
+    def _windows(self) -> tuple[Lock, dict[tuple[int, int], SeaArrays]]:
+        return Lock(), {}
 
     def window(self, depart: float, last: float) -> SeaArrays:
         """Return the fields around some times, close together in memory.
@@ -167,14 +168,16 @@ class Waters:
         while times[first] + hours < last:
             hours *= 2.0
         end = min(int(np.searchsorted(times, times[first] + hours)) + 2, len(times))
-        found = self._windows.pop((first, end), None)
-        if found is None:
-            values = np.ascontiguousarray(self.sea.values[:, first:end])
-            found = self.sea._replace(times=times[first:end].copy(), values=values)
-            while len(self._windows) >= _KEPT:
-                self._windows.pop(next(iter(self._windows)), None)
-        self._windows[first, end] = found
-        return found
+        lock, windows = self._windows
+        with lock:
+            found = windows.pop((first, end), None)
+            if found is None:
+                values = np.ascontiguousarray(self.sea.values[:, first:end])
+                found = self.sea._replace(times=times[first:end].copy(), values=values)
+                while len(windows) >= _KEPT:
+                    windows.pop(next(iter(windows)))
+            windows[first, end] = found
+            return found
 
     @cached_property
     def top_current(self) -> float:

@@ -1,0 +1,147 @@
+"""How long a hopper takes to fill and to empty: constant rates, and curves that bend."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import InputError, unknown_name
+
+_KEYS = ("rate_m3_s", "minutes", "share", "power_kw", "fixed_minutes")
+
+
+@dataclass(frozen=True)
+class Pumping:
+    """Loading or unloading: which share of the hopper is done after which time.
+
+    Attributes
+    ----------
+    seconds : tuple of float
+        From 0, ascending [s].
+    share : tuple of float
+        Share of the hopper loaded (or unloaded) by then, from 0 to 1, ascending; linear between.
+    power : float
+        Power of pumps and winches meanwhile [W].
+    fixed : float
+        Time it takes besides, whatever the load: coupling, turning [s].
+
+    Notes
+    -----
+    A curve that bends is loading with overflow: water leaves over the weir and with it more and
+    more of the fines, so the last tenth of a load takes longer than the first.
+    """
+
+    seconds: tuple[float, ...]
+    share: tuple[float, ...]
+    power: float = 0.0
+    fixed: float = 0.0
+
+    @classmethod
+    def constant(
+        cls, rate: float, hopper: float, *, power: float = 0.0, fixed: float = 0.0
+    ) -> Pumping:
+        """Return pumping at one rate [m3/s] of a hopper [m3].
+
+        Raises
+        ------
+        InputError
+            If the rate is not a positive number.
+        """
+        _positive("rate_m3_s", rate, "m3/s")
+        return cls((0.0, hopper / rate), (0.0, 1.0), power, fixed)
+
+    @classmethod
+    def from_data(cls, data: Any, hopper: float, what: str) -> Pumping:
+        """Read a rate [m3/s], or a mapping with a rate or a curve, and powers.
+
+        Parameters
+        ----------
+        data : float or mapping
+            ``rate_m3_s``, or ``minutes`` with ``share``; ``power_kw`` and ``fixed_minutes``.
+        hopper : float
+            [m3].
+        what : str
+            "loading" or "unloading", for errors.
+
+        Raises
+        ------
+        InputError
+            For rates that are not positive, curves that do not rise from 0 to 1, unknown keys.
+        """
+        given = data if isinstance(data, Mapping) else {"rate_m3_s": data}
+        for key in given:
+            if key not in _KEYS:
+                raise unknown_name(f"entry of {what}", str(key), _KEYS)
+        more = {
+            "power": 1000.0 * _number(f"{what}.power_kw", given.get("power_kw", 0.0)),
+            "fixed": 60.0 * _number(f"{what}.fixed_minutes", given.get("fixed_minutes", 0.0)),
+        }
+        if "rate_m3_s" in given and "minutes" not in given:
+            _positive(f"{what}.rate_m3_s", given["rate_m3_s"], "m3/s")
+            return cls.constant(float(given["rate_m3_s"]), hopper, **more)
+        minutes, share = given.get("minutes"), given.get("share")
+        _check_curve(what, minutes, share, "rate_m3_s" in given)
+        seconds = tuple(60.0 * float(m) for m in minutes)  # type: ignore[union-attr]
+        return cls(seconds, tuple(float(s) for s in share), **more)  # type: ignore[union-attr]
+
+    def time(self, share: float) -> float:
+        """Return how long a share of the hopper takes [s]; 0 for nothing."""
+        if share <= 0.0:
+            return 0.0
+        return self.fixed + float(np.interp(share, self.share, self.seconds))
+
+    def to_data(self) -> dict[str, Any]:
+        """Return plain data, as `from_data` reads it."""
+        data: dict[str, Any] = {
+            "minutes": [s / 60.0 for s in self.seconds],
+            "share": list(self.share),
+        }
+        if self.power:
+            data["power_kw"] = self.power / 1000.0
+        if self.fixed:
+            data["fixed_minutes"] = self.fixed / 60.0
+        return data
+
+
+def _positive(name: str, value: Any, unit: str) -> None:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or not math.isfinite(value) or value <= 0.0:
+        raise InputError(
+            f"{name} is {value!r}.", "It is a number above zero.", f"Give it in {unit}.", field=name
+        )
+
+
+def _number(name: str, value: Any) -> float:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or not math.isfinite(value) or value < 0.0:
+        raise InputError(f"{name} is {value!r}.", "It is a number, zero or more.", "", field=name)
+    return float(value)
+
+
+def _check_curve(what: str, minutes: Any, share: Any, rate_too: bool) -> None:
+    """Raise unless two lists make a curve from nothing to a full hopper."""
+    if rate_too:
+        raise InputError(
+            f"The {what} has both a rate and a curve.", "", "Keep rate_m3_s, or minutes and share."
+        )
+    lists = all(isinstance(x, Sequence) and not isinstance(x, str) for x in (minutes, share))
+    sound = lists and len(minutes) == len(share) >= 2
+    if sound:
+        try:
+            t, s = np.array(minutes, float), np.array(share, float)
+        except (TypeError, ValueError):
+            sound = False
+        else:
+            rising = np.all(np.diff(t) > 0.0) and np.all(np.diff(s) > 0.0)
+            sound = bool(rising and t[0] == 0.0 and s[0] == 0.0 and s[-1] == 1.0)
+    if not sound:
+        raise InputError(
+            f"The curve of {what} cannot be used: minutes {minutes!r}, share {share!r}.",
+            "Two lists of one length that rise, from 0 minutes and share 0 to share 1.",
+            "Write for example minutes: [0, 30, 60] and share: [0, 0.7, 1].",
+            field=what,
+        )

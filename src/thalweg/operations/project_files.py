@@ -1,0 +1,95 @@
+"""From the entries of a project file to a ship, a sea and a chart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thalweg.core.errors import InputError
+from thalweg.operations.project import Project
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+ESTUARY = "synthetic-estuary"  #: a made-up world, named in place of files
+EXAMPLE = "example"  #: the name of the example project
+COASTS = ("c", "l", "i", "h", "f", "none")
+
+
+def example_file() -> Path:
+    """Return the example project file of the package: a nourishment behind a drying bank."""
+    return Path(str(resources.files("thalweg.operations").joinpath("estuary_project.yaml")))
+
+
+def open_project(path: str | Path) -> Project:
+    """Read a project file; ``example`` is the one of the package."""
+    return Project.load(example_file() if str(path) == EXAMPLE else path)
+
+
+def open_things(project: Project) -> tuple[Ship, Sea, Chart]:
+    """Return the ship, sea and chart that a project file names.
+
+    Raises
+    ------
+    InputError
+        If nothing names a sea, or an entry is not understood.
+    """
+    from thalweg.ship import Ship
+
+    ship = (
+        Ship.from_dict(project.ship, source="ship of the project")
+        if isinstance(project.ship, Mapping)
+        else Ship.load(project.ship)
+    )
+    sea, chart = _sea(project.world), None
+    if sea is None:
+        from thalweg.operations.estuary import synthetic_estuary
+
+        estuary = synthetic_estuary()
+        sea, chart = estuary.sea, estuary.chart
+    return ship, sea, _chart(project.world, chart)
+
+
+def _sea(world: Mapping[str, Any]) -> Sea | None:
+    from thalweg.sea import Sea
+
+    given = world.get("sea")
+    if given == ESTUARY:
+        return None
+    if not given:
+        raise InputError(
+            "The project names no sea.",
+            f"sea: is a file, a list of files, or {ESTUARY}.",
+            "Add it: weather and tides are never assumed.",
+            field="sea",
+        )
+    files = [given] if isinstance(given, str) else list(given)
+    sea = Sea.open(*files, mapping=world.get("map"))
+    return Sea.from_tides(sea) if world.get("tides") else sea
+
+
+def _chart(world: Mapping[str, Any], chart: Chart | None) -> Chart:
+    from thalweg.chart import Chart
+
+    coast = world.get("coast", "i")
+    coast = "none" if coast is None or coast is False else str(coast)
+    if coast not in COASTS:
+        raise InputError(f"coast is {coast!r}.", f"One of {', '.join(COASTS)}.", "", field="coast")
+    if chart is None:
+        whole = (-90.0, 90.0, -180.0, 180.0)
+        chart = Chart.open_water(*whole) if coast == "none" else Chart.gshhg(coast)
+    for path in _listed(world.get("depth")):
+        chart = chart.with_depth(path)
+    for path in _listed(world.get("zones")):
+        chart = chart.with_zones(path)
+    return chart
+
+
+def _listed(value: Any) -> list[Any]:
+    if value is None:
+        return []
+    return list(value) if isinstance(value, (list, tuple)) else [value]

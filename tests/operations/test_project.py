@@ -1,0 +1,277 @@
+"""Dredging projects: from a file to cycles, totals and files."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+import yaml
+
+from thalweg.cli.main import main
+from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
+from thalweg.core.time import parse_time
+from thalweg.operations.loading_curves import Pumping
+from thalweg.operations.project import Project
+from thalweg.operations.project_files import example_file, open_project, open_things
+from thalweg.operations.project_pictures import draw_routes
+from thalweg.operations.run_project import run_project
+
+WEEK = 604800.0
+
+
+def example(**changes):
+    data = yaml.safe_load(example_file().read_text())
+    data |= {"volume_m3": 14_000, "days": 3, "spacing_m": 900.0, "rings": 2, "margin_m": 0.02}
+    data |= changes
+    return {key: value for key, value in data.items() if value is not None}
+
+
+@pytest.fixture(scope="module")
+def result():
+    project = Project.from_dict(example())
+    ship, sea, chart = open_things(project)
+    return run_project(project, ship=ship, sea=sea, chart=chart)
+
+
+def test_the_volume_is_moved_cycle_after_cycle(result):
+    work = result.project.work
+    for run in result.runs:
+        assert sum(c.volume for c in run.cycles) == pytest.approx(14_000.0)
+        assert run.cycles[0].start == result.project.start
+        for before, after in zip(run.cycles, run.cycles[1:]):
+            assert after.start == before.end
+        for cycle in run.cycles:
+            share = cycle.volume / work.hopper
+            assert cycle.volume <= cycle.load_factor * work.hopper + 1e-9
+            assert cycle.loading == pytest.approx(cycle.volume / 1.5)
+            assert cycle.out.depart == pytest.approx(cycle.start + work.loading.time(share))
+            assert cycle.back.depart == pytest.approx(cycle.out.arrive + work.unloading.time(share))
+
+
+def test_every_leg_keeps_the_clearance_in_the_referees_fine_steps(result):
+    for run in result.runs:
+        assert run.feasible
+        for cycle in run.cycles:
+            for leg in cycle.legs:
+                assert leg.route.feasible
+                assert leg.clearance >= 1.0 - 1e-9
+                assert leg.route.samples["under_keel_clearance"].min() >= 1.0 - 1e-9
+
+
+def test_legs_run_between_the_sites_with_the_right_load(result):
+    sites = result.project.sites
+    for run in result.runs:
+        for cycle in run.cycles:
+            assert cycle.out.route.track.positions[0] == pytest.approx(sites.load, abs=1e-5)
+            assert cycle.out.route.track.positions[-1] == pytest.approx(sites.unload, abs=1e-5)
+            assert cycle.back.route.track.positions[0] == pytest.approx(sites.unload, abs=1e-5)
+            draught = 3.5 + 3.0 * cycle.load_factor
+            for leg, deep in ((cycle.out, draught), (cycle.back, 3.5)):
+                samples = leg.route.samples
+                gap = samples["depth"] - samples["under_keel_clearance"]
+                assert gap == pytest.approx(deep, abs=1e-9)
+
+
+def test_planned_is_faster_than_the_charted_way(result):
+    base, optimised = (run.totals for run in result.runs)
+    assert result.runs[0].name == "base case"
+    assert optimised["production_m3_week"] > 1.15 * base["production_m3_week"]
+    assert optimised["distance_m"] < base["distance_m"]
+    gains = result.gains()
+    assert gains["production_gain"] > 0.15
+    assert gains["time_saved"] == pytest.approx(
+        1.0 - optimised["duration_days"] / base["duration_days"]
+    )
+
+
+def test_totals_add_up(result):
+    for run in result.runs:
+        totals, cycles = run.totals, run.cycles
+        duration = cycles[-1].end - cycles[0].start
+        shares = ("loading_share", "unloading_share", "sailing_full_share", "sailing_empty_share")
+        assert sum(totals[key] for key in shares) == pytest.approx(1.0)
+        assert totals["production_m3_week"] == pytest.approx(14_000.0 / duration * WEEK)
+        assert totals["cycles"] == len(cycles)
+        assert totals["hotel_gj"] == pytest.approx(150e3 * duration / 1e9)
+        sailing = sum(leg.duration - leg.waiting for c in cycles for leg in c.legs)
+        pumping = sum(1500e3 * c.loading + 2000e3 * c.unloading for c in cycles) / 1e9
+        # the engine of the example gives 2400 kW whenever it sails
+        assert totals["energy_gj"] == pytest.approx(
+            2.4e6 * sailing / 1e9 + pumping + totals["hotel_gj"], rel=2e-3
+        )
+        assert totals["co2_t"] == pytest.approx(3.206 * totals["fuel_t"])
+        assert totals["co2_kg_m3"] == pytest.approx(1000.0 * totals["co2_t"] / 14_000.0)
+
+
+def test_cost_is_that_of_van_halem(result):
+    """lambda_t t + lambda_f t V^3 (equation 3.5), the second term only under way."""
+    run = result.optimised
+    total = 700_000.0 / WEEK * (run.cycles[-1].end - run.cycles[0].start)
+    for cycle in run.cycles:
+        full = (12.0 - 2.0 * cycle.load_factor) * 1852.0 / 3600.0
+        for leg, speed in ((cycle.out, full), (cycle.back, 12.0 * 1852.0 / 3600.0)):
+            total += 0.008 * (leg.duration - leg.waiting) * speed**3
+    assert run.totals["cost"] == pytest.approx(total, rel=1e-9)
+
+
+def test_the_load_chosen_produces_most(result):
+    """No other load, sailed from the same moment, moves more per time of its cycle."""
+    from thalweg.operations.project_world import open_ways, project_network
+    from thalweg.operations.simulation import Simulator
+
+    world, work = result.world, result.project.work
+    ways = open_ways(world, project_network(world), lambda text: None)
+    simulator = Simulator(world, ways, work.load_factors, lambda text: None)
+    first = result.optimised.cycles[0]
+    produced = {}
+    for both in simulator.both:
+        volume = both.load_factor * work.hopper
+        depart = first.start + work.loading.time(both.load_factor)
+        full = both.full.sail(depart)
+        if full.found:
+            empty = both.empty.sail(full.arrive + work.unloading.time(both.load_factor))
+            produced[both.load_factor] = volume / (empty.arrive - first.start)
+    assert max(produced, key=produced.get) == first.load_factor
+    assert first.production == pytest.approx(produced[first.load_factor], rel=0.01)
+
+
+def test_files_and_pictures(result, tmp_path):
+    files = result.write(tmp_path)
+    assert [file.name for file in files] == [
+        "project.json", "cycles.csv", "project.png", "routes.png",
+    ]  # fmt: skip
+    data = json.loads((tmp_path / "project.json").read_text())
+    assert set(data["runs"]) == {"optimised", "base case"}
+    assert Project.from_dict(data["project"]).work == result.project.work
+    with (tmp_path / "cycles.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == sum(len(run.cycles) for run in result.runs)
+    moved = sum(float(row["volume_m3"]) for row in rows if row["run"] == "optimised")
+    assert moved == pytest.approx(14_000.0)
+    assert min(float(row["full_least_clearance_m"]) for row in rows) >= 1.0
+    figure = draw_routes(result, colour="load")
+    assert len(figure.axes) == 4  # two maps, two colour bars
+    for name in ("project.png", "routes.png"):
+        assert (tmp_path / name).stat().st_size > 20_000
+
+
+def test_a_project_survives_its_file(tmp_path):
+    project = Project.from_dict(example(load_factors=[0.4, 0.8, 1.0]))
+    project.save(tmp_path / "p.yaml")
+    again = Project.load(tmp_path / "p.yaml")
+    assert again == project
+    assert again.work.load_factors == (0.4, 0.8, 1.0)
+    assert again.start == parse_time("2026-05-01T00:00Z")
+
+
+def test_the_example_is_van_halems_project():
+    project = open_project("example")
+    assert project.work.volume == 425_500.0
+    assert project.work.hopper == 4000.0
+    assert project.work.load_factors == tuple(k / 10 for k in range(11))
+    ship = open_things(project)[0]
+    assert ship.with_load_factor(1.0).draught == 6.5
+    assert ship.with_load_factor(0.0).draught == 3.5
+
+
+def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
+    curve = Pumping.from_data({"minutes": [0, 30, 60], "share": [0, 0.8, 1]}, 4000.0, "loading")
+    assert curve.time(0.4) == pytest.approx(15 * 60.0)
+    assert curve.time(1.0) - curve.time(0.9) == pytest.approx(15 * 60.0)
+    assert curve.time(0.0) == 0.0
+    constant = Pumping.from_data(1.5, 4000.0, "loading")
+    assert constant.time(0.5) == pytest.approx(2000.0 / 1.5)
+    coupled = Pumping.from_data({"rate_m3_s": 1.5, "fixed_minutes": 10}, 4000.0, "unloading")
+    assert coupled.time(0.5) == pytest.approx(2000.0 / 1.5 + 600.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"volume_m3": 0}, "volume_m3 is 0"),
+        ({"volume_m3": float("nan")}, "volume_m3 is nan"),
+        ({"hopper_m3": -4000}, "hopper_m3 is -4000"),
+        ({"loading": 0.0}, "loading.rate_m3_s is 0"),
+        ({"unloading": {"rate_m3_s": -1}}, "unloading.rate_m3_s is -1"),
+        ({"loading": {"minutes": [0, 10, 5], "share": [0, 0.5, 1]}}, "curve of loading"),
+        ({"loading": {"rate": 3}}, "no entry of loading named 'rate'"),
+        ({"load_factors": [0.0]}, "nothing is moved"),
+        ({"load_factors": [0.5, 1.2]}, "load_factors is"),
+        ({"days": -1}, "days is -1"),
+        ({"load": [95.0, 3.0]}, "load"),
+        ({"unload": "there"}, "unload is 'there'"),
+        ({"rings": 7}, "rings is 7"),
+        ({"volumes": 1}, "no project entry named 'volumes'"),
+        ({"start": None}, "lacks start"),
+        ({"base_case": {"route": [[51.7, 3.5]]}}, "no way"),
+        ({"base_case": {"route": [[51.7, 3.5], [51.8, 3.5]], "load_factor": 0}}, "load_factor is"),
+    ],
+)
+def test_what_cannot_be_is_refused_at_the_door(changes, words):
+    with pytest.raises(InputError, match=words):
+        Project.from_dict(example(**changes))
+
+
+def sail(**changes):
+    project = Project.from_dict(example(base_case=None, **changes))
+    ship, sea, chart = open_things(project)
+    return run_project(project, ship=ship, sea=sea, chart=chart)
+
+
+def test_a_dry_site_is_told_with_its_best_moment():
+    with pytest.raises(InputError, match="too shallow at every tide") as caught:
+        sail(unload=[51.6865, 3.52])  # on the bank
+    assert "m less than the empty ship needs (4.52 m)" in caught.value.possible
+    assert 0.5 < caught.value.details["missing_m"] < 4.5
+
+
+def test_a_clearance_no_tide_gives_says_when_it_is_highest_and_what_is_missing():
+    with pytest.raises(NoRouteError, match="No tide opens a way") as caught:
+        sail(min_ukc_m=6.0, load_factors=[0.5, 1.0])
+    details = caught.value.details
+    # 5.0 m of draught and 6.02 m of clearance and margin against bar and tide: 7.86 m + 1.81 m
+    assert details["missing_m"] == pytest.approx(5.0 + 6.02 - (7.86 + 1.81), abs=0.35)
+    assert details["highest"].startswith("2026-05-0")
+    assert "m too shallow: at" in caught.value.possible
+
+
+def test_too_few_days_are_told_with_what_is_moved():
+    with pytest.raises(OutsidePeriodError, match="can be moved") as caught:
+        sail(volume_m3=60_000, days=1.0)
+    assert 8_000 <= caught.value.details["moved_m3"] <= 24_000
+
+
+def test_no_sea_is_never_assumed():
+    with pytest.raises(InputError, match="names no sea"):
+        open_things(Project.from_dict(example(sea=None)))
+
+
+def test_command_line(tmp_path, capsys):
+    path = tmp_path / "small.yaml"
+    path.write_text(yaml.safe_dump(example(volume_m3=4000, days=2)))
+    assert main(["project", str(path), "--out", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr().out
+    assert "production [1000 m3/week]" in told and "least clearance [m]" in told
+    assert (tmp_path / "out" / "cycles.csv").exists()
+    assert main(["project", str(path), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["runs"]["optimised"]["totals"]["cycles"] >= 1
+    path.write_text(yaml.safe_dump(example(volume_m3=-1)))
+    assert main(["project", str(path)]) == 2
+    assert "volume_m3 is -1" in capsys.readouterr().err
+    assert main(["project", str(tmp_path / "none.yaml"), "--json"]) == 2
+    assert json.loads(capsys.readouterr().out)["error"] == "InputError"
+
+
+@pytest.mark.slow
+def test_the_example_for_some_days_on_the_full_network():
+    data = yaml.safe_load(example_file().read_text()) | {"volume_m3": 60_000, "days": 8}
+    project = Project.from_dict(data)
+    ship, sea, chart = open_things(project)
+    result = run_project(project, ship=ship, sea=sea, chart=chart)
+    assert result.provenance["network"]["nodes"] > 5000
+    assert result.gains()["production_gain"] >= 0.15
+    legs = [leg for run in result.runs for c in run.cycles for leg in c.legs]
+    assert min(leg.clearance for leg in legs) >= 1.0
+    assert all(leg.route.feasible for leg in legs)
+    assert np.isfinite([leg.energy for leg in legs]).all()
