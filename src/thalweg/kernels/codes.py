@@ -16,7 +16,8 @@ CURRENT: Final = 7
 SHIP_RANGE: Final = 8
 NO_GO: Final = 9
 ARRIVE_BY: Final = 10
-COUNT: Final = 11
+SAFETY: Final = 11
+COUNT: Final = 12
 
 REASONS: Final[dict[int, str]] = {
     LAND: "land",
@@ -29,6 +30,7 @@ REASONS: Final[dict[int, str]] = {
     SHIP_RANGE: "outside the range of the ship's table",
     NO_GO: "no-go zone",
     ARRIVE_BY: "arrives too late",
+    SAFETY: "safety or comfort limit of the ship",
 }
 
 # Channels of frozen sea fields, in the order kernels know them.

@@ -20,6 +20,7 @@ from thalweg.kernels.codes import (
     LIMIT_WIND_SPEED,
     NO_DATA,
     OK,
+    SAFETY,
     SHIP_RANGE,
     SPEED_FIELD,
     WATER_LEVEL,
@@ -32,7 +33,8 @@ from thalweg.kernels.codes import (
     WIND_NORTH,
     WIND_SPEED,
 )
-from thalweg.kernels.tables import axes_needed, sum_of_parts
+from thalweg.kernels.safety import forbidden
+from thalweg.kernels.tables import axes_needed, sum_of_parts, watches_waves
 
 _WIND_AXES = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
 _WAVE_AXES = (1 << AXIS_WAVE_HEIGHT) | (1 << AXIS_WAVE_ANGLE) | (1 << AXIS_WAVE_PERIOD)
@@ -204,6 +206,13 @@ def guided_point_speed(
     over_ground = along + math.sqrt(max(spare, 0.0))
     if speed <= 0.0 or spare <= 0.0 or over_ground <= 0.0:
         return 0.0, CURRENT, 0.0
+    if not field and watches_waves(table):
+        sine = -across / speed
+        cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
+        head_east, head_north = east * cosine - north * sine, north * cosine + east * sine
+        angle = bow_angle(head_east, head_north, waves[1], waves[2])
+        if forbidden(table, speed, angle, waves[0], waves[3]):
+            return 0.0, SAFETY, 0.0
     return over_ground, OK, speed
 
 
@@ -281,7 +290,7 @@ def point_speed(sample, channel_index, east, north, table, setting, static_depth
     speed : float
         Over ground [m/s], > 0 when the status is `OK`, else 0.
     status : int
-        `OK`, `NO_DATA`, `DEPTH`, `WAVE_HEIGHT`, `WIND_SPEED`, `SHIP_RANGE` or `CURRENT`.
+        `OK`, `NO_DATA`, `DEPTH`, `WAVE_HEIGHT`, `WIND_SPEED`, `SHIP_RANGE`, `CURRENT` or `SAFETY`.
 
     Notes
     -----

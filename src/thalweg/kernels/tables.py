@@ -6,7 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.bare import bare, inlined
-from thalweg.kernels.codes import AXES, AXIS_DEPTH, AXIS_WAVE_HEIGHT
+from thalweg.kernels.codes import (
+    AXES,
+    AXIS_DEPTH,
+    AXIS_WAVE_ANGLE,
+    AXIS_WAVE_HEIGHT,
+    AXIS_WAVE_PERIOD,
+)
 
 MOST_AXES = 6  # of one part
 CURVE, CROSSING = 1, 2  # what may follow the sum
@@ -52,6 +58,12 @@ class TableArrays(NamedTuple):
         Points of the curves; before a crossing `FINER` steps to a column.
     curve_guess : int64[settings]
         Column at which a search for the crossing begins.
+    safety : float64[7]
+        What is dangerous in waves (see `thalweg.kernels.safety`); empty when nothing is.
+    motions : float32[speeds, angles, periods]
+        One over the wave height that reaches a limit of motions [1/m]; empty when there is none.
+    motion_grid : float64[3, 2]
+        First point and one over the step of its axes.
     """
 
     part_axes: np.ndarray
@@ -69,6 +81,9 @@ class TableArrays(NamedTuple):
     curve_top: np.ndarray = np.empty(0)
     curve: np.ndarray = np.empty((0, 0))
     curve_guess: np.ndarray = np.empty(0, np.int64)
+    safety: np.ndarray = np.empty(0)
+    motions: np.ndarray = np.empty((0, 0, 0), np.float32)
+    motion_grid: np.ndarray = np.empty((0, 0))
 
 
 #: The type of every array of `TableArrays`.
@@ -85,7 +100,16 @@ ARRAY_TYPES = {
     "curve_top": np.float64,
     "curve": np.float64,
     "curve_guess": np.int64,
+    "safety": np.float64,
+    "motions": np.float32,
+    "motion_grid": np.float64,
 }
+
+
+@inlined
+def watches_waves(table):
+    """Return whether there is something a ship must not do in waves."""
+    return table.safety.shape[0] > 0 or table.motions.shape[0] > 0
 
 
 @bare
@@ -101,6 +125,8 @@ def axes_needed(table):
     for part in range(table.square_stop.shape[0]):
         if table.square_stop[part] == table.square_stop[part]:
             mask |= 1 << AXIS_WAVE_HEIGHT
+    if watches_waves(table):
+        mask |= (1 << AXIS_WAVE_HEIGHT) | (1 << AXIS_WAVE_ANGLE) | (1 << AXIS_WAVE_PERIOD)
     return mask
 
 

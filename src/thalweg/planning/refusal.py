@@ -58,6 +58,7 @@ _ADVICE = {
     codes.NO_DATA: "The data have gaps: add a layer that covers them, or name a filling.",
     codes.CURRENT: "The current is faster than the ship: leave at another time.",
     codes.ARRIVE_BY: "Allow a later arrival.",
+    codes.SAFETY: "Leave later, order another speed, or loosen the limits of the ship file.",
 }
 
 

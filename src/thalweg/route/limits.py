@@ -18,6 +18,7 @@ from thalweg.route.physics import Motion, World
 from thalweg.route.pieces import Pieces, Points
 from thalweg.route.route import Violation
 from thalweg.route.track import Track
+from thalweg.ship.conditions import Conditions
 from thalweg.ship.variables import (
     EASTWARD_CURRENT,
     EASTWARD_WIND,
@@ -129,6 +130,23 @@ def stops(world: World, points: Points, time: FloatArray, motion: Motion) -> lis
             speed = float(motion.through_water[first])
             found.append(_record(REASONS[code], points, time, first, speed, math.nan))
     return found + _gaps(world, points, np.where(stopped, time, math.nan), motion.sampled)
+
+
+def dangers(world: World, points: Points, time: FloatArray, motion: Motion) -> list[Violation]:
+    """Return where the ship does what it must not in waves: its limits of safety and comfort."""
+    safety = world.ship.limits.safety
+    if safety is None:
+        return []
+    at = Conditions.from_sea(motion.sampled, heading=motion.heading)
+    height, speed = at.wave_height, motion.through_water
+    bad = safety.forbids(
+        speed, wave_angle=at.wave_angle, wave_height=height, wave_period=at.wave_period
+    )
+    bad &= np.isfinite(time) & np.isfinite(motion.over_ground)
+    return [
+        _record(REASONS[codes.SAFETY], points, time, first, float(height[first]), math.nan)
+        for first, _ in _stretches(bad, points.leg)
+    ]
 
 
 def _checks(

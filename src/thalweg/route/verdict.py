@@ -8,7 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.route.limits import broken_limits, canal_violations, land_violations, stops
+from thalweg.route.limits import (
+    broken_limits,
+    canal_violations,
+    dangers,
+    land_violations,
+    stops,
+)
 from thalweg.route.physics import Motion, World, conditions_at, look
 from thalweg.route.pieces import IntArray, Pieces, Points
 from thalweg.route.pricing import bill
@@ -43,6 +49,7 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelT
     near, moments = _looks(sailed, points, time)
     violations, least = _judged(sailed, near, moments, min_ukc)
     violations += stops(world, points, time, motion)
+    violations += dangers(world, points, time, motion)
     violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
     departs, arrives = sailed.leg_times()
     legs = {

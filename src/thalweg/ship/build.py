@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -21,6 +22,9 @@ from thalweg.ship.squat_part import build_squat
 
 FloatArray = NDArray[np.float64]
 Data = Mapping[str, Any]
+SAFETY_KEYS: Final = frozenset(
+    {"msc_circ_1228", "max_vertical_acceleration_m_s2", "max_motion_sickness_percent"}
+)
 HOTEL_SFOC: Final = 195.0  #: of auxiliary engines, when the ship file does not tell [g/kWh]
 
 
@@ -34,7 +38,7 @@ def simple_data(*, name: str, speeds_kn: list[float], **sections: Data) -> dict[
 
 
 def build_limits(data: Data) -> ShipLimits:
-    """Return the limits of a ship file."""
+    """Return the limits of weather in a ship file."""
     given = data.get("limits", {})
     wind = given.get("max_wind_speed_m_s", given.get("max_wind_speed_kn", math.inf))
     if "max_wind_speed_m_s" in given and "max_wind_speed_kn" in given:
@@ -47,6 +51,20 @@ def build_limits(data: Data) -> ShipLimits:
     factor = KNOT if "max_wind_speed_kn" in given else 1.0
     waves = given.get("max_significant_wave_height_m", math.inf)
     return ShipLimits(wave_height=waves, wind_speed=wind * factor)
+
+
+def with_safety(limits: ShipLimits, data: Data, hull: Hull, loading: Loading) -> ShipLimits:
+    """Return limits with those of safety and comfort in a ship file.
+
+    Raises
+    ------
+    InputError
+    """
+    if not SAFETY_KEYS & data.get("limits", {}).keys():
+        return limits
+    from thalweg.ship.safety import build_safety  # reads the methods of motions
+
+    return replace(limits, safety=build_safety(data, hull, loading))
 
 
 def hotel_fuel(data: Data) -> float:

@@ -174,8 +174,9 @@ def _bounded(model: ShipModel, conditions: Conditions, load_factor: float) -> li
 
 def _table_is_true(model: ShipModel, load_factor: float, tolerance: float) -> list[str]:
     """The table's parts, summed, stray no further than the table says."""
-    parts, error, *finish = model.tabulate(load_factor, tolerance)
-    table = PerformanceTable(parts, model.speeds(load_factor), "", error, *finish)
+    parts, error, *more = model.tabulate(load_factor, tolerance)
+    finish = more[0] if more else None
+    table = PerformanceTable(parts, model.speeds(load_factor), "", error, finish)
     undeclared = table.axes - model.reads
     if undeclared:
         return [f"the table has axes {', '.join(sorted(undeclared))}, which it does not read"]

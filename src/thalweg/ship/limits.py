@@ -4,9 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from thalweg.core.errors import InputError
-from thalweg.ship.variables import EASTWARD_WIND, NORTHWARD_WIND, WAVE_HEIGHT
+from thalweg.ship.variables import (
+    EASTWARD_WIND,
+    NORTHWARD_WIND,
+    WAVE_EAST,
+    WAVE_HEIGHT,
+    WAVE_NORTH,
+    WAVE_PERIOD,
+)
+
+if TYPE_CHECKING:
+    from thalweg.ship.safety import SafetyLimits
 
 
 @dataclass(frozen=True)
@@ -19,10 +30,13 @@ class ShipLimits:
         Greatest significant wave height [m].
     wind_speed : float
         Greatest wind speed at 10 m, relative to the moving water [m/s].
+    safety : SafetyLimits, optional
+        What the ship must not do in waves.
     """
 
     wave_height: float = math.inf
     wind_speed: float = math.inf
+    safety: SafetyLimits | None = None
 
     def __post_init__(self) -> None:
         for name, value in (("wave height", self.wave_height), ("wind speed", self.wind_speed)):
@@ -39,4 +53,6 @@ class ShipLimits:
         """The sea variables that finite limits look at."""
         waves = {WAVE_HEIGHT} if math.isfinite(self.wave_height) else set()
         wind = {EASTWARD_WIND, NORTHWARD_WIND} if math.isfinite(self.wind_speed) else set()
+        if self.safety is not None:
+            waves = {WAVE_HEIGHT, WAVE_EAST, WAVE_NORTH, WAVE_PERIOD}
         return frozenset(waves | wind)

@@ -150,6 +150,14 @@ _LIMITS: Final = {
     "max_wind_speed_kn": _positive(300.0),
     "max_wind_speed_m_s": _positive(150.0),
     "min_under_keel_clearance_m": _not_negative(50.0),
+    "msc_circ_1228": Key("texts"),
+    "danger_from_wave_height_m": _not_negative(40.0),
+    "roll_period_tolerance": Key(above=0.0, high=0.5),
+    "max_vertical_acceleration_m_s2": _positive(20.0),
+    "acceleration_at_m": Key(low=-300.0, high=300.0),
+    "max_motion_sickness_percent": _positive(100.0),
+    "motion_sickness_hours": _positive(24.0),
+    "motion_sickness_at_m": Key(low=-300.0, high=300.0),
 }
 _WATER: Final = {
     "density_kg_m3": Key(low=990.0, high=1040.0),

@@ -17,13 +17,11 @@ from thalweg.ship.methods.comfort import (
 )
 from thalweg.ship.methods.seakeeping import MotionHull, motions_validity, ship_response
 from thalweg.ship.methods.squat import clearance_under_way, squat_validity
-from thalweg.ship.methods.stability_checks import roll_period, stability_checks
+from thalweg.ship.methods.stability_checks import stability_checks
+from thalweg.ship.safety import EXPOSURE, MEAN_PERIOD, natural_roll_period
 from thalweg.ship.ship import Ship
 from thalweg.ship.squat_part import Squat, squat_of
 
-#: mean over peak period of a JONSWAP spectrum with gamma 3.3 (DNV-RP-C205)
-MEAN_PERIOD: Final = 0.834
-EXPOSURE: Final = 7200.0  #: of people aboard [s]
 _DANGERS: Final = {
     "surf_riding": "surf-riding and broaching-to",
     "successive_high_waves": "successive high waves",
@@ -109,13 +107,7 @@ class Seaway:
 
     def _dangers(self, speed: float, hull: MotionHull) -> list[str]:
         """What MSC.1/Circ.1228 warns of at a speed [m/s]."""
-        own, gm = self.hull.number("roll_period_s"), self.hull.number("metacentric_height_m")
-        if own is None and gm is not None:
-            own = float(
-                roll_period(
-                    hull.breadth, hull.draught, length_waterline=hull.length, metacentric_height=gm
-                )
-            )
+        own = natural_roll_period(self.hull, hull)
         checks = stability_checks(
             speed=speed,
             wave_angle=self.conditions.wave_angle,

@@ -14,22 +14,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, ModelRangeError
+from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
+from thalweg.ship.answers import Answers
 from thalweg.ship.build import (
     build_limits,
     build_loading,
     build_model,
     hotel_fuel,
     simple_data,
+    with_safety,
 )
-from thalweg.ship.conditions import Conditions
 from thalweg.ship.fuel_terms import FuelTerms, fuel_terms
 from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.hull import complete_hull
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import Estimate, ShipModel
 from thalweg.ship.schema import check_ship_data
 from thalweg.ship.ship_file import library_names, plugin, read_ship
@@ -41,7 +41,7 @@ _SINGLE_PRECISION = 2.0**-23
 
 
 @dataclass(frozen=True, eq=False)
-class Ship:
+class Ship(Answers):
     """A ship: how fast it goes and what it burns in given conditions, and what it must not meet.
 
     Made by `Ship.load`, `Ship.from_dict`, `Ship.simple` or `Ship.from_speed_function`.
@@ -107,7 +107,7 @@ class Ship:
             name=checked["name"],
             model=model,
             loading=loading,
-            limits=build_limits(checked),
+            limits=with_safety(build_limits(checked), checked, hull, loading),
             data=MappingProxyType(checked),
             estimated=getattr(model, "estimated", hull.estimated),
         )
@@ -274,97 +274,6 @@ class Ship:
             )
         return replace(self, model=change(wanted, self.loading.load_factor))
 
-    def speed_through_water(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
-        """Speed through water [m/s].
-
-        Parameters
-        ----------
-        conditions : Conditions
-            What the ship meets, arrays that broadcast; see `reads`.
-        setting : array_like of int
-            Index into `speeds`.
-
-        Returns
-        -------
-        ndarray
-            At least 0; NaN where a condition is unknown or out of the model's range.
-
-        Raises
-        ------
-        InputError
-            If a condition is missing or there is no such setting.
-        """
-        return self.model.speed_through_water(self._loaded(conditions), setting)
-
-    def power(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
-        """Brake power [W]; NaN where unknown. Parameters as in `speed_through_water`."""
-        return self.model.power(self._loaded(conditions), setting)
-
-    def fuel_rate(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
-        """Fuel rate [kg/s]; NaN where unknown. Parameters as in `speed_through_water`."""
-        return self.model.fuel_rate(self._loaded(conditions), setting)
-
-    def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
-        """Brake power [W] that holds speeds through water [m/s], whatever the engines can give.
-
-        Raises
-        ------
-        InputError
-            If the ship is not made from its resistance.
-        """
-        return self._resistance_model("power").power_at_speed(self._loaded(conditions), speed)
-
-    def resistance(self, conditions: Conditions, speed: ArrayLike) -> dict[str, FloatArray]:
-        """Resistance by component [N] at speeds through water [m/s].
-
-        Parameters
-        ----------
-        conditions : Conditions
-        speed : array_like
-
-        Returns
-        -------
-        dict
-            ``total`` and its terms: ``friction, form_factor, appendage, wave_making, bulb, transom,
-            correlation, residuary`` in deep water, ``shallow`` (what the depth adds), ``waves``,
-            ``wind``, ``rudder``; zero where a method has no such term.
-
-        Raises
-        ------
-        InputError
-            If the ship is not made from its resistance.
-        """
-        return self._resistance_model("resistance").resistance(self._loaded(conditions), speed)
-
-    def _resistance_model(self, what: str) -> Any:
-        if not hasattr(self.model, "power_at_speed"):
-            raise InputError(
-                f"The {what} of {self.name!r} at a speed is not known.",
-                "Ships with models.calm_water such as holtrop_1984 know it.",
-                "Choose such a ship or model.",
-            )
-        return self.model
-
-    def notes(
-        self, conditions: Conditions, setting: ArrayLike = 0, *, strict: bool = False
-    ) -> list[RangeNote]:
-        """Say which methods are used outside their range in these conditions.
-
-        Raises
-        ------
-        ModelRangeError
-            If ``strict`` and there is any.
-        """
-        found = self.model.notes(self._loaded(conditions), setting)
-        if strict and found:
-            raise ModelRangeError(
-                "; ".join(str(note) for note in found) + ".",
-                "Each method holds in the range it was fitted for.",
-                "Choose other methods, or do without strictness.",
-                notes=[str(note) for note in found],
-            )
-        return found
-
     def top_speed(self, setting: int = 0) -> float | None:
         """Upper bound of the speed through water [m/s]; None for a field that nothing bounds.
 
@@ -385,8 +294,9 @@ class Ship:
         -------
         PerformanceTable
         """
-        parts, error, *finish = self.model.tabulate(self.loading.load_factor, tolerance)
-        return PerformanceTable(parts, self.speeds, self.fingerprint(), error, *finish)
+        parts, error, *more = self.model.tabulate(self.loading.load_factor, tolerance)
+        finish, safety = (more[0] if more else None), self.limits.safety
+        return PerformanceTable(parts, self.speeds, self.fingerprint(), error, finish, safety)
 
     def tabulate_fuel(self, *, tolerance: float = 0.01) -> PerformanceTable:
         """Tabulate the fuel rate [kg/s] at the ship's load factor, hotel load included.
@@ -428,6 +338,3 @@ class Ship:
         }
         text = json.dumps(facts, sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-    def _loaded(self, conditions: Conditions) -> Conditions:
-        return conditions.with_default(load_factor=self.loading.load_factor)

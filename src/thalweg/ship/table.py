@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +16,9 @@ from thalweg.kernels.codes import AXES, AXIS_DEPTH
 from thalweg.kernels.tables import TableArrays
 from thalweg.ship.finish import Finish
 from thalweg.ship.variables import CONDITION_OF
+
+if TYPE_CHECKING:
+    from thalweg.ship.safety import SafetyLimits
 
 FloatArray = NDArray[np.float64]
 _EDGE = 1e-6  # how far outside an axis counts as on it [steps]
@@ -162,6 +166,8 @@ class PerformanceTable:
         Measured against the ship itself.
     finish : Finish, optional
         What turns the sum into the value; without it the sum is the value.
+    safety : SafetyLimits, optional
+        What the ship must not do in waves; kernels refuse it.
     """
 
     parts: tuple[TablePart, ...]
@@ -169,6 +175,7 @@ class PerformanceTable:
     fingerprint: str
     error: TableError
     finish: Finish | None = None
+    safety: SafetyLimits | None = None
 
     def __post_init__(self) -> None:
         if not self.parts:
@@ -258,6 +265,7 @@ class PerformanceTable:
             values=np.concatenate([part.values.ravel() for part in self.parts]),
             square_stop=stops if np.isfinite(stops).any() else np.empty(0),
             **({} if self.finish is None else self.finish.kernel_arrays()),
+            **({} if self.safety is None else self.safety.kernel_arrays()),
         )
 
 

@@ -49,8 +49,9 @@ def fuel_table(ship: Ship, tolerance: float) -> PerformanceTable:
     make = getattr(ship.model, "tabulate_fuel", None)
     if make is None:
         make = partial(tabulate_fuel_of_model, ship.model)
-    parts, error, *finish = make(ship.loading.load_factor, tolerance)
-    table = PerformanceTable(parts, ship.speeds, ship.fingerprint(), error, *finish)
+    parts, error, *more = make(ship.loading.load_factor, tolerance)
+    finish = more[0] if more else None
+    table = PerformanceTable(parts, ship.speeds, ship.fingerprint(), error, finish)
     if not all(math.isfinite(table.largest(k)) for k in range(len(ship.speeds))):
         raise _no_fuel(ship, "its fuel rate is unknown")
     return table

@@ -1,0 +1,229 @@
+"""Safety and comfort as limits: ship files, the model, the kernels, and a leg that is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from thalweg.core.errors import InputError
+from thalweg.kernels import codes
+from thalweg.kernels.leg import point_speed
+from thalweg.kernels.tables import axes_needed
+from thalweg.route import evaluate
+from thalweg.sea import Sea
+from thalweg.ship import Conditions, Ship
+from thalweg.ship.methods.comfort import (
+    motion_sickness_dose,
+    sick_percent_iso,
+    weighted_acceleration,
+)
+from thalweg.ship.methods.seakeeping import MotionHull, ship_response
+from thalweg.ship.methods.stability_checks import stability_checks
+
+HULL = {
+    "length_between_perpendiculars_m": 150.0,
+    "breadth_m": 25.0,
+    "draught_m": 8.0,
+    "block_coefficient": 0.7,
+    "roll_period_s": 14.0,
+}
+MOTIONS = MotionHull(150.0, 25.0, 8.0, 0.7)
+LIMITS = np.array([-np.inf, np.inf, np.inf])
+
+
+def _ship(limits, **more):
+    data = {"name": "careful", "hull": HULL, "speeds_kn": [12, 18, 24], "limits": limits}
+    return Ship.from_dict({**data, **more})
+
+
+CIRCULAR = _ship({"msc_circ_1228": ["all"]})
+BOW = _ship({"max_vertical_acceleration_m_s2": 1.5})
+SICK = _ship({"max_motion_sickness_percent": 20, "motion_sickness_at_m": 30.0})
+TABLES = {id(s): s.tabulate().kernel_arrays() for s in (CIRCULAR, BOW, SICK)}
+
+
+def _status(ship, setting, angle, height, period):
+    """Ask the kernel: course north, waves from ``angle`` to starboard of the bow."""
+    arrays = TABLES[id(ship)]
+    sample, index = np.zeros(codes.CHANNELS), np.full(codes.CHANNELS, -1)
+    for channel, value in (
+        (codes.WAVE_HEIGHT_CH, height),
+        (codes.WAVE_EAST, -math.sin(angle)),
+        (codes.WAVE_NORTH, -math.cos(angle)),
+        (codes.WAVE_PERIOD, period),
+    ):
+        sample[channel], index[channel] = value, channel
+    return point_speed(sample, index, 0.0, 1.0, arrays, setting, np.inf, LIMITS)
+
+
+def _forbids(ship, setting, angle, height, period):
+    return bool(
+        ship.limits.safety.forbids(
+            ship.speeds[setting], wave_angle=angle, wave_height=height, wave_period=period
+        )
+    )
+
+
+@given(st.integers(0, 2), st.floats(0, np.pi), st.floats(0.0, 9.0), st.floats(3.0, 20.0))
+def test_kernels_and_model_forbid_the_same_of_the_circular(setting, angle, height, period):
+    forbidden = _forbids(CIRCULAR, setting, angle, height, period)
+    nudged = {
+        _forbids(CIRCULAR, setting, angle + a, height * b, period * b)
+        for a in (-1e-6, 1e-6)
+        for b in (1 - 1e-6, 1 + 1e-6)
+    }
+    if len(nudged) > 1:
+        return  # on the edge itself
+    _, status = _status(CIRCULAR, setting, angle, height, period)
+    assert status == (codes.SAFETY if forbidden else codes.OK)
+
+
+@given(
+    st.sampled_from(["bow", "sick"]),
+    st.integers(0, 2),
+    st.floats(0, np.pi),
+    st.floats(0.0, 12.0),
+    st.floats(3.0, 20.0),
+)
+def test_kernels_and_model_forbid_the_same_motions_away_from_the_edge(
+    which, setting, angle, height, period
+):
+    ship = BOW if which == "bow" else SICK
+    lower, higher = (
+        _forbids(ship, setting, angle, height * factor, period) for factor in (0.95, 1.05)
+    )
+    if lower != higher:
+        return  # within five per cent of the limit
+    _, status = _status(ship, setting, angle, height, period)
+    assert status == (codes.SAFETY if lower else codes.OK)
+
+
+@given(st.floats(1, 14), st.floats(0, np.pi), st.floats(0, 12), st.floats(3, 20))
+def test_the_circular_is_that_of_the_method(speed, angle, height, period):
+    checks = stability_checks(
+        speed=speed,
+        wave_angle=angle,
+        wave_height=height,
+        wave_period=0.834 * period,
+        length=150.0,
+        roll_period=14.0,
+        least_height=1.5,
+    )
+    found = CIRCULAR.limits.safety.forbids(
+        speed, wave_angle=angle, wave_height=height, wave_period=period
+    )
+    assert bool(found) == bool(checks.dangerous)
+
+
+def test_the_limit_of_acceleration_is_that_of_the_bow():
+    state = ship_response(
+        height=4.0, period=9.0, wave_angle=0.0, speed=8.0, hull=MOTIONS, forward=75.0
+    )
+    rms = float(np.sqrt(state.acceleration.m0))
+    for factor, expected in ((0.98, True), (1.02, False)):
+        ship = _ship({"max_vertical_acceleration_m_s2": rms * factor})
+        found = ship.limits.safety.forbids(8.0, wave_angle=0.0, wave_height=4.0, wave_period=9.0)
+        assert bool(found) is expected
+    abaft = _ship({"max_vertical_acceleration_m_s2": rms * 0.98, "acceleration_at_m": -20})
+    assert not abaft.limits.safety.forbids(8.0, wave_angle=0.0, wave_height=4.0, wave_period=9.0)
+
+
+def test_the_limit_of_sickness_is_the_share_of_people_after_the_exposure():
+    state = ship_response(height=3.0, period=8.0, wave_angle=0.5, speed=7.0, hull=MOTIONS)
+    felt = weighted_acceleration(state.acceleration_parts, state.encounter_frequency)
+    percent = float(sick_percent_iso(motion_sickness_dose(felt, duration=4 * 3600.0)))
+    for factor, expected in ((0.98, True), (1.02, False)):
+        limits = {"max_motion_sickness_percent": percent * factor, "motion_sickness_hours": 4}
+        found = _ship(limits).limits.safety.forbids(
+            7.0, wave_angle=0.5, wave_height=3.0, wave_period=8.0
+        )
+        assert bool(found) is expected
+
+
+def test_waves_are_needed_and_unknown_waves_refuse():
+    assert CIRCULAR.needs >= {
+        "sea_surface_wave_significant_height",
+        "sea_surface_wave_period_at_variance_spectral_density_maximum",
+    }
+    assert axes_needed(TABLES[id(CIRCULAR)]) == sum(
+        1 << axis
+        for axis in (codes.AXIS_WAVE_HEIGHT, codes.AXIS_WAVE_ANGLE, codes.AXIS_WAVE_PERIOD)
+    )
+    assert _status(CIRCULAR, 0, 0.0, np.nan, 8.0)[1] == codes.NO_DATA
+    assert _status(CIRCULAR, 0, 0.0, 3.0, np.nan)[1] == codes.NO_DATA
+    assert _status(CIRCULAR, 2, math.pi, 0.0, np.nan)[1] in (codes.OK, codes.NO_DATA)
+    free = Ship.from_dict({"name": "free", "hull": HULL, "speeds_kn": [12]})
+    assert free.limits.safety is None and free.needs == frozenset()
+
+
+def test_following_seas_forbid_high_speed_only():
+    """1.8 sqrt(150) = 22.05 kn dead astern: 24 kn surf-rides, 18 kn does not."""
+    only = _ship({"msc_circ_1228": ["surf_riding"]})
+    at = {"wave_angle": math.pi, "wave_height": 4.0, "wave_period": 9.0}
+    assert only.limits.safety.forbids(only.speeds, **at).tolist() == [False, False, True]
+    assert not only.limits.safety.forbids(only.speeds, **{**at, "wave_angle": 0.3}).any()
+    low = {**at, "wave_height": 1.4}
+    assert not only.limits.safety.forbids(only.speeds, **low).any()
+
+
+def test_the_height_from_which_waves_are_a_danger_can_be_set():
+    ship = _ship({"msc_circ_1228": ["surf_riding"], "danger_from_wave_height_m": 0.5})
+    at = {"wave_angle": math.pi, "wave_height": 0.6, "wave_period": 5.0}
+    assert ship.limits.safety.forbids(ship.speeds, **at).tolist() == [False, False, True]
+
+
+def test_the_referee_tells_where_the_ship_does_what_it_must_not():
+    sea = Sea.from_functions(
+        {
+            "sea_surface_wave_significant_height": lambda t, lat, lon: 4.0 + 0 * lat,
+            "sea_surface_wave_to_direction": lambda t, lat, lon: 0.0 + 0 * lat,
+            "sea_surface_wave_period_at_variance_spectral_density_maximum": (
+                lambda t, lat, lon: 9.0 + 0 * lat
+            ),
+        }
+    )
+    only = _ship({"msc_circ_1228": ["surf_riding"]})
+    north = [(40.0, -30.0), (41.0, -30.0)]
+    fast, slow = (
+        evaluate(north, ship=only, sea=sea, depart="2026-01-01T00:00Z", speed_kn=speed)
+        for speed in (24, 18)
+    )
+    assert [v.reason for v in fast.violations] == [codes.REASONS[codes.SAFETY]]
+    assert slow.violations == ()
+    against = evaluate(north[::-1], ship=only, sea=sea, depart="2026-01-01T00:00Z", speed_kn=24)
+    assert against.violations == ()
+
+
+def test_weather_that_slows_a_ship_makes_it_safe():
+    """The speed that counts is the one attained, in tables as in the model."""
+    ship = _ship(
+        {"msc_circ_1228": ["surf_riding"]},
+        hull={**HULL, "displacement_m3": 21000},
+        models={"speed_loss": "kwon_2008"},
+    )
+    c = Conditions(wind_speed=25.0, wind_angle=math.pi)
+    attained = float(ship.speed_through_water(c, 2))
+    at = {"wave_angle": math.pi, "wave_height": 5.0, "wave_period": 9.0}
+    assert bool(ship.limits.safety.forbids(attained, **at)) == (attained > 22.05 * 1852 / 3600)
+
+
+@pytest.mark.parametrize(
+    ("limits", "hull", "match"),
+    [
+        ({"msc_circ_1228": ["surfriding"]}, {}, "surf_riding"),
+        ({"msc_circ_1228": ["parametric_roll"]}, {"roll_period_s": None}, "natural roll period"),
+        ({"max_vertical_acceleration_m_s2": 1.0, "acceleration_at_m": 140}, {}, "off the ship"),
+        ({"max_vertical_acceleration_m_s2": -1.0}, {}, "greater than 0"),
+        ({"max_motion_sickness_percent": 130}, {}, "at most 100"),
+    ],
+)
+def test_limits_that_cannot_be_are_refused(limits, hull, match):
+    whole = {k: v for k, v in {**HULL, **hull}.items() if v is not None}
+    with pytest.raises(InputError, match=match):
+        _ship(limits, hull=whole)
+
+
+def test_a_ship_with_limits_is_another_ship():
+    assert BOW.fingerprint() != SICK.fingerprint() != CIRCULAR.fingerprint()
