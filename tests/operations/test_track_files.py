@@ -76,6 +76,14 @@ def test_values_that_ais_calls_absent_are_unknown():
     assert log.speeds()[1] == pytest.approx(5.0, rel=1e-6)  # from the positions
 
 
+def test_speeds_in_the_wrong_unit_are_doubted():
+    frame = straight(30)
+    in_metres = read_tracks(frame.assign(speed=5.0))  # read as knots
+    assert any("0.51 times" in note for note in in_metres.notes)
+    for right in (frame.assign(speed_m_s=5.0), frame.assign(sog=5.0 / KNOT), frame):
+        assert not any("times those" in note for note in read_tracks(right).notes)
+
+
 def test_rows_are_sorted_and_doubles_dropped_and_both_told():
     frame = straight(10)
     shuffled = frame.sample(frac=1.0, random_state=3)

@@ -98,6 +98,8 @@ def test_better_models_lie_closer(analysis):
     assert fits["calibrated"].r2 > 0.99 > fits["currents"].r2 > 0.9
     assert fits["ship"].rmse_rel == pytest.approx(fits["currents"].rmse_rel, rel=0.15)
     assert fits["ship, calibrated"].rmse_rel < 1.0
+    assert any("setting of 11.00 kn while sailing full" in note for note in analysis.notes)
+    assert any("setting of 13.00 kn while sailing empty" in note for note in analysis.notes)
 
 
 def test_legs_tell_their_way_and_errors(analysis):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +13,9 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray, distance, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
+
+_UNDER_WAY = 2.0  #: speed of positions [m/s] from which on measured speeds are checked against it
+_LARGEST_DOUBT = 0.2
 
 
 @dataclass(frozen=True)
@@ -163,7 +166,24 @@ def clean(
     _tell(told, removed, raw, gaps, broken, rules)
     lon = wrap_longitude(raw.lon)
     removed = {reason: rows for reason, rows in removed.items() if rows}
-    return TrackLog(raw.time, raw.lat, lon, raw.values, broken, vessel, tuple(told), removed)
+    log = TrackLog(raw.time, raw.lat, lon, raw.values, broken, vessel, tuple(told), removed)
+    return replace(log, notes=(*log.notes, *_doubts(log)))
+
+
+def _doubts(log: TrackLog) -> list[str]:
+    """Say if the speeds that were measured are not those of the positions."""
+    if "speed" not in log.values:
+        return []
+    moved = replace(log, values={}).speeds()
+    told = log.values["speed"]
+    fast = np.isfinite(told) & (moved > _UNDER_WAY) & (told > 0.0)
+    ratio = float(np.median(told[fast] / moved[fast])) if fast.any() else 1.0
+    if abs(ratio - 1.0) <= _LARGEST_DOUBT:
+        return []
+    return [
+        f"Measured speeds are {ratio:.2f} times those of the positions: is their unit right? "
+        "Legs are timed by positions alone."
+    ]
 
 
 def _untimed(raw: RawTrack) -> NDArray[np.bool_]:

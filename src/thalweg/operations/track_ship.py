@@ -12,7 +12,7 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.track_cleaning import TrackLog
 from thalweg.operations.track_model import mean_speeds
-from thalweg.operations.track_pieces import Pieces
+from thalweg.operations.track_pieces import KINDS, Pieces
 from thalweg.route.physics import World, conditions_at, move, open_world
 from thalweg.route.pieces import Points
 from thalweg.route.wind import with_wind_speed
@@ -47,19 +47,30 @@ def ship_speeds(
         NaN where the sea does not tell what the model needs.
     """
     found = np.full(len(pieces), np.nan)
+    for kind, (loaded, setting) in ordered(pieces, ship, speed_kn=speed_kn).items():
+        mine = pieces.kind == KINDS.index(kind)
+        world = open_world(loaded, with_wind_speed(loaded, sea), None)
+        here = pieces.part(mine)
+        found[mine] = move(world, _points(here, setting), here.time).through_water
+    return found
+
+
+def ordered(
+    pieces: Pieces, ship: Ship, *, speed_kn: float | None = None
+) -> dict[str, tuple[Ship, int]]:
+    """Return the loaded ship and its setting for each activity there is; as in `ship_speeds`."""
+    found = {}
     wanted = mean_speeds(pieces, 1.0)
     wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(pieces, 0.0))
-    for kind, load_factor in ((0, 1.0), (1, 0.0)):
-        mine = pieces.kind == kind
+    for index, load_factor in ((0, 1.0), (1, 0.0)):
+        mine = pieces.kind == index
         if not mine.any():
             continue
         loaded = ship.with_load_factor(load_factor)
         if speed_kn is not None:
             loaded = loaded.with_speeds([speed_kn * KNOT])
         setting = int(np.argmin(np.abs(loaded.speeds - wanted[mine][0])))
-        world = open_world(loaded, with_wind_speed(loaded, sea), None)
-        here = pieces.part(mine)
-        found[mine] = move(world, _points(here, setting), here.time).through_water
+        found[KINDS[index]] = (loaded, setting)
     return found
 
 

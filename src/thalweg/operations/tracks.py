@@ -36,7 +36,7 @@ from thalweg.operations.track_model import (
     spread,
 )
 from thalweg.operations.track_pieces import KINDS, PIECE, Pieces, cut_pieces
-from thalweg.operations.track_ship import ship_speeds, speeds_at_measured_power
+from thalweg.operations.track_ship import ordered, ship_speeds, speeds_at_measured_power
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -260,6 +260,10 @@ def analyse_tracks(
     if sea is not None and ship is not None:
         water = ship_speeds(pieces, ship, sea, speed_kn=speed_kn)
         models["ship"] = over_ground(pieces, water, 1.0)
+        notes += [
+            f"The ship sails at its setting of {loaded.speeds[setting] / KNOT:.2f} kn while {kind}."
+            for kind, (loaded, setting) in ordered(pieces, ship, speed_kn=speed_kn).items()
+        ]
         if calibration is not None:
             models["ship, calibrated"] = over_ground(pieces, water, calibration.factor)
         powered = speeds_at_measured_power(log, pieces, ship, sea)
