@@ -4,6 +4,7 @@ from thalweg.route.ensemble import Distribution, Spread, cvar, evaluate_members
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.route.improving import better_route, shorten_waits
 from thalweg.route.joining import join
+from thalweg.route.polishing import polish
 from thalweg.route.referee import evaluate
 from thalweg.route.route import Route, Violation
 from thalweg.route.smooth import smooth
@@ -21,6 +22,7 @@ __all__ = [
     "evaluate",
     "evaluate_members",
     "join",
+    "polish",
     "read_track",
     "shorten_waits",
     "smooth",

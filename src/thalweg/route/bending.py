@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import FloatArray
+from thalweg.route.costing import Purse
 from thalweg.route.line import METRES_PER_DEGREE, Line
 from thalweg.route.quick import Bundle, Sailor, rough_lengths
 
@@ -51,7 +52,7 @@ class Slopes:
     known: BoolArray
 
 
-def bend(line: Line, sailor: Sailor, *, rounds: int = 12, tolerance: float = 1e-7) -> Line:
+def bend(line: Line, sailor: Sailor | Purse, *, rounds: int = 12, tolerance: float = 1e-7) -> Line:
     """Return a line with its waypoints shifted sideways to lower the cost.
 
     Parameters
@@ -109,7 +110,7 @@ def shifted(line: Line, shift: FloatArray) -> tuple[FloatArray, FloatArray]:
     return lat, lon
 
 
-def _newton_step(line: Line, sailor: Sailor, best: float) -> tuple[Line, float]:
+def _newton_step(line: Line, sailor: Sailor | Purse, best: float) -> tuple[Line, float]:
     """Return the best of several trial lines, and its cost; the line itself if none is better."""
     slopes = _slopes(line, sailor)
     lengths = rough_lengths(line.lat, line.lon)
@@ -130,37 +131,46 @@ def _newton_step(line: Line, sailor: Sailor, best: float) -> tuple[Line, float]:
         pick = int(np.argmin(cost))
         if cost[pick] < best:
             return line.moved(lat[pick], lon[pick]), float(cost[pick])
-        held = _offenders(sailor, lat, lon, arrive)
+        if isinstance(sailor, Purse):
+            held = _beside(sailor.broken_legs(line.bundle(lat, lon)))
+        else:
+            held = _offenders(sailor, lat, lon, arrive)
         if not (held & free).any():
             break
         free &= ~held
     return line, best
 
 
-def _offenders(sailor: Sailor, lat: FloatArray, lon: FloatArray, arrive: FloatArray) -> BoolArray:
+def _offenders(
+    sailor: Sailor | Purse, lat: FloatArray, lon: FloatArray, arrive: FloatArray
+) -> BoolArray:
     """Return the waypoints at the ends of legs that could not be sailed, in any trial."""
     blocked, _ = sailor.look(lat, lon)
     bad = np.isinf(arrive[:, 1:]) & np.isfinite(arrive[:, :-1])
     if blocked is not None:
         bad |= blocked
+    return _beside(bad)
+
+
+def _beside(bad: BoolArray) -> BoolArray:
+    """Return the waypoints at the ends of legs that are bad in any trial."""
     legs = bad.any(axis=0)
-    held = np.zeros(lat.shape[1], dtype=bool)
-    held[:-1] |= legs
-    held[1:] |= legs
-    return held
+    return np.append(legs, False) | np.append(False, legs)
 
 
-def _slopes(line: Line, sailor: Sailor) -> Slopes:
+def _slopes(line: Line, sailor: Sailor | Purse) -> Slopes:
     """Difference the cost of every leg over shifts of its ends and its departure."""
     count = len(line)
     arrive, _ = sailor.sail(line.bundle(), check=False)
     leave = np.maximum(arrive[0], line.leave)
+    fixed = sailor.fixed_points(line.lat, line.lon)
     lengths = rough_lengths(line.lat, line.lon)
     probe = np.zeros(count)
     probe[1:-1] = _PROBE * np.minimum(lengths[:-1], lengths[1:])
     probe[probe == 0.0] = 1e-3 * max(float(lengths.max()), 1.0)
     late = np.maximum(_PROBE * np.diff(arrive[0]), 1e-3)
     found = _probe_legs(line, sailor, probe, leave, late)
+    waits = leave[:-1] > arrive[0, :-1] + 1e-9
     base, sp, sm, ep, em, pp, mm, later = found
     a, b = probe[:-1], probe[1:]
     with np.errstate(invalid="ignore"):
@@ -168,7 +178,7 @@ def _slopes(line: Line, sailor: Sailor) -> Slopes:
         start2, end2 = (sp - 2 * base + sm) / (a * a), (ep - 2 * base + em) / (b * b)
         mixed = (pp + mm - sp - sm - ep - em + 2 * base) / (2 * a * b)
         growth = 1.0 + (later - base) / late
-    weight = _weights(growth, leave[:-1] > arrive[0, :-1] + 1e-9, sailor.by_length)
+    weight = _weights(growth, waits, sailor.by_length)
     gradient, curvature = np.zeros(count), np.zeros(count)
     gradient[:-1] += weight * start
     gradient[1:] += weight * end
@@ -178,12 +188,12 @@ def _slopes(line: Line, sailor: Sailor) -> Slopes:
     coupling = weight * mixed
     known[:-1] &= np.isfinite(coupling)
     known[1:] &= np.isfinite(coupling)
-    known[0] = known[-1] = False
+    known &= ~fixed
     return Slopes(gradient, curvature, coupling, known)
 
 
 def _probe_legs(
-    line: Line, sailor: Sailor, probe: FloatArray, leave: FloatArray, late: FloatArray
+    line: Line, sailor: Sailor | Purse, probe: FloatArray, leave: FloatArray, late: FloatArray
 ) -> FloatArray:
     """Return the cost of every leg (8, n - 1) under the probes; NaN where it cannot be sailed."""
     legs, count = len(line) - 1, len(_PROBES)
@@ -202,10 +212,34 @@ def _probe_legs(
         np.tile(line.setting, count)[:, None],
         depart.reshape(-1),
     )
+    if isinstance(sailor, Purse):
+        arrive, cost, _ = sailor.spend(bundle, pieces=pieces, check=False)
+        known = np.isfinite(cost)
+        spent = np.where(known, cost, math.nan).reshape(count, legs)
+        took = np.where(known, arrive[:, -1] - bundle.depart, math.nan).reshape(count, legs)
+        waits = np.isfinite(line.leave[1:-1]) & (line.leave[1:-1] >= leave[1:-1] - 1e-9)
+        return spent + took * _costates(spent, took, late, waits, sailor.per_second)
     arrive, cost = sailor.sail(bundle, pieces=pieces, check=False)
     spent = cost if sailor.by_length else arrive[:, -1] - bundle.depart
     spent = np.where(np.isfinite(cost), spent, math.nan)
     return spent.reshape(count, legs)
+
+
+def _costates(
+    spent: FloatArray, took: FloatArray, late: FloatArray, waits: BoolArray, per_second: float
+) -> FloatArray:
+    """Return what a second of delay at the end of every leg costs until the goal.
+
+    That is the worth of a second there, carried back over the legs with what the delay changes in
+    their cost and time; a wait swallows it.
+    """
+    with np.errstate(invalid="ignore"):
+        dearer = np.nan_to_num((spent[-1] - spent[0]) / late)
+        growth = np.clip(np.nan_to_num(1.0 + (took[-1] - took[0]) / late, nan=1.0), 0.1, 10.0)
+    worth = np.full(len(late), per_second)
+    for k in range(len(late) - 1, 0, -1):
+        worth[k - 1] = 0.0 if waits[k - 1] else dearer[k] + worth[k] * growth[k]
+    return worth
 
 
 def _weights(growth: FloatArray, waits: BoolArray, by_length: bool) -> FloatArray:

@@ -108,6 +108,23 @@ def canal_legs(track: Track, chart: Chart | None) -> CanalLegs:
     return CanalLegs(number, chart.canals, backward)
 
 
+def sea_stretches(track: Track, chart: Chart | None) -> list[tuple[int, int]]:
+    """Return (first waypoint, last waypoint) of the stretches of a track between canals."""
+    number = canal_legs(track, chart).number
+    edges = [
+        0,
+        *(int(k) for leg in np.flatnonzero(number >= 0) for k in (leg, leg + 1)),
+        len(number),
+    ]
+    return [(a, b) for a, b in zip(edges[::2], edges[1::2]) if b > a]
+
+
+def canal_ends(track: Track, chart: Chart | None) -> NDArray[np.bool_]:
+    """Return which waypoints are ends of canal legs."""
+    canal = canal_legs(track, chart).number >= 0
+    return np.append(canal, False) | np.append(False, canal)
+
+
 def canal_fuel_rate(ship: Ship, canal: Canal) -> float:
     """Return the fuel rate [kg/s] of a ship in a canal; NaN if it has no fuel model.
 

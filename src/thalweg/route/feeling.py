@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
+from thalweg.route.costing import Purse
 from thalweg.route.line import METRES_PER_DEGREE, Line
 from thalweg.route.quick import Bundle, Sailor, rough_lengths
 
@@ -15,7 +16,7 @@ _FIRST = 0.3  # first step as a share of the shorter leg beside a waypoint
 _GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # turns the compass differently every round
 
 
-def feel(line: Line, sailor: Sailor, *, rounds: int = 30, smallest: float = 1.0) -> Line:
+def feel(line: Line, sailor: Sailor | Purse, *, rounds: int = 30, smallest: float = 1.0) -> Line:
     """Return a line with waypoints moved, one by one, wherever that lowers the cost.
 
     Parameters
@@ -39,10 +40,11 @@ def feel(line: Line, sailor: Sailor, *, rounds: int = 30, smallest: float = 1.0)
     lengths = rough_lengths(line.lat, line.lon)
     step = np.zeros(len(line))
     step[1:-1] = _FIRST * np.minimum(lengths[:-1], lengths[1:])
+    step[sailor.fixed_points(line.lat, line.lon)] = 0.0
     for number in range(rounds):
         for colour in (1, 2):
             moving = np.arange(colour, len(line) - 1, 2)
-            moving = moving[step[moving] >= smallest]
+            moving = moving[step[moving] >= max(smallest, 1e-9)]
             if moving.size:
                 line, moved = _try(line, sailor, moving, step, number)
                 step[moving] *= np.where(moved, 1.3, 0.5)
@@ -52,7 +54,7 @@ def feel(line: Line, sailor: Sailor, *, rounds: int = 30, smallest: float = 1.0)
 
 
 def _try(
-    line: Line, sailor: Sailor, moving: np.ndarray, step: FloatArray, number: int
+    line: Line, sailor: Sailor | Purse, moving: np.ndarray, step: FloatArray, number: int
 ) -> tuple[Line, np.ndarray]:
     """Move each of some waypoints to the best of its trial places; tell which moved."""
     angle = number * _GOLDEN + np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)

@@ -13,6 +13,7 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.tables import TableArrays
 from thalweg.route.blending import blended
+from thalweg.route.canal_legs import canal_legs, sea_stretches
 from thalweg.route.line import unwrapped
 from thalweg.route.quick import penalty_factors
 from thalweg.route.referee import evaluate
@@ -82,6 +83,24 @@ def better_route(
     def score(track: Track) -> Route:
         return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
 
+    if canal_legs(scored.track, chart).any:
+
+        def better(stretch: Route) -> Route:
+            return better_route(
+                stretch,
+                ship=ship,
+                sea=sea,
+                chart=chart,
+                table=table,
+                limits=limits,
+                min_ukc=min_ukc,
+                objective=objective,
+                wait=wait,
+            )
+
+        refined = _between_canals(scored, chart, score, better)
+        return min(scored, refined, key=lambda item: rank(item, objective, chart))
+
     best, wished = scored, None
     may_wait = bool(scored.track.wait.any()) if wait is None else wait
     for margin, patient in _TRIES[: None if may_wait else _MARGINS]:
@@ -92,7 +111,7 @@ def better_route(
                 track,
                 table=table,
                 fields=fields,
-                limits=_tightened(limits, margin),
+                limits=tightened(limits, margin),
                 chart=chart,
                 objective=objective,
                 wait=may_wait and patient,
@@ -110,6 +129,22 @@ def better_route(
     best = shorten_waits(best, score)
     most = rank(scored, objective, chart)[1] if scored.feasible else math.inf
     return thinned(best, score, lambda item: rank(item, objective, chart)[1], most=most)
+
+
+def _between_canals(
+    scored: Route, chart: Chart | None, score: Score, better: Callable[[Route], Route]
+) -> Route:
+    """Return the route with its stretches between canals refined, one after the other."""
+    route = scored
+    for number in range(len(sea_stretches(scored.track, chart))):
+        track = route.track
+        first, last = sea_stretches(track, chart)[number]
+        depart = track.depart if first == 0 else float(route.legs["arrive"][first - 1])
+        if not math.isfinite(depart):
+            break
+        part = better(score(track.part(first, last, depart))).track
+        route = score(track.with_part(first, last, part))
+    return route
 
 
 def freeze_around(
@@ -218,7 +253,8 @@ def rank(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float
     return not route.feasible, cost, route.arrive
 
 
-def _tightened(limits: ArrayLike, margin: float) -> FloatArray:
+def tightened(limits: ArrayLike, margin: float) -> FloatArray:
+    """Return limits that are stricter by a share of themselves."""
     tight = np.array(limits, dtype=float)
     tight[codes.LIMIT_REQUIRED_DEPTH] *= 1.0 + margin
     tight[codes.LIMIT_WAVE_HEIGHT] *= 1.0 - margin

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -32,6 +32,12 @@ def join(routes: Sequence[Route]) -> Route:
         raise InputError("There are no routes to join.", "", "Give one or more.")
     for before, after in itertools.pairwise(routes):
         _check_joint(before, after)
+    if len({route.currency for route in routes}) > 1:
+        raise InputError(
+            f"The costs of the routes are in {' and '.join({r.currency for r in routes})}.",
+            "They can be added in one currency only.",
+            "Evaluate all of them with the same terms.",
+        )
     first = np.cumsum([0, *(len(route.legs["length"]) for route in routes)])
     length = np.cumsum([0.0, *(route.legs["length"].sum() for route in routes)])
     legs = {name: np.concatenate([route.legs[name] for route in routes]) for name in routes[0].legs}
@@ -47,7 +53,15 @@ def join(routes: Sequence[Route]) -> Route:
         tuple(violation for route in routes for violation in route.violations),
         sum(route.tolerance_s for route in routes),
         tuple(dict.fromkeys(text for route in routes for text in route.assumptions)),
+        _summed([route.fuel_zones for route in routes]),
+        routes[0].currency,
     )
+
+
+def _summed(parts: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Return sums by name."""
+    names = dict.fromkeys(name for part in parts for name in part)
+    return {name: sum(part.get(name, 0.0) for part in parts) for name in names}
 
 
 def _check_joint(before: Route, after: Route) -> None:

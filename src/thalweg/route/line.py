@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import FloatArray, along, wrap_longitude
+from thalweg.route.costing import Purse
 from thalweg.route.quick import Bundle, Sailor, rough_lengths
 from thalweg.route.track import Track
 
@@ -67,10 +68,24 @@ class Line:
             self.depart,
         )
 
-    def split(self, longest: float) -> Line:
-        """Return the line with a point in the middle of every leg longer than ``longest`` [m]."""
+    def kept_points(self, sailor: Sailor | Purse) -> NDArray[np.bool_]:
+        """Return which points must stay: the ends and where the setting changes.
+
+        Sailors that price fuel have settings chosen anew, so those do not bind them; canals do.
+        """
+        kept = sailor.fixed_points(self.lat, self.lon)
+        if not sailor.chooses_settings:
+            kept[1:-1] |= np.diff(self.setting) != 0
+        return kept
+
+    def split(self, longest: float, which: NDArray[np.bool_] | None = None) -> Line:
+        """Return the line with a point in the middle of every leg longer than ``longest`` [m].
+
+        Of the legs in ``which`` only, if that is given.
+        """
         lat, lon, leave, setting = [self.lat[0]], [self.lon[0]], [self.leave[0]], []
-        for k, long in enumerate(rough_lengths(self.lat, self.lon) > longest):
+        longer = rough_lengths(self.lat, self.lon) > longest
+        for k, long in enumerate(longer if which is None else longer & which):
             if long:
                 middle = along(self.lat[k], self.lon[k], self.lat[k + 1], self.lon[k + 1], 0.5)
                 lat.append(float(middle[0]))
@@ -86,7 +101,7 @@ class Line:
         )
 
 
-def line_of(track: Track, sailor: Sailor) -> Line:
+def line_of(track: Track, sailor: Sailor | Purse) -> Line:
     """Return a track as a line; its waits become moments of leaving."""
     line = Line(
         np.array(track.lat),
@@ -103,7 +118,7 @@ def line_of(track: Track, sailor: Sailor) -> Line:
     return line
 
 
-def track_of_line(line: Line, sailor: Sailor) -> Track:
+def track_of_line(line: Line, sailor: Sailor | Purse) -> Track:
     """Return a line as a track, its moments of leaving as waits."""
     arrive, leave, _ = sailor.sail_and_wait(line.bundle())
     wait = np.maximum(0.0, leave[0] - arrive[0])

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.route.costing import Purse
 from thalweg.route.line import Line
 from thalweg.route.quick import Bundle, Sailor
 
@@ -14,7 +15,7 @@ _REACH = 48  # waypoints a single hop may skip
 _PASSES = 4
 
 
-def pull(line: Line, sailor: Sailor, *, penalty: float = 0.0) -> Line:
+def pull(line: Line, sailor: Sailor | Purse, *, penalty: float = 0.0) -> Line:
     """Return the best line through a subset of the waypoints, in their order.
 
     Parameters
@@ -28,6 +29,7 @@ def pull(line: Line, sailor: Sailor, *, penalty: float = 0.0) -> Line:
     Returns
     -------
     Line
+        Through the points where the setting changes, unless settings are chosen anew afterwards.
         Never worse than the line, but for the penalty; the line itself if it cannot be sailed.
 
     Notes
@@ -46,16 +48,18 @@ def pull(line: Line, sailor: Sailor, *, penalty: float = 0.0) -> Line:
     return line
 
 
-def _best_subset(line: Line, sailor: Sailor, penalty: float) -> NDArray[np.int64] | None:
+def _best_subset(line: Line, sailor: Sailor | Purse, penalty: float) -> NDArray[np.int64] | None:
     count = len(line)
     arrive, label = np.full(count, math.inf), np.full(count, math.inf)
     came_from = np.full(count, -1, dtype=np.int64)
     arrive[0], label[0] = line.depart, 0.0
+    held = np.flatnonzero(line.kept_points(sailor))
     for here in range(count - 1):
         if not math.isfinite(label[here]):
             continue
         there = np.arange(here + 1, min(count, here + 1 + _REACH))
         leave = max(arrive[here], line.leave[here])
+        there = there[: int(np.searchsorted(there, held[held > here][0], side="right"))]
         ends, cost = sailor.sail(_hops(line, here, there, leave))
         spent = cost if sailor.by_length else cost - arrive[here]
         total = label[here] + spent + penalty

@@ -81,6 +81,14 @@ class Sailor:
     spacing: float
     patience: FloatArray
 
+    chooses_settings = False  # settings of a track stay as they are
+
+    def fixed_points(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return which points of one polyline may not move: its ends."""
+        fixed = np.zeros(len(lat), dtype=bool)
+        fixed[[0, -1]] = True
+        return fixed
+
     def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
         """Return how many pieces each leg of polylines (..., n) is cut into."""
         return np.maximum(2, np.ceil(rough_lengths(lat, lon) / self.spacing)).astype(np.int64)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,8 @@ from numpy.typing import ArrayLike
 
 from thalweg.kernels.tables import TableArrays
 from thalweg.route.bending import bend
+from thalweg.route.canal_legs import canal_legs, sea_stretches
+from thalweg.route.costing import Purse
 from thalweg.route.feeling import feel
 from thalweg.route.line import Line, line_of, track_of_line
 from thalweg.route.pulling import pull
@@ -74,6 +77,21 @@ def smooth(
     bent sideways by Newton's method, feeling their way where obstacles bind. At last
     waypoints that bring less than a 5e-5 share of the cost together are left out.
     """
+    if canal_legs(track, chart).any:
+
+        def smoothed(stretch: Track) -> Track:
+            return smooth(
+                stretch,
+                table=table,
+                fields=fields,
+                limits=limits,
+                chart=chart,
+                objective=objective,
+                wait=wait,
+                finest=finest,
+            )
+
+        return _between_canals(track, chart, smoothed, _clock(table, fields, limits))
     sailor = make_sailor(
         table=table,
         chart=chart,
@@ -103,7 +121,47 @@ def smooth(
     return track_of_line(best, sailor)
 
 
-def _made_sailable(line: Line, sailor: Sailor) -> Line:
+def _clock(
+    table: PerformanceTable | TableArrays, fields: GridFields, limits: ArrayLike
+) -> Callable[[Track], float]:
+    """Return a function that tells how long a track at sea takes [s]; inf if it cannot sail."""
+
+    def duration(track: Track) -> float:
+        sailor = make_sailor(
+            table=table,
+            chart=None,
+            fields=fields,
+            limits=limits,
+            origin=track.depart,
+            by_length=False,
+            total=float(track.lengths.sum()),
+        )
+        return _cost(line_of(track, sailor), sailor)
+
+    return duration
+
+
+def _between_canals(
+    track: Track,
+    chart: Chart | None,
+    smoothed: Callable[[Track], Track],
+    duration: Callable[[Track], float],
+) -> Track:
+    """Return the track with its stretches between canals smoothed; from a loss of time on as is."""
+    depart, at = track.depart, 0
+    for number in range(len(sea_stretches(track, chart))):
+        first, last = sea_stretches(track, chart)[number]
+        canals = canal_legs(track, chart)
+        depart += sum(canals.of(leg).transit_time + track.wait[leg] for leg in range(at, first))
+        if not math.isfinite(depart):
+            break
+        part = smoothed(track.part(first, last, depart))
+        track = track.with_part(first, last, part)
+        depart, at = depart + duration(part), first + len(part) - 1
+    return track
+
+
+def _made_sailable(line: Line, sailor: Sailor | Purse) -> Line:
     """Return the line with longer waits, or with those the quick sailor finds of itself."""
     longer = _settled_waits(line, sailor, longer=3600.0)
     if math.isfinite(_cost(longer, sailor)):
@@ -111,17 +169,17 @@ def _made_sailable(line: Line, sailor: Sailor) -> Line:
     return replace(line, leave=np.full(len(line), -math.inf))
 
 
-def _starts(first: Line, pulled: Line, sailor: Sailor) -> list[Line]:
+def _starts(first: Line, pulled: Line, sailor: Sailor | Purse) -> list[Line]:
     """Return the lines to refine: the pulled one, and a coarse resampling if it can be sailed."""
     starts = [pulled]
     if len(pulled) > 6 and not np.isfinite(first.leave).any():
-        coarse = _resampled(first, 5)
+        coarse = resampled(first, 5)
         if _spent(coarse, sailor) <= _HOPEFUL * _spent(pulled, sailor):
             starts.append(coarse)
     return starts
 
 
-def _resampled(line: Line, count: int) -> Line:
+def resampled(line: Line, count: int) -> Line:
     """Return points at equal shares of the length of a line without waits."""
     along = np.concatenate([[0.0], np.cumsum(rough_lengths(line.lat, line.lon))])
     at = np.linspace(0.0, along[-1], count)
@@ -130,7 +188,7 @@ def _resampled(line: Line, count: int) -> Line:
     return Line(lat, lon, np.full(count, -math.inf), line.setting[index], line.depart)
 
 
-def _levels(line: Line, sailor: Sailor, finest: int) -> Line:
+def _levels(line: Line, sailor: Sailor | Purse, finest: int) -> Line:
     """Refine a line level by level, and thin it at the end."""
     total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
@@ -151,7 +209,7 @@ def _levels(line: Line, sailor: Sailor, finest: int) -> Line:
     return _thinned(line, sailor)
 
 
-def _refined(line: Line, sailor: Sailor, bound: bool) -> Line:
+def _refined(line: Line, sailor: Sailor | Purse, bound: bool) -> Line:
     """Bend a line, and feel along obstacles where they may bind."""
     bent = bend(line, sailor)
     if not bound:
@@ -160,13 +218,13 @@ def _refined(line: Line, sailor: Sailor, bound: bool) -> Line:
     return bend(feel(bent, sailor, smallest=smallest), sailor, rounds=3)
 
 
-def _is_bound(line: Line, sailor: Sailor) -> bool:
+def _is_bound(line: Line, sailor: Sailor | Purse) -> bool:
     """Return whether any obstacle could bind a line: land on the chart, or limits of any kind."""
     limited = np.isfinite(sailor.limits).any()
     return bool(limited) or sailor.chart is not None
 
 
-def _thinned(line: Line, sailor: Sailor) -> Line:
+def _thinned(line: Line, sailor: Sailor | Purse) -> Line:
     """Leave out waypoints that bring almost nothing, and bend what is left once more."""
     spent = _spent(line, sailor)
     if not math.isfinite(spent) or len(line) < 3:
@@ -178,7 +236,7 @@ def _thinned(line: Line, sailor: Sailor) -> Line:
     return thin if _spent(thin, sailor) <= spent * (1.0 + 2.0 * THINNING) else line
 
 
-def _settled_waits(line: Line, sailor: Sailor, *, longer: float = 0.0) -> Line:
+def _settled_waits(line: Line, sailor: Sailor | Purse, *, longer: float = 0.0) -> Line:
     """Return the line with every moment of leaving as early as serves the arrival best.
 
     Parameters
@@ -186,6 +244,8 @@ def _settled_waits(line: Line, sailor: Sailor, *, longer: float = 0.0) -> Line:
     longer : float
         How much longer [s] than now a wait may become.
     """
+    if isinstance(sailor, Purse):
+        return line
     sailor = replace(sailor, patience=np.zeros(3))
     for index in np.flatnonzero(np.isfinite(line.leave)):
         arrive, _ = sailor.sail(line.bundle(), check=False)
@@ -216,10 +276,10 @@ def _settled_waits(line: Line, sailor: Sailor, *, longer: float = 0.0) -> Line:
     return line
 
 
-def _cost(line: Line, sailor: Sailor) -> float:
+def _cost(line: Line, sailor: Sailor | Purse) -> float:
     return float(sailor.sail(line.bundle())[1][0])
 
 
-def _spent(line: Line, sailor: Sailor) -> float:
+def _spent(line: Line, sailor: Sailor | Purse) -> float:
     """Return the cost from departure: seconds or metres."""
     return _cost(line, sailor) - (0.0 if sailor.by_length else line.depart)

@@ -19,7 +19,12 @@ _LOSS = 6e-5  # share by which the thinned route may cost more
 
 
 def thinned(
-    route: Route, score: Callable[[Track], Route], cost: Callable[[Route], float], *, most: float
+    route: Route,
+    score: Callable[[Track], Route],
+    cost: Callable[[Route], float],
+    *,
+    most: float,
+    held: NDArray[np.bool_] | None = None,
 ) -> Route:
     """Return the route with as few waypoints as it takes.
 
@@ -33,6 +38,8 @@ def thinned(
         What is made least, of a scored route.
     most : float
         What the thinned route may cost at most, whatever the given one costs.
+    held : bool array, optional
+        Waypoints that stay, such as ends of canals.
 
     Returns
     -------
@@ -46,7 +53,7 @@ def thinned(
     allowed = min(most, cost(route) * (1.0 + _LOSS))
     length = float(route.legs["length"].sum())
     for share in _ASIDE:
-        keep = _outline(track, share * length)
+        keep = _outline(track, share * length, held)
         if keep.all():
             continue
         fewer = score(_kept(track, keep))
@@ -61,13 +68,15 @@ def _kept(track: Track, keep: NDArray[np.bool_]) -> Track:
     )
 
 
-def _outline(track: Track, aside: float) -> NDArray[np.bool_]:
+def _outline(track: Track, aside: float, held: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
     """Return which waypoints to keep so that none lies farther [m] aside (Douglas-Peucker)."""
     points = _vectors(track)
     keep = np.zeros(len(points), bool)
     keep[[0, -1]] = True
     keep[np.flatnonzero(track.wait)] = True
     keep[1:-1] |= np.diff(track.setting) != 0
+    if held is not None:
+        keep |= held
     fixed = np.flatnonzero(keep)
     spans = list(itertools.pairwise(fixed))
     while spans:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.route.costing import Purse
 from thalweg.route.line import IntArray, Line, unwrapped
 from thalweg.route.pulling import pull
 from thalweg.route.quick import Bundle, Sailor, penalty_factors, rough_lengths
@@ -17,7 +18,7 @@ _DEEPER = 6  # scans, each inside the interval of the one before: 12^-6 of a leg
 _SETTLED = 1e-7  # relative gain of a round that ends the work
 
 
-def tighten(line: Line, sailor: Sailor) -> Line:
+def tighten(line: Line, sailor: Sailor | Purse) -> Line:
     """Return a line pulled tight around what it must keep clear of.
 
     Parameters
@@ -48,7 +49,7 @@ def tighten(line: Line, sailor: Sailor) -> Line:
     return line
 
 
-def merge_close(line: Line, sailor: Sailor, *, shortest: float) -> Line:
+def merge_close(line: Line, sailor: Sailor | Purse, *, shortest: float) -> Line:
     """Return the line with the two ends of every very short leg made one, if that can be sailed.
 
     Cutting a corner down to a point of the coast leaves two waypoints a hand apart; they become the
@@ -65,7 +66,8 @@ def merge_close(line: Line, sailor: Sailor, *, shortest: float) -> Line:
     while k < len(line) - 2:
         short = rough_lengths(line.lat[k : k + 2], line.lon[k : k + 2])[0] < shortest
         merged = None
-        if short and np.isinf(line.leave[k : k + 2]).all():
+        fixed = sailor.fixed_points(line.lat, line.lon)[k : k + 2]
+        if short and np.isinf(line.leave[k : k + 2]).all() and not fixed.any():
             merged = _merged(line, sailor, k)
         if merged is None:
             k += 1
@@ -74,7 +76,7 @@ def merge_close(line: Line, sailor: Sailor, *, shortest: float) -> Line:
     return line
 
 
-def _merged(line: Line, sailor: Sailor, k: int) -> Line | None:
+def _merged(line: Line, sailor: Sailor | Purse, k: int) -> Line | None:
     """Return the line with one point for points k and k + 1, the nearest that can be sailed."""
     apex = _meeting(line, k)
     if apex is None:
@@ -110,10 +112,11 @@ def _meeting(line: Line, k: int) -> tuple[float, float] | None:
     return float(apex[0]), float(lon[1] + (apex[1] - lon[1] + 180.0) % 360.0 - 180.0)
 
 
-def _cut(line: Line, sailor: Sailor) -> Line:
+def _cut(line: Line, sailor: Sailor | Purse) -> Line:
     """Return the line with every corner cut off as far as possible."""
     corners = np.arange(1, len(line) - 1)
-    corners = corners[np.isinf(line.leave[corners])]
+    fixed = sailor.fixed_points(line.lat, line.lon)
+    corners = corners[np.isinf(line.leave[corners]) & ~fixed[corners]]
     if not corners.size:
         return line
     back_most = np.where(corners - 1 == 0, 1.0, 0.5)
@@ -137,7 +140,7 @@ def _cut(line: Line, sailor: Sailor) -> Line:
 
 def _clear(
     line: Line,
-    sailor: Sailor,
+    sailor: Sailor | Purse,
     corners: IntArray,
     arrive: FloatArray,
     back: FloatArray,

@@ -123,6 +123,25 @@ class Track:
             self.setting[index[:-1]],
         )
 
+    def part(self, first: int, last: int, depart: float) -> Track:
+        """Return the track between two of its waypoints, departing [s] from the first of them.
+
+        The wait at the first is kept, that at the last is not.
+        """
+        wait = np.append(self.wait[first:last], 0.0)
+        lat, lon = self.lat[first : last + 1], self.lon[first : last + 1]
+        return Track(lat, lon, depart, wait, self.setting[first:last])
+
+    def with_part(self, first: int, last: int, part: Track) -> Track:
+        """Return the track with another one between two of its waypoints."""
+        return Track(
+            np.concatenate([self.lat[:first], part.lat, self.lat[last + 1 :]]),
+            np.concatenate([self.lon[:first], part.lon, self.lon[last + 1 :]]),
+            self.depart,
+            np.concatenate([self.wait[:first], part.wait[:-1], self.wait[last:]]),
+            np.concatenate([self.setting[:first], part.setting, self.setting[last:]]),
+        )
+
 
 def _pairs(positions: Iterable[Sequence[float]]) -> list[Position]:
     pairs = []
