@@ -40,7 +40,7 @@ def feel(line: Line, sailor: Sailor | Purse, *, rounds: int = 30, smallest: floa
     lengths = rough_lengths(line.lat, line.lon)
     step = np.zeros(len(line))
     step[1:-1] = _FIRST * np.minimum(lengths[:-1], lengths[1:])
-    step[sailor.fixed_points(line.lat, line.lon)] = 0.0
+    step[line.kept_points(sailor)] = 0.0
     for number in range(rounds):
         for colour in (1, 2):
             moving = np.arange(colour, len(line) - 1, 2)

@@ -148,7 +148,14 @@ def _between_canals(
 
 
 def freeze_around(
-    route: Route, track: Track, room: float, *, ship: Ship, sea: Sea, limits: ArrayLike
+    route: Route,
+    track: Track,
+    room: float,
+    *,
+    ship: Ship,
+    sea: Sea,
+    limits: ArrayLike,
+    until: float | None = None,
 ) -> GridFields:
     """Freeze the sea on a raster around a track, as fine as the data or a size limit allows.
 
@@ -159,6 +166,8 @@ def freeze_around(
     track : Track
     room : float
         Room on all sides, as a share of the longer side of the track's box.
+    until : float, optional
+        Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
     """
     lon = unwrapped(track.lon)
     extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
@@ -168,6 +177,7 @@ def freeze_around(
     west = 0.5 * (lon.min() + lon.max() - width)
     start = track.depart
     arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
+    arrive = arrive if until is None else max(arrive, until)
     end = start + 1.1 * (arrive - start) + 600.0
     channels = _channels(ship, sea, np.asarray(limits, float))
     extra = {codes.SPEED_FIELD: ship.speed_field} if ship.speed_field is not None else None

@@ -50,17 +50,18 @@ def choose_paces(
     """
     budget, slope = latest, 0.0
     base = line
-    for number in range(_ROUNDS):
+    rounds = _ROUNDS // 2 if whole else _ROUNDS
+    for number in range(rounds):
         times, costs = _options(base, purse)
         room = budget - _fixed_time(base, purse)
         setting, slope, part = _knapsack(times, costs, room)
         base = replace(base, setting=setting)
-        if number == _ROUNDS - 1 and not whole:
+        if number == rounds - 1 and not whole:
             line = _with_part(base, part)
         else:
             line = base
         arrive = float(purse.sail(line.bundle(), check=False)[0][0, -1])
-        if math.isfinite(arrive) and number >= _ROUNDS - 2:
+        if math.isfinite(arrive) and number >= rounds - 2:
             budget += min(0.0, latest - arrive)
     return line, slope
 

@@ -117,7 +117,9 @@ def polish(
 
     frozen = fields
     if frozen is None:
-        frozen = freeze_around(scored, scored.track, 0.2, ship=ship, sea=sea, limits=limits)
+        frozen = freeze_around(
+            scored, scored.track, 0.2, ship=ship, sea=sea, limits=limits, until=latest
+        )
     best = scored
     for margin in _MARGINS:
         purse = make_purse(

@@ -172,7 +172,8 @@ def _made_sailable(line: Line, sailor: Sailor | Purse) -> Line:
 def _starts(first: Line, pulled: Line, sailor: Sailor | Purse) -> list[Line]:
     """Return the lines to refine: the pulled one, and a coarse resampling if it can be sailed."""
     starts = [pulled]
-    if len(pulled) > 6 and not np.isfinite(first.leave).any():
+    one_setting = not np.ptp(first.setting)
+    if len(pulled) > 6 and one_setting and not np.isfinite(first.leave).any():
         coarse = resampled(first, 5)
         if _spent(coarse, sailor) <= _HOPEFUL * _spent(pulled, sailor):
             starts.append(coarse)

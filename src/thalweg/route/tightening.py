@@ -29,7 +29,7 @@ def tighten(line: Line, sailor: Sailor | Purse) -> Line:
 
     Notes
     -----
-    Each waypoint where the ship does not wait is replaced by two, one back along the leg that comes
+    Each waypoint where the ship does not wait or change its setting is replaced by two, one back along the leg that comes
     in and one on along the leg that goes out, as far as the leg between them stays clear; waypoints
     that have become needless are dropped. Repeated, this converges to the taut string of the same
     way round, corners of polygons and round capes alike, without knowing their outlines.
@@ -66,7 +66,7 @@ def merge_close(line: Line, sailor: Sailor | Purse, *, shortest: float) -> Line:
     while k < len(line) - 2:
         short = rough_lengths(line.lat[k : k + 2], line.lon[k : k + 2])[0] < shortest
         merged = None
-        fixed = sailor.fixed_points(line.lat, line.lon)[k : k + 2]
+        fixed = line.kept_points(sailor)[k : k + 2]
         if short and np.isinf(line.leave[k : k + 2]).all() and not fixed.any():
             merged = _merged(line, sailor, k)
         if merged is None:
@@ -115,7 +115,7 @@ def _meeting(line: Line, k: int) -> tuple[float, float] | None:
 def _cut(line: Line, sailor: Sailor | Purse) -> Line:
     """Return the line with every corner cut off as far as possible."""
     corners = np.arange(1, len(line) - 1)
-    fixed = sailor.fixed_points(line.lat, line.lon)
+    fixed = line.kept_points(sailor)
     corners = corners[np.isinf(line.leave[corners]) & ~fixed[corners]]
     if not corners.size:
         return line

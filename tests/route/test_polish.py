@@ -1,0 +1,327 @@
+"""Polishing: cheaper in the same time, never worse; settings, control areas, canals."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.evolution import jet
+from thalweg.chart import Chart
+from thalweg.chart.canals import SUEZ
+from thalweg.core.errors import InputError
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
+from thalweg.route import Track, better_route, evaluate, join, polish, smooth
+from thalweg.route.paces import _hull, _knapsack
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+OPEN = Chart.open_water()
+FREE = np.array([-math.inf, math.inf, math.inf])
+BULKER = Ship.from_dict(
+    {
+        **Ship.load("handysize-bulker").data,
+        "models": {"calm_water": "table", "speed_loss": "none"},
+        "limits": {},
+    }
+)
+LEVEL = 1852.0 / 111319.49079327358  # degrees of longitude in a nautical mile, on the equator
+
+
+def zone(west, south, east, north, **properties):
+    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    return {"type": "Feature", "properties": {"kind": "eca", **properties}, "geometry": geometry}
+
+
+def polished(route, ship=BULKER, sea=None, chart=OPEN, **more):
+    return polish(
+        route,
+        ship=ship,
+        sea=Sea.calm() if sea is None else sea,
+        chart=chart,
+        table=ship.tabulate(),
+        fuel=ship.tabulate_fuel(),
+        limits=FREE,
+        **more,
+    )
+
+
+@pytest.mark.parametrize(
+    ("hours", "best", "floor"), [(20, 23.436, 22.977), (24, 19.870, 19.459), (28, 17.633, 17.338)]
+)
+def test_jet_and_eddies_from_a_straight_line(hours, best, floor):
+    """The best known fuel (long evolution) is met to 0.3 %; nothing goes below the floor."""
+    ship, sea, chart = jet.ship(), jet.sea(), jet.chart()
+    start = evaluate(
+        jet.straight(9).to_track(jet.T0), ship=ship, sea=sea, chart=chart, min_ukc=None
+    )
+    latest = jet.T0 + hours * HOUR / jet.SHRINK
+    route = polish(
+        start,
+        ship=ship,
+        sea=sea,
+        chart=chart,
+        table=jet.speed_table(),
+        fuel=jet.fuel_table(),
+        limits=FREE,
+        objective="fuel",
+        arrive_by=latest,
+        fields=jet.fields(),
+        min_ukc=None,
+    )
+    assert route.feasible
+    assert route.arrive <= latest + 1e-6
+    assert floor < route.fuel_t * jet.SHRINK < best * 1.003
+    again = evaluate(route.track, ship=ship, sea=sea, chart=chart, min_ukc=None)
+    assert again.fuel_t == route.fuel_t
+
+
+CUBIC_KN = np.round(np.arange(8.0, 16.0001, 0.1), 3)
+
+
+def cubic_ship() -> Ship:
+    """Fuel of k V^3 with V in knots and k of 1 kg/h, told as tonnes a day."""
+    table = {
+        "speed_kn": CUBIC_KN.tolist(),
+        "fuel_t_per_day": (24e-3 * CUBIC_KN**3).tolist(),
+    }
+    models = {"calm_water": "table", "speed_loss": "none"}
+    return Ship.from_dict(
+        {"name": "cubic", "hull": {"draught_m": 5.0}, "table": table, "models": models}
+    )
+
+
+@pytest.mark.parametrize(
+    ("lengths", "currents", "hours", "speeds", "fuel"),
+    [
+        ((100, 100), (2.0, -2.0), 16.0, (11.574586, 13.583066), 33058.9008),
+        ((100, 100), (2.0, -2.0), 20.0, (9.091126, 11.104332), 21813.8565),
+        ((120, 60, 90), (1.5, -1.0, 0.0), 20.0, (12.566179, 13.794702, 13.275398), 45099.6158),
+    ],
+)
+def test_cubic_law_speeds(lengths, currents, hours, speeds, fuel):
+    """Closed form 2 V^3 + 3 w V^2 = mu; settings 0.1 kn apart, mixed where they must be."""
+    ship = cubic_ship()
+    edges = np.concatenate([[0.0], np.cumsum(lengths)]) * LEVEL
+    along = np.array(currents) * KNOT
+
+    def east(time, lat, lon):
+        return along[np.clip(np.searchsorted(edges, lon) - 1, 0, len(along) - 1)] + 0.0 * time
+
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": east,
+            "northward_sea_water_velocity": lambda t, a, o: 0.0 * a,
+        }
+    )
+    start = evaluate([(0.0, x) for x in edges], ship=ship, sea=sea, chart=OPEN, depart=0)
+    route = polished(start, ship, sea, objective="fuel", arrive_by=hours * HOUR)
+    assert route.arrive <= hours * HOUR + 1e-6
+    assert route.fuel_t * 1000.0 == pytest.approx(fuel, rel=5e-4)
+    middle = 0.5 * (route.track.lon[:-1] + route.track.lon[1:])
+    sailed = route.legs["length"] / (route.legs["arrive"] - route.legs["depart"]) / KNOT
+    which = np.clip(np.searchsorted(edges, middle) - 1, 0, len(along) - 1)
+    for k, speed in enumerate(speeds):
+        here = which == k
+        mean = route.legs["length"][here].sum() / (route.legs["length"][here] / sailed[here]).sum()
+        assert mean - currents[k] == pytest.approx(speed, abs=0.05)
+
+
+def test_slower_inside_a_control_area_at_the_same_arrival():
+    """Half the way inside: against the linear program over speeds and zones by brute force."""
+    chart = OPEN.with_zones(zone(2, -1, 4.5, 1))
+    start = evaluate([(0, 0), (0, 4)], ship=BULKER, sea=Sea.calm(), chart=chart, depart=0)
+    length = start.legs["length"].sum() / 2.0
+    speeds = np.asarray(BULKER.speeds)
+    rate = np.array(BULKER.data["table"]["fuel_t_per_day"]) / 86400.0
+    for slower in (1.02, 1.15, 1.4):
+        latest = slower * start.arrive
+        # best of all mixes of two settings per half, on a fine grid of how time is shared
+        shares = np.linspace(0.0, 1.0, 4001)
+        outside = _cheapest(length, speeds, 300.0 * rate, latest * shares)
+        inside = _cheapest(length, speeds, 300.0 * 1.5593 * rate, latest * (1.0 - shares))
+        expected = np.min(outside + inside)
+        route = polished(start, chart=chart, arrive_by=latest)
+        assert route.arrive <= latest + 1e-6
+        assert route.cost == pytest.approx(expected, rel=3e-4)
+
+
+def _cheapest(length, speeds, rate, time):
+    """Return the least cost of a length in a time: the lower hull of (s/m, cost/m)."""
+    slowness, cost = 1.0 / speeds, rate / speeds
+    best = np.full(len(time), np.inf)
+    wanted = time / length
+    for a, b in itertools.product(range(len(speeds)), repeat=2):
+        low, high = slowness[a], slowness[b]
+        if low == high:
+            fits = wanted >= low
+            best[fits] = np.minimum(best[fits], cost[a])
+            continue
+        share = np.clip((wanted - low) / (high - low), 0.0, 1.0)
+        fits = wanted >= low + share * (high - low) - 1e-12
+        mixed = cost[a] + share * (cost[b] - cost[a])
+        best[fits] = np.minimum(best[fits], mixed[fits])
+    return best * length
+
+
+def test_never_worse_and_told_when_it_cannot_be_asked():
+    start = evaluate([(0, 0), (0, 2)], ship=BULKER, sea=Sea.calm(), chart=OPEN, depart=0)
+    same = polished(start)
+    assert same.cost <= start.cost
+    assert same.arrive <= start.arrive + 1e-6
+    with pytest.raises(InputError, match="polished for 'speed'"):
+        polished(start, objective="speed")
+    unpriced = Ship.from_dict({k: v for k, v in BULKER.data.items() if k != "fuel"})
+    with pytest.raises(InputError, match="price of the fuel is unknown"):
+        polished(start, unpriced)
+    with pytest.raises(InputError, match="carbon factor of the fuel"):
+        polished(start, unpriced, objective="co2")
+    assert polished(start, unpriced, objective="fuel").fuel_t <= start.fuel_t
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(-2, 2), st.floats(-2, 2), st.floats(1.0, 1.5), st.integers(0, 11))
+def test_never_worse_whatever_the_sea_and_the_start(u, v, later, setting):
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, a, o: u * KNOT * np.cos(3 * o + t / 9000),
+            "northward_sea_water_velocity": lambda t, a, o: v * KNOT * np.sin(5 * a - o),
+        }
+    )
+    track = Track([0, 0.3, 0.1, 0.5], [0, 0.5, 1.0, 1.6], 0.0, None, [setting] * 3)
+    start = evaluate(track, ship=BULKER, sea=sea, chart=OPEN)
+    latest = later * start.arrive
+    route = polished(start, sea=sea, objective="co2", arrive_by=latest)
+    assert route.feasible
+    assert route.arrive <= latest + 1e-6
+    assert route.co2_t <= start.co2_t * (1 + 1e-12)
+
+
+def test_land_is_kept_clear_of():
+    island = {
+        "type": "Polygon",
+        "coordinates": [[[0.9, -0.3], [1.1, -0.3], [1.1, 0.3], [0.9, 0.3], [0.9, -0.3]]],
+    }
+    chart = Chart.from_geojson(island)
+    start = evaluate(
+        [(0, 0), (0.6, 1.0), (0, 2)], ship=BULKER, sea=Sea.calm(), chart=chart, depart=0
+    )
+    route = polished(start, chart=chart, objective="fuel")
+    assert route.feasible
+    taut = evaluate(
+        [(0, 0), (0.3001, 0.8999), (0.3001, 1.1001), (0, 2)],
+        ship=BULKER, sea=Sea.calm(), chart=chart, depart=0,
+    )  # fmt: skip
+    assert route.distance_nm < 1.01 * taut.distance_nm
+    assert route.fuel_t < 0.9 * start.fuel_t
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(1, 3), st.integers(2, 4), st.floats(0.0, 1.2), st.randoms())
+def test_the_knapsack_against_all_choices(legs, count, share, random):
+    times = np.sort([[random.uniform(1, 5) for _ in range(count)] for _ in range(legs)], axis=1)
+    costs = -np.sort([[-random.uniform(1, 5) for _ in range(count)] for _ in range(legs)], axis=1)
+    low, high = times.min(axis=1).sum(), times.max(axis=1).sum()
+    room = low + share * (high - low)
+    setting, _, part = _knapsack(times, costs, room)
+    rows = np.arange(legs)
+    time, cost = times[rows, setting].sum(), costs[rows, setting].sum()
+    if part is not None:
+        leg, slower, portion = part
+        time += portion * (times[leg, slower] - times[leg, setting[leg]])
+        cost += portion * (costs[leg, slower] - costs[leg, setting[leg]])
+    assert time <= room + 1e-9
+    for choice in itertools.product(range(count), repeat=legs):
+        if times[rows, choice].sum() <= room + 1e-12:
+            assert cost <= costs[rows, choice].sum() + 1e-9
+
+
+def test_the_hull_leaves_out_what_no_mix_wants():
+    time = np.array([1.0, 2.0, 3.0, 4.0, 2.5])
+    assert _hull(time, np.array([10.0, 9.0, 4.0, 5.0, np.inf])) == [0, 2]
+
+
+# canals and several settings
+
+
+@pytest.fixture(scope="module")
+def world() -> Chart:
+    return Chart.gshhg("l").with_eca("mediterranean")
+
+
+def suez_route(world, **more):
+    places = [(33.5, 30.0), (32.6, 31.0), *SUEZ.ends, (28.9, 32.75), (28.2, 33.35)]
+    lat, lon = np.array(places).T
+    track = Track(lat, lon, 0.0, **more)
+    return evaluate(track, ship=BULKER, sea=Sea.calm(), chart=world)
+
+
+def _through_suez(route) -> bool:
+    track = route.track
+    number = [k for k in range(len(track) - 1) if abs(route.legs["length"][k] - SUEZ.length) < 1.0]
+    return len(number) == 1 and all(
+        (track.lat[number[0] + k], track.lon[number[0] + k]) == SUEZ.ends[k] for k in (0, 1)
+    )
+
+
+def test_polishing_keeps_the_canal(world):
+    start = suez_route(world)
+    assert start.feasible, start.violations
+    route = polished(start, chart=world, arrive_by=1.3 * start.arrive)
+    assert _through_suez(route)
+    assert route.arrive <= 1.3 * start.arrive
+    assert route.cost < 0.99 * start.cost
+    assert route.cost > SUEZ.fee
+
+
+def test_refining_for_time_keeps_the_canal_and_the_settings(world):
+    start = suez_route(world, wait=[0, 0, 3600.0, 0, 0, 0], setting=[11, 11, 5, 5, 8])
+    better = better_route(
+        start,
+        ship=BULKER,
+        sea=Sea.calm(),
+        chart=world,
+        table=BULKER.tabulate(),
+        limits=FREE,
+        wait=False,
+    )
+    assert better.feasible
+    assert _through_suez(better)
+    assert better.arrive < start.arrive
+    sailed = dict.fromkeys(better.track.setting.tolist())
+    assert list(sailed) == [11, 5, 8]
+    fields = Sea.calm().freeze_grid(27, 35, 29, 34, 0.0, 4 * start.arrive, [], spacing_deg=0.5)
+    track = smooth(
+        start.track, table=BULKER.tabulate(), fields=fields, limits=FREE, chart=world, wait=False
+    )
+    again = evaluate(track, ship=BULKER, sea=Sea.calm(), chart=world)
+    assert _through_suez(again)
+    assert again.arrive <= start.arrive
+
+
+def test_smoothing_keeps_several_settings():
+    track = Track([0, 0.2, -0.2, 0], [0, 1, 2, 3], 0.0, None, [11, 0, 11])
+    start = evaluate(track, ship=BULKER, sea=Sea.calm(), chart=OPEN)
+    better = better_route(
+        start, ship=BULKER, sea=Sea.calm(), chart=OPEN, table=BULKER.tabulate(), limits=FREE
+    )
+    assert better.arrive <= start.arrive
+    assert list(dict.fromkeys(better.track.setting.tolist())) == [11, 0]
+    changes = np.count_nonzero(np.diff(better.track.setting))
+    assert changes == 2
+
+
+def test_joined_routes_add_up(world):
+    whole = suez_route(world)
+    first = evaluate(whole.track.part(0, 2, 0.0), ship=BULKER, sea=Sea.calm(), chart=world)
+    rest = evaluate(whole.track.part(2, 5, first.arrive), ship=BULKER, sea=Sea.calm(), chart=world)
+    both = join([first, rest])
+    for name in ("fuel_t", "cost", "co2_t", "fuel_eca_t", "distance_nm"):
+        assert getattr(both, name) == pytest.approx(getattr(whole, name), rel=1e-9)
+    assert both.fuel_by_zone_t == pytest.approx(whole.fuel_by_zone_t)
+    assert both.distance_nm * NAUTICAL_MILE > SUEZ.length
