@@ -31,8 +31,9 @@ def tighten(line: Line, sailor: Sailor | Purse) -> Line:
     -----
     Each waypoint where the ship does not wait or change its setting is replaced by two, one back
     along the leg that comes in and one on along the leg that goes out, as far as the leg between
-    them stays clear; waypoints that have become needless are dropped. Repeated, this converges to the taut string of the same
-    way round, corners of polygons and round capes alike, without knowing their outlines.
+    them stays clear; waypoints that have become needless are dropped. Repeated, this converges to
+    the taut string of the same way round, corners of polygons and round capes alike, without
+    knowing their outlines.
     """
     cost = float(sailor.sail(line.bundle())[1][0])
     for _ in range(_ROUNDS):
