@@ -171,3 +171,33 @@ def test_refining_keeps_what_was_sailed_and_is_smooth_between():
     assert np.abs(finer.duration - exact).max() < 1e-4
     with pytest.raises(InputError):
         table.refined(0)
+
+
+def test_a_limit_that_is_reached_under_way_closes_a_departure():
+    """Waves grow past 4 m at a known time; whoever is not there by then does not arrive."""
+    closes = 20_000.0
+    waves = {
+        "sea_surface_wave_significant_height": lambda t, la, lo: (
+            4.0 + (t - closes) / 1e4 + 0.0 * la
+        ),
+        "sea_surface_wave_from_direction": lambda t, la, lo: 270.0 + 0.0 * la,
+        "sea_surface_wave_period_at_variance_spectral_density_maximum": lambda t, la, lo: (
+            8.0 + 0.0 * la
+        ),
+    }
+    sea = Sea.from_functions(
+        {
+            **waves,
+            DEPTH: lambda t, la, lo: 20.0 + 0.0 * la,
+            EAST: lambda t, la, lo: 0.0 * la,
+            NORTH: lambda t, la, lo: 0.0 * la,
+        }
+    ).filled(wind=0.0)
+    table = trip_table(
+        [WEST_END, EAST_END], ship=vox(), sea=sea, start=0.0, end=25_000.0, step=50.0
+    )
+    took = table.duration[0]
+    sure = table.times + took < closes - 60.0
+    late = table.times + took > closes + 60.0
+    assert np.isfinite(table.duration[sure]).all() and np.isinf(table.duration[late]).all()
+    assert sure.sum() > 250 and late.sum() > 150

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 LEAST_STEPS = 100  #: of every trip
 MOST_DEPARTURES = 200_000  #: a table may hold
 _POINTS: Final = 200_000  # looked at in one go
+_SWEEPS: Final = 12  # of the iteration
 _SETTLED: Final = 1e-3  # change of the time for a piece [s] that ends the iteration
 _NEVER: Final = 1e9  # stands for the time [s] for a piece that cannot be passed
 _CRAB_TURNS: Final = 3  # corrections of the crab angle; each makes the error some 50 times smaller
@@ -260,31 +261,55 @@ class _Voyage:
 
     def _sail(self, departs: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Sail some departures: find when every piece is passed, all at once, by iteration."""
-        count, step = len(self.pieces), self.pieces.step[:, None]
-        shape = (count, len(departs))
-        here = self.middles.part(np.repeat(np.arange(count), len(departs)))
-        usual = float(self.world.ship.speeds[self.middles.setting[0]])
-        took = guess = np.broadcast_to(step / (usual if usual > 0.0 else 5.0), shape)
-        for _ in range(count + 5):  # a piece is right at the latest when all before it are
-            spent = np.where(took < _NEVER, took, guess)
-            time = departs + np.cumsum(spent, axis=0) - 0.5 * spent
-            look = self._look(here, time.reshape(-1))
-            ground = look.over_ground.reshape(shape)
-            with np.errstate(divide="ignore"):
-                reached = np.where(ground > 0.0, step / ground, _NEVER)
-            change = float(np.abs(reached - took).max())
-            took = reached
-            if change < _SETTLED:
+        shape = (len(self.pieces), len(departs))
+        took = np.broadcast_to(self._guess(), shape).copy()
+        power, unknown = np.zeros(shape), np.zeros(shape, dtype=bool)
+        active = np.arange(len(departs))
+        for _ in range(_SWEEPS):
+            spent = np.where(took[:, active] < _NEVER, took[:, active], self._guess())
+            time = departs[active] + np.cumsum(spent, axis=0) - 0.5 * spent
+            found = self._pass(np.arange(shape[0]), time)
+            settled = np.abs(found[0] - took[:, active]).max(axis=0) < _SETTLED
+            took[:, active], power[:, active], unknown[:, active] = found
+            active = active[~settled]
+            if not active.size:
                 break
+        else:  # limits that are kept or broken by seconds: piece by piece
+            self._march(departs, active, (took, power, unknown))
         passes = took < _NEVER
         under_way = np.vstack([np.ones((1, shape[1]), bool), np.cumprod(passes, axis=0)[:-1] > 0])
-        bad = np.flatnonzero(look.unknown & under_way.reshape(-1))
+        bad = np.argwhere((unknown & under_way).T)
         if bad.size:
-            raise _not_told(here, time.reshape(-1), int(bad[0]))
+            which, piece = bad[0]
+            raise _not_told(self.middles, int(piece), float(departs[which]))
         arrives = passes.all(axis=0)
-        energy = (look.power.reshape(shape) * took).sum(axis=0)
-        duration = took.sum(axis=0)
+        energy, duration = (power * took).sum(axis=0), took.sum(axis=0)
         return np.where(arrives, duration, math.inf), np.where(arrives, energy, math.inf)
+
+    def _guess(self) -> FloatArray:
+        """Return a first guess of the time for each piece [s], shape (pieces, 1)."""
+        usual = float(self.world.ship.speeds[self.middles.setting[0]])
+        return np.asarray(self.pieces.step[:, None] / (usual if usual > 0.0 else 5.0))
+
+    def _pass(self, pieces: NDArray[np.int64], time: FloatArray) -> tuple[Any, ...]:
+        """Return (time [s], power [W], whether unknown) for pieces, in their middle at times."""
+        here = self.middles.part(np.repeat(pieces, time.shape[1]))
+        look = self._look(here, time.reshape(-1))
+        ground = look.over_ground.reshape(time.shape)
+        with np.errstate(divide="ignore"):
+            took = np.where(ground > 0.0, self.pieces.step[pieces, None] / ground, _NEVER)
+        return took, look.power.reshape(time.shape), look.unknown.reshape(time.shape)
+
+    def _march(self, departs: FloatArray, which: NDArray[np.int64], into: tuple[Any, ...]) -> None:
+        """Sail departures piece after piece, each timed by the one before it."""
+        spent, clock = np.broadcast_to(self._guess()[0], which.shape), departs[which]
+        before = self.pieces.step[0]
+        for i, step in enumerate(self.pieces.step):
+            found = self._pass(np.array([i]), (clock + 0.5 * spent * step / before)[None])
+            spent = np.where(found[0][0] < _NEVER, found[0][0], spent * step / before)
+            clock, before = clock + spent, step
+            for column, values in zip(into, found):
+                column[i, which] = values[0]
 
     def _look(self, here: Points, time: FloatArray) -> _Look:
         """Return how the ship fares at points and times."""
@@ -343,14 +368,15 @@ class _Voyage:
         return replace(motion, over_ground=np.where(ground > 0.0, ground, math.nan)), conditions
 
 
-def _not_told(here: Points, time: FloatArray, i: int) -> CoverageError:
+def _not_told(here: Points, i: int, depart: float) -> CoverageError:
     place = format_position(float(here.lat[i]), float(here.lon[i]))
+    left = format_time(depart)
     return CoverageError(
-        f"How the ship fares at {place}, {format_time(float(time[i]))}, is not known.",
+        f"How the ship fares at {place} is not known, if it leaves at {left}.",
         "The sea and the chart must cover the track for every departure and the trip after it, "
         "and the ship's model must hold there.",
         "Use longer data or a shorter window, or ask for a filling by name (Sea.filled).",
-        time=format_time(float(time[i])),
+        depart=left,
         position=place,
     )
 
