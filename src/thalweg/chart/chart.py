@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart import canals as canal_data
 from thalweg.chart import geojson
+from thalweg.chart.anchoring import may_wait
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.depth import Depths, warning_depth
 from thalweg.chart.drawing import coastline_lines, land_polygons
@@ -190,7 +191,8 @@ class Chart:
             GeoJSON areas with the property ``kind``: "no-go", "penalty" (with ``factor`` >= 1)
             or "price" (with ``factor`` > 0). Where zones of a kind overlap the largest counts.
             "eca" without a factor is an emission control area, inside which the ship burns (and
-            pays for) its other fuel; with a factor it is a price zone. Rings may cross the
+            pays for) its other fuel; with a factor it is a price zone. With "anchorage" zones a
+            ship may wait in these only; it may not in "no-waiting" zones. Rings may cross the
             antimeridian.
 
         Raises
@@ -370,6 +372,11 @@ class Chart:
     ) -> tuple[FloatArray, FloatArray]:
         """Return the penalty and price factors of legs [deg], weighted by length (1 outside)."""
         return self.zones.factors(lat1, lon1, lat2, lon2)
+
+    def may_wait(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
+        """Return where a ship may wait: in anchorages if there are any, never where barred."""
+        y, x = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
+        return may_wait(self.zones.anchorages, self.zones.no_waiting, y, x)
 
     def nearest_navigable(
         self, lat: float, lon: float, *, largest: float = 50_000.0

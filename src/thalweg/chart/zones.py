@@ -3,7 +3,8 @@
 A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "eca") and, for
 penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
 zone without a factor is an emission control area: what fuel costs there is the ship's to say; with
-one it is a price zone.
+one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
+only, and nowhere in zones of the kind "no-waiting".
 """
 
 from __future__ import annotations
@@ -39,7 +40,11 @@ KINDS: Final = {
     "eca": "eca",
     "emissioncontrol": "eca",
     "seca": "eca",
+    "anchorage": "anchorage",
+    "nowaiting": "no-waiting",
+    "noanchoring": "no-waiting",
 }
+PLAIN: Final = ("no-go", "anchorage", "no-waiting")  # kinds without a factor
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,12 +106,16 @@ class Zones:
         They do not overlap.
     eca : tuple of EcaZone
         Emission control areas; they may overlap.
+    anchorages, no_waiting : tuple of shapely polygons
+        Where alone a ship may wait (anywhere if there are none), and where it may not.
     """
 
     no_go: tuple[Any, ...] = ()
     penalty: tuple[tuple[Any, float], ...] = ()
     price: tuple[tuple[Any, float], ...] = ()
     eca: tuple[EcaZone, ...] = ()
+    anchorages: tuple[Any, ...] = ()
+    no_waiting: tuple[Any, ...] = ()
 
     @classmethod
     def read(cls, source: geojson.Source) -> Zones:
@@ -118,7 +127,9 @@ class Zones:
             If it is not GeoJSON of areas, an outline crosses itself, or a kind or factor is
             missing or makes no sense.
         """
-        found: dict[str, list[tuple[Any, float]]] = {"no-go": [], "penalty": [], "price": []}
+        found: dict[str, list[tuple[Any, float]]] = {
+            kind: [] for kind in (*PLAIN, "penalty", "price")
+        }
         eca: list[EcaZone] = []
         for geometry, properties in geojson.read(source, "zones"):
             kind = _kind(properties)
@@ -126,10 +137,11 @@ class Zones:
             if kind == "eca":
                 eca.append(EcaZone(str(properties.get("name") or "eca"), geojson.rings_of(shapes)))
                 continue
-            factor = 1.0 if kind == "no-go" else _factor(kind, properties)
+            factor = 1.0 if kind in PLAIN else _factor(kind, properties)
             found[kind] += [(shape, factor) for shape in shapes]
-        no_go = tuple(shape for shape, _ in found["no-go"])
-        return cls(no_go, _apart(found["penalty"]), _apart(found["price"]), tuple(eca))
+        no_go, anchorages, barred = (tuple(shape for shape, _ in found[kind]) for kind in PLAIN)
+        factors = _apart(found["penalty"]), _apart(found["price"])
+        return cls(no_go, *factors, tuple(eca), anchorages, barred)
 
     def joined(self, other: Zones) -> Zones:
         """Return these zones and another chart's."""
@@ -138,6 +150,8 @@ class Zones:
             _apart([*self.penalty, *other.penalty]),
             _apart([*self.price, *other.price]),
             self.eca + tuple(zone for zone in other.eca if zone not in self.eca),
+            self.anchorages + other.anchorages,
+            self.no_waiting + other.no_waiting,
         )
 
     @cached_property
@@ -222,6 +236,8 @@ class Zones:
             [shape.wkb_hex for shape in self.no_go]
             + [f"{getattr(shape, 'wkb_hex', shape)}*{factor}" for shape, factor in pairs]
             + [f"eca {zone.name} {zone.rings.fingerprint()}" for zone in self.eca]
+            + [f"anchorage {shape.wkb_hex}" for shape in self.anchorages]
+            + [f"no waiting {shape.wkb_hex}" for shape in self.no_waiting]
         )
 
 
@@ -235,7 +251,7 @@ def _kind(properties: Mapping[str, Any]) -> str:
     if plain not in KINDS:
         raise InputError(
             f"A zone has the kind {written!r}." if written else "A zone has no kind.",
-            "Kinds are 'no-go', 'penalty' and 'price', and 'eca'.",
+            "Kinds are 'no-go', 'penalty', 'price', 'eca', 'anchorage' and 'no-waiting'.",
             "Give every feature the property kind.",
             value=written,
         )

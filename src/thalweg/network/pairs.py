@@ -196,8 +196,16 @@ def assemble(
         indptr=edges.indptr, target=edges.target, length=pairs.length[pair], course=course,
         depth=depth[pair], factor=factor[pair], price=price[pair],
         via_ptr=via_ptr, via_a=via_a, via_b=via_b, via_w=via_w, via_s=via_s,
-        can_wait=np.ones(n, bool), meta=meta,
+        can_wait=_waiting_places(chart, stations, meta), meta=meta,
     )  # fmt: skip
+
+
+def _waiting_places(chart: Chart, stations: Stations, meta: NetworkMeta) -> BoolArray:
+    """Return at which nodes a ship may wait: where the chart allows it, and at her berths."""
+    n = stations.n_nodes
+    allowed = np.array(chart.may_wait(stations.lat[:n], stations.lon[:n]))
+    allowed[[end for end in (meta.start, meta.goal) if end >= 0]] = True
+    return allowed
 
 
 def _along(

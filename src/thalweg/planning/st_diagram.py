@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from thalweg.core.geodesy import FloatArray
 from thalweg.route import Route
-from thalweg.route.physics import CURRENTS, World, move, open_world
+from thalweg.route.physics import CURRENTS, World, open_world
 from thalweg.route.pieces import Pieces, Points, cut
+from thalweg.route.sailing import move_along
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -91,7 +92,7 @@ def find_closures(
     Closures
     """
     world = open_world(ship, sea, chart)
-    pieces = cut(route.track, float(route.track.lengths.sum()) / max(places, 2), 1)
+    pieces = cut(route.track, float(route.track.lengths.sum()) / max(places, 2), 1, chart)
     points = _points(world, pieces)
     start = np.concatenate([[0.0], np.cumsum(pieces.length)])
     order = np.lexsort((points.along, points.leg))
@@ -99,16 +100,17 @@ def find_closures(
     times = default_times(route) if times is None else np.asarray(times, float)
     shape = (len(points), len(times))
     wide = points.part(np.repeat(np.arange(shape[0]), shape[1]))
-    motion = move(world, wide, np.tile(times, shape[0]))
+    motion = move_along(world, pieces.canals, wide, np.tile(times, shape[0]))
     clearance = (motion.depth - world.ship.draught).reshape(shape)
     lost = np.zeros(shape, bool)
     if world.has_current:
         for name in CURRENTS:
             lost |= np.isnan(motion.sampled[name]).reshape(shape)
-    unknown = lost | np.isnan(clearance)
-    shallow = ~unknown & (clearance < min_ukc - _SLACK)
+    sailed = (pieces.canals.number[points.leg] < 0)[:, None]  # canals are always open
+    unknown = sailed & (lost | np.isnan(clearance))
+    shallow = sailed & ~unknown & (clearance < min_ukc - _SLACK)
     stuck = np.isnan(motion.over_ground) & np.isfinite(motion.through_water)
-    strong = stuck.reshape(shape) & ~unknown & ~shallow
+    strong = sailed & stuck.reshape(shape) & ~unknown & ~shallow
     return Closures(start[points.leg] + points.along, times, shallow, strong, unknown, clearance)
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
+from thalweg.route.anchoring import forbidden_waits
 from thalweg.route.limits import (
     broken_limits,
     canal_violations,
@@ -84,6 +85,7 @@ def _judged(
     sampled, depth = look(world, near, np.where(np.isfinite(moments), moments, track.depart))
     found = broken_limits(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
     found += _grounded_waits(sailed, min_ukc)
+    found += forbidden_waits(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += land_violations(world, track, sailed.leg_times()[0])
     clearance = _finite(depth - world.ship.draught)

@@ -23,6 +23,7 @@ from thalweg.kernels.label_setting import (
 )
 from thalweg.kernels.tables import TableArrays
 from thalweg.search.arrays import SHRINK, Problem, canal_speed, distance_bounds, problem
+from thalweg.search.berths import earliest_from_berths
 from thalweg.search.result import SearchResult, SearchWork
 
 if TYPE_CHECKING:
@@ -97,7 +98,8 @@ def earliest_arrival(
     which edges are open; ties go to the earlier arrival.
 
     A ship waits only while it stays afloat at the required depth, except at the start; a node that
-    falls dry has a label for each time it is afloat (`thalweg.search.tides`).
+    falls dry has a label for each time it is afloat (`thalweg.search.tides`). Where it may not wait
+    at every node, time is minimised by waves from where it may (`thalweg.search.berths`).
 
     A* uses a lower bound of the geodesic distance to the goal divided by the largest speed over
     ground (top speed plus largest current in the fields, or what a canal gives if that is more),
@@ -106,6 +108,7 @@ def earliest_arrival(
     """
     goal = -1 if goal is None else int(goal)
     _check(network.n_nodes, start, goal, depart, objective, method)
+    berths = wait and goal >= 0 and objective == "time" and not np.all(network.can_wait)
     given = problem(
         network,
         fields,
@@ -113,8 +116,13 @@ def earliest_arrival(
         setting=setting,
         limits=limits,
         top_speed=top_speed,
-        ends=(start, goal) if wait else None,
+        ends=(start, goal) if wait and not berths else None,
     )
+    if berths:
+        return earliest_from_berths(
+            network, given, start=int(start), goal=goal, depart=float(depart), limits=limits,
+            arrive_by=arrive_by,
+        )  # fmt: skip
     return solve(
         network,
         given,

@@ -66,6 +66,17 @@ def tidal_states(
     return _split(network, chosen, times)
 
 
+def node_times_afloat(
+    network: NetworkArrays, sea: SeaArrays, required: float, nodes: IntArray
+) -> Afloat | None:
+    """Return when some nodes have the required depth [m]; None if depth does not matter."""
+    varies = sea.channel_index[WATER_LEVEL] >= 0 or sea.channel_index[BED_DEPTH] >= 0
+    if required == -np.inf or not varies or not len(nodes):
+        return None
+    spare = _depths(network, sea)[nodes] - required
+    return _times_afloat(nodes, spare >= -_ROUNDING, spare, sea.times)
+
+
 def _depths(network: NetworkArrays, sea: SeaArrays) -> NDArray[np.float32]:
     """Return the water depth at each node and time [m]: charted or bed depth plus level."""
     count = len(network.can_wait)

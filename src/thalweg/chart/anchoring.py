@@ -1,0 +1,47 @@
+"""Where a ship may lie and wait: in anchorages, if the chart has any, and never where it is barred.
+
+A chart without such zones allows it everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray, wrap_longitude
+
+
+def may_wait(
+    anchorages: Sequence[Any], barred: Sequence[Any], lat: FloatArray, lon: FloatArray
+) -> NDArray[np.bool_]:
+    """Return at which positions a ship may wait.
+
+    Parameters
+    ----------
+    anchorages, barred : sequence of shapely polygons
+        Zones of the kinds "anchorage" and "no-waiting"; lon, lat [deg].
+    lat, lon : float64 array
+        Positions [deg].
+    """
+    allowed: NDArray[np.bool_] = np.ones(np.shape(lat), np.bool_)
+    if anchorages:
+        allowed = _inside(anchorages, lat, lon)
+    if barred:
+        allowed = allowed & ~_inside(barred, lat, lon)
+    return allowed
+
+
+def _inside(zones: Sequence[Any], lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+    """Return which positions lie in a zone, its rim included, on any turn of longitude."""
+    import shapely
+
+    tree = shapely.STRtree(list(zones))
+    found: NDArray[np.bool_] = np.zeros(np.shape(lat), np.bool_)
+    y, x = np.ravel(lat), wrap_longitude(np.ravel(lon))
+    flat = found.reshape(-1)
+    for turn in (-360.0, 0.0, 360.0):
+        flat[tree.query(shapely.points(x + turn, y), predicate="intersects")[0]] = True
+    return flat.reshape(found.shape)
