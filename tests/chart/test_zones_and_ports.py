@@ -67,7 +67,7 @@ def test_zones_cross_the_antimeridian():
     ("properties", "words"),
     [
         ({}, "no kind"),
-        ({"kind": "lovely"}, "'no-go', 'penalty' and 'price'"),
+        ({"kind": "lovely"}, "'no-go', 'penalty', 'price'"),
         ({"kind": "penalty"}, "at least 1"),
         ({"kind": "penalty", "factor": 0.5}, "at least 1"),
         ({"kind": "price", "factor": -1}, "above 0"),
