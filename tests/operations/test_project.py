@@ -121,7 +121,7 @@ def test_the_load_chosen_produces_most(result):
 
     world, work = result.world, result.project.work
     ways = open_ways(world, project_network(world), lambda text: None)
-    simulator = Simulator(world, ways, work.load_factors, lambda text: None)
+    simulator = Simulator(result.project, world, ways)
     first = result.optimised.cycles[0]
     produced = {}
     for both in simulator.both:

@@ -11,8 +11,7 @@ from thalweg.kernels.profile import SECTORS
 from thalweg.network.mesh import mesh
 from thalweg.network.sides import sampled_on_sides
 from thalweg.operations.estuary import synthetic_estuary
-from thalweg.search import earliest_arrival
-from thalweg.search.profile import Waters
+from thalweg.search import Waters, earliest_arrival
 from thalweg.ship import Ship
 
 T0 = parse_time("2026-06-01T00:00Z")

@@ -81,22 +81,20 @@ class ProjectResult:
 
     Attributes
     ----------
+    project : Project
+        What was asked.
     world : World
-        Project, ship, sea and chart.
+        Ship, sea and chart.
     optimised : Run
     base : Run or None
     provenance : mapping
     """
 
+    project: Project
     world: World
     optimised: Run
     base: Run | None = None
     provenance: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
-
-    @property
-    def project(self) -> Project:
-        """What was asked."""
-        return self.world.project
 
     @property
     def runs(self) -> tuple[Run, ...]:

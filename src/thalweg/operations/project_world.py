@@ -18,7 +18,7 @@ from thalweg.kernels import codes
 from thalweg.network import Network, NetworkMeta, lattice, mesh
 from thalweg.network.pairs import Stations, assemble, measure, no_samples
 from thalweg.network.sides import sampled_on_sides
-from thalweg.operations.project import Project, Sites
+from thalweg.operations.project import Sites
 from thalweg.planning.needs import Needs, find_needs
 from thalweg.planning.passage import MEMORY_LIMIT, table_of
 from thalweg.planning.voyage import Voyage
@@ -46,7 +46,9 @@ class World:
 
     Attributes
     ----------
-    project : Project
+    sites : Sites
+    period : tuple of float
+        First and last moment looked at [s since 1970-01-01T00:00Z].
     ship : Ship
     sea : Sea
     chart : Chart
@@ -54,14 +56,17 @@ class World:
         Channels of the sea and limits of the full ship.
     """
 
-    project: Project
+    sites: Sites
+    period: tuple[float, float]
     ship: Ship
     sea: Sea
     chart: Chart
     needs: Needs
 
     @classmethod
-    def open(cls, project: Project, *, ship: Ship, sea: Sea, chart: Chart) -> World:
+    def open(
+        cls, sites: Sites, period: tuple[float, float], *, ship: Ship, sea: Sea, chart: Chart
+    ) -> World:
         """Find what the ship needs of the sea.
 
         Raises
@@ -69,12 +74,11 @@ class World:
         CoverageError
             If the sea lacks a variable.
         """
-        sites = project.sites
         voyage = Voyage(
-            start=sites.load, goal=sites.unload, depart=project.start, min_ukc_m=sites.min_ukc
+            start=sites.load, goal=sites.unload, depart=period[0], min_ukc_m=sites.min_ukc
         )
         needs = find_needs(voyage, ship=ship.with_load_factor(1.0), sea=sea, chart=chart)
-        return cls(project, ship, sea, chart, needs)
+        return cls(sites, period, ship, sea, chart, needs)
 
     @property
     def bed_stands_still(self) -> bool:
@@ -87,8 +91,8 @@ class World:
         ship = self.ship.with_load_factor(load_factor)
         limits = self.needs.limits.copy()
         if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]):
-            sites = self.project.sites
-            limits[codes.LIMIT_REQUIRED_DEPTH] = ship.draught + sites.min_ukc + sites.margin
+            keel = self.sites.min_ukc + self.sites.margin
+            limits[codes.LIMIT_REQUIRED_DEPTH] = ship.draught + keel
         setting = len(ship.speeds) - 1
         top = ship.top_speed(setting)
         speed = float(ship.speeds[setting]) if top is None else top
@@ -148,19 +152,19 @@ class Ways:
 
 
 def open_ways(world: World, network: Network, tell: Tell) -> Ways:
-    """Freeze the sea at a network for the whole project.
+    """Freeze the sea at a network for the whole period.
 
     Raises
     ------
     InputError
         If it would take more memory than is allowed.
     """
-    project, channels = world.project, list(world.needs.channels)
+    channels = list(world.needs.channels)
     if world.bed_stands_still and codes.BED_DEPTH in channels:
         channels.remove(codes.BED_DEPTH)
         network = over_the_bed(world, network)
     lat, lon = network.station_lat, network.station_lon
-    steps = len(world.sea.times(project.start, project.end))
+    steps = len(world.sea.times(*world.period))
     field = world.ship.speed_field
     extra = None if field is None else {codes.SPEED_FIELD: field}
     size = 4 * len(lat) * steps * (len(channels) + bool(extra))
@@ -171,13 +175,13 @@ def open_ways(world: World, network: Network, tell: Tell) -> Ways:
             "Look fewer days ahead, or give a coarser spacing_m or a smaller detour.",
         )
     tell(f"freezing the sea at {len(lat):,} places and {steps:,} times")
-    fields = world.sea.freeze_stations(lat, lon, project.start, project.end, channels, extra=extra)
+    fields = world.sea.freeze_stations(lat, lon, *world.period, channels, extra=extra)
     return Ways(network, Waters.prepare(network, fields))
 
 
 def project_network(world: World) -> Network:
     """Build the network between the sites: the sea's own mesh where it has one, else a lattice."""
-    sites, chart = world.project.sites, world.chart
+    sites, chart = world.sites, world.chart
     model = world.sea.mesh()
     if model is None:
         return lattice(chart, sites.load, sites.unload, spacing=sites.spacing, directions=32)
@@ -299,6 +303,6 @@ def _least_bed(
     first = np.cumsum(count) - count
     share = (np.arange(len(of)) - first[of]) / (count[of] - 1)
     at = direct(lat[a][of], lon[a][of], np.asarray(course)[of], share * np.asarray(length)[of])
-    time = np.full(len(of), world.project.start)
+    time = np.full(len(of), world.period[0])
     bed = world.sea.sample([nm.BED_DEPTH], time, *at)[nm.BED_DEPTH]
     return np.asarray(np.minimum.reduceat(bed, first))

@@ -83,24 +83,27 @@ def run_project(
     tell: Tell = progress or (lambda text: None)
     voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
     check_kinds(voyage, ship, sea, chart)
-    world = World.open(project, ship=ship, sea=sea, chart=chart)
+    period = (project.start, project.end)
+    world = World.open(project.sites, period, ship=ship, sea=sea, chart=chart)
     check_sites(world)
     tell("building the network")
     ways = open_ways(world, project_network(world), tell)
     factors = project.work.load_factors
-    optimised = _run(world, ways, factors, OPTIMISED, tell)
+    optimised = _run(project, world, ways, factors, name=OPTIMISED, tell=tell)
     base = None
     if project.base is not None:
         given = project.base.load_factor
         line = open_ways(world, line_network(chart, project.base.route), tell)
         chosen = factors if given == BEST else (float(given),)
-        base = _run(world, line, chosen, BASE_CASE, tell)
-    return ProjectResult(world, optimised, base, _provenance(world, ways))
+        base = _run(project, world, line, chosen, name=BASE_CASE, tell=tell)
+    return ProjectResult(project, world, optimised, base, _provenance(world, ways))
 
 
-def _run(world: World, ways: Ways, factors: tuple[float, ...], name: str, tell: Tell) -> Run:
+def _run(
+    project: Project, world: World, ways: Ways, factors: tuple[float, ...], *, name: str, tell: Tell
+) -> Run:
     tell(f"{name}: preparing {len(factors)} loads")
-    simulator = Simulator(world, ways, factors, tell)
+    simulator = Simulator(project, world, ways, factors=factors, tell=tell)
     possible = simulator.possible
     if not possible:
         raise no_way(world, ways, min(x for x in factors if x > 0.0), name)
@@ -109,13 +112,13 @@ def _run(world: World, ways: Ways, factors: tuple[float, ...], name: str, tell: 
     if shut:
         notes = (f"Load factors above {max(possible):g} have no way at any tide.",)
     cycles = simulator.run()
-    return finished_run(name, cycles, project=world.project, ship=world.ship, notes=notes)
+    return finished_run(name, cycles, project=project, ship=world.ship, notes=notes)
 
 
 def check_sites(world: World) -> None:
     """Raise `InputError` for sites that are on land or fall too dry for the empty ship always."""
-    project, chart = world.project, world.chart
-    for what, place in (("loading", project.sites.load), ("unloading", project.sites.unload)):
+    sites, chart = world.sites, world.chart
+    for what, place in (("loading", sites.load), ("unloading", sites.unload)):
         if not bool(np.all(chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
             raise InputError(
                 f"The {what} site {format_position(*place)} is on land or in a no-go zone.",
@@ -154,9 +157,9 @@ def _depth_at(world: World, place: Position) -> tuple[np.ndarray, np.ndarray]:
     """Return (times, water depth [m]) at a place over the period."""
     from thalweg.sea import names as nm
 
-    project, sea = world.project, world.sea
-    times = sea.times(project.start, project.end)
-    times = times[(times >= project.start) & (times <= project.end)]
+    (start, end), sea = world.period, world.sea
+    times = sea.times(start, end)
+    times = times[(times >= start) & (times <= end)]
     depth = np.full(times.shape, np.inf)
     if world.chart.has_depth:
         depth = np.minimum(depth, np.asarray(world.chart.depth_at(*place), float))
@@ -235,7 +238,7 @@ def _provenance(world: World, ways: Ways) -> dict[str, Any]:
             "kind": network.meta.kind,
             "nodes": int(network.n_nodes),
             "edges": int(network.n_edges),
-            "rings": world.project.sites.rings,
+            "rings": world.sites.rings,
         },
         "assumptions": list(world.needs.notes),
     }

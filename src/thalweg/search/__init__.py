@@ -6,8 +6,9 @@ from thalweg.search.earliest_arrival import earliest_arrival
 from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
 from thalweg.search.front import front
 from thalweg.search.front_points import Front, FrontPoint, FrontWork, cheapest
-from thalweg.search.profile import Passage, Passages, Profile, Waters
+from thalweg.search.profile import Passage, Passages, Profile
 from thalweg.search.result import SearchResult, SearchWork
+from thalweg.search.waters import Waters
 
 __all__ = [
     "Bound",

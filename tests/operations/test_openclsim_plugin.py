@@ -1,0 +1,175 @@
+"""The OpenCLSim mix-in, against the real package."""
+
+import datetime
+from types import SimpleNamespace
+
+import pytest
+
+pytest.importorskip("openclsim")
+
+import openclsim.core as core
+import openclsim.model as model
+import simpy
+from shapely.geometry import Point
+
+from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
+from thalweg.core.time import parse_time
+from thalweg.operations.estuary import synthetic_estuary
+from thalweg.operations.fairways import Fairways
+from thalweg.operations.openclsim_plugin import SailsFairways
+from thalweg.operations.project_files import open_project, open_things
+
+START = parse_time("2026-05-01T00:00Z")
+PARTS = (
+    core.Identifiable, SailsFairways, core.Processor, core.LoadingFunction,
+    core.UnloadingFunction, core.HasContainer, core.HasResource, core.Log,
+)  # fmt: skip
+Vessel = type("Vessel", PARTS, {})
+SITE = (core.Identifiable, core.Log, core.Locatable, core.HasContainer, core.HasResource)
+Site = type("Site", SITE, {})
+
+
+@pytest.fixture(scope="module")
+def estuary():
+    return synthetic_estuary(900.0)
+
+
+@pytest.fixture(scope="module")
+def fairways(estuary):
+    ship = open_things(open_project("example"))[0]
+    return Fairways.open(
+        ship=ship, sea=estuary.sea, chart=estuary.chart, start=START, days=4.0,
+        min_ukc=1.0, margin=0.02, rings=2,
+    )  # fmt: skip
+
+
+def point(place):
+    return Point(place[1], place[0])
+
+
+@pytest.fixture
+def yard(estuary, fairways):
+    """A simulation with a vessel at the loading site and a site at either end."""
+    env = simpy.Environment(initial_time=START)
+    registry = {}
+    pit = Site(name="pit", id="pit", geometry=point(estuary.load), capacity=20_000.0,
+               level=20_000.0, env=env)  # fmt: skip
+    beach = Site(name="beach", id="beach", geometry=point(estuary.unload), capacity=20_000.0,
+                 level=0.0, env=env)  # fmt: skip
+    vessel = Vessel(
+        env=env, name="hopper", id="hopper", geometry=point(estuary.load), capacity=4000.0,
+        fairways=fairways, loading_rate=1.5, unloading_rate=1.5,
+    )  # fmt: skip
+    return SimpleNamespace(env=env, registry=registry, pit=pit, beach=beach, vessel=vessel)
+
+
+def project(yard, cycles, amount):
+    """Load, sail full, unload, sail empty, some times over."""
+    common = {"env": yard.env, "registry": yard.registry}
+
+    def move(name, to):
+        return model.MoveActivity(name=name, mover=yard.vessel, destination=to, **common)
+
+    def shift(name, origin, destination, phase):
+        return model.ShiftAmountActivity(
+            name=name, processor=yard.vessel, origin=origin, destination=destination,
+            amount=amount, phase=phase, **common,
+        )  # fmt: skip
+
+    steps = [
+        shift("load", yard.pit, yard.vessel, "loading"),
+        move("sail full", yard.beach),
+        shift("unload", yard.vessel, yard.beach, "unloading"),
+        move("sail empty", yard.pit),
+    ]
+    cycle = model.SequentialActivity(name="cycle", sub_processes=steps, **common)
+    repeat = model.RepeatActivity(
+        name="project", sub_processes=[cycle], repetitions=cycles, **common
+    )
+    model.register_processes([repeat])
+    yard.env.run()
+
+
+def test_a_project_in_openclsim_sails_planned_legs(yard, fairways, estuary):
+    project(yard, cycles=2, amount=2800.0)
+    vessel = yard.vessel
+    assert yard.beach.container.get_level() == pytest.approx(5600.0)
+    assert len(vessel.legs) == 4
+    for number, leg in enumerate(vessel.legs):
+        loaded = number % 2 == 0
+        places = (estuary.load, estuary.unload) if loaded else (estuary.unload, estuary.load)
+        again = fairways.sail(*places, depart=leg.depart, load_factor=0.7 if loaded else 0.0)
+        assert leg.arrive == again.arrive
+        assert leg.distance == again.distance
+        assert leg.clearance >= 1.0
+    # the clock stands where loading, sailing and unloading have brought it
+    pumping = 2 * 2 * 2800.0 / 1.5
+    sailing = sum(leg.duration for leg in vessel.legs)
+    assert yard.env.now - START == pytest.approx(pumping + sailing, abs=1.0)
+
+
+def test_the_log_tells_distance_energy_and_waits(yard):
+    project(yard, cycles=2, amount=4000.0)  # a full ship waits for the tide on one of them
+    vessel = yard.vessel
+    stops = [row["ObjectState"] for row in vessel.logbook if "energy_j" in row["ObjectState"]]
+    assert len(stops) == len(vessel.legs)
+    for state, leg in zip(stops, vessel.legs):
+        assert state["distance_m"] == leg.distance
+        assert state["waiting_s"] == leg.waiting
+        assert state["energy_j"] == pytest.approx(leg.energy) and leg.energy > 1e9
+        assert state["fuel_kg"] == pytest.approx(leg.fuel)
+        assert state["least_clearance_m"] >= 1.0
+    waited = 0.0
+    begin = None
+    for row in vessel.logbook:
+        if row["ActivityState"] == "WAIT_START":
+            begin = row["Timestamp"]
+        elif row["ActivityState"] == "WAIT_STOP":
+            waited += (row["Timestamp"] - begin).total_seconds()
+    assert waited == pytest.approx(sum(leg.waiting for leg in vessel.legs), abs=0.01)
+    last = vessel.logbook[-1]["Timestamp"]
+    ended = datetime.datetime.fromtimestamp(vessel.legs[-1].arrive, datetime.UTC)
+    assert abs((last - ended.replace(tzinfo=None)).total_seconds()) < 0.01
+
+
+def test_load_decides_speed_and_way(yard, estuary):
+    vessel = yard.vessel
+    assert vessel.load_factor == 0.0
+    assert vessel.v == pytest.approx(12.0 * 1852.0 / 3600.0)
+    empty = vessel.compute_duration(vessel.geometry, point(estuary.unload))
+    distance = vessel.compute_distance(vessel.geometry, point(estuary.unload))
+    vessel.container.put(4000.0)
+    yard.env.run()
+    assert vessel.load_factor == 1.0
+    assert vessel.v == pytest.approx(10.0 * 1852.0 / 3600.0)
+    assert vessel.compute_duration(vessel.geometry, point(estuary.unload)) > empty
+    assert vessel.compute_distance(vessel.geometry, point(estuary.unload)) >= distance
+    assert vessel.compute_duration(vessel.geometry, vessel.geometry) == 0.0
+    assert vessel.compute_distance(vessel.geometry, vessel.geometry) == 0.0
+
+
+def test_a_given_duration_is_taken_at_its_word(yard):
+    def go():
+        yield from yard.vessel.move(yard.beach, duration=600.0)
+
+    yard.env.process(go())
+    yard.env.run()
+    assert yard.env.now == START + 600.0
+    assert yard.vessel.legs == []
+
+
+def test_what_cannot_be_sailed_is_told(yard, fairways, estuary):
+    with pytest.raises(InputError, match="engine order"):
+        next(yard.vessel.move(yard.beach, engine_order=0.5))
+    with pytest.raises(OutsidePeriodError, match="outside the period"):
+        fairways.sail(estuary.load, estuary.unload, depart=START - 60.0, load_factor=0.0)
+    with pytest.raises(NoRouteError, match="No way from"):
+        fairways.sail(estuary.load, estuary.unload, depart=fairways.end - 600.0, load_factor=1.0)
+    with pytest.raises(InputError, match="load factor is"):
+        fairways.sail(estuary.load, estuary.unload, depart=START, load_factor=1.2)
+    with pytest.raises(InputError, match="leads to itself"):
+        fairways.sail(estuary.load, estuary.load, depart=START, load_factor=0.0)
+    with pytest.raises(InputError, match="on land or in a no-go zone"):
+        fairways.sail(estuary.load, (52.9, 3.5), depart=START, load_factor=0.0)
+    assert fairways._rounded(0.61) == 0.7  # never less deep than it lies
+    assert fairways._rounded(0.6) == 0.6
