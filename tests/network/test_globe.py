@@ -5,7 +5,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thalweg.chart import Chart
@@ -17,6 +17,7 @@ from thalweg.network.bounding import distance_bounds
 
 ROTTERDAM, SINGAPORE, SUEZ_BAY = (51.98, 4.0), (1.2, 103.9), (29.6, 32.6)
 NEW_YORK, SAN_FRANCISCO = (40.5, -73.9), (37.75, -122.6)
+SMALL = globe_grid.Fineness(2, 1)
 LATITUDE, LONGITUDE = st.floats(-90.0, 90.0), st.floats(-180.0, 180.0)
 
 
@@ -147,6 +148,7 @@ def test_no_way_without_the_canals_says_which_would_do(chart):
     [
         ({"level": 9}, "level 9"),
         ({"level": 8, "coast_levels": 7}, "7 coast levels"),
+        ({"border_levels": 11}, "11 border levels"),
         ({"directions": 8}, "8 directions"),
         ({"south": 10.0, "north": 5.0}, "latitudes"),
         ({"slack": -1.0}, "slack"),
@@ -166,11 +168,11 @@ def test_ends_on_land_are_refused():
 def test_the_grid_is_kept_on_disk_and_a_broken_file_is_replaced(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     chart = Chart.gshhg("c")
-    made = globe_grid.globe_grid(chart, 2, 1, 12)
+    made = globe_grid.globe_grid(chart, SMALL)
     (path,) = (tmp_path / "globe").glob("*.npz")
     globe_grid._kept_or_made.cache_clear()
     monkeypatch.setattr(globe_grid, "make_grid", lambda *_: pytest.fail("made again"))
-    loaded = globe_grid.globe_grid(chart.without_canals("all"), 2, 1, 12)
+    loaded = globe_grid.globe_grid(chart.without_canals("all"), SMALL)
     for name in ("lat", "lon", "rejected", "spacing", "gap"):
         assert np.array_equal(getattr(loaded, name), getattr(made, name))
     for name in ("first", "second", "length", "course"):
@@ -179,14 +181,14 @@ def test_the_grid_is_kept_on_disk_and_a_broken_file_is_replaced(tmp_path, monkey
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     globe_grid._kept_or_made.cache_clear()
     path.write_bytes(b"broken")
-    assert np.array_equal(globe_grid.globe_grid(chart, 2, 1, 12).lat, made.lat)
+    assert np.array_equal(globe_grid.globe_grid(chart, SMALL).lat, made.lat)
     assert path.stat().st_size > 1000
     globe_grid._kept_or_made.cache_clear()
 
 
 def test_another_coastline_is_another_grid():
-    crude = globe_grid.globe_grid(Chart.gshhg("c"), 2, 1, 12)
-    low = globe_grid.globe_grid(Chart.gshhg("l"), 2, 1, 12)
+    crude = globe_grid.globe_grid(Chart.gshhg("c"), SMALL)
+    low = globe_grid.globe_grid(Chart.gshhg("l"), SMALL)
     assert len(crude.lat) != len(low.lat)
 
 
@@ -226,3 +228,35 @@ def test_canals_of_ones_own_are_edges_too():
     own = dataclasses.replace(chart, canals=(free,))
     network = globe(own, NEW_YORK, SAN_FRANCISCO, coast_levels=3)
     assert sorted(set(network.fixed_time[np.isfinite(network.fixed_time)])) == [3600.0]
+
+
+def test_borders_of_priced_zones_are_finer():
+    chart = Chart.gshhg("c")
+    box = [[[-40.0, 30.0], [-20.0, 30.0], [-20.0, 45.0], [-40.0, 45.0], [-40.0, 30.0]]]
+    zone = {"type": "Feature", "properties": {"kind": "price", "factor": 2.0},
+            "geometry": {"type": "Polygon", "coordinates": box}}  # fmt: skip
+    priced = chart.with_zones({"type": "FeatureCollection", "features": [zone]})
+    ends = (38.0, -60.0), (38.0, -12.0)
+    plain, finer = (globe(c, *ends, coast_levels=1) for c in (chart, priced))
+    none = globe(priced, *ends, coast_levels=1, border_levels=0)
+    near = [
+        int(np.sum((np.abs(n.lat - 45.0) < 0.5) & (n.lon > -38.0) & (n.lon < -22.0)))
+        for n in (plain, finer, none)
+    ]
+    assert near[1] > 20 * max(near[0], 1) and near[2] == near[0]
+
+
+@given(st.integers(0, 10_000), st.integers(0, 10_000))
+@settings(max_examples=20)
+def test_astar_finds_the_same_as_dijkstra(a, b):
+    network = globe(Chart.gshhg("c"), NEW_YORK, (45.0, -9.5), coast_levels=2)
+    start, goal = a % network.n_nodes, b % network.n_nodes
+    aimed, path = shortest(network, start, goal)
+    plain, _ = shortest(network, start, goal, per_metre=0.0)
+    assert aimed[goal] == pytest.approx(plain[goal], rel=1e-12)
+    if path:
+        tail, head = np.array(path[:-1], int), np.array(path[1:], int)
+        assert (path[0], path[-1]) == (start, goal)
+        ends = network.lat[tail], network.lon[tail], network.lat[head], network.lon[head]
+        legs = geodesy.distance(*ends)
+        assert legs.sum() <= aimed[goal] * (1 + 1e-9)

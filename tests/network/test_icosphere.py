@@ -6,14 +6,14 @@ from hypothesis import strategies as st
 
 from thalweg.chart import Chart
 from thalweg.kernels.graph import mirror_pairs
-from thalweg.network.globe_grid import _gaps, _sphere, make_grid, positions
-from thalweg.network.icosphere import icosphere
+from thalweg.network.globe_grid import Fineness, _gaps, _sphere, make_grid, positions
+from thalweg.network.icosphere import Rule, icosphere
 
 SEEDS = st.integers(0, 2**31)
 
 
-def cut_by_circles(seed, count=2):
-    """Return a test of edges against random small circles on the sphere."""
+def cut_by_circles(seed, levels, count=2):
+    """Return a rule that halves along random small circles on the sphere."""
     rng = np.random.default_rng(seed)
     poles = rng.normal(size=(count, 3))
     poles /= np.linalg.norm(poles, axis=1, keepdims=True)
@@ -22,7 +22,7 @@ def cut_by_circles(seed, count=2):
     def crossed(first, second):
         return (((first @ poles.T) > height) != ((second @ poles.T) > height)).any(axis=1)
 
-    return crossed
+    return Rule(crossed, lambda middles: np.full(len(middles), levels))
 
 
 def area(vertices, faces):
@@ -47,7 +47,7 @@ def side(grid, a, b):
 @given(SEEDS, st.integers(0, 3), st.integers(0, 4))
 @settings(max_examples=40)
 def test_faces_tile_the_sphere_and_leaves_are_joined_without_holes(seed, level, extra):
-    grid = icosphere(level, extra, cut_by_circles(seed))
+    grid = icosphere(level, cut_by_circles(seed, extra), cut_by_circles(seed + 1, 1))
     areas = area(grid.vertices, grid.faces)
     assert (areas > 0.0).all() and np.isclose(areas.sum(), 4.0 * np.pi)
     first, second = grid.pairs()
@@ -71,7 +71,7 @@ def test_faces_tile_the_sphere_and_leaves_are_joined_without_holes(seed, level, 
 @given(SEEDS, st.integers(0, 4))
 @settings(max_examples=25)
 def test_no_vertex_looks_into_a_hole(seed, extra):
-    grid = icosphere(2, extra, cut_by_circles(seed))
+    grid = icosphere(2, cut_by_circles(seed, extra))
     first, second = grid.pairs()
     v = grid.vertices
     indptr, head, _, _ = mirror_pairs(len(v), first, second)
@@ -94,9 +94,9 @@ def test_across_doubles_the_directions_of_a_uniform_grid():
 
 def test_coasts_are_finer_and_every_leg_is_free():
     chart = Chart.gshhg("c")
-    sphere = _sphere(chart, 3, 2)
+    sphere = _sphere(chart, Fineness(3, 2))
     lat, lon = positions(sphere.vertices)
-    grid = make_grid(chart, 3, 2, 6)
+    grid = make_grid(chart, Fineness(3, 2, directions=6))
     a, b = grid.pairs.first, grid.pairs.second
     assert not chart.legs_blocked(grid.lat[a], grid.lon[a], grid.lat[b], grid.lon[b]).any()
     assert grid.rejected + len(a) == len(sphere.pairs()[0])

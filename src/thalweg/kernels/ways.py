@@ -74,3 +74,70 @@ def connected_waters(n, first, second):
     for i in range(n):  # a root is below its nodes, so it is final before them
         root[i] = root[root[i]]
     return root
+
+
+@jit
+def tree_sums(indptr, target, weight, value, distance, parent, order, sums):
+    """Sum values of edges along a tree of shortest ways.
+
+    Parameters
+    ----------
+    indptr, target, weight
+        Graph the tree was found on.
+    value : int8[E, K]
+        Values of its edges.
+    distance, parent : float64[N], int64[N]
+        The tree.
+    order : int64[M]
+        Reached nodes by distance, the root first.
+    sums : int16[N, K]
+        Filled for these nodes; zero before.
+    """
+    for i in range(order.shape[0]):
+        node = order[i]
+        up = parent[node]
+        if up < 0:
+            continue
+        best = -1
+        for e in range(indptr[up], indptr[up + 1]):
+            if target[e] == node and distance[up] + weight[e] == distance[node]:
+                best = e
+                break
+        if best >= 0:
+            for k in range(sums.shape[1]):
+                sums[node, k] = sums[up, k] + value[best, k]
+
+
+@jit
+def meridian_crossings(lat, lon, first, second, points, crossings):
+    """Count how legs cross the meridians north of points.
+
+    Parameters
+    ----------
+    lat, lon : float64[N]
+        Positions [deg].
+    first, second : int64[E]
+        Ends of each leg, which runs the shorter way round.
+    points : float64[K, 2]
+        Latitude and longitude [deg] of each point.
+    crossings : int8[E, K]
+        Filled: +1 for each crossing eastward of the meridian from the point to the north pole, -1
+        westward.
+    """
+    for e in range(first.shape[0]):
+        a, b = first[e], second[e]
+        pa, pb = math.radians(lat[a]), math.radians(lat[b])
+        for k in range(points.shape[0]):
+            # which side a position is on depends on it alone, so that legs meet without gaps
+            east_a = (lon[a] - points[k, 1] + 540.0) % 360.0 - 180.0
+            east_b = (lon[b] - points[k, 1] + 540.0) % 360.0 - 180.0
+            crossings[e, k] = 0
+            if (east_a < 0.0) == (east_b < 0.0) or abs(east_b - east_a) >= 180.0:
+                continue
+            la, lb = math.radians(east_a), math.radians(east_b)
+            rise = math.sin(pb) * math.cos(pa) * math.sin(la)
+            rise -= math.sin(pa) * math.cos(pb) * math.sin(lb)
+            run = math.cos(pa) * math.cos(pb) * math.sin(la - lb)
+            at = pa if run == 0.0 else math.atan(rise / run)
+            if at > math.radians(points[k, 0]):
+                crossings[e, k] = 1 if east_b >= 0.0 else -1

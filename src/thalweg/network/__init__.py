@@ -6,10 +6,15 @@ from thalweg.network.lattice import default_spacing, lattice
 from thalweg.network.mesh import mesh
 from thalweg.network.network import Network, NetworkMeta, check_network, shortest
 from thalweg.network.pruning import spacing_fraction
+from thalweg.network.way import Way, Weighing
+from thalweg.network.ways import alternatives, ways_round
 
 __all__ = [
     "Network",
     "NetworkMeta",
+    "Way",
+    "Weighing",
+    "alternatives",
     "check_network",
     "default_spacing",
     "globe",
@@ -17,5 +22,6 @@ __all__ = [
     "mesh",
     "shortest",
     "spacing_fraction",
+    "ways_round",
     "with_endpoints",
 ]

@@ -17,7 +17,7 @@ from thalweg.kernels import graph
 from thalweg.kernels.ways import connected_waters
 from thalweg.network.attaching import Joint, Waters, join
 from thalweg.network.endpoints import check_ends, direct_pairs, join_pairs
-from thalweg.network.globe_grid import GlobeGrid, globe_grid
+from thalweg.network.globe_grid import Fineness, GlobeGrid, globe_grid
 from thalweg.network.network import BoolArray, FloatArray, Network, NetworkMeta
 from thalweg.network.pairs import (
     Pairs,
@@ -42,9 +42,7 @@ _FINEST_LEVEL: Final = 14
 
 @dataclass(frozen=True)
 class _Options:
-    level: int
-    coast_levels: int
-    directions: int
+    fineness: Fineness
     south: float
     north: float
 
@@ -78,6 +76,7 @@ def globe(
     *,
     level: int = 4,
     coast_levels: int = 6,
+    border_levels: int = 4,
     directions: int = 12,
     north: float = NORTH,
     south: float = SOUTH,
@@ -98,6 +97,10 @@ def globe(
     coast_levels : int, optional
         How often faces along coasts are halved beyond that. Narrow straits with traffic
         (`thalweg.network.straits`) are halved further still, unless this is 0.
+    border_levels : int, optional
+        How often faces along the borders of zones with prices (emission control, penalty and price
+        zones) are halved: what lies beyond a border is worth going round it only if there are
+        nodes near it.
     directions : {12, 6}, optional
         Legs along the edges of faces (6), or across them as well: ways in open water are then at
         most 5 % longer than the shortest, not 24 %.
@@ -133,7 +136,8 @@ def globe(
     disk (`thalweg.network.globe_grid`).
     """
     start, goal = check_ends(chart, start, goal)
-    options = _checked(level, coast_levels, directions, south, north, slack, sample_spacing)
+    fineness = Fineness(level, coast_levels, border_levels, directions)
+    options = _checked(fineness, south, north, slack, sample_spacing)
     options = _stretched(options, start, goal)
     sheet = _sheet(chart, options, start, goal)
     to_start = sheet.distances(sheet.start)
@@ -154,13 +158,15 @@ def _default_slack(distance: float) -> float:
 
 
 def _checked(
-    level: int, coast_levels: int, directions: int, south: float, north: float,
-    slack: float | None, spacing: float,
-) -> _Options:  # fmt: skip
-    fine = 0 <= level <= _LARGEST_LEVEL and coast_levels >= 0
-    if not (fine and level + coast_levels <= _FINEST_LEVEL):
+    fineness: Fineness, south: float, north: float, slack: float | None, spacing: float
+) -> _Options:
+    level, coast, border = fineness.level, fineness.coast_levels, fineness.border_levels
+    directions = fineness.directions
+    fine = 0 <= level <= _LARGEST_LEVEL and coast >= 0 and border >= 0
+    if not (fine and level + max(coast, border) <= _FINEST_LEVEL):
         raise InputError(
-            f"A globe network cannot have level {level!r} with {coast_levels!r} coast levels.",
+            f"A globe network cannot have level {level!r} with {coast!r} coast levels and "
+            f"{border!r} border levels.",
             f"The level is 0 to {_LARGEST_LEVEL}, both together at most {_FINEST_LEVEL}.",
             "Level 4 with 6 coast levels suits ocean passages.",
         )
@@ -181,7 +187,7 @@ def _checked(
         raise InputError(
             f"Samples {spacing!r} m apart are too many.", "At least 1000 m.", "Give metres."
         )
-    return _Options(int(level), int(coast_levels), int(directions), float(south), float(north))
+    return _Options(fineness, float(south), float(north))
 
 
 def _stretched(options: _Options, start: Position, goal: Position) -> _Options:
@@ -196,7 +202,7 @@ def _stretched(options: _Options, start: Position, goal: Position) -> _Options:
 
 def _sheet(chart: Chart, options: _Options, start: Position, goal: Position) -> _Sheet:
     """Draw the grid's open sea, and join start, goal and the ends of the canals to it."""
-    grid = globe_grid(chart, options.level, options.coast_levels, options.directions)
+    grid = globe_grid(chart, options.fineness)
     closed = chart.without_canals("all")
     pairs, usable = _open_sea(closed, grid, options)
     waters = _waters(grid, pairs, usable, _REACH * grid.spacing)
@@ -301,9 +307,9 @@ def _network(chart: Chart, sheet: _Sheet, options: _Options, spacing: float) -> 
     apart[len(sheet.pairs.first) :] = np.inf  # canals need no weather
     stations, samples = even_samples(sheet.stations, pairs, apart)
     meta = NetworkMeta(
-        kind=f"globe/{options.level}+{options.coast_levels}",
+        kind=f"globe/{options.fineness.level}+{options.fineness.coast_levels}",
         spacing_m=sheet.grid.spacing,
-        directions=options.directions,
+        directions=options.fineness.directions,
         gap_rad=sheet.grid.gap,
         rejected={"land": sheet.grid.rejected},
         start=sheet.start,

@@ -14,10 +14,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from thalweg.chart.geojson import rings_of
+from thalweg.chart.index import build_index
 from thalweg.core.cache import cache_folder
+from thalweg.kernels.cube import IndexArrays
 from thalweg.kernels.graph import mirror_pairs
 from thalweg.kernels.icosphere import coast_crossed
-from thalweg.network.icosphere import Icosphere, icosphere
+from thalweg.network.icosphere import Crossed, Icosphere, Rule, icosphere
 from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.network.pairs import Pairs, free_legs, measure
 from thalweg.network.straits import FINEST, STRAITS, deeper
@@ -25,7 +28,8 @@ from thalweg.network.straits import FINEST, STRAITS, deeper
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-FORMAT: Final = 1  # raise when the arrays or the way they are made change
+FORMAT: Final = 2  # raise when the arrays or the way they are made change
+_BORDER_SIDE: Final = 128
 _KEPT: Final = 8  # grids kept on disk, the newest ones
 
 
@@ -55,24 +59,42 @@ class GlobeGrid:
     gap: float
 
 
-def globe_grid(chart: Chart, level: int, coast_levels: int, directions: int) -> GlobeGrid:
+@dataclass(frozen=True)
+class Fineness:
+    """How fine a grid is.
+
+    Attributes
+    ----------
+    level, coast_levels, border_levels : int
+        Halvings of the icosahedron everywhere; further ones of faces an edge of which crosses the
+        coast, and of those crossed by the border of a zone with prices.
+    directions : {6, 12}
+        Along the edges of faces, or across them as well.
+    """
+
+    level: int = 4
+    coast_levels: int = 6
+    border_levels: int = 4
+    directions: int = 12
+
+
+def globe_grid(chart: Chart, fineness: Fineness) -> GlobeGrid:
     """Return the grid of a chart's coastline, from memory or disk if it was made before.
 
     Parameters
     ----------
     chart : Chart
-        Only its land counts.
-    level, coast_levels : int
-        Halvings of the icosahedron everywhere, and further ones of faces an edge of which crosses
-        the coast.
-    directions : {6, 12}
-        Along the edges of faces, or across them as well.
+        Only its land and the borders of its zones with prices count.
+    fineness : Fineness
     """
-    bare = type(chart)(chart.land)
-    facts = (FORMAT, bare.fingerprint(), level, coast_levels, directions, FINEST, STRAITS)
+    zones = type(chart.zones)(
+        penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca
+    )
+    bare = type(chart)(chart.land, zones=zones)
+    facts = (FORMAT, bare.fingerprint(), fineness, FINEST, STRAITS)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
-    path = cache_folder("globe") / f"grid-{level}-{coast_levels}-{directions}-{name}.npz"
-    return _kept_or_made(_Order(bare, level, coast_levels, directions, path))
+    path = cache_folder("globe") / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
+    return _kept_or_made(_Order(bare, fineness, path))
 
 
 @dataclass(frozen=True)
@@ -80,9 +102,7 @@ class _Order:
     """What to make, and where it is kept; two orders for one file are the same."""
 
     chart: Chart
-    level: int
-    coast_levels: int
-    directions: int
+    fineness: Fineness
     path: Path
 
     def __hash__(self) -> int:
@@ -97,18 +117,18 @@ def _kept_or_made(order: _Order) -> GlobeGrid:
     try:
         return _load(order.path)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        grid = make_grid(order.chart, order.level, order.coast_levels, order.directions)
+        grid = make_grid(order.chart, order.fineness)
     with contextlib.suppress(OSError):
         _save(order.path, grid)
         _forget_old(order.path.parent)
     return grid
 
 
-def make_grid(chart: Chart, level: int, coast_levels: int, directions: int) -> GlobeGrid:
+def make_grid(chart: Chart, fineness: Fineness) -> GlobeGrid:
     """Make the grid of a chart's coastline (see `globe_grid`)."""
-    sphere = _sphere(chart, level, coast_levels)
+    sphere = _sphere(chart, fineness)
     first, second = sphere.pairs()
-    if directions > 6:
+    if fineness.directions > 6:
         first, second = _joined((first, second), sphere.across())
     lat, lon = positions(sphere.vertices)
     free, _ = free_legs(chart, lat, lon, first, second)
@@ -118,7 +138,7 @@ def make_grid(chart: Chart, level: int, coast_levels: int, directions: int) -> G
     used[first] = used[second] = True
     number = (np.cumsum(used) - 1).astype(np.int32)
     pairs = measure(lat[used], lon[used], number[first], number[second])
-    spacing = _longest_leg(level)
+    spacing = _longest_leg(fineness.level)
     return GlobeGrid(lat[used], lon[used], pairs, int((~free).sum()), spacing, gap)
 
 
@@ -131,16 +151,37 @@ def _longest_leg(level: int) -> float:
     return float(length.max()) / 2 ** (level - known)
 
 
-def _sphere(chart: Chart, level: int, coast_levels: int) -> Icosphere:
+def _sphere(chart: Chart, fineness: Fineness) -> Icosphere:
     """Return the geodesic grid of a coastline, land and all."""
+    level, coast = fineness.level, fineness.coast_levels
+    narrow = max(FINEST - level - coast, 0) if coast else 0
+    rules = [Rule(_crossing(chart.land.index), lambda m: coast + deeper(m, narrow))]
+    rules += [
+        Rule(_crossing(outlines), lambda m: np.full(len(m), fineness.border_levels))
+        for outlines in _borders(chart)
+    ]
+    return icosphere(level, *rules)
+
+
+def _borders(chart: Chart) -> list[IndexArrays]:
+    """Return the outlines of the zones with prices."""
+    zones = chart.zones
+    found = [zones.eca_index] if zones.eca else []
+    priced = [shape for shape, _ in (*zones.penalty, *zones.price)]
+    if priced:
+        found.append(build_index(rings_of(priced), _BORDER_SIDE))
+    return found
+
+
+def _crossing(index: IndexArrays) -> Crossed:
+    """Return the test of edges against outlines."""
 
     def crossed(first: FloatArray, second: FloatArray) -> BoolArray:
         answer = np.empty(len(first), np.bool_)
-        coast_crossed(chart.land.index, *positions(first), *positions(second), answer)
+        coast_crossed(index, *positions(first), *positions(second), answer)
         return answer
 
-    more = max(FINEST - level - coast_levels, 0) if coast_levels else 0
-    return icosphere(level, coast_levels, crossed, lambda middles: deeper(middles, more))
+    return crossed
 
 
 def positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +32,23 @@ _FACES = [
 ]  # fmt: skip
 
 #: Which of some edges, given by the unit vectors of their ends, call for halving.
-Crossed = Callable[[FloatArray, FloatArray], BoolArray]
-#: How many levels more than elsewhere faces may get, given unit vectors (F, 3) of their middles.
-Deeper = Callable[[FloatArray], IntArray]
+Crossed: TypeAlias = Callable[[FloatArray, FloatArray], BoolArray]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Where a grid is halved beyond its level: faces with an edge that is crossed.
+
+    Attributes
+    ----------
+    crossed : callable
+        Tells which edges (unit vectors of their ends) are crossed.
+    levels : callable
+        How many levels such faces get, by the unit vectors (F, 3) of their middles.
+    """
+
+    crossed: Crossed
+    levels: Callable[[FloatArray], IntArray]
 
 
 @dataclass(frozen=True)
@@ -83,21 +98,15 @@ class Icosphere:
         return unkeyed(np.unique(_keyed(opposite[twice], opposite[twice + 1])))
 
 
-def icosphere(
-    level: int, extra: int = 0, crossed: Crossed | None = None, deeper: Deeper | None = None
-) -> Icosphere:
+def icosphere(level: int, *rules: Rule) -> Icosphere:
     """Return the geodesic grid of a level, with extra levels where edges cross a coast.
 
     Parameters
     ----------
     level : int
         Halvings of the whole grid.
-    extra : int
-        Further halvings of the faces one of whose edges is crossed.
-    crossed : callable, optional
-        Tells which edges (unit vectors of their ends) are crossed.
-    deeper : callable, optional
-        Tells how many levels beyond ``extra`` such faces get, by the unit vectors of their middles.
+    *rules : Rule
+        Where it is halved further.
     """
     grid = _Growing(np.array(_VERTICES) / np.hypot(1.0, _PHI))
     faces = np.array(_FACES, np.int64) - 1
@@ -106,13 +115,12 @@ def icosphere(
     leaves: list[IntArray] = []
     depth = level
     while len(faces):
-        split = np.full(len(faces), depth < level + extra)
-        if deeper is not None and depth >= level + extra:
-            split = deeper(grid.vertices[faces].mean(axis=1)) > depth - level - extra
-        if crossed is None:
-            split[:] = False
-        elif split.any():
-            split[split] = grid.crossed_faces(faces[split], crossed)
+        split = np.zeros(len(faces), bool)
+        middles = grid.vertices[faces].mean(axis=1)
+        for rule in rules:
+            asked = np.flatnonzero(~split & (rule.levels(middles) > depth - level))
+            if len(asked):
+                split[asked] = grid.crossed_faces(faces[asked], rule.crossed)
         leaves.append(faces[~split])
         faces = grid.halved(faces[split])
         depth += 1

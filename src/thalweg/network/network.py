@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
 from thalweg.kernels import graph
+from thalweg.kernels.ways import static_astar
+from thalweg.network.bounding import distance_bounds
 
 FloatArray: TypeAlias = NDArray[np.float64]
 Float32Array: TypeAlias = NDArray[np.float32]
@@ -147,7 +149,12 @@ class Network:
 
 
 def shortest(
-    network: Network, start: int, goal: int = -1, *, weight: FloatArray | None = None
+    network: Network,
+    start: int,
+    goal: int = -1,
+    *,
+    weight: FloatArray | None = None,
+    per_metre: float | None = None,
 ) -> tuple[FloatArray, list[int]]:
     """Return static least sums of edge weights from a node, and the path to the goal.
 
@@ -160,16 +167,28 @@ def shortest(
     weight : ndarray (E,), optional
         Non-negative weight of each edge (default: its length [m]; `Network.times` for time).
 
+    per_metre : float, optional
+        No edge weighs less than this for each metre between its ends as the crow flies; with it
+        the search aims at the goal (A*). By default 1 for lengths, else 0.
+
     Returns
     -------
     distance : ndarray (N,)
-        Least sums; inf where unreached (with a goal: final only for nodes nearer than it).
+        Least sums; inf where unreached. With a goal they are final only for the nodes on the way.
     path : list of int
         Nodes from start to goal; empty when there is no way.
     """
     weights = network.length if weight is None else np.asarray(weight, float)
     distance, parent = np.empty(network.n_nodes), np.empty(network.n_nodes, np.int64)
-    graph.static_distances(network.indptr, network.target, weights, start, goal, distance, parent)
+    if per_metre is None:
+        per_metre = 1.0 if weight is None else 0.0
+    if goal >= 0 and per_metre > 0.0:
+        to = float(network.lat[goal]), float(network.lon[goal])
+        bound = per_metre * distance_bounds(network.lat, network.lon, *to)
+        static_astar(network.indptr, network.target, weights, bound, start, goal, distance, parent)
+    else:
+        arrays = network.indptr, network.target, weights
+        graph.static_distances(*arrays, start, goal, distance, parent)
     if goal < 0 or not np.isfinite(distance[goal]):
         return distance, []
     path = [goal]
