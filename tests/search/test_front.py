@@ -119,6 +119,70 @@ def test_front_is_that_of_brute_force_without_waiting(seed):
         assert reached <= cost * (1 + 1e-3)
 
 
+@pytest.mark.parametrize("seed", [0, 1, 3])
+def test_lower_front_is_below_brute_force_with_waiting(seed):
+    """Pauses of 1000 and 3000 s before any edge; also no front point is far above."""
+    network, fields = random_world(seed, columns=3)
+    latest, pauses, prices = 20_000.0, (0.0, 1000.0, 3000.0), {"waiting_fuel": 0.002}
+    found = search(network, fields, 5, latest, bin_s=10.0, **prices)
+    every = brute_force(network, fields, latest, pauses=pauses, **prices)
+    assert len(every) > 2000
+    for time, cost in every[np.minimum.accumulate(every[:, 1]) == every[:, 1]]:
+        assert found.lower_at(time) <= cost * (1 + 1e-9)
+        reached = found.cost[found.time <= time + 3 * found.bin_s].min(initial=np.inf)
+        assert reached <= cost * (1 + 5e-3)
+
+
+@pytest.mark.parametrize("wait", [True, False])
+@pytest.mark.parametrize("seed", range(3))
+def test_lower_front_is_below_brute_force(seed, wait):
+    network, fields = random_world(seed)
+    latest = 16_000.0
+    every = brute_force(network, fields, latest, wait=wait)
+    for bin_s in (100.0, 5.0):
+        found = search(network, fields, 7, latest, wait=wait, bin_s=bin_s)
+        for time, cost in every:
+            assert found.lower_at(time) <= cost * (1 + 1e-9)
+
+
+def eddies(network, strength=1.0):
+    def flow(part):
+        def value(t, lat, lon):
+            return strength * np.sin(part + 15.0 * lat + 20.0 * lon + 2e-4 * t)
+
+        return value
+
+    times = np.arange(0.0, 40_001.0, 500.0)
+    return make_fields(network, times, current_east=flow(0.0), current_north=flow(1.0))
+
+
+@pytest.mark.parametrize("wait", [True, False])
+def test_certificate_closes_with_the_bins(wait):
+    network = grid(5, 8)
+    tables = ship(np.arange(4.0, 8.01, 0.5))
+    gaps = []
+    for bin_s in (160.0, 40.0, 2.5):
+        found = search(
+            network, eddies(network), 39, 16_000.0, tables=tables, wait=wait, bin_s=bin_s
+        )
+        assert np.all(found.gap >= 0.0) and np.all(np.diff(found.lower_cost) < 0.0)
+        gaps.append(np.median(found.gap))
+    assert gaps[0] > 2.0 * gaps[1] and gaps[1] > 2.0 * gaps[2] and gaps[2] < 0.001
+
+
+def test_lower_front_where_some_nodes_do_not_let_wait():
+    network, fields = random_world(3)
+    can_wait = np.arange(network.n_nodes) % 2 == 0
+    network = replace(network, can_wait=can_wait)
+    found = search(network, fields, 7, 16_000.0, bin_s=10.0, waiting_fuel=0.002)
+    every = brute_force(network, fields, 16_000.0)
+    for time, cost in every:
+        assert found.lower_at(time) <= cost * (1 + 1e-9)
+    for point in found.points:
+        pauses = point.path_depart - point.path_arrive
+        assert np.all(pauses[:-1][~can_wait[point.path[:-1]]] == 0.0)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_points_are_real_ways(seed):
     network, fields = random_world(seed)

@@ -217,7 +217,7 @@ def _expand(world, labels, target, clock, blocks, node, start, only_shut, counts
                 low = values[at + s]
                 spare[s] = low + f * (values[at + span + s] - low)
             for s in range(count):
-                took, price = float(spare[s]), float(spare[count + s])
+                took, price = np.float64(spare[s]), np.float64(spare[count + s])
                 if took <= ample and price - prices.wait_rate * took < room:
                     code = edge * count + s
                     found = _offer(
@@ -264,7 +264,7 @@ def _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work):
         room = room_for(labels, clock, network, prices, head, time, cost)
         counts[WAITED] += count
         for s in range(count):
-            took, price = values[at + s], values[at + count + s]
+            took, price = np.float64(values[at + s]), np.float64(values[at + count + s])
             net = price - rate * took
             if not (took <= ample and net < room):
                 continue
@@ -302,9 +302,9 @@ def _wait(world, labels, target, clock, blocks, node, b, counts, work, spare):
     if world.depart + time <= world.network.until[node] and promising(
         target, clock, node, time, cost
     ):
-        start = (time, cost, int(labels.best_at[node, 1]), time, b)
+        start, only_shut = (time, cost, int(labels.best_at[node, 1]), time, b), time == time
         again |= _expand(
-            world, labels, target, clock, blocks, node, start, True, counts, work, spare
+            world, labels, target, clock, blocks, node, start, only_shut, counts, work, spare
         )
     return again
 
@@ -313,11 +313,11 @@ def _wait(world, labels, target, clock, blocks, node, b, counts, work, spare):
 def _visit(world, labels, target, clock, blocks, node, b, counts, work, spare):
     """Sail on from the label of a node in this bin; return whether this bin was improved."""
     slot = labels.place[node] + b - labels.first[node]
-    cost = float(labels.cost[slot])
+    cost = np.float64(labels.cost[slot])
     if cost == math.inf or (labels.done[node, 0] == b and not cost < labels.done[node, 1]):
         return False
     labels.done[node, 0], labels.done[node, 1] = b, cost
-    time = float(labels.when[slot, 0])
+    time = np.float64(labels.when[slot, 0])
     if clock.wait and world.network.can_wait[node]:
         reduced = cost - world.prices.wait_rate * time
         if reduced >= labels.best[node]:
@@ -330,8 +330,11 @@ def _visit(world, labels, target, clock, blocks, node, b, counts, work, spare):
         counts[PRUNED] += 1
         return False
     counts[VISITED] += 1
-    start = (time, cost, slot, math.nan, b)
-    return _expand(world, labels, target, clock, blocks, node, start, False, counts, work, spare)
+    # flags are variables, not constants: numba would compile a copy for each constant
+    start, only_shut = (time, cost, slot, math.nan, b), time != time
+    return _expand(
+        world, labels, target, clock, blocks, node, start, only_shut, counts, work, spare
+    )
 
 
 @bare

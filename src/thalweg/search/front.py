@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.front_labels import PRUNED, RELAXED, VISITED, WAITED, advance
+from thalweg.kernels.front_legs import Blocks
 from thalweg.kernels.tables import TableArrays
+from thalweg.search.front_lower import Lower, lower_front
 from thalweg.search.front_plan import (
     Plan,
     make_plan,
@@ -148,6 +150,15 @@ def front(
       in between paid: exact, since the earlier ship can wait. A waiting ship leaves at slices, and
       where an edge is shut at one of the slices around, at the start of any bin. Elsewhere (and
       with ``wait=False`` everywhere) labels are compared inside a bin only.
+    * The lower front is the larger of two bounds. One lets every arrival count for the start of
+      its bin and leaves at any moment of the bin, whatever is earliest and cheapest; it closes as
+      the bins narrow. The other is the least cost plus a price of time, for up to 12 prices, which
+      loses nothing to the bins but bounds the lower hull of the front only. Both take an edge at
+      the most favourable moment of the bin, less twice the difference to the leg itself met amid
+      the two slices around at the lowest and the highest setting; both let a ship wait as long as
+      it likes where it may wait at all. They are certain as far as durations and costs between
+      slices stay within twice that difference, and no edge that is shut at both slices opens for
+      a moment between them.
     * Labels are dropped as well when even the largest currents along the edges, the best weather
       and the best prices of every edge do not lead them below what is known of the goal. This
       loses nothing.
@@ -175,37 +186,57 @@ def _search(
     lower: bool,
     progress: Callable[[float], None] | None,
 ) -> Front:
-    target = new_target(request.goal, bounds, plan.clock)
-    for point in known:
-        know(target, plan.clock, point)
-    labels, blocks, agenda = (
-        new_bin_labels(plan.windows),
-        new_blocks(got, plan),
-        new_agenda(plan.windows),
-    )
-    begin = int(labels.place[request.start])
-    labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
-    spare = np.empty(2 * len(request.settings), np.float32)
-    edges = np.unique(np.linspace(0, plan.clock.count, _CHUNKS + 1).astype(int))
-    for a, b in pairwise(edges.tolist()):
-        advance(got.world, labels, target, plan.clock, blocks, agenda, a, b, new_work(), spare)
+    parts = 2 if lower else 1
+
+    def tell(share: float, part: int) -> None:
         if progress is not None:
-            progress(b / plan.clock.count)
-    found, dropped = ways_found(got, request, labels)
+            progress((part + share) / parts)
+
+    blocks = new_blocks(got, plan)
+    found, dropped, counts = _labelled(got, request, bounds, plan, known, blocks, tell)
     points = not_dominated([*known, *found])
-    counts = agenda.counts
+    below = Lower(np.empty(0), np.empty(0), 0, 0, 0)
+    if lower:
+        below = lower_front(
+            got, request, bounds, plan, blocks, points, lambda share: tell(share, 1), _CHUNKS
+        )
     work = FrontWork(
-        labels=int(counts[VISITED]),
-        relaxed=int(counts[RELAXED] + counts[WAITED]),
+        labels=int(counts[VISITED]) + below.labels,
+        relaxed=int(counts[RELAXED] + counts[WAITED]) + below.relaxed,
         sailed=int(blocks.sailed[0]),
-        pruned=int(counts[PRUNED]),
+        pruned=int(counts[PRUNED]) + below.pruned,
         slices=len(plan.slices),
         table_error=plan.table_error,
         dropped=dropped,
         memory=plan.memory,
     )
     refused = {REASONS[c]: int(n) for c, n in enumerate(blocks.refused) if n > 0 and c > 0}
-    return Front(points, np.empty(0), np.empty(0), plan.clock.width, work, refused)
+    return Front(points, below.time, below.cost, plan.clock.width, work, refused)
+
+
+def _labelled(
+    got: Gathered,
+    request: Request,
+    bounds: Bounds,
+    plan: Plan,
+    known: list[FrontPoint],
+    blocks: Blocks,
+    tell: Callable[[float, int], None],
+) -> tuple[list[FrontPoint], int, NDArray[np.int64]]:
+    """Label all nodes bin by bin; return the goal's ways, how many are shut, and counts."""
+    target, labels = new_target(request.goal, bounds, plan.clock), new_bin_labels(plan.windows)
+    for point in known:
+        know(target, plan.clock, point)
+    begin = int(labels.place[request.start])
+    labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
+    agenda, work = new_agenda(plan.windows), new_work()
+    spare = np.empty(2 * len(request.settings), np.float32)
+    edges = np.unique(np.linspace(0, plan.clock.count, _CHUNKS + 1).astype(int))
+    for a, b in pairwise(edges.tolist()):
+        advance(got.world, labels, target, plan.clock, blocks, agenda, a, b, work, spare)
+        tell(b / plan.clock.count, 0)
+    found, dropped = ways_found(got, request, labels)
+    return found, dropped, agenda.counts
 
 
 def _first_ways(network: Network, got: Gathered, request: Request) -> list[FrontPoint]:

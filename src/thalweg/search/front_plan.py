@@ -20,6 +20,7 @@ IntArray = NDArray[np.int64]
 
 #: What the tables of edges may be off from the legs, as a share of their duration or cost.
 TABLE_TOLERANCE = 1e-3
+_FINE, _CHEAP = 0.02 * TABLE_TOLERANCE, 3e7  # [bytes]
 _MOST_BINS = 2000
 _COARSEST_BINS = 250
 _SAMPLED = 400  # edges looked at to choose the slices
@@ -126,16 +127,21 @@ def _windows(clock: Clock, bounds: Bounds, soonest: FloatArray) -> Windows:
 def _slices(
     got: Gathered, request: Request, clock: Clock, windows: Windows, memory_limit: float
 ) -> tuple[FloatArray, float, int]:
-    """Return the coarsest slices that are exact enough, or the finest that fit the memory."""
+    """Return the coarsest slices that are exact enough, finer ones where they cost little.
+
+    If none that fit the memory are exact enough, the finest that do.
+    """
     ladder = _ladder(got.world.sea.times - request.depart, clock.latest)
-    chosen, error = ladder[0], math.inf
+    chosen, error, memory = ladder[0], math.inf, 0
     for slices in ladder:
-        if error < math.inf and _memory(got, clock, windows, slices) > memory_limit:
+        needed = _memory(got, clock, windows, slices)
+        if error <= TABLE_TOLERANCE and (error <= _FINE or needed > _CHEAP):
             break
-        chosen, error = slices, _table_error(got, request, windows, clock, slices)
-        if error <= TABLE_TOLERANCE:
+        if error < math.inf and needed > memory_limit:
             break
-    return chosen, error, _memory(got, clock, windows, chosen)
+        chosen, memory = slices, needed
+        error = _table_error(got, request, windows, clock, slices)
+    return chosen, error, memory
 
 
 def _ladder(times: FloatArray, horizon: float) -> list[FloatArray]:
@@ -169,7 +175,8 @@ def _memory(got: Gathered, clock: Clock, windows: Windows, slices: FloatArray) -
     _, count = slice_windows(clock, windows, slices)
     degree = np.diff(got.world.network.indptr)
     values = int((count * degree).sum()) * 2 * len(got.world.ship.settings) * 4
-    return values + int(count.sum()) + windows.bins * _LABEL_BYTES + 200 * len(degree)
+    slack = int((count * degree).sum()) * 9
+    return values + slack + int(count.sum()) * 2 + windows.bins * _LABEL_BYTES + 200 * len(degree)
 
 
 def _table_error(

@@ -189,50 +189,75 @@ class Bounds(NamedTuple):
         Prices of a second, 0 first.
     floor : float64[N, R]
         Least cost plus price times time.
+    to_goal : ToGoal
+        For other prices.
     """
 
     time: FloatArray
     rates: FloatArray
     floor: FloatArray
+    to_goal: ToGoal
 
 
-def bounds_to_goal(got: Gathered, goal: int) -> Bounds:
-    """Bound time and cost from every state to the goal by the most favourable currents and weather.
+class ToGoal:
+    """Edges in the most favourable currents and weather, walked backwards from the goal.
 
     Each edge is taken at the largest current along it in the fields, at the greatest speed and the
     least fuel rate of each setting in any weather.
+
+    Attributes
+    ----------
+    along : float64[E]
+        Largest current along every edge in the fields [m/s].
     """
-    world = got.world
-    net, prices = world.network, world.prices
-    along = np.zeros(len(net.target))
-    if min(world.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
-        fastest_flow(net, world.sea, along)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        over_ground = got.fastest[None, :] + along[:, None]
-        pace = np.where(over_ground > 0.0, 1.0 / over_ground, math.inf)  # (E, S) [s/m]
-    pace[:, ~(got.fastest > 0.0)] = math.inf
-    fixed = ~np.isnan(prices.fixed_time)
-    reverse = _Reverse(net.indptr, net.target, got.tails, goal)
-    quickest = np.where(fixed, prices.fixed_time, net.length * pace.min(axis=1))
-    rates = _rates(got, float(np.median(prices.weight)) if len(prices.weight) else 1.0)
-    floor = np.empty((len(net.station), len(rates)))
-    for r, rate in enumerate(rates):
-        metre = _least_per_metre(pace, got.thriftiest, prices, rate)
-        still = prices.fixed_fuel * prices.weight + prices.fixed_time * (rate + prices.time_price)
-        floor[:, r] = reverse.distances(np.where(fixed, still, net.length * metre) + prices.fee)
-    return Bounds(reverse.distances(quickest) * SHRINK, rates, floor * (1.0 - 1e-6))
+
+    def __init__(self, got: Gathered, goal: int) -> None:
+        net, self._got, self._goal = got.world.network, got, goal
+        self.along = np.zeros(len(net.target))
+        if min(got.world.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
+            fastest_flow(net, got.world.sea, self.along)
+        over_ground = got.fastest[:, None] + self.along[None, :]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            pace = np.where(over_ground > 0.0, net.length / over_ground, math.inf)
+        pace[~(got.fastest > 0.0)] = math.inf
+        self._quickest = pace  # (S, E) [s]
+        self._order = np.argsort(net.target, kind="stable")
+        nodes = np.arange(len(net.station) + 1)
+        self._indptr = np.searchsorted(net.target[self._order], nodes).astype(np.int64)
+        self._target = got.tails[self._order].astype(np.int32)
+
+    def time(self) -> FloatArray:
+        """Return the least time to the goal [s]."""
+        fixed = self._got.world.prices.fixed_time
+        return self._least(np.where(np.isnan(fixed), self._quickest.min(axis=0), fixed)) * SHRINK
+
+    def floor(self, rate: float) -> FloatArray:
+        """Return the least cost plus price of time to the goal."""
+        prices = self._got.world.prices
+        second = prices.time_price + rate
+        least = np.full(len(prices.fee), math.inf)
+        for quickest, fuel in zip(self._quickest, self._got.thriftiest):
+            if math.isfinite(fuel):
+                np.fmin(least, quickest * (fuel * prices.weight + second), out=least)
+        still = prices.fixed_fuel * prices.weight + prices.fixed_time * second
+        least = np.where(np.isnan(prices.fixed_time), least, still)
+        return self._least(least + prices.fee) * (1.0 - 1e-6)
+
+    def _least(self, weights: FloatArray) -> FloatArray:
+        count = len(self._indptr) - 1
+        distance, parent = np.empty(count), np.empty(count, np.int64)
+        given = np.ascontiguousarray(weights[self._order])
+        static_distances(self._indptr, self._target, given, self._goal, -1, distance, parent)
+        return distance
 
 
-def _least_per_metre(
-    pace: FloatArray, thriftiest: FloatArray, prices: Prices, rate: float
-) -> FloatArray:
-    least = np.full(len(pace), math.inf)
-    for s, fuel in enumerate(thriftiest):
-        if math.isfinite(fuel):
-            np.fmin(
-                least, pace[:, s] * (fuel * prices.weight + prices.time_price + rate), out=least
-            )
-    return least
+def bounds_to_goal(got: Gathered, goal: int) -> Bounds:
+    """Bound time and cost from every state to the goal."""
+    to_goal = ToGoal(got, goal)
+    weight = got.world.prices.weight
+    rates = _rates(got, float(np.median(weight)) if len(weight) else 1.0)
+    floor = np.stack([to_goal.floor(rate) for rate in rates], axis=1)
+    return Bounds(to_goal.time(), rates, floor, to_goal)
 
 
 def _rates(got: Gathered, weight: float) -> FloatArray:
@@ -260,26 +285,6 @@ def _rates(got: Gathered, weight: float) -> FloatArray:
 def _above(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
     """Return whether b lies on or above the line from a to c."""
     return (b[1] - a[1]) * (c[0] - a[0]) >= (c[1] - a[1]) * (b[0] - a[0])
-
-
-class _Reverse:
-    """A network walked backwards from the goal."""
-
-    def __init__(
-        self, indptr: IntArray, target: NDArray[np.int32], tails: IntArray, goal: int
-    ) -> None:
-        count = len(indptr) - 1
-        self.order = np.argsort(target, kind="stable")
-        self.indptr = np.searchsorted(target[self.order], np.arange(count + 1)).astype(np.int64)
-        self.target = tails[self.order].astype(np.int32)
-        self.goal = goal
-
-    def distances(self, weights: FloatArray) -> FloatArray:
-        count = len(self.indptr) - 1
-        distance, parent = np.empty(count), np.empty(count, np.int64)
-        given = np.ascontiguousarray(weights[self.order])
-        static_distances(self.indptr, self.target, given, self.goal, -1, distance, parent)
-        return distance
 
 
 class Arrivals(NamedTuple):
