@@ -52,6 +52,7 @@ def resistance(speed, depth, draught, drift_deg):
             appendage_factor=2.5,
         ),
         wetted_surface_area=surface,
+        correlation_area="hull",
         friction_coefficient=zeng_2019_friction(
             speed * LENGTH / 1e-6,
             depth=depth,

@@ -220,7 +220,7 @@ def test_out_of_range_is_noted_and_refused_when_strict():
         ({"friction": "zeng"}, "Did you mean 'zeng_2019'"),
         ({"propulsion": "wageningen"}, "Did you mean 'wageningen_b'"),
         ({"rudder": "schless"}, "Did you mean 'schless_2023'"),
-        ({"speed_loss": "kwon_2008"}, "is for ships with known calm-water speeds"),
+        ({"speed_loss": "kwon_2008"}, "together with models.waves and models.wind"),
         ({"wind": "fujiwara_2006"}, "superstructure_height_m"),
         ({"calm_water": "none"}, "no resistance they could act on"),
     ],

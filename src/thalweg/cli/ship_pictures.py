@@ -16,7 +16,6 @@ _PARTS = {
     "friction": ("friction", "#1b4f72"),
     "form_factor": ("form", "#2e86c1"),
     "appendage": ("appendages", "#85c1e9"),
-    "residuary": ("residuary", "#5dade2"),
     "wave_making": ("wave making", "#148f77"),
     "bulb": ("bulb", "#73c6b6"),
     "transom": ("transom", "#a2d9ce"),

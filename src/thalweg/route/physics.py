@@ -15,7 +15,6 @@ from thalweg.ship.conditions import Conditions
 from thalweg.ship.variables import (
     BED_DEPTH,
     EASTWARD_CURRENT,
-    HEADING_DEPENDENT,
     NORTHWARD_CURRENT,
     WATER_LEVEL,
     WAVE_EAST,
@@ -193,7 +192,8 @@ def conditions_at(
     heading: FloatArray,
 ) -> Conditions:
     """Return the conditions a ship model reads."""
-    more = {"depth": depth} if world.has_depth else {}
+    crab = (heading - points.course + math.pi) % (2.0 * math.pi) - math.pi
+    more = {"depth": depth, "crab_angle": crab} if world.has_depth else {"crab_angle": crab}
     return Conditions.from_sea(
         sampled, heading=heading, time=time, lat=points.lat, lon=points.lon, **more
     )
@@ -214,7 +214,7 @@ def _triangle(
     if field is not None:
         speed = np.broadcast_to(field(sampled, time, points.lat, points.lon), across.shape)
         return speed, _drift(across, speed)
-    fixed = not ship.reads & HEADING_DEPENDENT or not np.any(across)
+    fixed = not ship.heading_matters or not np.any(across)
     drift = np.zeros_like(across) if guess is None or fixed else _drift(across, guess)
     speed = np.full_like(across, math.nan)
     change = math.inf

@@ -198,6 +198,7 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
     fore = float(hull.values["draught_fore_m"])
     angle = hull.number("half_entrance_angle_deg")
     water = _water(data)
+    area_of_correlation = data.get("models", {}).get("correlation_area", "hull_and_appendages")
 
     def deep(
         speed: FloatArray, waves: FloatArray, line: FloatArray | None
@@ -212,6 +213,7 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
             entrance_angle_deg=angle,
             friction_coefficient=line,
             wave_speed=waves,
+            correlation_area=area_of_correlation,
             **water,
         )
         return _named(**{k: getattr(found, k) for k in COMPONENTS if k != "residuary"})

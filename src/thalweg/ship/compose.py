@@ -10,10 +10,11 @@ import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import KNOT
-from thalweg.ship.build import FORCES, build_limits
+from thalweg.ship.build import FORCES, build_limits, build_loss
 from thalweg.ship.calm_parts import CALM_WATER, build_calm_water, check_length_order
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.hull_estimates import estimate, hull_at
+from thalweg.ship.kwon_on_resistance import KwonOnResistance
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate
 from thalweg.ship.powering import Balance, Orders, ResistanceModel
@@ -25,7 +26,9 @@ RUDDER = ("none", "schless_2023")
 _FACTS = ("hull", "propulsion", "engine", "loading", "models", "water")
 
 
-def compose_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ResistanceModel:
+def compose_model(
+    data: Mapping[str, Any], hull: Hull, loading: Loading
+) -> ResistanceModel | KwonOnResistance:
     """Return the model of a ship file that chooses a calm-water resistance.
 
     Parameters
@@ -56,13 +59,18 @@ def compose_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Resi
     )
 
 
-def _resistance_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> ResistanceModel:
+def _resistance_model(
+    data: Mapping[str, Any], hull: Hull, loading: Loading
+) -> ResistanceModel | KwonOnResistance:
     models = data.get("models", {})
-    if models.get("speed_loss", "none") != "none":
+    loss = build_loss(data, hull, loading)
+    twice = [name for name in ("waves", "wind") if models.get(name, "none") != "none"]
+    if loss is not None and twice:
         raise InputError(
-            f"speed_loss: {models['speed_loss']} is for ships with known calm-water speeds.",
-            "Ships with a resistance lose speed by models.waves and models.wind.",
-            "Leave speed_loss out, or choose calm_water: table, cubic or none.",
+            f"speed_loss: {models['speed_loss']} is chosen together with "
+            f"{' and '.join(f'models.{name}' for name in twice)}.",
+            "Kwon's loss holds what wind and waves take; both would count the weather twice.",
+            "Leave out the one or the other.",
             key="models.speed_loss",
         )
     if build_squat(data, hull, loading) is not None:
@@ -97,7 +105,7 @@ def _resistance_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> 
     _check_answers(model)
     if orders.kind == "speed":
         model.with_speeds(model.speeds(1.0), 1.0)  # refuses speeds beyond the engines
-    return model
+    return model if loss is None else KwonOnResistance(model, loss)
 
 
 def _check_answers(model: ResistanceModel) -> None:

@@ -165,7 +165,7 @@ class NominalModel:
         axes: list[Axis] = []
         if self.loss is not None:
             size = 257 if self.squat is None else 65
-            axes += [replace(DEFAULT_AXES["wind_speed"], size=size), _angle_axis(self.loss)]
+            axes += [replace(DEFAULT_AXES["wind_speed"], size=size), angle_axis(self.loss)]
         if self.squat is not None:
             axes.append(_depth_axis(self.squat, load_factor, 1025 if self.loss is None else 257))
         part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
@@ -271,7 +271,7 @@ def check_rising(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
             )
 
 
-def _angle_axis(loss: KwonLoss) -> Axis:
+def angle_axis(loss: KwonLoss) -> Axis:
     """Wind angle in steps of 15 degrees, on which the continuous loss is exact."""
     return Axis(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 13, fixed=not loss.classes)
 

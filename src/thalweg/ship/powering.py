@@ -14,7 +14,7 @@ from thalweg.ship.calm_parts import CalmWater
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.finish import Finish
 from thalweg.ship.limits import ShipLimits
-from thalweg.ship.methods.current_rudder import rudder_drag
+from thalweg.ship.methods.current_rudder import LARGEST_RUDDER_ANGLE, rudder_drag
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import Estimate, setting_index
 from thalweg.ship.propulsion_parts import Plant, Propulsion
@@ -49,7 +49,10 @@ class Balance:
     waves : Waves, optional
     wind : Wind, optional
     rudder_area : float
-        For the optional rudder drag [m2]; 0 without.
+        For the optional rudder drag [m2]; 0 without. It needs the angle between heading and course
+        (``crab_angle``), which depends on the current and on the speed itself: it counts where that
+        is known, on performance sheets and for the referee, and is not in tables, so that no route
+        is chosen by it.
     """
 
     calm: CalmWater
@@ -110,7 +113,8 @@ class Balance:
     def _rudder(self, at: Flat, speed: FloatArray) -> FloatArray | float:
         if self.rudder_area <= 0.0 or "crab_angle" not in at:
             return 0.0
-        return rudder_drag(speed, np.abs(at["crab_angle"]), rudder_area=self.rudder_area)
+        turned = np.minimum(np.abs(at["crab_angle"]), LARGEST_RUDDER_ANGLE)
+        return rudder_drag(speed, turned, rudder_area=self.rudder_area)
 
 
 @dataclass(frozen=True)
@@ -156,6 +160,11 @@ class ResistanceModel:
     def reads(self) -> frozenset[str]:
         """Conditions read."""
         return self.balance(1.0).reads
+
+    @property
+    def feels_crab(self) -> bool:
+        """Whether the rudder drags where the heading is not the course."""
+        return self.balance(1.0).rudder_area > 0.0
 
     @property
     def identity(self) -> Mapping[str, object]:

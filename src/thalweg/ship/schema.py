@@ -186,6 +186,7 @@ _MODELS: Final = (
         "kwon_sign": Key("word", words=("plus", "printed")),
         "kwon_classes": Key("flag"),
         "wave_push": Key("flag"),
+        "correlation_area": Key("word", words=("hull_and_appendages", "hull")),
         "kwon_ship_type": Key("word", words=("other", "container")),
     }
 )

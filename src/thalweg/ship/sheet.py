@@ -24,7 +24,7 @@ from thalweg.ship.ship import Ship
 FloatArray = NDArray[np.float64]
 COMPONENTS = (
     *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
-    *("correlation", "residuary", "waves", "wind", "shallow", "rudder"),
+    *("correlation", "waves", "wind", "shallow", "rudder"),
 )
 
 
@@ -44,7 +44,9 @@ def performance_sheet(
     Returns
     -------
     dict
-        Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component,
+        Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component, which
+        add up to its ``total``; what Hollenbach's method has besides friction, all of it pressure,
+        stands under ``wave_making``;
         ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
         ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``warnings[]`` (speeds
         left out, weather the ship has no model of), ``settings[]`` (what each setting attains in
@@ -166,6 +168,7 @@ def _usual_speeds(ship: Ship) -> FloatArray:
 
 def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> list[dict[str, Any]]:
     parts = ship.resistance(conditions, speeds)
+    parts["wave_making"] = parts["wave_making"] + parts.pop("residuary")
     power = ship.power_at_speed(conditions, speeds)
     plant = ship.model.plant  # type: ignore[attr-defined]
     balance = ship.model.balance(ship.loading.load_factor)  # type: ignore[attr-defined]

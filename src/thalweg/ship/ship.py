@@ -34,7 +34,7 @@ from thalweg.ship.model import Estimate, ShipModel
 from thalweg.ship.schema import check_ship_data
 from thalweg.ship.ship_file import library_names, plugin, read_ship
 from thalweg.ship.table import PerformanceTable
-from thalweg.ship.variables import needed_variables
+from thalweg.ship.variables import HEADING_DEPENDENT, needed_variables
 
 FloatArray = NDArray[np.float64]
 _SINGLE_PRECISION = 2.0**-23
@@ -225,6 +225,12 @@ class Ship(Answers):
     def reads(self) -> frozenset[str]:
         """Conditions the model reads (names of `Conditions`)."""
         return self.model.reads
+
+    @property
+    def heading_matters(self) -> bool:
+        """Whether the speed depends on the heading, or on its angle to the course."""
+        crab = bool(getattr(self.model, "feels_crab", False))
+        return crab or bool(self.model.reads & HEADING_DEPENDENT)
 
     @property
     def needs(self) -> frozenset[str]:

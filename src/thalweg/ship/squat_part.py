@@ -13,10 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import unknown_name
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.methods.squat import barrass_squat, speed_limit
+from thalweg.ship.methods.squat import (
+    barrass_2004_speed,
+    barrass_2004_squat,
+    barrass_squat,
+    critical_speed,
+    speed_limit,
+)
 
 FloatArray = NDArray[np.float64]
-SQUAT: Final = ("none", "van_halem_2019")
+SQUAT: Final = ("none", "van_halem_2019", "barrass_2004")
 
 
 @dataclass(frozen=True)
@@ -31,12 +37,16 @@ class Squat:
         Draughts [m] and displacements [m3].
     clearance : float
         Water that shall remain under the ship under way [m].
+    method : str
+        ``van_halem_2019`` sinks as Barrass (1979), ``barrass_2004`` as his later form; both slow
+        as van Halem (2019), eq. 2.5, corrected.
     """
 
     length: float
     breadth: float
     loading: Loading
     clearance: float = 0.0
+    method: str = "van_halem_2019"
 
     @property
     def block_coefficient(self) -> float:
@@ -44,27 +54,28 @@ class Squat:
         return float(self._block(self.loading.load_factor))
 
     def sinkage(self, speed: ArrayLike, depth: ArrayLike, load_factor: ArrayLike) -> FloatArray:
-        """Largest squat [m] at speeds through water [m/s]; see `barrass_squat`."""
-        return barrass_squat(
-            speed,
-            depth,
-            draught=self.loading.draught_at(load_factor),
-            breadth=self.breadth,
-            block_coefficient=self._block(load_factor),
-        )
+        """Largest squat [m] at speeds through water [m/s]; see `methods.squat`."""
+        formula = barrass_2004_squat if self.method == "barrass_2004" else barrass_squat
+        return formula(speed, depth, **self._sizes(load_factor))
 
     def allowed(self, speed: ArrayLike, depth: ArrayLike, load_factor: ArrayLike) -> FloatArray:
         """Speed [m/s] left of a speed in deep water; 0 where the ship would have no water."""
-        deep = np.asarray(speed, float)
-        left = speed_limit(
-            deep,
-            depth,
-            draught=self.loading.draught_at(load_factor),
-            breadth=self.breadth,
-            block_coefficient=self._block(load_factor),
-            clearance=self.clearance,
-        )
+        deep, sizes = np.asarray(speed, float), self._sizes(load_factor)
+        if self.method == "barrass_2004":
+            room = np.asarray(depth, float) - sizes["draught"] - self.clearance
+            slowed = critical_speed(deep, depth, draught=sizes["draught"], breadth=self.breadth)
+            left = np.minimum(slowed, barrass_2004_speed(room, depth, **sizes))
+        else:
+            left = speed_limit(deep, depth, **sizes, clearance=self.clearance)
         return np.minimum(deep, left)
+
+    def _sizes(self, load_factor: ArrayLike) -> dict[str, Any]:
+        """Draught, breadth and block coefficient at a load factor."""
+        return {
+            "draught": self.loading.draught_at(load_factor),
+            "breadth": self.breadth,
+            "block_coefficient": self._block(load_factor),
+        }
 
     def _block(self, load_factor: ArrayLike) -> FloatArray:
         draught = self.loading.draught_at(load_factor)
@@ -79,7 +90,9 @@ def squat_of(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat | N
     if not (length and breadth) or math.isnan(loading.displacement_full):
         return None
     clearance = data.get("limits", {}).get("min_under_keel_clearance_m", 0.0)
-    return Squat(float(length), float(breadth), loading, float(clearance))
+    chosen = data.get("models", {}).get("squat", "none")
+    method = chosen if chosen in SQUAT[1:] else SQUAT[1]
+    return Squat(float(length), float(breadth), loading, float(clearance), method)
 
 
 def build_squat(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat | None:

@@ -153,6 +153,41 @@ def barrass_2004_squat(
         return block * blockage**0.81 * knots**2.08 / 20.0
 
 
+def barrass_2004_speed(
+    squat: ArrayLike,
+    depth: ArrayLike,
+    *,
+    draught: ArrayLike,
+    breadth: ArrayLike,
+    block_coefficient: ArrayLike,
+    channel_width: ArrayLike | None = None,
+) -> Floats:
+    """Return the speed at which `barrass_2004_squat` reaches a given squat [m/s].
+
+    Parameters
+    ----------
+    squat : array_like
+        Squat that is allowed [m]; zero or less gives speed zero.
+    depth, draught, breadth, block_coefficient, channel_width
+        As in `barrass_2004_squat`.
+
+    Returns
+    -------
+    ndarray
+        Speed through the water [m/s].
+    """
+    at_one_knot = barrass_2004_squat(
+        KNOT,
+        depth,
+        draught=draught,
+        breadth=breadth,
+        block_coefficient=block_coefficient,
+        channel_width=channel_width,
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return KNOT * (np.maximum(floats(squat), 0.0) / at_one_knot) ** (1.0 / 2.08)
+
+
 def speed_for_squat(
     squat: ArrayLike,
     depth: ArrayLike,

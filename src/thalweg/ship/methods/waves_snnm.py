@@ -8,6 +8,10 @@ the following-sea coefficients is used here.
 How sure the coefficients are: they agree between four independent public programs of the ITTC and
 of the 2020 form; the printed procedure itself was not seen, so they are *unverified* in that sense.
 
+The force jumps where waves pass the angle of entrance E1 off the bow (27 degrees for the tanker
+KVLCC2, by a seventh), since the factor for the reflection at the bow changes there from a power of
+cos(angle) to one. That is the published formula's own; nothing is smoothed here.
+
 Angles are zero for waves from ahead and pi for waves from astern, as in the procedure.
 """
 
