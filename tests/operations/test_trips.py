@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.core.errors import CoverageError, InputError
+from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import distance
-from thalweg.operations.trips import TripTable, trip_table
+from thalweg.operations.trip_tables import TripTable
+from thalweg.operations.trips import trip_table
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -158,6 +159,12 @@ def test_a_ship_without_power_is_refused():
         trip_table(
             [WEST_END, EAST_END], ship=Ship.simple(8.0), sea=Sea.calm(), start=0.0, period=TIDE
         )
+
+
+def test_a_ship_that_feels_the_bed_needs_its_depth():
+    asked = {"ship": vox(), "start": 0.0, "period": TIDE, "step": TIDE}
+    with pytest.raises(MissingVariableError, match="depends on the depth"):
+        trip_table([WEST_END, EAST_END], sea=Sea.calm(), **asked)
 
 
 def test_refining_keeps_what_was_sailed_and_is_smooth_between():

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import CoverageError, InputError
-from thalweg.operations.trips import TripTable
+from thalweg.operations.trip_tables import TripTable
 from thalweg.operations.waiting import RULES, optimum_energy, plan_waiting
 from thalweg.operations.waiting_study import break_even_power, waiting_study
 
@@ -182,7 +182,7 @@ def test_what_cannot_be_is_refused():
         waiting_study([trip], starts=[], most_waits=[0.0])
     never = TripTable("c", 0.0, STEP, *(np.full(5, np.inf),) * 2, np.zeros(5), True)
     for rule in RULES:
-        with pytest.raises(CoverageError, match="No departure"):
+        with pytest.raises(CoverageError, match="cannot be made at any"):
             plan_waiting([never], start=0.0, most_wait=0.0, rule=rule)
     ends = table(rng, 10, periodic=False)
     for rule, start in itertools.product(RULES, (-STEP, 10 * STEP)):

@@ -7,7 +7,8 @@ from functools import cache
 import numpy as np
 
 from thalweg.core.geodesy import direct
-from thalweg.operations.trips import TripTable, trip_table
+from thalweg.operations.trip_tables import TripTable
+from thalweg.operations.trips import trip_table
 from thalweg.sea import Sea
 from thalweg.sea.north_sea import Scenario, north_sea_current
 from thalweg.ship import Ship

@@ -16,7 +16,7 @@ from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR
 
 if TYPE_CHECKING:
-    from thalweg.operations.trips import TripTable
+    from thalweg.operations.trip_tables import TripTable
     from thalweg.operations.waiting_study import WaitingStudy
     from thalweg.sea import Sea
     from thalweg.ship import Ship

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thalweg.core.errors import MissingVariableError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.track_cleaning import TrackLog
 from thalweg.operations.track_model import mean_speeds
 from thalweg.operations.track_pieces import KINDS, Pieces
-from thalweg.route.physics import World, conditions_at, move, open_world
+from thalweg.operations.trips import check_depth_is_told
+from thalweg.route.physics import World, conditions_at, look, move, open_world
 from thalweg.route.pieces import Points
 from thalweg.route.wind import with_wind_speed
 from thalweg.ship.conditions import Conditions
@@ -50,6 +50,7 @@ def ship_speeds(
     for kind, (loaded, setting) in ordered(pieces, ship, speed_kn=speed_kn).items():
         mine = pieces.kind == KINDS.index(kind)
         world = open_world(loaded, with_wind_speed(loaded, sea), None)
+        check_depth_is_told(world)
         here = pieces.part(mine)
         found[mine] = move(world, _points(here, setting), here.time).through_water
     return found
@@ -104,6 +105,7 @@ def speeds_at_measured_power(
         return None
     power = piece_means(log, pieces, "power")
     world = open_world(ship, with_wind_speed(ship, sea), None)
+    check_depth_is_told(world)
     points = _points(pieces, 0)
     met = _conditions(world, points, pieces.time)
     met = met.with_values(load_factor=_load_factors(log, pieces, ship))
@@ -146,15 +148,7 @@ def _points(pieces: Pieces, setting: int) -> Points:
 
 
 def _conditions(world: World, points: Points, time: FloatArray) -> Conditions:
-    from thalweg.route.physics import look
-
     sampled, depth = look(world, points, time)
-    if "depth" in world.ship.reads and not world.has_depth:
-        raise MissingVariableError(
-            f"The ship {world.ship.name!r} needs the depth of the water.",
-            "The sea does not tell it.",
-            "Add a sea with bed depth.",
-        )
     return conditions_at(world, points, time, sampled=sampled, depth=depth, heading=points.course)
 
 

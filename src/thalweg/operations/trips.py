@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import CoverageError, InputError
+from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import FloatArray, format_position
 from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.operations.trip_tables import TripTable
 from thalweg.route.physics import Motion, World, conditions_at, look, move, open_world
 from thalweg.route.pieces import Pieces, Points, cut
 from thalweg.route.referee import Routable, as_track
@@ -35,84 +36,6 @@ _SWEEPS: Final = 12  # of the iteration
 _SETTLED: Final = 1e-3  # change of the time for a piece [s] that ends the iteration
 _NEVER: Final = 1e9  # stands for the time [s] for a piece that cannot be passed
 _CRAB_TURNS: Final = 3  # corrections of the crab angle; each makes the error some 50 times smaller
-
-
-@dataclass(frozen=True, eq=False)
-class TripTable:
-    """What one trip takes for departures at equal steps of time.
-
-    Attributes
-    ----------
-    name : str
-    start, step : float
-        First departure [s since 1970-01-01T00:00Z] and time between departures [s].
-    duration : float64 array (n,)
-        Time under way [s]; +inf where the trip cannot be made.
-    energy : float64 array (n,)
-        Brake energy of the engine under way, without hotel load [J]; +inf as above.
-    current : float64 array (n,)
-        Current at the place of departure along the first course [m/s], positive when it helps.
-    periodic : bool
-        Whether the table goes round: the departure after the last is the first again.
-    """
-
-    name: str
-    start: float
-    step: float
-    duration: FloatArray
-    energy: FloatArray
-    current: FloatArray
-    periodic: bool = False
-
-    def __len__(self) -> int:
-        return len(self.duration)
-
-    @property
-    def times(self) -> FloatArray:
-        """The departures [s since 1970-01-01T00:00Z]."""
-        return self.start + self.step * np.arange(len(self), dtype=np.float64)
-
-    @property
-    def steps(self) -> NDArray[np.int64]:
-        """Steps of the table until the ship can go on; -1 where the trip cannot be made."""
-        known = np.isfinite(self.duration)
-        steps = np.ceil(np.where(known, self.duration, 0.0) / self.step - 1e-9)
-        return np.where(known, steps, -1).astype(np.int64)
-
-    def refined(self, factor: int) -> TripTable:
-        """Return the table with departures ``factor`` times as close together.
-
-        Between the departures that were sailed a cubic spline runs; beside departures that are
-        impossible it is a straight line, and between a possible and an impossible one nothing is.
-        """
-        if factor < 1:
-            raise InputError(f"A factor of {factor} refines nothing.", "1 or more.", "Correct it.")
-        count = len(self) * factor if self.periodic else (len(self) - 1) * factor + 1
-        at = np.arange(count, dtype=np.float64) / factor
-        return replace(
-            self,
-            step=self.step / factor,
-            duration=_between(self.duration, at, self.periodic),
-            energy=_between(self.energy, at, self.periodic),
-            current=_between(self.current, at, self.periodic),
-        )
-
-
-def _between(values: FloatArray, at: FloatArray, periodic: bool) -> FloatArray:
-    """Interpolate between values at 0, 1, 2 ..."""
-    from scipy.interpolate import CubicSpline
-
-    known = np.append(values, values[0]) if periodic else values
-    nodes = np.arange(len(known), dtype=np.float64)
-    if np.isfinite(known).all() and len(known) > 3:
-        return np.asarray(
-            CubicSpline(nodes, known, bc_type="periodic" if periodic else "not-a-knot")(at)
-        )
-    low = np.minimum(at.astype(np.int64), len(known) - 1)
-    high, share = np.minimum(low + 1, len(known) - 1), at - low
-    with np.errstate(invalid="ignore"):
-        straight = known[low] + np.where(share > 0.0, share * (known[high] - known[low]), 0.0)
-    return np.where(np.isfinite(straight), straight, math.inf)
 
 
 def trip_table(
@@ -162,7 +85,8 @@ def trip_table(
     Raises
     ------
     CoverageError
-        If the sea or the chart does not tell what the ship meets.
+        If the sea or the chart does not tell what the ship meets (`MissingVariableError` for a
+        variable, or the depth, that is in none of them).
     InputError
         If the power of the ship is unknown, or the window or step makes no sense.
 
@@ -177,6 +101,7 @@ def trip_table(
         track = track.replaced(setting=np.full(len(track) - 1, setting))
     track = track.replaced(setting=np.asarray(track.setting) % len(ship.speeds))
     world = open_world(ship, with_wind_speed(ship, sea), chart)
+    check_depth_is_told(world)
     pieces = cut(track, float(track.lengths.sum()) / LEAST_STEPS, 1)
     voyage = _Voyage(world, pieces, _middles(world, pieces), min_ukc)
     duration, energy = voyage.sail(departs)
@@ -189,6 +114,22 @@ def trip_table(
         current=_first_current(world, pieces, departs),
         periodic=period is not None,
     )
+
+
+def check_depth_is_told(world: World) -> None:
+    """Refuse a world without depth for a ship whose speed depends on it.
+
+    Raises
+    ------
+    MissingVariableError
+    """
+    if "depth" in world.ship.reads and not world.has_depth:
+        raise MissingVariableError(
+            f"The speed of the ship {world.ship.name!r} depends on the depth of the water.",
+            "Neither the sea nor a chart tells it.",
+            "Add a sea with bed depth, or depth to the chart.",
+            missing=["sea_floor_depth_below_geoid"],
+        )
 
 
 def _departures(

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import CoverageError, InputError, unknown_name
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, format_time, parse_time
-from thalweg.operations.trips import TripTable
+from thalweg.operations.trip_tables import TripTable
 
 RULES: Final = ("none", "current", "next trip", "optimum")
 
@@ -162,6 +162,8 @@ class _Board:
         """Return the departures allowed to a ship that is ready at one."""
         count = len(trip)
         possible = np.isfinite(trip.duration)
+        if not possible.any():
+            raise _never(trip)
         if trip.periodic:
             ahead = index + np.flatnonzero(possible[(index + np.arange(count)) % count])
         else:
@@ -258,6 +260,14 @@ class _Board:
             f"{format_time(last)}, and are not possible at all of them.",
             "Make the tables longer, allow less waiting or fewer trips.",
         )
+
+
+def _never(trip: TripTable) -> CoverageError:
+    return CoverageError(
+        f"The trip {trip.name!r} cannot be made at any of its {len(trip)} departures.",
+        "All of them meet too little water, too strong a current or weather beyond the limits.",
+        "Ask for less clearance, or choose another time, track or ship.",
+    )
 
 
 def _least_ahead(values: FloatArray, width: int) -> FloatArray:

@@ -14,7 +14,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, format_time, parse_time, to_datetime64
 from thalweg.core.units import HOUR
-from thalweg.operations.trips import TripTable
+from thalweg.operations.trip_tables import TripTable
 from thalweg.operations.waiting import RULES, WaitingPlan, plan_waiting
 
 if TYPE_CHECKING:
