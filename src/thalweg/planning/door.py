@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError, OutsideAreaError
+from thalweg.core.errors import InputError, NoRouteError, OutsideAreaError
 from thalweg.core.geodesy import FloatArray, direct, format_position
+from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.planning.ends import SNAP_PORT, End
@@ -69,6 +70,8 @@ def covered_ends(
     ------
     OutsideAreaError
         If the data never know all that is needed at an end.
+    NoRouteError
+        If the water at an end is too shallow at any tide.
     """
     knowledge = _Knowledge(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs, last=last)
     return [_covered(end, knowledge, chart) for end in ends]
@@ -107,6 +110,26 @@ class _Knowledge:
             good &= depths >= self.depth if harbour else np.isfinite(depths)
         return good
 
+    def check_deep_enough(self, end: End) -> None:
+        """Raise `NoRouteError` if the water at an end is too shallow at any tide of the data."""
+        if not math.isfinite(self.depth):
+            return
+        place = np.array([end.lat]), np.array([end.lon])
+        depth, time = float(self._depths(*place)[0]), math.nan
+        if names.WATER_LEVEL in self.sea.variables:
+            first, last = float(self.times[0]), float(self.times[-1])
+            native = self.sea.times(first, last, names=[names.WATER_LEVEL])
+            native = native[(native >= first) & (native <= last)]
+            native = np.append(native, self.times)  # formulas have steps of their own
+            level = self.sea.sample([names.WATER_LEVEL], native, end.lat, end.lon)
+            values = level[names.WATER_LEVEL]
+            if not np.isfinite(values).any():
+                return
+            highest = int(np.nanargmax(values))
+            depth, time = depth + float(values[highest]), float(native[highest])
+        if depth < self.depth:
+            raise _too_shallow(end, depth, time, self.depth)
+
     def _sample(self, wanted: list[str], lat: FloatArray, lon: FloatArray) -> dict[str, FloatArray]:
         return self.sea.sample(wanted, self.times[:, None], lat, lon) if wanted else {}
 
@@ -130,6 +153,7 @@ def _covered(end: End, knowledge: _Knowledge, chart: Chart) -> End:
             return replace(end, lat=near[0], lon=near[1], moved_m=near[2], why=why)
     lacking = knowledge.missing(*here)
     if not lacking:
+        knowledge.check_deep_enough(end)
         return end
     raise OutsideAreaError(
         f"{end.name} lies outside the data: {', '.join(lacking)} "
@@ -137,6 +161,20 @@ def _covered(end: End, knowledge: _Knowledge, chart: Chart) -> End:
         _possible(_nearest(end, knowledge, chart, harbour=False), knowledge, lacking),
         "Choose a place inside, or add data that cover it.",
         lacking=lacking,
+    )
+
+
+def _too_shallow(end: End, depth: float, time: float, required: float) -> NoRouteError:
+    dry = "is dry" if depth <= 0.0 else f"has at most {depth:.2f} m of water"
+    when = "" if math.isnan(time) else f", at its highest tide at {format_time(time)}"
+    return NoRouteError(
+        f"{end.name} {dry}{when}.",
+        f"{required:.2f} m are needed: {required - depth:.2f} m too little at any tide of the "
+        "data.",
+        "Choose a place in deeper water, sail lighter, or ask less clearance.",
+        reasons={codes.REASONS[codes.DEPTH]: 1},
+        nearest=(end.lat, end.lon),
+        missing_m=required - depth,
     )
 
 

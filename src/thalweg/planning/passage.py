@@ -282,7 +282,10 @@ def _search(
         if result.found or end >= latest:
             break
     if not result.found:
-        raise no_route(network, result, ends, depart=task.voyage.earliest_departure, last=task.last)
+        raise no_route(
+            network, result, ends, depart=task.voyage.earliest_departure, last=task.last,
+            fields=frozen.stations, required=float(limits[codes.LIMIT_REQUIRED_DEPTH]),
+        )  # fmt: skip
     return frozen, result
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance, format_position
@@ -11,11 +12,20 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.planning.ends import End
+from thalweg.planning.shallowest import shallowest_on_best_way
+from thalweg.sea import StationFields
 from thalweg.search import SearchResult
 
 
 def no_route(
-    network: Network, result: SearchResult, ends: tuple[End, End], *, depart: float, last: float
+    network: Network,
+    result: SearchResult,
+    ends: tuple[End, End],
+    *,
+    depart: float,
+    last: float,
+    fields: StationFields | None = None,
+    required: float = -math.inf,
 ) -> NoRouteError:
     """Build the error for a search that did not reach its goal.
 
@@ -29,6 +39,11 @@ def no_route(
         Earliest departure [s since 1970].
     last : float
         When the data end [s since 1970]; inf if they do not.
+    fields : StationFields, optional
+        The sea that was searched; with it and ``required`` it is told where the water is too
+        shallow at any tide, how high it comes there and when.
+    required : float, optional
+        Depth that is needed [m].
     """
     reasons = {**network.meta.rejected}
     for reason, count in result.refused.items():
@@ -41,6 +56,17 @@ def no_route(
         nearest = (lat, lon)
         left = float(distance(lat, lon, ends[1].lat, ends[1].lon)) / NAUTICAL_MILE
         words = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."
+    never = None if fields is None else _never_deep_enough(network, fields, required)
+    if never is not None:
+        return NoRouteError(
+            f"No route from {ends[0].name} to {ends[1].name}: "
+            "the water is too shallow at any tide.",
+            str(never),
+            _ADVICE_SHALLOW,
+            reasons=reasons,
+            nearest=nearest,
+            missing_m=never.missing,
+        )
     return NoRouteError(
         f"No route from {ends[0].name} to {ends[1].name} within the limits, departing "
         f"{format_time(depart)}.",
@@ -51,6 +77,45 @@ def no_route(
     )
 
 
+class Shallow(NamedTuple):
+    """Too little water at any tide: where, how much at most, when, and how much is needed."""
+
+    lat: float
+    lon: float
+    depth: float
+    time: float
+    required: float
+    until: float
+
+    @property
+    def missing(self) -> float:
+        """By how much it misses [m]."""
+        return self.required - self.depth
+
+    def __str__(self) -> str:
+        place = format_position(self.lat, self.lon)
+        if not math.isfinite(self.depth):
+            return f"No depth is known on the way near {place}."
+        when = "" if math.isnan(self.time) else f", at {format_time(self.time)}"
+        until = "" if math.isnan(self.time) else f" before {format_time(self.until)}"
+        return (
+            f"The best way there is has at most {self.depth:.2f} m near {place}{when}; "
+            f"{self.required:.2f} m are needed{until}: {self.missing:.2f} m too little."
+        )
+
+
+def _never_deep_enough(network: Network, fields: StationFields, required: float) -> Shallow | None:
+    """Return the shallowest place of the best way if even the highest tide is too low there."""
+    if not math.isfinite(required) or min(network.meta.start, network.meta.goal) < 0:
+        return None
+    found = shallowest_on_best_way(network, fields)
+    if found is None or found.depth >= required:
+        return None
+    end = float(fields.times[-1])
+    return Shallow(found.lat, found.lon, found.depth, found.time, required, end)
+
+
+_ADVICE_SHALLOW = "Sail lighter, ask less clearance, or come at a higher tide than these data hold."
 _ADVICE = {
     codes.DEPTH: "Sail lighter, ask less clearance, or allow waiting for the tide.",
     codes.WAVE_HEIGHT: "Leave later, or raise the limit of the ship.",

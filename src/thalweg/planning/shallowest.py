@@ -1,0 +1,137 @@
+"""The shallowest water that cannot be avoided, at the highest tide: is there any way at all?"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
+from thalweg.network import Network
+from thalweg.sea import StationFields
+
+_HALVINGS = 60
+
+
+class Shallowest(NamedTuple):
+    """Where the best way is shallowest.
+
+    Attributes
+    ----------
+    depth : float
+        Greatest depth there ever is [m]; -inf where nothing is known.
+    lat, lon : float
+        [deg].
+    time : float
+        When the water is highest there [s since 1970]; NaN if it never changes.
+    """
+
+    depth: float
+    lat: float
+    lon: float
+    time: float
+
+
+def shallowest_on_best_way(network: Network, fields: StationFields) -> Shallowest | None:
+    """Return the shallowest place of the way on which it is deepest, each at its highest tide.
+
+    Parameters
+    ----------
+    network : Network
+        With start and goal.
+    fields : StationFields
+        The sea at its stations; depth and level where they are known.
+
+    Returns
+    -------
+    Shallowest or None
+        None if nothing of the network joins start and goal.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    start, goal = network.meta.start, network.meta.goal
+    greatest, place = _greatest_depths(network, fields)
+    tails, heads, n = network.tails(), network.target, network.n_nodes
+
+    def parts(keep: np.ndarray) -> np.ndarray:
+        ones = np.ones(int(keep.sum()), np.int8)
+        graph = coo_array((ones, (tails[keep], heads[keep])), shape=(n, n))
+        return np.asarray(connected_components(graph, directed=False)[1])
+
+    whole = parts(np.ones(len(heads), bool))
+    if whole[start] != whole[goal]:
+        return None
+    levels = np.unique(greatest)
+    low, high = 0, len(levels) - 1  # joined at low; the highest at which they are is looked for
+    for _ in range(_HALVINGS):
+        if low >= high:
+            break
+        middle = (low + high + 1) // 2
+        of = parts(greatest >= levels[middle])
+        low, high = (middle, high) if of[start] == of[goal] else (low, middle - 1)
+    depth = float(levels[low])
+    of = parts(greatest > depth)
+    least = np.flatnonzero((greatest == depth) & (of[tails] != of[heads]))
+    edge = int(least[np.argmin(_detour(network, tails[least], heads[least]))])
+    station = int(place[edge])
+    return Shallowest(
+        depth, float(network.station_lat[station]), float(network.station_lon[station]),
+        _highest_time(fields, station),
+    )  # fmt: skip
+
+
+def _detour(network: Network, tails: np.ndarray, heads: np.ndarray) -> FloatArray:
+    """Return how far legs lie out of the way from start to goal [rough squares of degrees]."""
+    lat = 0.5 * (network.station_lat[tails] + network.station_lat[heads])
+    lon = 0.5 * (network.station_lon[tails] + network.station_lon[heads])
+    away = np.zeros(len(lat))
+    for end in (network.meta.start, network.meta.goal):
+        east = (lon - network.station_lon[end] + 180.0) % 360.0 - 180.0
+        away += np.hypot(lat - network.station_lat[end], east * np.cos(np.radians(lat)))
+    return away
+
+
+def _greatest_depths(network: Network, fields: StationFields) -> tuple[FloatArray, np.ndarray]:
+    """Return the greatest depth ever along each edge [m], and the station where that is least."""
+    bed = _greatest(fields, BED_DEPTH, math.inf)
+    level = _greatest(fields, WATER_LEVEL, 0.0)
+    charted = np.asarray(network.depth, float)
+    charted = np.where(np.isnan(charted), -math.inf, charted)
+    edges = np.arange(len(charted))
+    samples = np.diff(network.via_ptr)
+    edge = np.concatenate([edges, edges, np.repeat(edges, samples)])
+    a = np.concatenate([network.tails(), network.target, network.via_a]).astype(np.int64)
+    b = np.concatenate([network.tails(), network.target, network.via_b]).astype(np.int64)
+    share = np.concatenate([np.zeros(2 * len(edges)), network.via_w])
+    with np.errstate(invalid="ignore"):
+        beds = np.where(share > 0.0, (1.0 - share) * bed[a] + share * bed[b], bed[a])
+        levels = np.where(share > 0.0, (1.0 - share) * level[a] + share * level[b], level[a])
+        depth = np.minimum(charted[edge], beds) + levels
+    depth = np.where(np.isnan(depth), -math.inf, depth)
+    order = np.lexsort((depth, edge))
+    first = np.searchsorted(edge[order], edges)
+    least = order[first]
+    return depth[least], np.where(share[least] > 0.5, b[least], a[least])
+
+
+def _greatest(fields: StationFields, channel: int, absent: float) -> FloatArray:
+    """Return the greatest value ever of a channel at every station; -inf where never known."""
+    k = fields.channel_index[channel]
+    if k < 0:
+        return np.full(fields.values.shape[0], absent)
+    values = np.fmax.reduce(fields.values[:, :, k], axis=1).astype(float)
+    return np.where(np.isnan(values), -math.inf, values)
+
+
+def _highest_time(fields: StationFields, station: int) -> float:
+    total = np.zeros(len(fields.times))
+    for channel in (BED_DEPTH, WATER_LEVEL):
+        k = fields.channel_index[channel]
+        if k >= 0:
+            total = total + fields.values[station, :, k]
+    if np.isnan(total).all() or np.nanmax(total) == np.nanmin(total):
+        return math.nan
+    return float(fields.times[int(np.nanargmax(total))])

@@ -1,0 +1,112 @@
+"""Water that is too shallow at any tide: where, how much there is at most, and when."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.sea import hydro
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.errors import MissingVariableError, NoRouteError
+from thalweg.core.time import parse_time
+
+LOW, M2 = 1767236400.0, 44714.0  # 2026-01-01T03:00Z
+AREA = (51.6, 51.9, 3.40, 3.75)
+BED, LEVEL = "sea_floor_depth_below_geoid", "sea_surface_height_above_geopotential_datum"
+SHIP = Ship.simple(speed_kn=10.0, draught_m=6.5)
+
+
+def level(time, lat, lon):
+    return -1.5 * np.cos(2 * np.pi * (time - LOW) / M2) + 0.0 * lat
+
+
+def estuary(gully: float) -> Sea:
+    """Return a bank of 3 m across the way, with a gully through it at 51.8 N."""
+
+    def bed(time, lat, lon):
+        bank = (lon > 3.55) & (lon < 3.60)
+        return np.where(bank, np.where(np.abs(lat - 51.8) < 0.02, gully, 3.0), 15.0)
+
+    return Sea.from_functions({BED: bed, LEVEL: level})
+
+
+def asked(sea, start=(51.71, 3.45), goal=(51.77, 3.70), ukc=1.0, **more):
+    voyage = Voyage(start=start, goal=goal, depart=LOW, min_ukc_m=ukc, **more)
+    return plan(voyage, ship=SHIP, sea=sea, chart=Chart.open_water(*AREA))
+
+
+def test_a_way_that_is_too_shallow_at_any_tide_says_where_when_and_by_how_much() -> None:
+    with pytest.raises(NoRouteError) as caught:
+        asked(estuary(5.5))
+    error = caught.value
+    # 5.5 + 1.5 m at high water; 6.5 + 1 m are needed
+    assert error.details["missing_m"] == pytest.approx(0.5, abs=0.02)
+    assert "too shallow at any tide" in error.asked
+    assert "at most 7.00 m" in error.possible or "at most 6.99 m" in error.possible
+    assert "0.5" in error.possible
+    place = error.possible.split("near ")[1]
+    assert place.startswith("51.8") or place.startswith("51.79") or place.startswith("51.78")
+    high = [LOW + (k + 0.5) * M2 for k in range(-1, 6)]
+    told = parse_time(error.possible.split("at ")[2].split(";")[0])
+    assert min(abs(told - h) for h in high) < 700.0
+    assert error.remedy
+
+
+def test_a_way_that_opens_at_high_water_is_sailed() -> None:
+    best = asked(estuary(6.5)).best
+    assert best.feasible and best.waiting_h > 0.0
+
+
+def test_too_late_is_not_too_shallow() -> None:
+    with pytest.raises(NoRouteError) as caught:
+        asked(estuary(6.5), wait=False)
+    assert "too shallow at any tide" not in str(caught.value)
+
+
+@pytest.mark.parametrize("end", ["start", "goal"])
+def test_an_end_in_water_that_is_never_deep_enough(end) -> None:
+    with pytest.raises(NoRouteError, match="at any tide of the data") as caught:
+        asked(estuary(6.5), **{end: (51.65, 3.575)})
+    # 3 + 1.5 m; 7.5 m are needed
+    assert caught.value.details["missing_m"] == pytest.approx(3.0, abs=0.01)
+    assert "51.65" in caught.value.asked and "highest tide" in caught.value.asked
+
+
+def test_a_dry_goal_of_a_mesh() -> None:
+    """The bank of the synthetic run is 1 m above datum in the east; the tide rises 1.5 m."""
+    sea = Sea.open(hydro.delft3d_fm())
+    voyage = Voyage(
+        start=(51.02, 3.005), goal=(51.02, 3.104), depart="2026-01-01T01:00Z", min_ukc_m=0.0
+    )
+    ship = Ship.simple(speed_kn=6.0, draught_m=2.0)
+    with pytest.raises(NoRouteError, match="at any tide") as caught:
+        plan(voyage, ship=ship, sea=sea, chart=Chart.open_water(50.9, 51.2, 2.9, 3.3))
+    assert 0.5 < caught.value.details["missing_m"] < 2.5
+
+
+def test_levels_without_a_bed_are_not_a_depth() -> None:
+    data = hydro.delft3d_fm().drop_vars(["mesh2d_flowelem_bl", "mesh2d_waterdepth"])
+    voyage = Voyage(
+        start=(51.02, 3.005), goal=(51.02, 3.03), depart="2026-01-01T01:00Z", min_ukc_m=1.0
+    )
+    with pytest.raises(MissingVariableError, match="nothing tells depth") as caught:
+        plan(voyage, ship=SHIP, sea=Sea.open(data), chart=Chart.open_water(50.9, 51.2, 2.9, 3.3))
+    assert "bed level" in caught.value.possible and caught.value.remedy
+
+
+def test_nobody_sails_through_a_gap_in_time() -> None:
+    """No data from 3 h to 9 h: a ship lies at her berth until then, or has no route."""
+    sea = Sea.open(hydro.dhi().isel(time=[0, 1, 2, 3, 9, 10, 11, 12]))
+    given = {
+        "ship": Ship.simple(speed_kn=6.0, draught_m=1.0),
+        "sea": sea,
+        "chart": Chart.open_water(50.9, 51.2, 2.9, 3.3),
+    }
+    ends = {"start": (51.02, 3.005), "goal": (51.02, 3.05), "depart": "2026-01-01T04:00Z"}
+    best = plan(Voyage(**ends), **given).best
+    assert best.feasible
+    assert best.track.wait[0] >= 5 * 3600.0 - 1.0
+    with pytest.raises(NoRouteError) as caught:
+        plan(Voyage(**ends, wait=False), **given)
+    assert any("no data" in reason for reason in caught.value.reasons)
+    assert "gaps" in caught.value.remedy
