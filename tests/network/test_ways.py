@@ -183,6 +183,15 @@ def test_a_way_by_two_canals_gives_the_runs_of_their_subsets():
     toll = network.length + 1e6 * (network.fee == chart.canals[3].fee)
     first, *_ = alternatives(network, chart, weighing=Weighing(toll), threshold=0.6)
     assert first.canals == ("suez",)
+    hours = Weighing(network.times(7.0))
+    by_time, *_ = alternatives(network, chart, weighing=hours)
+    canals = [canal for canal in chart.canals if canal.name in by_time.canals]
+    sea = ways[0].length - sum(
+        canal.length for canal in chart.canals if canal.name in ways[0].canals
+    )
+    waiting = sum(canal.transit_time for canal in canals)
+    assert by_time.canals == ("corinth", "suez")
+    assert by_time.cost == pytest.approx(waiting + sea / 7.0, rel=0.06)
 
 
 @pytest.mark.slow

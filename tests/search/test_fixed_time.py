@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.search.small import NO_LIMITS, limits, make_fields, make_network, steady
+from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
-from thalweg.network import check_network, shortest
+from thalweg.network import check_network, globe, shortest
 from thalweg.search import best_departure, earliest_arrival, lower_bound
 
 TIMES = np.linspace(0.0, 400_000.0, 9)
@@ -160,3 +161,24 @@ def test_broken_fixed_times_are_named():
         check_network(short)
     with pytest.raises(InputError, match="fixed_time has 3 entries"):
         check_network(dataclasses.replace(base, fixed_time=np.full(3, 9.0)))
+
+
+def test_a_ship_sails_the_globe_network_through_a_canal_and_round_when_it_is_forbidden():
+    chart = Chart.gshhg("c")
+    table, speed = steady(7.0), 7.0
+    found = []
+    for allowed in (chart, chart.without_canals("panama")):
+        network = globe(allowed, (12.0, -77.0), (6.0, -80.5), coast_levels=3, slack=0.1)
+        times = np.array([0.0, 5e6])
+        fields = make_fields(network, times, current_east=0.0, current_north=0.0)
+        ends = {"start": network.meta.start, "goal": network.meta.goal}
+        given = {"depart": 0.0, "setting": 0, "limits": NO_LIMITS, "top_speed": speed, **ends}
+        result = earliest_arrival(network, fields, table, **given)
+        distance, path = shortest(network, *ends.values(), weight=network.times(speed))
+        assert result.arrive == pytest.approx(distance[ends["goal"]], rel=1e-6)
+        assert result.path.tolist() == path
+        assert lower_bound(network, fields, table, **given).value <= result.duration
+        found.append(result.duration)
+    panama = chart.canals[1]
+    assert panama.transit_time < found[0] < panama.transit_time + 500 * 1852 / speed
+    assert found[1] > 10.0 * found[0]

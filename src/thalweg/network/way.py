@@ -27,8 +27,8 @@ class Weighing:
     weight : float64[E], optional
         Weight of every edge; by default its length [m].
     leg_cost : callable, optional
-        The same for legs (lat1, lon1, lat2, lon2) [deg], for pulling ways taut; by default their
-        length [m].
+        The same for legs (lat1, lon1, lat2, lon2) [deg], for pulling ways taut; without it they
+        are pulled by their length.
     """
 
     weight: FloatArray | None = None
@@ -82,8 +82,8 @@ class Way:
     length : float
         Length [m]; a canal counts with its own.
     cost : float
-        Cost by the weighing that favours this way most, as pulled; canals count with the weight
-        of their edges.
+        Cost by the weighing that favours this way most: as pulled, where it tells what legs cost
+        (canals count with the weight of their edges), else as found on the network.
     ratio : float
         Cost on the network over that of the best way by the same weighing; 1 for the best.
     canals : tuple of str
@@ -127,6 +127,7 @@ def drawn_way(
     """Return the way along nodes of a network, pulled taut; ``ratio`` as in `Way`."""
     lat, lon = network.lat[path], network.lon[path]
     lat, lon = pulled(chart, lat, lon, leg_cost=weighing.leg_cost, sides=sides)
+    weight = weights_of(network, weighing)
     length, cost = total_cost((lat, lon)), total_cost((lat, lon), weighing.leg_cost)
     names: list[str] = []
     if chart.canals:
@@ -136,8 +137,9 @@ def drawn_way(
             canal, leg = chart.canals[through[k]], (lat[k : k + 2], lon[k : k + 2])
             names.append(canal.name)
             length += canal.length - total_cost(leg)
-            weight = weights_of(network, weighing)[edges[int(through[k])]]
-            cost += float(weight) - total_cost(leg, weighing.leg_cost)
+            cost += float(weight[edges[int(through[k])]]) - total_cost(leg, weighing.leg_cost)
+    if weighing.weight is not None and weighing.leg_cost is None:
+        cost = float(weight[edges_of(network, path)].sum())
     return Way(lat, lon, length, cost, ratio, tuple(names), path)
 
 
