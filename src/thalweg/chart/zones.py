@@ -186,7 +186,7 @@ class Zones:
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         if not self.eca:
             return np.where(np.isfinite(sum(ends)), 0.0, np.nan)
-        legs = [np.ascontiguousarray(x).ravel() for x in ends]
+        legs = [x.flatten() for x in ends]
         return shares_inside(self.eca_index, self._eca_outlines, *legs).reshape(ends[0].shape)
 
     def in_eca(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
@@ -194,7 +194,7 @@ class Zones:
         a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
         if not self.eca:
             return np.zeros(a.shape, np.bool_)
-        return points_inside(self.eca_index, a.ravel(), b.ravel()).reshape(a.shape)
+        return points_inside(self.eca_index, a.flatten(), b.flatten()).reshape(a.shape)
 
     @cached_property
     def _groups(self) -> tuple[Group, Group]:

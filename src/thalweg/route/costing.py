@@ -14,10 +14,12 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.kernels import fitness as columns
 from thalweg.kernels.fitness import FitnessWorld, sail_population
 from thalweg.kernels.tables import TableArrays
+from thalweg.route.canal_legs import canal_fuel_rate, canal_legs
 from thalweg.route.quick import Bundle, IntArray, Sailor, make_sailor
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.route.track import Track
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable, Ship
     from thalweg.ship.fuel_terms import FuelTerms
@@ -90,8 +92,8 @@ class Purse:
     weights : Weights
     per_second : float
         What a second of the passage is worth besides; costs that are compared have it in them.
-    canals : tuple of array
-        Time [s], cost of fuel per kg weight [kg] and dues of each canal of the chart.
+    canals : float64 array (C, 3)
+        Time [s], fuel [kg] and dues of each canal of the chart; empty if the track has none.
     """
 
     sailor: Sailor
@@ -272,27 +274,24 @@ def make_purse(
     fields: GridFields,
     limits: ArrayLike,
     chart: Chart | None,
-    origin: float,
-    total: float,
+    track: Track,
     weights: Weights,
 ) -> Purse:
-    """Put a purse together; ``total`` is the rough length of the track [m].
+    """Put a purse together for polishing a track; times count from its departure.
 
     Raises
     ------
     InputError
         If the tables differ in their settings.
     """
-    from thalweg.route.canal_legs import canal_fuel_rate
-
     sailor = make_sailor(
         table=table,
         chart=chart,
         fields=fields,
         limits=limits,
-        origin=origin,
+        origin=track.depart,
         by_length=False,
-        total=total,
+        total=float(track.lengths.sum()),
     )
     rates = fuel if isinstance(fuel, TableArrays) else fuel.kernel_arrays()
     if rates.n_settings != sailor.table.n_settings:
@@ -310,8 +309,9 @@ def make_purse(
     channels = np.zeros(sailor.raster.values.shape[3], dtype=np.int64)
     channels[index[index >= 0]] = np.flatnonzero(index >= 0)
     world = FitnessWorld(sailor.raster, channels, sailor.table, rates, sailor.limits, terms)
+    passed = canal_legs(track, chart)  # none: canals need not be looked for again and again
     canals = [
         (c.transit_time, canal_fuel_rate(ship, c) * c.transit_time, c.fee * weights.priced)
-        for c in (() if chart is None else chart.canals)
+        for c in (passed.canals if passed.any else ())
     ]
     return Purse(sailor, world, weights, 0.0, np.array(canals, float).reshape(-1, 3))

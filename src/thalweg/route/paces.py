@@ -147,9 +147,10 @@ def _hull(time: FloatArray, cost: FloatArray) -> list[int]:
 
 def _with_part(line: Line, part: tuple[int, int, float] | None) -> Line:
     """Return the line with a slower setting on a part of one leg, next to a leg as slow."""
-    if part is None or not _LEAST_SHARE < part[2] < 1.0 - _LEAST_SHARE:
+    if part is None or part[2] < _LEAST_SHARE:
         return line
     leg, slower, share = part
+    share = min(share, 1.0 - _LEAST_SHARE)
     first = leg > 0 and line.setting[leg - 1] == slower  # the slower part comes first
     ends = (line.lat[leg], line.lon[leg], line.lat[leg + 1], line.lon[leg + 1])
     length, course, _ = inverse(*ends)

@@ -39,7 +39,7 @@ _TURNS = 2  # choices of settings and bendings of a level
 _NEWTON = 4  # steps of a bending
 _HOPEFUL = 1.02  # a coarse start is worked on if it costs no more than this times the own one
 _TIMINGS = 4  # referees asked until the arrival fits
-_ON_TIME = 1e-6  # share of the passage by which it may come early
+_ON_TIME = 2e-6  # share of the passage by which it may come early
 _CROSSED = 0.02  # share of a leg in a control area, and out of it, that is worth a waypoint
 
 
@@ -98,7 +98,7 @@ def polish(
     Level by level legs are halved, the settings chosen anew (`choose_paces`) and the waypoints bent
     sideways by Newton's method on cost plus the worth of time, which is the slope of cost over time
     that the settings leave. All this on frozen fields; the referee has the last word, and the
-    time of arrival it finds is met to a millionth of the passage by choosing settings again.
+    time of arrival it finds is met by choosing settings again, to a few millionths of the passage.
     """
     terms = ship.fuel_terms if terms is None else terms
     weights = Weights.of(objective, terms, ship.waiting_fuel_rate)
@@ -129,14 +129,13 @@ def polish(
             fields=frozen,
             limits=tightened(limits, margin),
             chart=chart,
-            origin=scored.depart,
-            total=float(scored.track.lengths.sum()),
+            track=scored.track,
             weights=weights,
         )
         line = _worked(line_of(scored.track, purse), purse, latest - scored.depart)
         if line is None:
             break
-        route = _in_time(line, purse, latest, score)
+        route = _in_time(line, purse, latest, score, value)
         best = min(best, route, key=value)
         if route.feasible:
             break
@@ -165,7 +164,7 @@ def _worked(line: Line, purse: Purse, latest: float) -> Line | None:
             coarse = resampled(paced, count + 1)
             if len(line) > count + 1 and _price(coarse, purse, worth) <= _HOPEFUL * own:
                 starts.append(coarse)
-    found = [paced, *(_levels(start, purse, latest, worth) for start in starts)]
+    found = [line, *(_levels(start, purse, latest, worth) for start in starts)]
     return min(found, key=lambda item: _in_time_cost(item, purse, latest, worth))
 
 
@@ -179,8 +178,8 @@ def _price(line: Line, purse: Purse, worth: float) -> float:
 
 
 def _in_time_cost(line: Line, purse: Purse, latest: float, worth: float) -> float:
-    """Return the cost, lateness at its worth (and then some)."""
-    arrive, cost, _ = purse.spend(line.bundle())
+    """Return the cost at the best settings, lateness at its worth (and then some)."""
+    arrive, cost, _ = purse.spend(choose_paces(line, purse, latest)[0].bundle())
     late = max(float(arrive[0, -1]) - latest, 0.0)
     return float(cost[0]) + (2.0 * worth * late if late > 0.0 else 0.0)
 
@@ -201,7 +200,7 @@ def _levels(line: Line, purse: Purse, latest: float, worth: float) -> Line:
             if not math.isfinite(_price(paced, purse, worth)):
                 return line
             line = bend(paced, purse.worth(worth), rounds=_NEWTON)
-    return choose_paces(line, purse, latest)[0]
+    return line
 
 
 def _split(line: Line, purse: Purse, longest: float) -> Line:
@@ -236,19 +235,22 @@ def _cut_at_borders(line: Line, purse: Purse) -> Line:
     )
 
 
-def _in_time(line: Line, purse: Purse, latest: float, score: Callable[[Track], Route]) -> Route:
+def _in_time(
+    line: Line,
+    purse: Purse,
+    latest: float,
+    score: Callable[[Track], Route],
+    value: Callable[[Route], float],
+) -> Route:
     """Let the referee score a line, its settings chosen so that it arrives when it should."""
     target = latest - purse.origin
-    budget, best = target, score(track_of_line(line, purse))
-    exact = _ON_TIME * target
+    budget, exact = target, _ON_TIME * target
+    found: list[Route] = []
     for _ in range(_TIMINGS):
-        late = best.arrive - latest
+        route = score(track_of_line(choose_paces(line, purse, budget)[0], purse))
+        found.append(route)
+        late = route.arrive - latest
         if not math.isfinite(late) or -exact <= late <= 0.0:
             break
         budget -= late + 0.3 * exact
-        tried = score(track_of_line(choose_paces(line, purse, budget)[0], purse))
-        nearer = abs(tried.arrive - latest + exact) < abs(late + exact)
-        if not math.isfinite(tried.arrive) or (best.arrive <= latest and not nearer):
-            break
-        best = tried
-    return best
+    return min(found, key=value)
