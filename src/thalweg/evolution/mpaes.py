@@ -1,0 +1,183 @@
+"""M-PAES: local search by many hill climbers, then recombination (Knowles & Corne 2000)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.evolution.genome import IntArray, joined
+from thalweg.evolution.metrics import crowding_distance
+from thalweg.evolution.ranking import best_of, dominates
+from thalweg.evolution.strategy import Steps, Strategy
+
+MOST_FAILS = 5  #: moves in a row to somewhere worse that end a climb
+MOST_MOVES = 20  #: of a climb
+CROSSINGS = 20  #: pairs tried for a child that may join
+_SHARE = 5  # the climbers are so many times fewer than the archive
+
+
+@dataclass
+class Climber:
+    """One local search: what it has to compare with, and how it fares.
+
+    Attributes
+    ----------
+    score : float64 array (3,)
+        Where it stands.
+    near : float64 array (h, 3)
+        Its own archive H.
+    fails, moves : int
+    """
+
+    score: FloatArray
+    near: FloatArray
+    fails: int = 0
+    moves: int = 0
+
+    @property
+    def climbs(self) -> bool:
+        """Whether it goes on."""
+        return self.fails < MOST_FAILS and self.moves < MOST_MOVES
+
+    def accepts(self, tried: FloatArray, most: int) -> bool:
+        """Judge a mutant, and stand there if it is accepted."""
+        self.moves += 1
+        if dominates(self.score, tried):
+            self.fails += 1
+            return False
+        if dominates(tried, self.score):
+            self.fails = 0
+            self._remember(tried, most)
+            self.score = tried
+            return True
+        if dominates(self.near, tried).any():
+            return False
+        return self._test(tried, most)
+
+    def _test(self, tried: FloatArray, most: int) -> bool:
+        """Remember a mutant that nothing known dominates; stand there if it is less crowded."""
+        both = np.vstack([self.near, self.score, tried])
+        crowding = crowding_distance(both[:, :2])
+        self._remember(tried, most)
+        if crowding[-1] > crowding[-2]:
+            self.score = tried
+            return True
+        return False
+
+    def _remember(self, tried: FloatArray, most: int) -> None:
+        near = self.near[~dominates(tried[None], self.near)]
+        self.near = np.vstack([near, tried])
+        if len(self.near) > most:
+            self.near = np.delete(self.near, np.argmin(crowding_distance(self.near[:, :2])), axis=0)
+
+
+@dataclass
+class _Climb:
+    """The climbers of one round, and which track of the population each stands on."""
+
+    climbers: list[Climber]
+    track: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+
+
+class Mpaes(Strategy):
+    """A global archive and climbers, which all move together so that they are scored at once.
+
+    The population is the archive G followed by the tracks that climbers stand on.
+    """
+
+    def _search(self) -> Steps:
+        told = yield self.population
+        self.scores = told
+        chosen, _, _ = best_of(told, self.size)
+        self.population, self.scores = self.population.take(chosen), told[chosen]
+        count = max(2, self.size // _SHARE)
+        base = self._spread(count)
+        while True:
+            yield from self._climb(base)
+            base = self._archive()
+            base = yield from self._recombine(count)
+
+    def _spread(self, count: int) -> IntArray:
+        """Return climbers spread over the archive."""
+        return np.unique(np.linspace(0, len(self.scores) - 1, count).round().astype(np.int64))
+
+    def _climb(self, base: IntArray) -> Steps:
+        """Let every climber mutate until it fails too often."""
+        archive = self.scores[self._archive()]
+        climbers = []
+        for index in base:
+            score = self.scores[index]
+            near = archive[~dominates(archive, score[None])]
+            climbers.append(Climber(score, np.vstack([score[None], near])[: self.size]))
+        climb = _Climb(climbers, np.array(base))
+        alone = replace(self.habits, crossover=0.0)
+        while True:
+            active = np.array([k for k, c in enumerate(climb.climbers) if c.climbs], dtype=np.int64)
+            if not len(active):
+                return
+            pairs = np.resize(climb.track[active], 2 * ((len(active) + 1) // 2)).reshape(-1, 2)
+            young = self._children(pairs, alone)
+            told = yield young
+            before = len(self.scores)
+            for place, k in enumerate(active):
+                if climb.climbers[k].accepts(told[place], self.size):
+                    climb.track[k] = before + place
+            self._update(climb.track, young, told)
+
+    def _update(self, track: IntArray, young, told: FloatArray) -> None:  # type: ignore[no-untyped-def]
+        """Update the archive with all the young; keep it and what climbers stand on."""
+        both = np.concatenate([self.scores, told])
+        kept = best_of(both, self.size)[0]
+        chosen = np.concatenate([kept, np.setdiff1d(track, kept)])
+        self._keep(chosen, young, told)
+        where = np.full(len(both), -1, dtype=np.int64)
+        where[chosen] = np.arange(len(chosen))
+        track[:] = where[track]
+
+    def _archive(self) -> IntArray:
+        """Return what nothing dominates, at most ``size`` tracks."""
+        chosen, rank, _ = best_of(self.scores, self.size)
+        return chosen[rank[chosen] == 0]
+
+    def _recombine(self, count: int):  # type: ignore[no-untyped-def]
+        """Return the climbers of the next round: children that may join, else winners of G."""
+        sure = replace(self.habits, crossover=1.0, mutation=0.0)
+        base: list[int] = []
+        for _ in range(CROSSINGS):
+            missing = count - len(base)
+            pairs = self.rng.integers(0, len(self.scores), size=((missing + 1) // 2, 2))
+            young = self._children(pairs, sure)
+            told = yield young
+            archive = self.scores[self._archive()]
+            fit = [k for k in range(len(told)) if self._joins(told[k], archive, pairs[k // 2])]
+            before = len(self.scores)
+            self.population = joined(self.population, young)
+            self.scores = np.concatenate([self.scores, told])
+            base += [before + k for k in fit[:missing]]
+            if len(base) == count:
+                break
+        best = self._archive()
+        rest = count - len(base)
+        if rest:
+            crowding = crowding_distance(self.scores[best, :2])
+            place = np.empty(len(best), dtype=np.int64)
+            place[np.argsort(-crowding, kind="stable")] = np.arange(len(best))
+            base += best[self._tournament(place, rest)].tolist()
+        track = np.array(base, dtype=np.int64)
+        kept = np.concatenate([best, np.setdiff1d(track, best)])
+        where = np.full(len(self.scores), -1, dtype=np.int64)
+        where[kept] = np.arange(len(kept))
+        self.population, self.scores = self.population.take(kept), self.scores[kept]
+        return where[track]
+
+    def _joins(self, child: FloatArray, archive: FloatArray, parents: IntArray) -> bool:
+        """Return whether a child is fit: not dominated by G, and better or less crowded."""
+        if dominates(archive, child[None]).any():
+            return False
+        if dominates(child[None], archive).any():
+            return True
+        both = np.vstack([archive, self.scores[parents], child])
+        crowding = crowding_distance(both[:, :2])
+        return bool(crowding[-1] > crowding[-3:-1].min())

@@ -1,0 +1,82 @@
+"""Comparing scored tracks: feasibility first, then fronts, crowding, strength and density."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.evolution.genome import BoolArray, IntArray
+from thalweg.kernels import ranking
+
+TIME, COST, VIOLATION = 0, 1, 2
+
+
+def ranked(scores: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return (rank, crowding distance) of scores (N, 3).
+
+    Feasible tracks are sorted into non-dominated fronts, 0 the first; those that break something
+    come after them, the one that breaks least first. Of equal ones the first is the better.
+    """
+    n = len(scores)
+    rank, crowding = np.zeros(n, dtype=np.int64), np.full(n, math.inf)
+    first, second = (np.ascontiguousarray(scores[:, c]) for c in (TIME, COST))
+    feasible = scores[:, VIOLATION] == 0.0
+    order = np.lexsort((second, first))
+    order = order[feasible[order]]
+    fronts = ranking.assign_fronts(order, second, np.empty(len(order)), rank)
+    ends = np.full((max(fronts, 1), 4), -1, dtype=np.int64)
+    ranking.assign_crowding(order, first, second, rank, ends, crowding)
+    broken = np.flatnonzero(~feasible)
+    worst = broken[np.argsort(scores[broken, VIOLATION], kind="stable")]
+    rank[worst] = fronts + np.arange(len(worst))
+    return rank, crowding
+
+
+def best_of(scores: FloatArray, size: int) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return (indices of the ``size`` best, rank, crowding): NSGA-II's choice of survivors."""
+    rank, crowding = ranked(scores)
+    return np.lexsort((-crowding, rank))[:size], rank, crowding
+
+
+def strength_fitness(scores: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return SPEA2's (strength S, raw fitness R, fitness F) of scores (N, 3).
+
+    F is R plus the density 1 / (distance to the k-th neighbour + 2), k = floor(sqrt(N)); below 1
+    is what nothing dominates (Zitzler, Laumanns & Thiele 2001). Distances are between objectives
+    as given.
+    """
+    first, second, violation = (np.ascontiguousarray(scores[:, c]) for c in range(3))
+    strength, raw = np.empty(len(scores)), np.empty(len(scores))
+    ranking.strengths(first, second, violation, strength, raw)
+    near = ranking.neighbour_distances(first, second)
+    k = min(math.isqrt(len(scores)), near.shape[1])
+    density = 1.0 / (near[:, k - 1] + 2.0) if k else np.full(len(scores), 0.5)
+    return strength, raw, raw + density
+
+
+def front_of(scores: FloatArray) -> IntArray:
+    """Return the feasible tracks that nothing dominates, by ascending time."""
+    rank, _ = ranked(scores)
+    chosen = np.flatnonzero((rank == 0) & (scores[:, VIOLATION] == 0.0))
+    return chosen[np.argsort(scores[chosen, TIME])]
+
+
+def normalised(scores: FloatArray) -> FloatArray:
+    """Return scores with time and cost as shares of their ranges among the feasible."""
+    out = scores.copy()
+    among = scores[scores[:, VIOLATION] == 0.0] if (scores[:, VIOLATION] == 0.0).any() else scores
+    for c in (TIME, COST):
+        low, high = among[:, c].min(), among[:, c].max()
+        out[:, c] = (scores[:, c] - low) / (high - low if high > low else 1.0)
+    return out
+
+
+def dominates(a: FloatArray, b: FloatArray) -> BoolArray:
+    """Return where scores dominate others, feasibility first; the last axis holds the scores."""
+    less = a[..., VIOLATION] < b[..., VIOLATION]
+    same = a[..., VIOLATION] == b[..., VIOLATION]
+    no_worse = (a[..., TIME] <= b[..., TIME]) & (a[..., COST] <= b[..., COST])
+    better = (a[..., TIME] < b[..., TIME]) | (a[..., COST] < b[..., COST])
+    return np.asarray(less | (same & no_worse & better))

@@ -1,0 +1,48 @@
+"""SPEA2 (Zitzler, Laumanns & Thiele 2001)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.evolution.genome import IntArray
+from thalweg.evolution.ranking import normalised, strength_fitness
+from thalweg.evolution.strategy import Steps, Strategy
+from thalweg.kernels.ranking import truncate
+
+
+class Spea2(Strategy):
+    """An archive of what nothing dominates, filled with the fittest or thinned where crowded.
+
+    Distances are between objectives as shares of their ranges.
+    """
+
+    def _search(self) -> Steps:
+        told = yield self.population
+        chosen, place = archive(told, self.size)
+        self.population, self.scores = self.population.take(chosen), told[chosen]
+        while True:
+            pairs = self._tournament(place, 2 * ((self.size + 1) // 2)).reshape(-1, 2)
+            young = self._children(pairs)
+            told = yield young
+            chosen, place = archive(np.concatenate([self.scores, told]), self.size)
+            self._keep(chosen, young, told)
+
+
+def archive(scores: FloatArray, size: int) -> tuple[IntArray, IntArray]:
+    """Return (indices of the archive, the place of each by fitness, 0 the best)."""
+    level = normalised(scores)
+    _, _, fitness = strength_fitness(level)
+    _, first = np.unique(scores, axis=0, return_index=True)
+    again = np.ones(len(scores), dtype=bool)
+    again[first] = False
+    fitness = np.where(again, fitness + len(scores) ** 2, fitness)  # one of equals is enough
+    chosen = np.flatnonzero(fitness < 1.0)
+    if len(chosen) > size:
+        left = truncate(level[chosen, 0].copy(), level[chosen, 1].copy(), size)
+        chosen = chosen[left]
+    else:
+        chosen = np.argsort(fitness, kind="stable")[:size]
+    place = np.empty(len(chosen), dtype=np.int64)
+    place[np.argsort(fitness[chosen], kind="stable")] = np.arange(len(chosen))
+    return chosen, place
