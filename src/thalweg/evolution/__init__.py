@@ -4,6 +4,7 @@ from thalweg.evolution.evaluator import Evaluator, Prices, make_evaluator
 from thalweg.evolution.evolve import Evolution, Progress, evolve
 from thalweg.evolution.genome import Genome, Population
 from thalweg.evolution.operators import Habits, Mix
+from thalweg.evolution.refine import refine_front
 
 __all__ = [
     "Evaluator",
@@ -16,4 +17,5 @@ __all__ = [
     "Progress",
     "evolve",
     "make_evaluator",
+    "refine_front",
 ]

@@ -85,6 +85,16 @@ class Evaluator:
         """The chart that tracks keep clear of."""
         return self.sailor.chart
 
+    @property
+    def varies(self) -> bool:
+        """Whether zones or charted depth make legs differ besides by the sea."""
+        chart: Any = self.chart
+        if chart is None:
+            return False
+        zones = chart.zones
+        priced = self.prices.inside != self.prices.outside and len(getattr(zones, "eca", ()))
+        return bool(chart.has_depth or zones.penalty or zones.price or priced)
+
     def __call__(
         self, genomes: Sequence[Genome] | Population
     ) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time as clock
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -20,7 +19,7 @@ from thalweg.evolution.metrics import generational_distance
 from thalweg.evolution.mpaes import Mpaes
 from thalweg.evolution.nsga2 import Nsga2
 from thalweg.evolution.operators import Habits
-from thalweg.evolution.ranking import front_of
+from thalweg.evolution.ranking import front_of, thinned
 from thalweg.evolution.spea2 import Spea2
 from thalweg.evolution.strategy import Strategy
 from thalweg.kernels import fitness
@@ -28,7 +27,8 @@ from thalweg.route.track import Track
 
 METHODS: dict[str, type[Strategy]] = {"nsga2": Nsga2, "spea2": Spea2, "mpaes": Mpaes}
 N_STOP = 33  #: generations over which the generational distance must have settled
-SETTLED = 1e-9  #: its variance below which it has, objectives being shares of the front's range
+SETTLED = 3e-4  #: its variance below which it has, in units of the front's mean spacing squared
+MOST_GENERATIONS = 500  #: if nothing else limits a run
 _PROOF = 4.0  # the front is looked at again with pieces so many times shorter
 
 Cancel: TypeAlias = Callable[[], bool]
@@ -62,7 +62,7 @@ class Limits:
     generations, evaluations : int or None
     seconds : float or None
     settled : float or None
-        Variance of the last 33 generational distances.
+        Variance of the last 33 generational distances, each times the number of points.
     """
 
     generations: int | None = None
@@ -102,7 +102,7 @@ class Evolution:
     time, cost : float64 array (n,)
         As compared: by the kernel, not the referee [s, unit of the prices].
     origin : tuple of str
-        What each comes from: "seed" or the method.
+        What each comes from: the method, or the stage of `refine_front`.
     generations, evaluations : int
     seconds : float
     stopped : str
@@ -159,10 +159,11 @@ def evolve(
         Tracks in the population or archive, at least 4.
     generations, evaluations : int, optional
     seconds : float, optional
-        Limits. A run that ends by seconds is not repeatable.
+        Limits; 500 generations if none is given. A run that ends by seconds is not repeatable.
     settled : float or None
         The run ends when the variance of the last 33 generational distances (each new front to
-        the one before, objectives as shares of its range) is below this; None: never.
+        the one before, objectives as shares of its range, times the number of points: in units
+        of the mean spacing of the front) is below this; None: never.
     seed : int
         Of the random numbers: the same run again, to the bit.
     progress : callable, optional
@@ -184,14 +185,29 @@ def evolve(
     """
     if method not in METHODS:
         raise unknown_name("evolutionary method", method, METHODS)
+    if generations is None and evaluations is None and seconds is None:
+        generations = MOST_GENERATIONS
     limits = Limits(generations, evaluations, seconds, settled)
     rng = np.random.default_rng(seed)
     habits = operators or Habits()
     first = first_population(evaluator, seeds, size=size, habits=habits, rng=rng)
-    if (first.genes[:, :, fitness.WAIT] > 0.0).any() and habits.mix.pause == 0.0:
-        habits = replace(habits, mix=replace(habits.mix, pause=0.5))
-    strategy = METHODS[method](evaluator, first, size=size, habits=habits, rng=rng)
-    return run(strategy, evaluator, limits, method=method, progress=progress, cancel=cancel)
+    strategy = METHODS[method](evaluator, first, size=size, habits=paused(habits, first), rng=rng)
+    begun = clock.perf_counter()
+    work = run(strategy, evaluator, limits, progress=progress, cancel=cancel)
+    names = [method] * len(strategy.scores)
+    population, scores, origin = proved(evaluator, strategy.population, strategy.scores, names)
+    return evolution_of(
+        population, scores, origin, work=work, seconds=clock.perf_counter() - begun, size=size
+    )
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a run took and why it ended (see `Evolution`)."""
+
+    generations: int
+    evaluations: int
+    stopped: str
 
 
 def run(
@@ -199,34 +215,34 @@ def run(
     evaluator: Evaluator,
     limits: Limits,
     *,
-    method: str,
     progress: Callable[[Progress], None] | None = None,
     cancel: Cancel | None = None,
-) -> Evolution:
-    """Drive a strategy until it has settled or a limit is reached."""
+) -> Work:
+    """Drive a strategy until it has settled, a limit is reached or it is cancelled."""
     begun, settling = clock.perf_counter(), Settling(limits.settled)
     generation = evaluations = 0
-    seeds = len(strategy.ask())
     while True:
         asked = strategy.ask()
         strategy.tell(evaluator.score(asked))
         evaluations += len(asked)
         now = clock.perf_counter() - begun
-        stopped = "cancelled" if cancel is not None and cancel() else ""
         front = strategy.scores[front_of(strategy.scores)][:, :2]
         if progress is not None:
             progress(Progress(generation, evaluations, now, front))
+        stopped = "cancelled" if cancel is not None and cancel() else ""
         stopped = stopped or limits.reached(generation, evaluations, now)
         stopped = stopped or ("settled" if settling.settled(front) else "")
         if stopped:
-            break
+            return Work(generation, evaluations, stopped)
         generation += 1
-    del seeds
-    population, scores = proved(evaluator, strategy.population, strategy.scores)
-    spent = clock.perf_counter() - begun
-    return evolution_of(
-        population, scores, method, work=(generation, evaluations, spent), stopped=stopped
-    )
+
+
+def paused(habits: Habits, population: Population) -> Habits:
+    """Return habits that change waits too, if a population has any."""
+    waits = bool((population.genes[:, :, fitness.WAIT] > 0.0).any())
+    if not waits or habits.mix.pause > 0.0:
+        return habits
+    return replace(habits, mix=replace(habits.mix, pause=0.5))
 
 
 class Settling:
@@ -240,7 +256,8 @@ class Settling:
     def settled(self, front: FloatArray) -> bool:
         """Take the front of a generation and return whether it has settled."""
         if len(front) and len(self._before):
-            self._distances.append(generational_distance(front, self._before))
+            apart = generational_distance(front, self._before)
+            self._distances.append(apart * len(front))
         self._before = front
         if self._variance is None or len(self._distances) < N_STOP:
             return False
@@ -248,40 +265,34 @@ class Settling:
 
 
 def proved(
-    evaluator: Evaluator, population: Population, scores: FloatArray
-) -> tuple[Population, FloatArray]:
+    evaluator: Evaluator, population: Population, scores: FloatArray, origin: Sequence[str]
+) -> tuple[Population, FloatArray, list[str]]:
     """Return the tracks that stay feasible when looked at in shorter pieces."""
-    feasible = np.flatnonzero(scores[:, 2] == 0.0)
-    if not len(feasible):
-        return population.take(feasible), scores[feasible]
-    closer = evaluator.finer(_PROOF).score(population.take(feasible))
-    late = closer[:, 0] - scores[feasible, 0]
-    still = feasible[(closer[:, 2] == 0.0) & np.isfinite(late)]
-    return population.take(still), scores[still]
+    still = np.flatnonzero(scores[:, 2] == 0.0)
+    if len(still):
+        closer = evaluator.finer(_PROOF).score(population.take(still))
+        still = still[closer[:, 2] == 0.0]
+    return population.take(still), scores[still], [origin[int(k)] for k in still]
 
 
 def evolution_of(
     population: Population,
     scores: FloatArray,
-    origin: str | Sequence[str],
+    origin: Sequence[str],
     *,
-    work: tuple[int, int, float],
-    stopped: str,
+    work: Work,
+    seconds: float,
+    size: int,
 ) -> Evolution:
-    """Return the front of scored tracks as an `Evolution`."""
-    front = front_of(scores)
-    names = [origin] * len(scores) if isinstance(origin, str) else origin
+    """Return the front of scored tracks, at most ``size`` of it, as an `Evolution`."""
+    front = thinned(scores, size)
     return Evolution(
         tuple(population.take(front).genomes()),
         scores[front, 0].copy(),
         scores[front, 1].copy(),
-        tuple(names[k] for k in front),
-        *work,
-        stopped,
+        tuple(origin[int(k)] for k in front),
+        work.generations,
+        work.evaluations,
+        seconds,
+        work.stopped,
     )
-
-
-def is_unlimited(limits: Limits) -> bool:
-    """Return whether nothing ends a run."""
-    ends = (limits.generations, limits.evaluations, limits.seconds, limits.settled)
-    return all(value is None or math.isinf(value) for value in ends)

@@ -10,7 +10,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.evolution.calm import calm_speeds
 from thalweg.evolution.evaluator import Evaluator
-from thalweg.evolution.genome import Genome, Population, joined
+from thalweg.evolution.genome import Genome, IntArray, Population, joined
 from thalweg.evolution.operators import FIRST_MIX, Habits, children
 from thalweg.kernels import fitness
 from thalweg.route.track import Track
@@ -50,9 +50,7 @@ def first_population(
     top, thrifty = evaluator.settings - 1, thriftiest(evaluator)
     fast = [_at_setting(genome, top) for genome in genomes]
     slow = [_at_setting(genome, thrifty) for genome in genomes]
-    longest = max(len(genome) for genome in genomes)
-    room = max(longest + 8, min(MOST_POINTS, max(_LEAST_ROOM, 2 * longest)))
-    population = evaluator.population([*genomes, *fast, *slow], room=room)
+    population = evaluator.population([*genomes, *fast, *slow], room=room_for(genomes))
     base, missing = population, size - len(population)
     mix = replace(FIRST_MIX, pause=float((population.genes[:, :, fitness.WAIT] > 0.0).any()))
     first = replace(habits, crossover=0.0, mix=mix)
@@ -64,6 +62,15 @@ def first_population(
         young = children(base, pairs, evaluator=evaluator, habits=first, rng=rng)
         population, base = joined(population, young), joined(base, young)
     return population
+
+
+def room_for(tracks: Sequence[Genome] | IntArray) -> int:
+    """Return the room for points that tracks (or tracks of so many points) need to grow."""
+    if isinstance(tracks, np.ndarray):
+        longest = int(tracks.max())
+    else:
+        longest = max(len(track) for track in tracks)
+    return max(longest + 8, min(MOST_POINTS, max(_LEAST_ROOM, 2 * longest)))
 
 
 def thriftiest(evaluator: Evaluator) -> int:

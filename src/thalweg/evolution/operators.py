@@ -40,7 +40,7 @@ class Mix:
 
     insert: float = 1.0
     translate: float = 1.0
-    delete: float = 1.0
+    delete: float = 0.5
     speed: float = 1.0
     split: float = 0.5
     merge: float = 0.5
@@ -76,9 +76,9 @@ class Habits:
     mix: Mix = Mix()
     changes: float = 10.0
     shape: str = "ellipse"
-    insert_width: float = 0.2
+    insert_width: float = 0.1
     radius: tuple[float, float] = (0.002, 0.5)
-    crossover: float = 0.5
+    crossover: float = 0.3
     mutation: float = 0.5
 
     def __post_init__(self) -> None:

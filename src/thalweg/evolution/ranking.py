@@ -63,6 +63,21 @@ def front_of(scores: FloatArray) -> IntArray:
     return chosen[np.argsort(scores[chosen, TIME])]
 
 
+def thinned(scores: FloatArray, size: int) -> IntArray:
+    """Return at most ``size`` tracks of the front, by ascending time.
+
+    The one whose loss takes the least from the dominated area goes first; the ends stay.
+    """
+    front = front_of(scores)
+    time, cost = scores[front, TIME], scores[front, COST]
+    kept = np.arange(len(front))
+    while len(kept) > max(size, 2):
+        t, c = time[kept], cost[kept]
+        lost = (t[2:] - t[1:-1]) * (c[:-2] - c[1:-1])
+        kept = np.delete(kept, 1 + int(np.argmin(lost)))
+    return front[kept]
+
+
 def normalised(scores: FloatArray) -> FloatArray:
     """Return scores with time and cost as shares of their ranges among the feasible."""
     out = scores.copy()

@@ -46,14 +46,7 @@ class Strategy(ABC):
         habits: Habits,
         rng: np.random.Generator,
     ) -> None:
-        if size < LEAST_SIZE:
-            raise InputError(
-                f"A population of {size} is too small.",
-                f"It has at least {LEAST_SIZE} tracks; 100 or more make a good front.",
-                "Ask for a larger one.",
-                field="size",
-                value=size,
-            )
+        check_size(size)
         self.evaluator, self.size, self.habits, self.rng = evaluator, size, habits, rng
         self.population, self.scores = first, np.empty((0, 3))
         self._steps = self._search()
@@ -91,3 +84,15 @@ class Strategy(ABC):
         drawn = self.rng.integers(0, len(better), size=(count, 2))
         first, second = better[drawn[:, 0]], better[drawn[:, 1]]
         return np.where(first <= second, drawn[:, 0], drawn[:, 1])
+
+
+def check_size(size: int) -> None:
+    """Raise if a population is too small."""
+    if size < LEAST_SIZE:
+        raise InputError(
+            f"A population of {size} is too small.",
+            f"It has at least {LEAST_SIZE} tracks; 100 or more make a good front.",
+            "Ask for a larger one.",
+            field="size",
+            value=size,
+        )
