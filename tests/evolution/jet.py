@@ -146,9 +146,10 @@ def straight(setting: int, points: int = 12) -> Genome:
     return Genome(lat, lon, np.full(points - 1, setting))
 
 
-def refereed(genome: Genome) -> tuple[float, float, int]:
+def refereed(genome: Genome, water: Chart | None = None) -> tuple[float, float, int]:
     """Return hours and tonnes by the referee, and how many limits are broken."""
-    route = evaluate(genome.to_track(T0), ship=ship(), sea=sea(), chart=chart(), min_ukc=None)
+    given = {"ship": ship(), "sea": sea(), "chart": water or chart(), "min_ukc": None}
+    route = evaluate(genome.to_track(T0), **given)
     return route.time_h * SHRINK, route.fuel_t * SHRINK, len(route.violations)
 
 

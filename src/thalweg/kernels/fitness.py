@@ -11,19 +11,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from thalweg.kernels.bare import bare, inlined
-from thalweg.kernels.codes import (
-    AXIS_WAVE_ANGLE,
-    AXIS_WIND_ANGLE,
-    CHANNELS,
-    CURRENT_EAST,
-    CURRENT_NORTH,
-    NO_DATA,
-    OK,
-    OUTSIDE_PERIOD,
-)
-from thalweg.kernels.leg import _ANGLE_AXES, _WIND_AXES, _conditions, bow_angle, guided_point_speed
+from thalweg.kernels.codes import CHANNELS, NO_DATA, OK, OUTSIDE_PERIOD
+from thalweg.kernels.leg import fuel_rate_known, guided_point_speed
 from thalweg.kernels.sail import RasterArrays
-from thalweg.kernels.tables import TableArrays, axes_needed, sum_of_parts
+from thalweg.kernels.tables import TableArrays, axes_needed
 
 # Columns of genes: of a point ...
 LAT: Final = 0  # [deg]
@@ -130,38 +121,6 @@ def _read(raster, channels, t, lat, lon, scratch):
                         value = values[step + later, row + up, column + side, k]
                         scratch[channels[k]] += weight * value
     return OK
-
-
-@inlined
-def fuel_rate_known(sample, index, course, fuel, setting, static_depth, limits, needs, speed):
-    """Return (fuel rate [kg/s], ok) of a ship whose speed through water is known.
-
-    The heading follows from the course, the current across it and the speed, as in
-    `thalweg.kernels.leg.point_speed`; the limits are taken as kept.
-    """
-    east, north = course
-    if needs == 0:
-        return sum_of_parts(fuel, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), setting)
-    current = (0.0, 0.0)
-    if index[CURRENT_EAST] >= 0 and index[CURRENT_NORTH] >= 0:
-        current = (sample[CURRENT_EAST], sample[CURRENT_NORTH])
-    depth, waves, wind, status = _conditions(sample, index, current, needs, static_depth, limits)
-    if status != OK:
-        return 0.0, False
-    wind_speed, wind_angle, wave_angle = 0.0, 0.0, 0.0
-    if needs & _WIND_AXES:
-        wind_speed = math.sqrt(wind[0] * wind[0] + wind[1] * wind[1])
-    if needs & _ANGLE_AXES:
-        sine = -(current[1] * east - current[0] * north) / speed
-        cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
-        head_east = east * cosine - north * sine
-        head_north = north * cosine + east * sine
-        if needs & (1 << AXIS_WIND_ANGLE):
-            wind_angle = bow_angle(head_east, head_north, wind[0], wind[1])
-        if needs & (1 << AXIS_WAVE_ANGLE):
-            wave_angle = bow_angle(head_east, head_north, waves[1], waves[2])
-    values = (wind_speed, wind_angle, waves[0], wave_angle, waves[3], depth)
-    return sum_of_parts(fuel, values, setting)
 
 
 @inlined

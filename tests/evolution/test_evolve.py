@@ -1,0 +1,201 @@
+"""Evolution runs: repeatable, cancellable, feasible by the referee, and as good as is told."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from tests.evolution import jet
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.evolution import Genome, Habits, evolve, refine_front
+from thalweg.evolution.evolve import METHODS, Settling
+from thalweg.evolution.initial import thriftiest
+from thalweg.evolution.metrics import c_metric, hypervolume, non_dominated
+from thalweg.evolution.nsga2 import Nsga2
+from thalweg.evolution.polish import lower_hull, time_prices
+
+ISLANDS = (
+    ((200, 180), (240, 160), (260, 240), (250, 320), (215, 330)),
+    ((300, 230), (330, 250), (325, 340), (290, 300)),
+)
+NORTH = ((100, 200), (200, 340), (325, 350), (400, 300))
+SOUTH = ((100, 200), (190, 175), (240, 150), (335, 240), (400, 300))
+BETWEEN = ((100, 200), (190, 175), (240, 150), (280, 240), (280, 310), (325, 345), (400, 300))
+
+
+@cache
+def islands() -> Chart:
+    features = []
+    for corners in ISLANDS:
+        ring = [list(jet.position(*p))[::-1] for p in (*corners, corners[0])]
+        shape = {"type": "Polygon", "coordinates": [ring]}
+        features.append({"type": "Feature", "properties": {}, "geometry": shape})
+    return Chart.from_geojson({"type": "FeatureCollection", "features": features})
+
+
+def through(places, setting: int) -> Genome:
+    lat, lon = np.array([jet.position(*p) for p in places]).T
+    return Genome(lat, lon, np.full(len(places) - 1, setting))
+
+
+def volume(front) -> float:
+    return hypervolume(jet.objectives(front.objectives), jet.REFERENCE)
+
+
+def same(a, b) -> bool:
+    if len(a) != len(b) or not np.array_equal(a.objectives, b.objectives):
+        return False
+    return all(
+        np.array_equal(getattr(g, name), getattr(h, name))
+        for g, h in zip(a.genomes, b.genomes)
+        for name in ("lat", "lon", "setting", "wait")
+    )
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_fronts_are_repeatable_feasible_and_better_than_the_seeds(method):
+    evaluator = jet.evaluator(chart=islands())
+    seeds = [through(way, s) for way in (NORTH, SOUTH, BETWEEN) for s in (6, 11)]
+    given = {"method": method, "size": 40, "evaluations": 4000, "settled": None}
+    front = evolve(evaluator, seeds, seed=3, **given)
+    assert same(front, evolve(evaluator, seeds, seed=3, **given))
+    assert not same(front, evolve(evaluator, seeds, seed=4, **given))
+    assert non_dominated(front.objectives).all()
+    assert 4 <= len(front) <= 40
+    assert front.stopped == "evaluations"
+    time, cost, violation = evaluator(seeds)
+    start = np.column_stack([time, cost])[violation == 0.0]
+    assert c_metric(front.objectives, start) == 1.0
+    assert volume(front) > 1.02 * hypervolume(jet.objectives(start), jet.REFERENCE)
+    for genome, told in zip(front.genomes[::8], jet.objectives(front.objectives)[::8]):
+        hours, tonnes, broken = jet.refereed(genome, islands())
+        assert broken == 0
+        assert (hours, tonnes) == pytest.approx(tuple(told), rel=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("size", "lines", "least"),
+    [(100, 16, 162.95), pytest.param(300, 48, 163.4, marks=pytest.mark.slow)],
+)
+def test_refined_front_of_the_jet_and_eddies(size, lines, least):
+    seeds = [jet.straight(s) for s in (0, 5, 6, 11)]
+    front = refine_front(jet.evaluator(), seeds, size=size, lines=lines, seed=1)
+    told = np.array([jet.refereed(genome) for genome in front.genomes])
+    assert (told[:, 2] == 0).all()
+    assert hypervolume(told[:, :2], jet.REFERENCE) > least  # 336,000 evaluations by NSGA-II: 163.02
+    hours = np.array([20.0, 24.0, 28.0])
+    best_known = np.array([23.436, 19.870, 17.633])
+    order = np.argsort(told[:, 0])
+    assert (np.interp(hours, told[order, 0], told[order, 1]) < 1.001 * best_known).all()
+    assert {"polish"} <= set(front.origin) <= {"seed", "polish", "nsga2"}
+
+
+def test_refined_front_among_islands_is_feasible_repeatable_and_ahead_of_evolution():
+    evaluator = jet.evaluator(chart=islands())
+    seeds = [through(way, s) for way in (NORTH, SOUTH, BETWEEN) for s in (6, 11)]
+    given = {"size": 60, "lines": 16, "generations": 20}
+    front = refine_front(evaluator, seeds, seed=5, **given)
+    assert same(front, refine_front(evaluator, seeds, seed=5, **given))
+    assert volume(front) > volume(evolve(evaluator, seeds, size=60, evaluations=10_000, seed=5))
+    assert len(front) <= 60
+    for genome in front.genomes[::6]:
+        assert jet.refereed(genome, islands())[2] == 0
+
+
+def test_cancelled_runs_keep_the_best_so_far_and_say_so():
+    evaluator, told = jet.evaluator(), []
+    calls = iter([False] * 5 + [True] * 100)
+    front = evolve(
+        evaluator,
+        [jet.straight(6)],
+        size=20,
+        cancel=lambda: next(calls),
+        progress=told.append,
+    )
+    assert front.cancelled
+    assert front.generations == 5
+    assert [p.generation for p in told] == list(range(6))
+    assert told[-1].evaluations == front.evaluations
+    assert len(front)
+    volumes = [hypervolume(jet.objectives(p.front), jet.REFERENCE) for p in told]
+    assert volume(front) == pytest.approx(volumes[-1])
+    assert volumes == sorted(volumes)
+    for step in (0, 70):
+        left = iter([False] * step + [True] * 1000)
+        front = refine_front(evaluator, [jet.straight(6)], size=20, cancel=lambda: next(left))  # noqa: B023
+        assert front.cancelled
+        assert len(front)
+
+
+def test_runs_end_by_what_limits_them():
+    evaluator, seeds = jet.evaluator(), [jet.straight(6)]
+    assert evolve(evaluator, seeds, size=10, generations=3).stopped == "generations"
+    assert evolve(evaluator, seeds, size=10, generations=0).generations == 0
+    assert evolve(evaluator, seeds, size=10, evaluations=50).evaluations == 55
+    quick = evolve(evaluator, seeds, size=10, seconds=0.0)
+    assert quick.stopped == "seconds"
+    assert len(quick)
+    assert evolve(evaluator, seeds, size=10, settled=np.inf).stopped == "settled"
+
+
+def test_a_front_has_settled_when_its_distances_vary_no_more():
+    settling = Settling(1e-6)
+    front = np.array([[0.0, 1.0], [1.0, 0.0]])
+    for _ in range(33):
+        assert not settling.settled(front)
+    assert settling.settled(front)
+    rng, moving = np.random.default_rng(0), Settling(1e-6)
+    assert not any(moving.settled(rng.random((5, 2))) for _ in range(100))
+
+
+def test_asking_and_telling_is_all_there_is():
+    evaluator = jet.evaluator()
+    rng = np.random.default_rng(0)
+    first = evaluator.population([jet.straight(s) for s in range(12)], room=40)
+    strategy = Nsga2(evaluator, first, size=8, habits=Habits(), rng=rng)
+    assert strategy.ask() is first
+    for _ in range(3):
+        asked = strategy.ask()
+        strategy.tell(evaluator.score(asked))
+        assert len(strategy.population) == 8
+        assert (evaluator.score(strategy.population) == strategy.scores).all()
+
+
+def test_thriftiest_setting_and_prices_of_time():
+    evaluator = jet.evaluator()
+    assert thriftiest(evaluator) == 0  # 8.8 kn: 0.0677 t/nm
+    assert thriftiest(jet.evaluator(time_price=10.0)) == 11
+    prices = time_prices(evaluator, 5)
+    assert (np.diff(prices) > 0.0).all()
+    hull = lower_hull(np.array([(24 / s, f / s) for s, f in zip(jet.SPEED_KN, jet.FUEL_T_DAY)]))
+    assert sorted(jet.SPEED_KN[k] for k in hull) == [8.8, 9.5, 9.9, 14.1, 14.3, 14.8, 15.2]
+
+
+def test_waits_that_help_stay_and_others_go():
+    base = jet.straight(6, 8)
+    waiting = Genome(base.lat, base.lon, base.setting, [0, 0, 90.0, 0, 0, 0, 0, 0])
+    front = evolve(jet.evaluator(), [waiting], size=30, generations=40, seed=2)
+    assert front.genomes[0].wait.max() < 20.0  # the fastest has no time to wait
+
+
+@pytest.mark.parametrize(
+    ("wrong", "word"),
+    [
+        ({"size": 3}, "too small"),
+        ({"method": "nsga"}, "nsga2"),
+        ({"generations": -1}, "zero or more"),
+        ({"seconds": float("nan")}, "zero or more"),
+    ],
+)
+def test_what_cannot_be_is_an_error(wrong, word):
+    with pytest.raises(InputError, match=word):
+        evolve(jet.evaluator(), [jet.straight(6)], **wrong)
+
+
+def test_refining_needs_seeds_and_a_population():
+    for run in (evolve, refine_front):
+        with pytest.raises(InputError, match="no track"):
+            run(jet.evaluator(), [])
+        with pytest.raises(InputError, match="too small"):
+            run(jet.evaluator(), [jet.straight(6)], size=2)

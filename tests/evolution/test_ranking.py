@@ -1,0 +1,104 @@
+"""Ranking: worked examples of NSGA-II and SPEA2, and pymoo as an independent opinion."""
+
+import numpy as np
+import pytest
+
+from thalweg.evolution.mpaes import Climber
+from thalweg.evolution.ranking import best_of, front_of, ranked, strength_fitness, thinned
+from thalweg.evolution.spea2 import archive
+from thalweg.kernels.ranking import truncate
+
+WORKED = [(1, 5), (2, 3), (4, 1), (3, 4), (5, 5), (4, 4)]
+
+
+def scores(points, violation=0.0):
+    points = np.asarray(points, float)
+    return np.column_stack([points, np.broadcast_to(violation, len(points))])
+
+
+def test_worked_crowding_within_a_front():
+    rank, crowding = ranked(scores([(5, 0.5), (1, 5), (4, 1), (2, 3), (6, 6)]))
+    assert rank.tolist() == [0, 0, 0, 0, 1]
+    assert crowding == pytest.approx([np.inf, np.inf, 1.305556, 1.638889, np.inf], abs=5e-7)
+
+
+def test_worked_strength_raw_fitness_and_density():
+    strength, raw, fitness = strength_fitness(scores(WORKED))
+    assert strength.tolist() == [1, 3, 2, 2, 0, 1]
+    assert raw.tolist() == [0, 0, 0, 3, 9, 7]
+    expected = [0.236068, 0.236068, 0.2, 3.292893, 9.236068, 7.292893]
+    assert fitness == pytest.approx(expected, abs=5e-7)
+
+
+def test_feasibility_comes_first():
+    given = scores([(1, 1), (9, 9), (2, 2), (0, 0)], [0.2, 0.0, 0.1, 0.3])
+    rank, _ = ranked(given)
+    assert rank.tolist() == [2, 0, 1, 3]
+    assert best_of(given, 2)[0].tolist() == [1, 2]
+    assert front_of(given).tolist() == [1]
+    _, raw, _ = strength_fitness(given)
+    assert np.argsort(raw).tolist() == [1, 2, 0, 3]
+
+
+def test_of_equal_tracks_one_is_the_better():
+    rank, _ = ranked(scores([(1, 1), (1, 1), (1, 1), (2, 0)]))
+    assert sorted(rank.tolist()) == [0, 0, 1, 2]
+
+
+def test_fronts_are_those_of_pymoo():
+    pytest.importorskip("pymoo")
+    from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        points = rng.random((120, 2))
+        rank, _ = ranked(scores(points))
+        for number, front in enumerate(NonDominatedSorting().do(points)):
+            assert np.flatnonzero(rank == number).tolist() == sorted(front)
+
+
+def test_truncation_removes_the_lexicographically_nearest_as_written_out():
+    rng = np.random.default_rng(11)
+    x = np.sort(rng.random(30))
+    points = np.column_stack([x, 1.0 - x])
+    left = list(range(30))
+    while len(left) > 12:
+        apart = np.linalg.norm(points[left][:, None] - points[left][None], axis=2)
+        near = np.sort(apart, axis=1)[:, 1:]
+        left.pop(min(range(len(left)), key=lambda k: near[k].tolist()))
+    assert np.flatnonzero(truncate(points[:, 0].copy(), points[:, 1].copy(), 12)).tolist() == left
+
+
+def test_archive_is_filled_with_the_fittest_or_thinned():
+    chosen, place = archive(scores(WORKED), 4)
+    assert sorted(chosen.tolist()) == [0, 1, 2, 3]
+    assert chosen[place == 3].tolist() == [3]
+    chosen, _ = archive(scores(WORKED), 2)
+    assert set(chosen.tolist()) <= {0, 1, 2}
+
+
+def test_thinning_takes_what_loses_least_and_keeps_the_ends():
+    given = scores([(1, 5), (2, 3), (2.1, 2.9), (4, 1), (5, 0.5), (6, 6)])
+    assert thinned(given, 4).tolist() == [0, 1, 3, 4]  # (2.1, 2.9) adds 1.9 x 0.1
+    assert thinned(given, 2).tolist() == [0, 4]
+    assert thinned(given, 9).tolist() == [0, 1, 2, 3, 4]
+
+
+def test_a_climber_moves_as_m_paes_says():
+    def point(t, c):
+        return np.array([t, c, 0.0])
+
+    climber = Climber(point(5, 5), np.array([[5, 5, 0.0], [1, 9, 0.0], [9, 1, 0.0]]))
+    assert not climber.accepts(point(6, 6), 10)  # dominated: a failure
+    assert climber.fails == 1
+    assert climber.accepts(point(4, 4), 10)  # dominates: moves, failures forgotten
+    assert climber.fails == 0
+    assert len(climber.near) == 3
+    assert not climber.accepts(point(2, 9.5), 10)  # something in its archive dominates it
+    crowded = Climber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [2.9, 3.1, 0.0]]))
+    assert crowded.accepts(point(6, 0.5), 10)  # nothing dominates it and there is more room
+    assert crowded.near.shape[0] == 4
+    full = Climber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [9, 0, 0.0], [3.1, 2.9, 0.0]]))
+    full.accepts(point(1, 6), 4)
+    assert full.near.shape[0] == 4  # the most crowded had to go
+    assert [0, 9, 0.0] in full.near.tolist()
