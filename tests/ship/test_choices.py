@@ -160,3 +160,36 @@ def test_the_snnm_formula_jumps_at_the_angle_of_entrance_only():
     step = np.abs(np.diff(force))
     assert np.flatnonzero(step > 20 * np.median(step)).size == 1
     assert abs(angles[np.argmax(step)] - entrance) < 0.1
+
+
+ENGINE = {"power_kw": 9000, "type": "slow_speed_diesel"}
+BARE = {**POWERED, "models": {"calm_water": "holtrop_1984"}}
+
+
+def test_a_sea_margin_raises_the_power_of_every_speed():
+    plain = Ship.from_dict(BARE)
+    ship = Ship.from_dict({**BARE, "engine": {**ENGINE, "sea_margin_percent": 15}})
+    speed = [5.0, 6.0, 7.0]
+    more = ship.power_at_speed(Conditions(), speed) / plain.power_at_speed(Conditions(), speed)
+    assert more == pytest.approx(1.15)
+    assert (ship.speeds < plain.speeds).all()
+    known = {"name": "x", "hull": {"draught_m": 5.0}, "speeds_kn": [10]}
+    with pytest.raises(InputError, match="sea_margin_percent is given for a ship with known"):
+        Ship.from_dict({**known, "engine": {"sea_margin_percent": 15}})
+
+
+def test_loads_of_the_engine_bound_its_power():
+    with pytest.raises(InputError, match="engines give 7200 kW"):
+        Ship.from_dict({**BARE, "engine": {**ENGINE, "largest_load": 0.8}})
+    with pytest.raises(InputError, match="no less than 4050 kW"):
+        Ship.from_dict({**BARE, "engine": {**ENGINE, "least_load": 0.45}})
+    ship = Ship.from_dict(
+        {**BARE, "powers_kw": [3600], "engine": {**ENGINE, "least_load": 0.3, "largest_load": 0.8}}
+    )
+    sheet = performance_sheet(ship, speeds_kn=[6, 16])
+    slow, fast = (" ".join(row["warnings"]) for row in sheet["conditions"])
+    assert "load of one engine is" in slow and "outside 0.3" in slow
+    assert "the engines give 7200 kW: not reached" in fast
+    x = 3600 / 9000
+    expected = 3600 * 175 * (0.455 * x**2 - 0.710 * x + 1.280) / 3.6e6
+    assert float(ship.fuel_rate(Conditions(), 0)) == pytest.approx(expected, rel=1e-3)

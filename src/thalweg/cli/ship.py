@@ -110,6 +110,8 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
     for name, value in found.items():
         if not (math.isfinite(value) and value >= 0.0):
             raise InputError(f"{name} is {value:g}.", "It is at least 0.", "Correct it.")
+    if found.get("wave_period", 1.0) == 0.0:
+        raise InputError("The wave period is 0 s.", "It is above 0.", "Correct --tp.")
     for name, degrees in (("wave_angle", arguments.wave_from), ("wind_angle", arguments.wind_from)):
         if degrees is not None:
             if not math.isfinite(degrees):

@@ -153,12 +153,29 @@ def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
         If there are no speeds, several kinds of them, or they contradict each other.
     """
     law = _law(data)
+    _check_margin(data)
     full, empty = _speeds(data)
     fuel, power = _LAWS[law](data, full)
     check_rising(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
     loss, squat = build_loss(data, hull, loading), build_squat(data, hull, loading)
     hotel = hotel_fuel(data) if fuel_is_from_power(data) else 0.0
     return NominalModel(full, empty, fuel, power, law, loss, squat, hotel)
+
+
+def _check_margin(data: Data) -> None:
+    """Refuse a sea margin where there is no power that it could raise.
+
+    Raises
+    ------
+    InputError
+    """
+    if data.get("engine", {}).get("sea_margin_percent", 0.0) > 0.0:
+        raise InputError(
+            "engine.sea_margin_percent is given for a ship with known speeds.",
+            "It raises the power that a resistance takes; here power and fuel are given.",
+            "Leave it out, and give figures that hold the margin.",
+            key="engine.sea_margin_percent",
+        )
 
 
 def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:

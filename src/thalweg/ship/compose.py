@@ -189,6 +189,14 @@ def _orders(
 def _check_powers(powers: tuple[float, ...], plant: Plant) -> None:
     if len(set(powers)) != len(powers):
         raise InputError("powers_kw has a power twice.", "", "Remove one of them.", key="powers_kw")
+    least = plant.loads[0] * plant.rating
+    if np.isfinite(least) and min(powers) * 1000.0 < least * (1 - 1e-9):
+        raise InputError(
+            f"powers_kw asks for {min(powers):g} kW.",
+            f"One engine gives no less than {least / 1000:g} kW (engine.least_load).",
+            "Raise it, or correct engine.least_load.",
+            key="powers_kw",
+        )
     if max(powers) * 1000.0 > plant.largest_power * (1 + 1e-9):
         raise InputError(
             f"powers_kw asks for {max(powers):g} kW.",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -234,6 +234,8 @@ PROPULSION: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], Propulsion]]]
 def build_propulsion(data: Mapping[str, Any], hull: Hull) -> Propulsion:
     """Return the propulsion chosen in a ship file; constant efficiencies when none is named.
 
+    ``engine.sea_margin_percent`` raises the power of every speed by that much.
+
     Raises
     ------
     InputError
@@ -242,7 +244,18 @@ def build_propulsion(data: Mapping[str, Any], hull: Hull) -> Propulsion:
     name = data.get("models", {}).get("propulsion", "efficiencies")
     if name not in PROPULSION:
         raise unknown_name("propulsion method", name, PROPULSION)
-    return PROPULSION[name](hull, given)
+    chain = PROPULSION[name](hull, given)
+    margin = data.get("engine", {}).get("sea_margin_percent", 0.0)
+    return _with_margin(chain, 1.0 + margin / 100.0) if margin > 0.0 else chain
+
+
+def _with_margin(chain: Propulsion, factor: float) -> Propulsion:
+    """The propulsion with a sea margin on its power."""
+
+    def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
+        return factor * chain.brake_power(speed, resistance)
+
+    return replace(chain, brake_power=power)
 
 
 @dataclass(frozen=True)
@@ -262,6 +275,8 @@ class Plant:
     hotel_power, hotel_sfoc : float
         Other power [W] and its consumption [g/kWh].
     estimated : tuple of Estimate
+    loads : tuple of float
+        Least and largest load of an engine, as shares of its rating.
     """
 
     rating: float
@@ -271,11 +286,12 @@ class Plant:
     hotel_power: float = 0.0
     hotel_sfoc: float = HOTEL_SFOC
     estimated: tuple[Estimate, ...] = ()
+    loads: tuple[float, float] = (0.0, 1.0)
 
     @property
     def largest_power(self) -> float:
-        """All engines at their rating [W]; infinite when not given."""
-        return self.rating * self.count
+        """All engines at their largest load [W]; infinite when not given."""
+        return self.rating * self.count * self.loads[1]
 
     def fuel(self, power: FloatArray) -> FloatArray:
         """Fuel rate [kg/s] of a brake power [W], hotel load included; NaN when unknown."""
@@ -284,21 +300,30 @@ class Plant:
 
     def _engines(self, power: FloatArray) -> FloatArray:
         if self.curve[0]:
-            load = power / self.largest_power
+            load = power / (self.rating * self.count)
             return power * np.interp(load, *self.curve) * G_KWH
         if np.isinf(self.rating):
             return power * self.sfoc * G_KWH
         if self.count == 1:
             return fuel_rate(power, self.rating, sfoc_g_kwh=self.sfoc)
         reachable = np.minimum(power, self.largest_power)
-        return plant_fuel_rate(reachable, self.rating, count=self.count, sfoc_g_kwh=self.sfoc)[0]
+        return plant_fuel_rate(
+            reachable,
+            self.rating,
+            count=self.count,
+            sfoc_g_kwh=self.sfoc,
+            largest_load=self.loads[1],
+        )[0]
 
     def notes(self, power: FloatArray) -> list[RangeNote]:
-        """Loads above the rating, or below a fifth of one engine's."""
+        """Loads above the largest, below the least, or below a fifth of one engine's."""
         if np.isinf(self.rating):
             return []
+        least, largest = self.loads
+        one = power / self.rating
         return [
-            *range_notes("engine", {"load": (power / self.largest_power, 0.0, 1.0 + 1e-6)}),
+            *range_notes("engine", {"load": (one / self.count, 0.0, largest + 1e-6)}),
+            *range_notes("engine", {"load of one engine": (one, least, np.inf)}),
             *range_notes("sfoc", {"load of one engine": (power / self.rating, 0.2, np.inf)}),
         ]
 
@@ -336,6 +361,7 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
         hotel_power=given.get("hotel_load_kw", 0.0) * 1000.0,
         hotel_sfoc=given.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC),
         estimated=guessed,
+        loads=(given.get("least_load", 0.0), given.get("largest_load", 1.0)),
     )
 
 
