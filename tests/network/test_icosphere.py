@@ -22,7 +22,7 @@ def cut_by_circles(seed, levels, count=2):
     def crossed(first, second):
         return (((first @ poles.T) > height) != ((second @ poles.T) > height)).any(axis=1)
 
-    return Rule(crossed, lambda middles: np.full(len(middles), levels))
+    return Rule(crossed, levels)
 
 
 def area(vertices, faces):

@@ -20,7 +20,15 @@ from thalweg.core.cache import cache_folder
 from thalweg.kernels.cube import IndexArrays
 from thalweg.kernels.graph import mirror_pairs
 from thalweg.kernels.icosphere import coast_crossed
-from thalweg.network.icosphere import Crossed, Icosphere, Rule, icosphere
+from thalweg.network.icosphere import (
+    Crossed,
+    Icosphere,
+    Rule,
+    distinct,
+    icosphere,
+    keyed,
+    unkeyed,
+)
 from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.network.pairs import Pairs, free_legs, measure
 from thalweg.network.straits import FINEST, STRAITS, deeper
@@ -155,11 +163,8 @@ def _sphere(chart: Chart, fineness: Fineness) -> Icosphere:
     """Return the geodesic grid of a coastline, land and all."""
     level, coast = fineness.level, fineness.coast_levels
     narrow = max(FINEST - level - coast, 0) if coast else 0
-    rules = [Rule(_crossing(chart.land.index), lambda m: coast + deeper(m, narrow))]
-    rules += [
-        Rule(_crossing(outlines), lambda m: np.full(len(m), fineness.border_levels))
-        for outlines in _borders(chart)
-    ]
+    rules = [Rule(_crossing(chart.land.index), coast, lambda m: deeper(m, narrow))]
+    rules += [Rule(_crossing(outlines), fineness.border_levels) for outlines in _borders(chart)]
     return icosphere(level, *rules)
 
 
@@ -197,8 +202,7 @@ def _joined(
     some: tuple[Int32Array, Int32Array], more: tuple[Int32Array, Int32Array]
 ) -> tuple[Int32Array, Int32Array]:
     """Return two lots of pairs as one without repeats."""
-    keys = np.unique(np.concatenate([(a.astype(np.int64) << 31) + b for a, b in (some, more)]))
-    return (keys >> 31).astype(np.int32), (keys & (2**31 - 1)).astype(np.int32)
+    return unkeyed(distinct(np.concatenate([keyed(*some), keyed(*more)])))
 
 
 def _largest_open_gap(

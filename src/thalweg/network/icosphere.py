@@ -43,12 +43,23 @@ class Rule:
     ----------
     crossed : callable
         Tells which edges (unit vectors of their ends) are crossed.
-    levels : callable
-        How many levels such faces get, by the unit vectors (F, 3) of their middles.
+    levels : int
+        How many levels such faces get.
+    deeper : callable, optional
+        How many more they get, by the unit vectors (F, 3) of their middles.
     """
 
     crossed: Crossed
-    levels: Callable[[FloatArray], IntArray]
+    levels: int
+    deeper: Callable[[FloatArray], IntArray] | None = None
+
+    def reaches(self, middles: FloatArray, beyond: int) -> BoolArray:
+        """Return which faces may be halved so many levels beyond the grid's."""
+        if beyond < self.levels:
+            return np.ones(len(middles), bool)
+        if self.deeper is None:
+            return np.zeros(len(middles), bool)
+        return np.asarray(self.deeper(middles) > beyond - self.levels)
 
 
 @dataclass(frozen=True)
@@ -82,7 +93,7 @@ class Icosphere:
         count, _ = kernels.closed_pairs(*table, longest, none, none)
         first, second = np.empty(count, np.int32), np.empty(count, np.int32)
         kernels.closed_pairs(*table, longest, first, second)
-        return unkeyed(np.unique(_keyed(first, second)))
+        return unkeyed(distinct(keyed(first, second)))
 
     def across(self) -> tuple[Int32Array, Int32Array]:
         """Return the pairs of vertices that face each other across the common side of two leaves.
@@ -90,12 +101,12 @@ class Icosphere:
         They double the directions of a grid: twelve instead of six.
         """
         faces = self.faces
-        sides = np.concatenate([_keyed(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
+        sides = np.concatenate([keyed(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
         opposite = np.concatenate([faces[:, (s + 2) % 3] for s in range(3)])
         order = np.argsort(sides, kind="stable")
         sides, opposite = sides[order], opposite[order]
         twice = np.flatnonzero(sides[1:] == sides[:-1])
-        return unkeyed(np.unique(_keyed(opposite[twice], opposite[twice + 1])))
+        return unkeyed(distinct(keyed(opposite[twice], opposite[twice + 1])))
 
 
 def icosphere(level: int, *rules: Rule) -> Icosphere:
@@ -118,7 +129,7 @@ def icosphere(level: int, *rules: Rule) -> Icosphere:
         split = np.zeros(len(faces), bool)
         middles = grid.vertices[faces].mean(axis=1)
         for rule in rules:
-            asked = np.flatnonzero(~split & (rule.levels(middles) > depth - level))
+            asked = np.flatnonzero(~split & rule.reaches(middles, depth - level))
             if len(asked):
                 split[asked] = grid.crossed_faces(faces[asked], rule.crossed)
         leaves.append(faces[~split])
@@ -144,7 +155,7 @@ class _Growing:
         if not len(faces):
             return faces
         a, b, c = faces.T
-        ab, bc, ca = self._middle(np.stack([_keyed(a, b), _keyed(b, c), _keyed(c, a)]))
+        ab, bc, ca = self._middle(np.stack([keyed(a, b), keyed(b, c), keyed(c, a)]))
         children = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         return np.concatenate([np.stack(child, axis=-1) for child in children])
 
@@ -170,16 +181,22 @@ class _Growing:
 
     def crossed_faces(self, faces: IntArray, crossed: Crossed) -> BoolArray:
         """Return which faces have an edge that is crossed; every edge is asked once."""
-        keys = np.concatenate([_keyed(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
+        keys = np.concatenate([keyed(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
         edges, which = np.unique(keys, return_inverse=True)
         first, second = unkeyed(edges)
         answer = crossed(self.vertices[first], self.vertices[second])
         return np.asarray(answer[which.ravel()].reshape(3, -1).any(axis=0))
 
 
-def _keyed(a: NDArray[np.integer], b: NDArray[np.integer]) -> IntArray:
+def keyed(a: NDArray[np.integer], b: NDArray[np.integer]) -> IntArray:
     """Return one number for each edge, whichever way it runs."""
     return (np.minimum(a, b).astype(np.int64) << 31) + np.maximum(a, b)
+
+
+def distinct(keys: IntArray) -> IntArray:
+    """Return ascending numbers, each once (`numpy.unique` hashes, ten times slower on these)."""
+    ordered = np.sort(keys)
+    return ordered[np.append(True, ordered[1:] != ordered[:-1])] if len(keys) else ordered
 
 
 def unkeyed(keys: IntArray) -> tuple[Int32Array, Int32Array]:

@@ -44,10 +44,10 @@ STRAITS: Final[dict[str, tuple[tuple[tuple[float, float], ...], float]]] = {
 def deeper(middles: FloatArray, levels: int) -> IntArray:
     """Return ``levels`` for unit vectors (n, 3) that lie in a strait, 0 for others."""
     answer = np.zeros(len(middles), np.int64)
-    scaled = middles / np.linalg.norm(middles, axis=1, keepdims=True)
+    x, y, z = (middles / np.linalg.norm(middles, axis=1, keepdims=True)).T.copy()
     for places, radius in STRAITS.values():
-        phi, lam = np.radians(np.array(places)).T
-        centres = np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)])
-        near = scaled @ centres > np.cos(1000.0 * radius / MEAN_RADIUS)
-        answer[near.any(axis=1)] = levels
+        far = np.cos(1000.0 * radius / MEAN_RADIUS)
+        for lat, lon in np.radians(np.array(places)):
+            u, v, w = np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)
+            answer[u * x + v * y + w * z > far] = levels
     return answer
