@@ -10,6 +10,7 @@ import pytest
 
 from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_network, make_table
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.kernels import codes
 from thalweg.search import cheapest, earliest_arrival, front
 from thalweg.search.front_ways import Way, sail_way
 from thalweg.search.front_world import Request, gather
@@ -340,6 +341,39 @@ def test_a_bar_is_passed_when_the_tide_allows():
         assert point.path_arrive[2] >= open_from - 5.0
     assert set(found.cheapest.setting) == {0}
     assert found.cheapest.cost == pytest.approx(0.064 * 30_000.0 / 4.0)
+
+
+def test_fuel_follows_the_weather_that_is_felt():
+    """Wind 10 m/s from ahead and current 2 m/s from astern: 12 m/s over the moving water."""
+    network = line(3, 20_000.0)
+    fields = make_fields(
+        network, [0.0, 1e6], current_east=2.0, current_north=0.0, wind_east=-10.0, wind_north=0.0
+    )
+    wind, angle = np.linspace(0.0, 20.0, 5), np.linspace(0.0, np.pi, 3)
+    loss = -0.05 * wind[:, None] * np.ones(3)
+    burnt = 0.01 * wind[:, None] * (1.0 + np.cos(angle))[None, :]
+    axes = ((codes.AXIS_WIND_SPEED,), (wind,)), ((0, 1), (wind, angle))
+    table = make_table(((), (), SPEEDS), (*axes[0], loss))
+    fuel = make_table(((), (), 1e-3 * SPEEDS**3), (*axes[1], burnt[..., None] * np.ones(3)))
+    found = search(network, fields, 2, 40_000.0, tables=(table, fuel))
+    time = 40_000.0 / (8.0 - 0.05 * 12.0 + 2.0)
+    assert found.fastest.time == pytest.approx(time, rel=1e-6)
+    assert found.fastest.cost == pytest.approx(time * (0.512 + 0.24), rel=1e-6)
+
+
+def test_lower_front_over_a_bar():
+    """Edges that open between two slices count as open for the lower front."""
+    network = line(4, 10_000.0, depth=5.0)
+    times = np.arange(0.0, 100_001.0, 3000.0)
+    level = 2.0 * np.sin(2 * np.pi * (times - 20_000.0) / 44_712.0)
+    share = np.array([[5.0], [5.0], [1.0], [5.0]])
+    fields = make_fields(network, times, water_level=level[None, :] * share, **STILL)
+    found = search(network, fields, 3, 60_000.0, limits=limits(depth=6.0), bin_s=60.0)
+    assert np.all(found.gap >= 0.0) and len(found.points) > 5
+    assert found.lower_at(found.fastest.time) > 0.7 * found.fastest.cost
+    finer = search(network, fields, 3, 60_000.0, limits=limits(depth=6.0), bin_s=10.0, lower=False)
+    for point in finer.points:
+        assert found.lower_at(point.time) <= point.cost * (1 + 1e-9)
 
 
 def test_the_same_twice():

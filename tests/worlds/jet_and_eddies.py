@@ -1,8 +1,8 @@
-"""A meandering jet, two moving eddies and a tide on a plane of 500 x 500 nm, shrunk 100 times.
+"""Networks and frozen fields of the jet and eddies: a plane of 500 x 500 nm, shrunk 100 times.
 
 Lengths and times are shrunk by the same factor, so speeds stay and fuel is divided by it; laid on
-the equator the case is planar to about 1e-5. Helpers speak of the case in its own units (nm, h, kn,
-t) unless they say otherwise.
+the equator the case is planar to about 1e-5. The sea itself and the ship are those of
+`tests.evolution.jet`.
 """
 
 from __future__ import annotations
@@ -11,73 +11,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tests.evolution.jet import (
+    FUEL_T_DAY,
+    KNOT,
+    METRES_PER_LAT,
+    METRES_PER_LON,
+    SHRINK,
+    SPEED_KN,
+    T0,
+    current,
+    position,
+)
 from tests.search.small import make_table
-from thalweg import Sea
 from thalweg.kernels import codes
 from thalweg.kernels.tables import TableArrays
 from thalweg.network.network import Network, NetworkMeta
 from thalweg.sea.fields import StationFields
 
-SHRINK = 100.0
-KNOT = 1852.0 / 3600.0
 NM = 1852.0 / SHRINK  # [m] of the shrunk case
 HOUR = 3600.0 / SHRINK  # [s] of the shrunk case
-M_PER_LON, M_PER_LAT = 111319.490793, 110574.2759
 SIDE, START, GOAL, LATEST = 500.0, (100.0, 200.0), (400.0, 300.0), 32.0
-T0 = 1_767_225_600.0
-
-# Seuren (2020), table 5.3: speed [kn], fuel [t/day]
-SPEEDS = np.array([8.8, 9.5, 9.9, 10.3, 10.6, 10.8, 14.1, 14.3, 14.5, 14.8, 15.0, 15.2])
-FUEL = np.array([14.3, 15.5, 16.4, 17.6, 18.9, 20.1, 28.9, 30.3, 32.0, 34.4, 36.8, 39.0])
-
-
-def current(t, x, y):
-    """Return (u, v) [kn] at t [h], (x, y) [nm]."""
-    phase = 2 * np.pi * (x / 320.0 - t / 260.0)
-    axis, slope = 250.0 + 45.0 * np.sin(phase), 45.0 * (2 * np.pi / 320.0) * np.cos(phase)
-    jet = 2.6 * np.exp(-(((y - axis) / 28.0) ** 2) / 2) / np.sqrt(1 + slope**2)
-    u, v = jet, jet * slope
-    for k in (0, 1):
-        turn = 0.045 * (1 - 2 * k)
-        cx, cy = 160.0 + 180.0 * k + 0.6 * t * (1 - 2 * k), 330.0 - 170.0 * k
-        e = np.exp(-((x - cx) ** 2 + (y - cy) ** 2) / (2 * 55.0**2))
-        u, v = u - turn * (y - cy) * e, v + turn * (x - cx) * e
-    tide = 0.5 * np.cos(2 * np.pi * t / 12.42)
-    return u + 0.6 * tide, v + 0.8 * tide
-
-
-def position(x, y):
-    """Return (lat, lon) [deg] of (x, y) [nm]."""
-    return np.asarray(y) * NM / M_PER_LAT, np.asarray(x) * NM / M_PER_LON
 
 
 def xy(lat, lon):
     """Return (x, y) [nm] of positions [deg]."""
-    return np.asarray(lon) * M_PER_LON / NM, np.asarray(lat) * M_PER_LAT / NM
-
-
-def sea() -> Sea:
-    """Return the current as a sea, in shrunk time and space."""
-
-    def component(k):
-        def value(time_s, lat, lon):
-            x, y = xy(lat, lon)
-            return KNOT * current((np.asarray(time_s) - T0) / HOUR, x, y)[k]
-
-        return value
-
-    return Sea.from_functions(
-        {
-            "eastward_sea_water_velocity": component(0),
-            "northward_sea_water_velocity": component(1),
-        },
-        time_step=HOUR / 3.0,
-    )
+    return np.asarray(lon) * METRES_PER_LON / NM, np.asarray(lat) * METRES_PER_LAT / NM
 
 
 def tables() -> tuple[TableArrays, TableArrays]:
     """Return the tables of speed [m/s] and fuel rate [kg/s]; of these only the time is shrunk."""
-    return make_table(((), (), SPEEDS * KNOT)), make_table(((), (), FUEL * 1000.0 / 86400.0))
+    speed, fuel = np.array(SPEED_KN) * KNOT, np.array(FUEL_T_DAY) * 1000.0 / 86400.0
+    return make_table(((), (), speed)), make_table(((), (), fuel))
 
 
 def tonnes(fuel_kg: float) -> float:

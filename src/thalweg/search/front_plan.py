@@ -132,15 +132,16 @@ def _slices(
     If none that fit the memory are exact enough, the finest that do.
     """
     ladder = _ladder(got.world.sea.times - request.depart, clock.latest)
-    chosen, error, memory = ladder[0], math.inf, 0
+    chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
         needed = _memory(got, clock, windows, slices)
-        if error <= TABLE_TOLERANCE and (error <= _FINE or needed > _CHEAP):
+        if error <= TABLE_TOLERANCE and (fine or needed > _CHEAP):
             break
         if error < math.inf and needed > memory_limit:
             break
         chosen, memory = slices, needed
-        error = _table_error(got, request, windows, clock, slices)
+        error, shut = _table_error(got, request, windows, clock, slices)
+        fine = error <= _FINE and not shut
     return chosen, error, memory
 
 
@@ -181,14 +182,17 @@ def _memory(got: Gathered, clock: Clock, windows: Windows, slices: FloatArray) -
 
 def _table_error(
     got: Gathered, request: Request, windows: Windows, clock: Clock, slices: FloatArray
-) -> float:
-    """Return how far legs amid two slices are from the mean of the two, as a share."""
+) -> tuple[float, bool]:
+    """Return how far legs amid two slices are from the mean of the two, as a share.
+
+    Also whether any is shut at one of the slices or amid them, and open at another.
+    """
     rng = np.random.default_rng(0)
     usable = windows.last >= windows.first
     usable &= np.diff(got.world.network.indptr) > 0
     nodes = np.flatnonzero(usable)
     if len(nodes) == 0:
-        return 0.0
+        return 0.0, False
     nodes = rng.choice(nodes, _SAMPLED)
     net = got.world.network
     degree = np.diff(net.indptr)[nodes]
@@ -206,8 +210,10 @@ def _table_error(
         found.append(out)
     with np.errstate(divide="ignore", invalid="ignore"):
         off = np.abs(0.5 * (found[0] + found[2]) / found[1] - 1.0)
+    open_ = [np.isfinite(out[:, 0]) for out in found]
+    shut = bool(((open_[0] | open_[1] | open_[2]) & ~(open_[0] & open_[1] & open_[2])).any())
     off = off[np.isfinite(off).all(axis=1)]
-    return float(np.quantile(off, 0.95)) if off.size else 0.0
+    return (float(np.quantile(off, 0.95)) if off.size else 0.0), shut
 
 
 def _too_much(got: Gathered, clock: Clock, memory: int, limit: float) -> InputError:
