@@ -17,6 +17,7 @@ from thalweg.kernels.jit import jit
 from thalweg.kernels.tables import table_value
 from thalweg.ship import Conditions, Ship, library_names
 from thalweg.ship.powering import ResistanceModel
+from thalweg.ship.tabulate_fuel import tabulate_fuel_of_balance
 from thalweg.ship.tabulate_sum import tabulate_balance
 
 #: a full ship: calm water, shallow water, waves of every heading, wind, propeller chain
@@ -95,6 +96,23 @@ def table_rows(repeats: int) -> None:
         )
 
 
+def fuel_rows() -> None:
+    print("\ntables of fuel: the full ship and JBC, holding speeds")
+    held = {key: value for key, value in Ship.load("jbc").data.items() if key != "powers_kw"}
+    for name, data in {
+        "full ship": {**FULL, "speeds_kn": [8, 10, 12, 13.5]},
+        "jbc": {**held, "speeds_kn": [9, 11, 13, 14]},
+    }.items():
+        model = Ship.from_dict(data).model
+        seconds = _cpu(lambda model=model: tabulate_fuel_of_balance(model, 1.0, 0.01), 1)
+        table, _ = tabulate_fuel_of_balance(model, 1.0, 0.01)
+        error = table.error
+        print(
+            f"{name:24} {seconds:8.2f} {table.nbytes / 1e6:6.1f} "
+            f"{error.mean:8.4f} {error.p99:8.4f} {error.max:8.3f}"
+        )
+
+
 def direct_rows(count: int) -> None:
     print(f"\ndirect evaluation, {count} conditions, scaled to 10^6 [s CPU]")
     conditions = _conditions(count)
@@ -142,6 +160,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     table_rows(1 if quick else 3)
+    fuel_rows()
     direct_rows(20_000 if quick else 100_000)
     lookup_rows(100_000 if quick else 400_000)
 
