@@ -227,3 +227,30 @@ def test_limits_that_cannot_be_are_refused(limits, hull, match):
 
 def test_a_ship_with_limits_is_another_ship():
     assert BOW.fingerprint() != SICK.fingerprint() != CIRCULAR.fingerprint()
+
+
+@pytest.mark.slow
+def test_a_plan_keeps_out_of_danger_and_the_referee_agrees():
+    """24 kn straight before a following sea would surf-ride: the plan turns off by 45 degrees."""
+    from thalweg import Chart, Voyage, plan
+
+    sea = Sea.from_functions(
+        {
+            "sea_surface_wave_significant_height": lambda t, lat, lon: 4.0 + 0 * lat,
+            "sea_surface_wave_to_direction": lambda t, lat, lon: 0.0 * lat,
+            "sea_surface_wave_period_at_variance_spectral_density_maximum": (
+                lambda t, lat, lon: 9.0 + 0 * lat
+            ),
+        }
+    )
+    voyage = Voyage(start=(40.0, -30.0), goal=(41.0, -30.0), depart="2026-01-01T00:00Z")
+    chart = Chart.open_water(38, 43, -33, -27)
+    routes = []
+    for limits in ({}, {"msc_circ_1228": ["surf_riding"]}):
+        ship = _ship(limits, speeds_kn=[24])
+        routes.append(plan(voyage, ship=ship, sea=sea, chart=chart).best)
+    free, careful = routes
+    assert free.violations == careful.violations == ()
+    assert 1.05 < careful.time_h / free.time_h < 1.0 / math.cos(math.radians(45.0)) + 0.02
+    off = np.degrees(np.abs((careful.samples["course"] + np.pi) % (2 * np.pi) - np.pi))
+    assert off.max() > 20.0
