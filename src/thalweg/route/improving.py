@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -84,23 +85,19 @@ def better_route(
         return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
 
     if canal_legs(scored.track, chart).any:
-
-        def better(stretch: Route) -> Route:
-            return better_route(
-                stretch,
-                ship=ship,
-                sea=sea,
-                chart=chart,
-                table=table,
-                limits=limits,
-                min_ukc=min_ukc,
-                objective=objective,
-                wait=wait,
-            )
-
+        better = partial(
+            better_route,
+            ship=ship,
+            sea=sea,
+            chart=chart,
+            table=table,
+            limits=limits,
+            min_ukc=min_ukc,
+            objective=objective,
+            wait=wait,
+        )
         refined = _between_canals(scored, chart, score, better)
         return min(scored, refined, key=lambda item: rank(item, objective, chart))
-
     best, wished = scored, None
     may_wait = bool(scored.track.wait.any()) if wait is None else wait
     for margin, patient in _TRIES[: None if may_wait else _MARGINS]:

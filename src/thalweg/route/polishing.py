@@ -120,27 +120,56 @@ def polish(
         frozen = freeze_around(
             scored, scored.track, 0.2, ship=ship, sea=sea, limits=limits, until=latest
         )
-    best = scored
-    for margin in _MARGINS:
-        purse = make_purse(
+
+    def purse_of(track: Track, margin: float) -> Purse:
+        return make_purse(
             ship=ship,
             table=table,
             fuel=fuel,
             fields=frozen,
             limits=tightened(limits, margin),
             chart=chart,
-            track=scored.track,
+            track=track,
             weights=weights,
         )
-        line = _worked(line_of(scored.track, purse), purse, latest - scored.depart)
-        if line is None:
-            break
-        route = _in_time(line, purse, latest, score, value)
-        best = min(best, route, key=value)
-        if route.feasible:
-            break
+
+    best = _attempts(scored, latest, purse_of, score, value)
     held = canal_ends(best.track, chart)
     return thinned(best, score, value, most=value(scored), held=held)
+
+
+def _attempts(
+    scored: Route,
+    latest: float,
+    purse_of: Callable[[Track, float], Purse],
+    score: Callable[[Track], Route],
+    value: Callable[[Route], float],
+) -> Route:
+    """Return the best of a route and what comes of working on it.
+
+    A slower ship may meet weather that the route does not: if it cannot use the time it has, the
+    route is worked on at its own arrival first.
+    """
+
+    def attempt(start: Route, target: float) -> Route:
+        best = start
+        for margin in _MARGINS:
+            purse = purse_of(start.track, margin)
+            line = _worked(line_of(start.track, purse), purse, target - start.depart)
+            if line is None:
+                break
+            route = _in_time(line, purse, target, score, value)
+            best = min(best, route, key=value)
+            if route.feasible:
+                break
+        return best
+
+    best = attempt(scored, latest)
+    if best is scored and latest > scored.arrive:
+        best = attempt(scored, scored.arrive)
+        if best is not scored:
+            best = attempt(best, latest)
+    return best
 
 
 def _value(route: Route, objective: str, chart: Chart | None) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -78,19 +79,16 @@ def smooth(
     waypoints that bring less than a 5e-5 share of the cost together are left out.
     """
     if canal_legs(track, chart).any:
-
-        def smoothed(stretch: Track) -> Track:
-            return smooth(
-                stretch,
-                table=table,
-                fields=fields,
-                limits=limits,
-                chart=chart,
-                objective=objective,
-                wait=wait,
-                finest=finest,
-            )
-
+        smoothed = partial(
+            smooth,
+            table=table,
+            fields=fields,
+            limits=limits,
+            chart=chart,
+            objective=objective,
+            wait=wait,
+            finest=finest,
+        )
         return _between_canals(track, chart, smoothed, _clock(table, fields, limits))
     sailor = make_sailor(
         table=table,
