@@ -221,6 +221,24 @@ def test_land_is_kept_clear_of():
     assert route.fuel_t < 0.9 * start.fuel_t
 
 
+def test_time_that_weather_takes_away_is_not_used():
+    """Waves over the limit come to the second half after 8.3 hours: no slower there than that."""
+    ship = Ship.from_dict({**BULKER.data, "limits": {"max_significant_wave_height_m": 4.0}})
+    height = "sea_surface_wave_significant_height"
+    sea = Sea.from_functions(
+        {height: lambda t, a, o: np.where((o > 1.0) & (t > 8.3 * HOUR), 6.0, 1.0)}
+    )
+    start = evaluate([(0, 0), (0, 1), (0, 2)], ship=ship, sea=sea, chart=OPEN, depart=0)
+    assert 7.5 < start.time_h < 8.2 and start.feasible
+    route = polish(
+        start, ship=ship, sea=sea, chart=OPEN, table=ship.tabulate(), fuel=ship.tabulate_fuel(),
+        limits=[-math.inf, 4.0, math.inf], objective="fuel", arrive_by=12 * HOUR, thin=False,
+    )  # fmt: skip
+    assert route.feasible
+    assert route.arrive <= 8.3 * HOUR + 60.0
+    assert route.fuel_t <= start.fuel_t
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.integers(1, 3), st.integers(2, 4), st.floats(0.0, 1.2), st.randoms())
 def test_the_knapsack_against_all_choices(legs, count, share, random):

@@ -15,7 +15,7 @@ from thalweg.kernels.codes import LAND
 from thalweg.kernels.cube import ALL_LAND, IndexArrays
 from thalweg.kernels.zones import middles_inside
 
-PARTS: Final = 8  # pieces that a touched piece is cut into
+PARTS: Final = 16  # pieces that a touched piece is cut into
 FINEST: Final = 0.25  # pieces this short are taken whole [m]
 MOST_PIECES: Final = 512  # of one leg at one level: a leg that runs along an outline
 IntArray = NDArray[np.int64]
@@ -57,9 +57,9 @@ def shares_inside(
 
     ``outlines`` is `outlines_only` of the index.
 
-    Legs that touch no outline are told by their middle. The others are cut into eighths, and those
-    again that touch an outline, until pieces are shorter than 0.25 m: each crossing is found to
-    that. NaN where a position is no number.
+    Legs that touch no outline are told by their middle. The others are cut into sixteenths, and
+    those again that touch an outline, until pieces are shorter than 0.25 m: each crossing is found
+    to that. NaN where a position is no number.
     """
     legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
     known = (
@@ -105,13 +105,16 @@ def _refined(
             leg, start, size = leg[~done], start[~done], size[~done]
             if not len(leg):
                 break
+        cuts = np.arange(PARTS + 1) / PARTS
+        at = (start[:, None] + cuts * size[:, None]) * length[leg, None]
+        place = np.repeat(leg, PARTS + 1)
+        lat, lon = direct(lat1[place], lon1[place], course[place], at.ravel())
+        lat, lon = lat.reshape(-1, PARTS + 1), lon.reshape(-1, PARTS + 1)
+        a = lat[:, :-1].ravel(), lon[:, :-1].ravel()
+        b = lat[:, 1:].ravel(), lon[:, 1:].ravel()
+        start = (start[:, None] + cuts[:-1] * size[:, None]).ravel()
         size = np.repeat(size / PARTS, PARTS)
-        start = np.repeat(start, PARTS) + np.tile(np.arange(PARTS), len(leg)) * size
         leg = np.repeat(leg, PARTS)
-        a, b = (
-            direct(lat1[leg], lon1[leg], course[leg], at * length[leg])
-            for at in (start, start + size)
-        )
         touched = np.empty(len(leg), np.bool_)
         outlines_touched(outlines, a[0], a[1], b[0], b[1], touched)
         clear = ~touched

@@ -57,6 +57,7 @@ def polish(
     terms: FuelTerms | None = None,
     min_ukc: float | None = 0.0,
     fields: GridFields | None = None,
+    thin: bool = True,
 ) -> Route:
     """Return a route of the same way that costs less and arrives no later.
 
@@ -80,6 +81,8 @@ def polish(
         As for `evaluate`.
     fields : GridFields, optional
         The sea frozen around the route, to be used for many; by default frozen anew.
+    thin : bool
+        Leave out waypoints that make no difference (up to five more evaluations).
 
     Returns
     -------
@@ -134,6 +137,8 @@ def polish(
         )
 
     best = _attempts(scored, latest, purse_of, score, value)
+    if not thin:
+        return best
     held = canal_ends(best.track, chart)
     return thinned(best, score, value, most=value(scored), held=held)
 
