@@ -111,18 +111,17 @@ def test_no_data_is_no_calm():
 
 
 def test_only_changed_legs_are_looked_up():
-    evaluator = jet.evaluator()
     asked = []
 
-    class Counting(type(evaluator.sailor)):
-        def look(self, lat, lon):
-            asked.append(len(lat))
-            return super().look(lat, lon)
+    class Counting:
+        has_depth = False
+        zones = SimpleNamespace(penalty=(), price=(), eca=())
 
-    fields = evaluator.sailor.__dict__
-    evaluator = type(evaluator)(
-        evaluator.world, Counting(**fields), evaluator.prices, evaluator.depart, evaluator.latest
-    )
+        def legs_blocked(self, lat1, lon1, lat2, lon2):
+            asked.append(len(lat1))
+            return np.zeros(len(lat1), bool)
+
+    evaluator = jet.evaluator(chart=Counting())
     population = evaluator.population([wavy(10), wavy(12, seed=4)])
     evaluator.score(population)
     evaluator.score(population)
@@ -130,6 +129,16 @@ def test_only_changed_legs_are_looked_up():
     population.genes[1, 4:6, fitness.KNOWN] = 0.0
     evaluator.score(population)
     assert asked == [20, 2]
+
+
+def test_charted_depth_limits_legs():
+    shoal = jet.chart().with_depth(lambda lat, lon: np.where(lon > 0.05, 5.0, 50.0))
+    deep = np.array([8.0, math.inf, math.inf])
+    track = jet.straight(6, 11)
+    assert jet.evaluator(chart=shoal)([track])[2][0] == 0.0  # not asked for
+    _, _, violation = jet.evaluator(chart=shoal, limits=deep)([track])
+    share = (jet.GOAL[1] - 0.05) / (jet.GOAL[1] - jet.START[1])
+    assert violation[0] == pytest.approx(share, abs=0.11)  # whole legs
 
 
 def test_canal_legs_take_their_time_and_fee_whatever_the_sea():

@@ -18,6 +18,7 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import format_time
 from thalweg.evolution.calm import calm_rate, calm_speeds
 from thalweg.evolution.genome import Genome, Population
+from thalweg.kernels import codes
 from thalweg.kernels import fitness as columns
 from thalweg.kernels.fitness import FitnessWorld, sail_population
 from thalweg.kernels.tables import TableArrays
@@ -185,13 +186,15 @@ class Evaluator:
         weight, penalty = np.full(n, prices.outside), np.ones(n)
         if chart is None:
             return blocked, charted, weight, penalty
-        lines = np.stack([lat1, lat2], axis=1), np.stack([lon1, lon2], axis=1)
-        shut, depth = self.sailor.look(*lines)
-        if shut is not None:
-            blocked[:] = shut[:, 0]
-        if depth is not None:
-            charted[:] = depth[:, 0]
         ends = (lat1, lon1, lat2, lon2)
+        required = self.world.limits[codes.LIMIT_REQUIRED_DEPTH]
+        if chart.has_depth and math.isfinite(required):
+            lines = np.stack([lat1, lat2], axis=1), np.stack([lon1, lon2], axis=1)
+            shut, depth = self.sailor.look(*lines)
+            if shut is not None and depth is not None:
+                blocked, charted = shut[:, 0].astype(float), depth[:, 0]
+        else:
+            blocked[:] = chart.legs_blocked(*ends)
         zones: Any = chart.zones
         if prices.inside != prices.outside and len(getattr(zones, "eca", ())):
             weight = weight + np.asarray(chart.eca_share(*ends)) * (prices.inside - prices.outside)
