@@ -18,13 +18,17 @@ from thalweg.core.errors import InputError
 from thalweg.kernels import profile as kernel
 from thalweg.kernels.afloat import States
 from thalweg.kernels.edges import NetworkArrays, ShipArrays
+from thalweg.search.arrays import SHRINK, Problem
+from thalweg.search.berths import earliest_from_berths
+from thalweg.search.moods import Bounds
 from thalweg.search.waters import Waters
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _SPARE = 1e-3  # an arrival this much above a known one is still looked at [s]
-_FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
+_FIRST_SLACK = 900.0  # beyond the bound, when nothing is known yet [s] ...
+_SLACK = 600.0  # ... and when the bound is that of the hours looked at
 _SAME = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
 
 
@@ -98,7 +102,7 @@ class Passages:
     ship : ShipArrays
     states : States
         Times afloat of every node.
-    ahead : Ahead
+    bounds : Bounds
         Lower bounds of the time to go.
     ends : tuple of int
         Start and goal.
@@ -111,7 +115,7 @@ class Passages:
     waters: Waters
     ship: ShipArrays
     states: States
-    ahead: kernel.Ahead
+    bounds: Bounds
     ends: tuple[int, int]
     slowness: float
     wait: bool
@@ -119,7 +123,7 @@ class Passages:
     @property
     def shortest(self) -> float:
         """Lower bound of the time of any passage [s]; inf if no tide ever opens a way."""
-        return float(self.ahead.node[self.ends[0]])
+        return float(self.bounds.ever.node[self.ends[0]])
 
     @cached_property
     def _network(self) -> NetworkArrays:
@@ -152,26 +156,53 @@ class Passages:
         Returns
         -------
         Passage
-            The same as that of `earliest_arrival`, to within ties.
+            The same as that of `earliest_arrival`, to within ties (where the ship may wait at some
+            nodes only, to within a wave of `thalweg.search.berths`).
         """
         depart = float(depart)
         last = min(float(arrive_by), float(self.waters.sea.times[-1]))
         longest = last - depart
         if not (math.isfinite(depart) and self.shortest <= longest):
             return _nothing(depart)
-        limit = known - depart + _SPARE if known < math.inf else 1.6 * self.shortest + _FIRST_SLACK
+        limit = 1.25 * self.shortest + _FIRST_SLACK
+        if known < math.inf:
+            limit = known - depart + _SPARE
+        search = self._from_berths if self._has_berths else self._search
         while True:
-            found = self._search(depart, min(limit, longest))
+            limit = min(max(limit, self.shortest), longest)
+            bound = self.bounds.over(depart, depart + limit).node[self.ends[0]]
+            found = search(depart, limit) if bound <= limit else _nothing(depart)
             if found.found or limit >= longest:
                 return found
-            limit = max(2.0 * limit, 1.6 * self.shortest + _FIRST_SLACK)
+            # within this limit there is no way: go on beyond it, and beyond what is needed at least
+            limit = max(1.5 * limit, 1.15 * bound + _SLACK if bound < math.inf else 0.0)
+
+    @cached_property
+    def _has_berths(self) -> bool:
+        """Whether the ship may wait at some nodes but not at all of them."""
+        return self.wait and not bool(np.all(self.waters.network.can_wait))
+
+    def _from_berths(self, depart: float, limit: float) -> Passage:
+        """Search where waiting is allowed at some nodes only (`thalweg.search.berths`)."""
+        waters = self.waters
+        sea = waters.window(depart, depart + limit)
+        top = SHRINK / self.slowness - waters.top_current
+        given = Problem(waters.network, sea, self.ship, top, waters.top_current)
+        found = earliest_from_berths(
+            waters.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
+            limits=self.ship.limits, arrive_by=depart + limit,
+        )  # fmt: skip
+        return Passage(
+            depart, found.arrive, found.path, found.path_arrive, found.path_depart, found.settled
+        )
 
     def _search(self, depart: float, limit: float) -> Passage:
         first = self.states.ptr
         start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
         trip = kernel.Trip(start, goal, depart, float(limit), self.slowness, bool(self.wait))
         marks, sea = self._marks, self.waters.window(depart, depart + limit)
-        cost = kernel.sail_once(self._network, self.states, sea, self.ship, trip, self.ahead, marks)
+        ahead = self.bounds.over(depart, depart + limit)
+        cost = kernel.sail_once(self._network, self.states, sea, self.ship, trip, ahead, marks)
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
             kernel.forget(marks)
@@ -241,7 +272,7 @@ class Passages:
 
 def _worth_knowing(passages: Passages) -> float:
     """Return how long a passage may take for its arrival to bound an earlier one [s]."""
-    return 3.0 * passages.shortest + _FIRST_SLACK
+    return 3.0 * passages.shortest + 3600.0
 
 
 def _together(first: Passage, second: Passage) -> bool:
