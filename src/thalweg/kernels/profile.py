@@ -14,12 +14,10 @@ import numpy as np
 from thalweg.kernels import heap
 from thalweg.kernels.bare import bare, woven
 from thalweg.kernels.codes import (
-    BED_DEPTH,
     CHANNELS,
     CURRENT_EAST,
     CURRENT_NORTH,
     OK,
-    WATER_LEVEL,
 )
 from thalweg.kernels.edges import interval_of, sail_edge, sample_station, wait_for_edge
 
@@ -121,69 +119,12 @@ def strongest_currents(sea, strongest):
             strongest[s, d + SECTORS // 2] = -low + 1e-5
 
 
-class Mood(NamedTuple):
-    """What the sea is at most in some hours, beside what it is at most ever.
-
-    Attributes
-    ----------
-    lower : float
-        The water stands at least so much below its highest everywhere (not positive) [m].
-    share : float64[SECTORS]
-        The current towards each direction is at most this share of its strongest (-1 to 1; below 0
-        it runs against it everywhere that matters) ...
-    spare : float
-        ... and this more [m/s].
-    """
-
-    lower: float
-    share: np.ndarray
-    spare: float
-
-
-@bare
-def mood_of(sea, first, last, strongest, spare, share):
-    """Fill the shares of a `Mood` over the times ``first:last`` of fields; return its ``lower``."""
-    i, j = sea.channel_index[WATER_LEVEL], sea.channel_index[BED_DEPTH]
-    u, v = sea.channel_index[CURRENT_EAST], sea.channel_index[CURRENT_NORTH]
-    values, lower = sea.values, -math.inf if i >= 0 else 0.0
-    for d in range(SECTORS):
-        share[d] = -1.0 if u >= 0 and v >= 0 else 1.0
-    for s in range(values.shape[0]):
-        for t in range(first, last):
-            if i >= 0:
-                lower = max(lower, values[s, t, i] - sea.highest[s])
-                if j >= 0:
-                    lower = max(lower, values[s, t, i] + values[s, t, j] - sea.deepest[s])
-        if u < 0 or v < 0:
-            continue
-        for d in range(SECTORS // 2):
-            angle = 2.0 * math.pi * d / SECTORS
-            east, north = np.float32(math.sin(angle)), np.float32(math.cos(angle))
-            high, low = np.float32(-math.inf), np.float32(math.inf)
-            for t in range(first, last):
-                along = values[s, t, u] * east + values[s, t, v] * north
-                high = max(high, along) if along == along else high
-                low = min(low, along) if along == along else low
-            other = d + SECTORS // 2
-            if strongest[s, d] > 0.0:
-                share[d] = max(share[d], (high - spare) / strongest[s, d])
-            if strongest[s, other] > 0.0:
-                share[other] = max(share[other], (-low - spare) / strongest[s, other])
-    return min(lower + 1e-4, 0.0)
-
-
 @woven
-def _towards(strongest, mood, station, k):
-    return mood.share[k] * strongest[station, k] + mood.spare
-
-
-@woven
-def _slowness_at(network, sea, strongest, mood, caps, station, edge, course, required):
+def _slowness_at(network, sea, strongest, caps, station, edge, course, required):
     """Return the least time per metre ever at a station on an edge [s/m]; inf if it never opens."""
     speed = caps[caps.shape[0] - 1]
     if required > -math.inf:
         depth = min(float(network.depth[edge]) + sea.highest[station], sea.deepest[station])
-        depth += mood.lower
         if not depth >= required - _SPARE:
             return math.inf
         speed = caps[min(int(max(depth + _SPARE, 0.0) / CAP_STEP), caps.shape[0] - 1)]
@@ -191,9 +132,8 @@ def _slowness_at(network, sea, strongest, mood, caps, station, edge, course, req
     low = math.floor(sector)
     share, gap = (sector - low) * (2.0 * math.pi / SECTORS), 2.0 * math.pi / SECTORS
     k = int(low) % SECTORS
-    along = math.sin(gap - share) * _towards(strongest, mood, station, k)
-    along += math.sin(share) * _towards(strongest, mood, station, (k + 1) % SECTORS)
-    along /= math.sin(gap)
+    along = math.sin(gap - share) * strongest[station, k]
+    along = (along + math.sin(share) * strongest[station, (k + 1) % SECTORS]) / math.sin(gap)
     speed = (speed + along) * (1.0 + 1e-6)
     return 1.0 / speed if speed > 0.0 else math.inf
 
@@ -202,7 +142,7 @@ CAP_STEP = 0.25  # of the depths for which the greatest speed is kept [m]
 
 
 @bare
-def least_times(network, tails, sea, strongest, mood, caps, required, times):
+def least_times(network, tails, sea, strongest, caps, required, times):
     """Fill lower bounds of the weighted time of every edge at any time [s]; inf if none opens it.
 
     Parameters
@@ -211,8 +151,6 @@ def least_times(network, tails, sea, strongest, mood, caps, required, times):
     tails : int32[E]
     strongest : float32[S, SECTORS]
         From `strongest_currents`.
-    mood : Mood
-        Of the hours the bounds are for.
     caps : float64[C]
         Greatest speed through water in depths up to ``(i + 1) * CAP_STEP`` [m/s]; the last one
         anywhere.
@@ -225,18 +163,18 @@ def least_times(network, tails, sea, strongest, mood, caps, required, times):
             times[e] = network.fixed_time[e] * float(network.factor[e]) * _SHRINK
             continue
         course, length = float(network.course[e]), network.length[e]
-        before = _slowness_at(network, sea, strongest, mood, caps, tails[e], e, course, required)
+        before = _slowness_at(network, sea, strongest, caps, tails[e], e, course, required)
         at, total = 0.0, 0.0
         for p in range(network.via_ptr[e], network.via_ptr[e + 1] + 1):
             if p < network.via_ptr[e + 1]:
                 a, b, to = network.via_a[p], network.via_b[p], float(network.via_s[p])
-                first = _slowness_at(network, sea, strongest, mood, caps, a, e, course, required)
-                now = _slowness_at(network, sea, strongest, mood, caps, b, e, course, required)
+                first = _slowness_at(network, sea, strongest, caps, a, e, course, required)
+                now = _slowness_at(network, sea, strongest, caps, b, e, course, required)
                 now = min(first, now)
             else:
                 to = 1.0
                 now = _slowness_at(
-                    network, sea, strongest, mood, caps, network.target[e], e, course, required
+                    network, sea, strongest, caps, network.target[e], e, course, required
                 )
             total += 0.5 * (to - at) * length * (before + now)
             before, at = now, to

@@ -20,15 +20,13 @@ from thalweg.kernels.afloat import States
 from thalweg.kernels.edges import NetworkArrays, ShipArrays
 from thalweg.search.arrays import SHRINK, Problem
 from thalweg.search.berths import earliest_from_berths
-from thalweg.search.moods import Bounds
 from thalweg.search.waters import Waters
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _SPARE = 1e-3  # an arrival this much above a known one is still looked at [s]
-_FIRST_SLACK = 900.0  # beyond the bound, when nothing is known yet [s] ...
-_SLACK = 600.0  # ... and when the bound is that of the hours looked at
+_FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
 _SAME = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
 
 
@@ -102,7 +100,7 @@ class Passages:
     ship : ShipArrays
     states : States
         Times afloat of every node.
-    bounds : Bounds
+    ahead : Ahead
         Lower bounds of the time to go.
     ends : tuple of int
         Start and goal.
@@ -115,7 +113,7 @@ class Passages:
     waters: Waters
     ship: ShipArrays
     states: States
-    bounds: Bounds
+    ahead: kernel.Ahead
     ends: tuple[int, int]
     slowness: float
     wait: bool
@@ -123,7 +121,7 @@ class Passages:
     @property
     def shortest(self) -> float:
         """Lower bound of the time of any passage [s]; inf if no tide ever opens a way."""
-        return float(self.bounds.ever.node[self.ends[0]])
+        return float(self.ahead.node[self.ends[0]])
 
     @cached_property
     def _network(self) -> NetworkArrays:
@@ -164,18 +162,14 @@ class Passages:
         longest = last - depart
         if not (math.isfinite(depart) and self.shortest <= longest):
             return _nothing(depart)
-        limit = 1.25 * self.shortest + _FIRST_SLACK
-        if known < math.inf:
-            limit = known - depart + _SPARE
+        limit = known - depart + _SPARE if known < math.inf else 0.0
         search = self._from_berths if self._has_berths else self._search
         while True:
-            limit = min(max(limit, self.shortest), longest)
-            bound = self.bounds.over(depart, depart + limit).node[self.ends[0]]
-            found = search(depart, limit) if bound <= limit else _nothing(depart)
+            limit = limit if limit >= self.shortest else 1.6 * self.shortest + _FIRST_SLACK
+            found = search(depart, min(limit, longest))
             if found.found or limit >= longest:
                 return found
-            # within this limit there is no way: go on beyond it, and beyond what is needed at least
-            limit = max(1.5 * limit, 1.15 * bound + _SLACK if bound < math.inf else 0.0)
+            limit = max(2.0 * limit, 1.6 * self.shortest + _FIRST_SLACK)
 
     @cached_property
     def _has_berths(self) -> bool:
@@ -201,8 +195,7 @@ class Passages:
         start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
         trip = kernel.Trip(start, goal, depart, float(limit), self.slowness, bool(self.wait))
         marks, sea = self._marks, self.waters.window(depart, depart + limit)
-        ahead = self.bounds.over(depart, depart + limit)
-        cost = kernel.sail_once(self._network, self.states, sea, self.ship, trip, ahead, marks)
+        cost = kernel.sail_once(self._network, self.states, sea, self.ship, trip, self.ahead, marks)
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
             kernel.forget(marks)
@@ -272,7 +265,7 @@ class Passages:
 
 def _worth_knowing(passages: Passages) -> float:
     """Return how long a passage may take for its arrival to bound an earlier one [s]."""
-    return 3.0 * passages.shortest + 3600.0
+    return 3.0 * passages.shortest + _FIRST_SLACK
 
 
 def _together(first: Passage, second: Passage) -> bool:

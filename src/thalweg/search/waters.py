@@ -19,7 +19,6 @@ from thalweg.kernels.edges import NetworkArrays, SeaArrays, ShipArrays
 from thalweg.kernels.extremes import largest_current, largest_speed_field
 from thalweg.kernels.tables import TableArrays, table_value
 from thalweg.search.arrays import SHRINK, network_arrays, sea_arrays, ship_arrays
-from thalweg.search.moods import SPARE_CURRENT, Bounds, Key, key_of
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
@@ -33,7 +32,6 @@ IntArray = NDArray[np.int64]
 _MOST_DEPTH = 60.0  # deeper than this the greatest speed is that anywhere [m]
 _WINDOW = 7200.0  # windows of the fields begin at multiples of this [s] ...
 _KEPT = 6  # ... and so many are kept
-_ROUND = 3  # times of the data by which hours are rounded to be looked at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,27 +117,6 @@ class Waters:
             return found
 
     @cached_property
-    def _moods(self) -> dict[tuple[int, int], Key]:
-        return {}
-
-    def class_of(self, depart: float, last: float) -> Key:
-        """Return the class of the hours between two times (see `thalweg.search.moods`)."""
-        times = self.sea.times
-        first = int(np.searchsorted(times, depart, side="right")) - 1
-        end = int(np.searchsorted(times, last)) + 1
-        first, end = max(first - first % _ROUND, 0), min(end + -end % _ROUND, len(times))
-        key = self._moods.get((first, end))
-        if key is None:
-            part = self.window(float(times[first]), float(times[end - 1]))
-            offset = int(np.searchsorted(times, part.times[0]))
-            share = np.empty(kernel.SECTORS)
-            hours = first - offset, end - offset
-            lower = kernel.mood_of(part, *hours, self.strongest, SPARE_CURRENT, share)
-            key = key_of(kernel.Mood(lower, share, SPARE_CURRENT))
-            self._moods[first, end] = key
-        return key
-
-    @cached_property
     def top_current(self) -> float:
         """Largest current anywhere [m/s]."""
         return float(largest_current(self.sea))
@@ -187,11 +164,9 @@ class Waters:
                 "Check the ship's speeds.",
             )
         states = self._states(ship, (start, goal), wait)
-        field = field_top >= 0.0
-        caps = np.full(1, fastest) if field else _speed_caps(ship, fastest)
-        bounds = Bounds(self, ship, goal, caps)
+        ahead = self._ahead(ship, goal, fastest, field_top >= 0.0)
         slowness = SHRINK / (fastest + self.top_current)
-        return Passages(self, ship, states, bounds, (start, goal), slowness, wait)
+        return Passages(self, ship, states, ahead, (start, goal), slowness, wait)
 
     def _states(self, ship: ShipArrays, ends: tuple[int, int], wait: bool) -> afloat.States:
         """Return the times afloat of every node; start and goal stay single."""
@@ -212,6 +187,22 @@ class Waters:
             changing[:] = False
         afloat.fill_afloat(self.sea, self.charted, changing, required, states)
         return states
+
+    def _ahead(self, ship: ShipArrays, goal: int, fastest: float, field: bool) -> kernel.Ahead:
+        """Return lower bounds of the time to the goal and of every edge [s]."""
+        caps = np.full(1, fastest) if field else _speed_caps(ship, fastest)
+        times = np.empty(len(self.tails))
+        required = float(ship.limits[LIMIT_REQUIRED_DEPTH])
+        kernel.least_times(
+            self.network, self.tails, self.sea, self.strongest, caps, required, times
+        )
+        count = len(self.network.can_wait)
+        ahead = np.empty(count)
+        memory = np.empty(count, np.int32), np.empty(count), np.full(count, -1, np.int32)
+        kernel.backward_bounds(
+            self.arriving_ptr, self.arriving, self.tails, times, goal, ahead, memory
+        )
+        return kernel.Ahead(ahead, times)
 
 
 def _speed_caps(ship: ShipArrays, fastest: float) -> FloatArray:
