@@ -106,7 +106,7 @@ def front(
         Whether the ship may wait at nodes that allow it, as long as it stays afloat.
     bin_s : float, optional
         Width of the bins of time [s] (default: a round number that divides the time into at most
-        2000 bins, fewer where the memory does not allow that).
+        2000 bins, fewer, but not below 250, where the memory or the work does not allow that).
     memory_limit : float
         Memory that may be taken [bytes].
     lower : bool
@@ -143,7 +143,7 @@ def front(
       and nearer the narrower the bins are.
     * While searching, durations and costs of edges are interpolated linearly between departures at
       slices of time (``work.slices``; chosen so that the interpolation is right within 0.1 % at 95
-      % of a sample, see ``work.table_error``, or the memory is used up). This may mislead a
+      % of a sample, see ``work.table_error``, or the tables would be too large). This may mislead a
       choice, not a number: all points are sailed again. Where an edge opens or shuts between two
       slices it is sailed exactly.
     * Where the ship may wait, a label is dropped if an earlier one costs no more with the waiting

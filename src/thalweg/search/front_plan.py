@@ -23,6 +23,8 @@ TABLE_TOLERANCE = 1e-3
 _FINE, _CHEAP = 0.02 * TABLE_TOLERANCE, 3e7  # [bytes]
 _MOST_BINS = 2000
 _COARSEST_BINS = 250
+_MOST_RELAXED = 4e9  # that bins chosen here may allow for; a good third of them come about
+_AMPLE, _AMPLE_WEATHER = 1e9, 3e8  # tables for whose sake no finer slices are taken [bytes]
 _SAMPLED = 400  # edges looked at to choose the slices
 _LABEL_BYTES = 20
 _NICE = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 90.0, 120.0, 180.0, 240.0]
@@ -83,7 +85,7 @@ def make_plan(
         Earliest arrival at every state [s].
     bin_s : float, optional
         Width of the bins [s]; by default the horizon is divided into at most 2000, into fewer
-        where the memory does not allow that.
+        where the memory does not allow that or the relaxations would be too many.
     memory_limit : float
         [bytes]
 
@@ -96,10 +98,14 @@ def make_plan(
     while True:
         clock = _clock(request, width)
         windows = _windows(clock, bounds, earliest - request.depart)
+        coarsest = clock.count <= _COARSEST_BINS
+        if bin_s is None and not coarsest and _relaxations(got, windows) > _MOST_RELAXED:
+            width = _nice(width * 1.5)
+            continue
         slices, error, memory = _slices(got, request, clock, windows, memory_limit)
         if memory <= memory_limit:
             return Plan(clock, windows, slices, error, memory)
-        if bin_s is not None or clock.count <= _COARSEST_BINS:
+        if bin_s is not None or coarsest:
             raise _too_much(got, clock, memory, memory_limit)
         width = _nice(width * 1.5)
 
@@ -129,15 +135,17 @@ def _slices(
 ) -> tuple[FloatArray, float, int]:
     """Return the coarsest slices that are exact enough, finer ones where they cost little.
 
-    If none that fit the memory are exact enough, the finest that do.
+    If none that fit the memory and take a bearable time are exact enough, the finest that do.
     """
     ladder = _ladder(got.world.sea.times - request.depart, clock.latest)
+    weather = got.world.ship.needs | got.world.ship.fuel_needs
+    most = min(memory_limit, _AMPLE_WEATHER if weather else _AMPLE)
     chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
         needed = _memory(got, clock, windows, slices)
         if error <= TABLE_TOLERANCE and (fine or needed > _CHEAP):
             break
-        if error < math.inf and needed > memory_limit:
+        if error < math.inf and needed > most:
             break
         chosen, memory = slices, needed
         error, shut = _table_error(got, request, windows, clock, slices)
@@ -159,6 +167,12 @@ def _ladder(times: FloatArray, horizon: float) -> list[FloatArray]:
         within = own[:-1, None] + np.diff(own)[:, None] * (np.arange(parts) / parts)
         rungs.append(np.append(within.ravel(), horizon))
     return rungs
+
+
+def _relaxations(got: Gathered, windows: Windows) -> float:
+    """Return how many relaxations the windows allow for."""
+    bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
+    return float((bins * np.diff(got.world.network.indptr)).sum()) * len(got.world.ship.settings)
 
 
 def slice_windows(clock: Clock, windows: Windows, slices: FloatArray) -> tuple[IntArray, IntArray]:
