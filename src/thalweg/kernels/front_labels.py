@@ -159,6 +159,15 @@ def room_for(labels, clock, network, prices, head, time, cost):
     return math.inf
 
 
+@inlined
+def _any_shut(values, at, span, count):
+    """Return whether an edge is shut at some setting at one of the two slices around."""
+    for s in range(count):
+        if values[at + s] != values[at + s] or values[at + span + s] != values[at + span + s]:
+            return True
+    return False
+
+
 @inner
 def _sail_shut(world, labels, target, clock, blocks, node, edge, e0, i, start, work):
     """Sail an edge now at the settings that are shut at one of the slices around."""
@@ -201,7 +210,7 @@ def _expand(world, labels, target, clock, blocks, node, start, only_shut, counts
         fill_block(world, blocks, node, i, work)
     if blocks.state[state + 1] == 0:
         fill_block(world, blocks, node, i + 1, work)
-    shut = blocks.state[state] == 2 or blocks.state[state + 1] == 2
+    shut = blocks.state[state] > 1 or blocks.state[state + 1] > 1
     count = world.ship.settings.shape[0]
     e0, e1 = network.indptr[node], network.indptr[node + 1]
     at, span = blocks.offset[node] + i * (e1 - e0) * 2 * count, (e1 - e0) * 2 * count
@@ -224,7 +233,7 @@ def _expand(world, labels, target, clock, blocks, node, start, only_shut, counts
                         labels, target, clock, head, time + took, cost + price, slot, left, code
                     )
                     again |= found == b
-        if ample > 0.0 and shut:
+        if ample > 0.0 and shut and _any_shut(values, at, span, count):
             again |= _sail_shut(
                 world, labels, target, clock, blocks, node, edge, e0, i, start, work
             )
@@ -296,7 +305,7 @@ def _wait(world, labels, target, clock, blocks, node, b, counts, work, spare):
     if i < 0 or i + 1 >= blocks.count[node] or labels.best_at[node, 0] > time:
         return again
     state = blocks.place[node] + i
-    if blocks.state[state] != 2 and blocks.state[state + 1] != 2:
+    if blocks.state[state] != 3 and blocks.state[state + 1] != 3:
         return again
     cost = labels.best[node] + world.prices.wait_rate * time
     if world.depart + time <= world.network.until[node] and promising(

@@ -99,7 +99,8 @@ class Blocks(NamedTuple):
     offset : int64[N]
         Where the values of the node's first block start.
     state : uint8[:]
-        0: not filled yet; 1: filled; 2: filled, some edge may open before or after.
+        0: not filled yet; 1: filled; 2: some edge is shut at some setting, but may open; 3: some
+        edge is so at all settings.
     values : float32[:]
     refused : int64[COUNT]
         How many sails were refused, by status.
@@ -244,6 +245,7 @@ def fill_block(world, blocks, node, i, work):
         fixed = world.prices.fixed_time[edge]
         if never == OK and required > -math.inf and fixed != fixed:
             never = never_deep_enough(network, sea, edge, required)
+        shut = 0
         for s in range(count):
             duration, cost, status = math.inf, math.inf, never
             if status == OK:
@@ -252,11 +254,12 @@ def fill_block(world, blocks, node, i, work):
                 if status == OK:
                     duration, cost = then - t, price
                 elif _may_open(status):
-                    duration, found = math.nan, 2
+                    duration, shut = math.nan, shut + 1
             if status != OK:
                 blocks.refused[status] += 1
             blocks.values[at + s] = duration
             blocks.values[at + count + s] = cost
+        found = max(found, 3 if shut == count else 2 if shut > 0 else 1)
         at += 2 * count
     blocks.state[blocks.place[node] + i] = found
 

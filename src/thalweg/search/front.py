@@ -148,7 +148,7 @@ def front(
       slices it is sailed exactly.
     * Where the ship may wait, a label is dropped if an earlier one costs no more with the waiting
       in between paid: exact, since the earlier ship can wait. A waiting ship leaves at slices, and
-      where an edge is shut at one of the slices around, at the start of any bin. Elsewhere (and
+      where an edge is shut at all settings at one of the slices around, at the start of any bin. Elsewhere (and
       with ``wait=False`` everywhere) labels are compared inside a bin only.
     * The lower front is the larger of two bounds. One lets every arrival count for the start of
       its bin and leaves at any moment of the bin, whatever is earliest and cheapest; it closes as

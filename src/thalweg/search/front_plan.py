@@ -24,7 +24,7 @@ _FINE, _CHEAP = 0.02 * TABLE_TOLERANCE, 3e7  # [bytes]
 _MOST_BINS = 2000
 _COARSEST_BINS = 250
 _MOST_RELAXED = 4e9  # that bins chosen here may allow for; a good third of them come about
-_AMPLE, _AMPLE_WEATHER = 1e9, 3e8  # tables for whose sake no finer slices are taken [bytes]
+_AMPLE = 1e9  # tables are not made larger than that for the sake of finer slices [bytes]
 _SAMPLED = 400  # edges looked at to choose the slices
 _LABEL_BYTES = 20
 _NICE = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 90.0, 120.0, 180.0, 240.0]
@@ -138,8 +138,7 @@ def _slices(
     If none that fit the memory and take a bearable time are exact enough, the finest that do.
     """
     ladder = _ladder(got.world.sea.times - request.depart, clock.latest)
-    weather = got.world.ship.needs | got.world.ship.fuel_needs
-    most = min(memory_limit, _AMPLE_WEATHER if weather else _AMPLE)
+    most = min(memory_limit, _AMPLE)
     chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
         needed = _memory(got, clock, windows, slices)
