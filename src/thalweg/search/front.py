@@ -143,13 +143,13 @@ def front(
       and nearer the narrower the bins are.
     * While searching, durations and costs of edges are interpolated linearly between departures at
       slices of time (``work.slices``; chosen so that the interpolation is right within 0.1 % at 95
-      % of a sample, see ``work.table_error``, or the tables would be too large). This may mislead a
-      choice, not a number: all points are sailed again. Where an edge opens or shuts between two
+      % of a sample, see ``work.table_error``, or the tables would be too large). This may mislead
+      a choice, not a number: all points are sailed again. Where an edge opens or shuts between two
       slices it is sailed exactly.
     * Where the ship may wait, a label is dropped if an earlier one costs no more with the waiting
       in between paid: exact, since the earlier ship can wait. A waiting ship leaves at slices, and
-      where an edge is shut at all settings at one of the slices around, at the start of any bin. Elsewhere (and
-      with ``wait=False`` everywhere) labels are compared inside a bin only.
+      where an edge is shut at all settings at one of the slices around, at the start of any bin.
+      Elsewhere (and with ``wait=False`` everywhere) labels are compared inside a bin only.
     * The lower front is the larger of two bounds. One lets every arrival count for the start of
       its bin and leaves at any moment of the bin, whatever is earliest and cheapest; it closes as
       the bins narrow. The other is the least cost plus a price of time, for up to 12 prices, which
