@@ -123,16 +123,16 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     return sea.filled(**policies) if policies else sea
 
 
-def _policy(text: str) -> tuple[str, float]:
+def _policy(text: str) -> tuple[str, float | str]:
     name, _, value = text.partition("=")
     try:
         if name not in FILLABLE:
             raise ValueError
-        return name, float(value)
+        return name, value if (name, value) == ("waves", "wind") else float(value)
     except ValueError:
         raise InputError(
             f"--fill {text} is not understood.",
-            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}.",
+            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, waves=wind.",
             "Write it that way.",
         ) from None
 

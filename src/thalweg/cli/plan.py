@@ -30,14 +30,43 @@ def add_command(commands: Any) -> None:
     when.add_argument("--depart", metavar="T", help="departure, ISO 8601 UTC")
     when.add_argument("--depart-window", nargs=2, metavar=("T1", "T2"), help="best departure in it")
     parser.add_argument("--arrive-by", metavar="T", help="latest arrival")
-    parser.add_argument("--objective", default="time", metavar="time|distance")
+    parser.add_argument(
+        "--objective",
+        default="time",
+        metavar="time|distance|fuel|cost|co2|front",
+        help="what to make least; front: the whole trade of time against fuel or cost",
+    )
     parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed through water")
     parser.add_argument(
         "--wait", action=argparse.BooleanOptionalAction, default=True, help="may stop and wait"
     )
+    parser.add_argument("--network", default="auto", metavar="auto|lattice|mesh|globe")
     parser.add_argument("--resolution", type=float, metavar="NM", help="spacing of the network")
     parser.add_argument("--seed", type=int, default=0)
+    _add_trade_options(parser.add_argument_group("fuel, cost, canals"))
     parser.set_defaults(run=run)
+
+
+def _add_trade_options(group: Any) -> None:
+    group.add_argument("--fuel-price", type=float, metavar="USD", help="price of a tonne of fuel")
+    group.add_argument(
+        "--eca-price-factor",
+        type=float,
+        metavar="F",
+        help="price of fuel inside emission control areas over the price outside",
+    )
+    group.add_argument("--time-price", type=float, metavar="USD", help="what an hour costs besides")
+    group.add_argument(
+        "--forbid", nargs="+", action="extend", default=[], metavar="CANAL", help="canals, or all"
+    )
+    group.add_argument("--method", default="default", metavar="default|exact|nsga2|spea2|mpaes")
+    group.add_argument(
+        "--ensemble",
+        nargs="?",
+        const="mean",
+        metavar="mean|cvar",
+        help="choose over all members of a forecast by the mean or the mean of the worst tenth",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -54,6 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         ship=ship,
         sea=sea,
         chart=common.open_chart(arguments),
+        network=arguments.network,
         resolution=common.resolution_m(arguments.resolution),
         progress=common.progress_for(arguments),
     )
@@ -85,6 +115,12 @@ def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:
         speed_kn=arguments.speed,
         min_ukc_m=arguments.ukc,
         seed=arguments.seed,
+        fuel_price_usd=arguments.fuel_price,
+        eca_price_factor=arguments.eca_price_factor,
+        time_price_usd_per_h=arguments.time_price,
+        forbid=tuple(arguments.forbid),
+        method=arguments.method,
+        ensemble=arguments.ensemble,
     )
 
 
@@ -106,6 +142,10 @@ def show(plan: Plan) -> None:
     parts = [f"{best.time_h:.2f} h", f"{best.distance_nm:.1f} nm"]
     if best.fuel_t is not None:
         parts.append(f"{best.fuel_t:.1f} t fuel")
+    if best.cost is not None:
+        parts.append(f"{best.cost:,.0f} {plan.front.unit if plan.front else 'USD'}")
+    if best.co2_t is not None and plan.voyage.objective == "co2":
+        parts.append(f"{best.co2_t:.1f} t CO2")
     if best.waiting_h > 0:
         parts.append(f"{best.waiting_h:.2f} h waiting")
     console.print("[bold]" + ", ".join(parts) + "[/bold]")
@@ -115,8 +155,56 @@ def show(plan: Plan) -> None:
         f"{plan.proof.certain:.2f} {plan.unit}.",
         soft_wrap=True,
     )
+    if plan.front is not None:
+        show_front(console, plan)
     for note in plan.notes:
         console.print(f"[yellow]note:[/yellow] {note}", soft_wrap=True)
+
+
+def show_front(console: Any, plan: Plan) -> None:
+    """Print the routes of a front, and what they save over the weather-blind route."""
+    from rich import box
+    from rich.table import Table
+
+    front = plan.front
+    assert front is not None  # checked by the caller
+    title = f"{front.criterion} against time ({front.unit})"
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    for name in ("h", front.criterion, "nm", "wait h", "gap %", "from", "way"):
+        table.add_column(name, justify="left" if name in ("from", "way") else "right", no_wrap=True)
+    for row in sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"])):
+        gap = "" if row["gap"] is None else f"{100 * row['gap']:.1f}"
+        value = f"{row[front.column]:,.2f}"
+        table.add_row(
+            f"{row['time_h']:.2f}", value, f"{row['distance_nm']:.0f}", f"{row['waiting_h']:.1f}",
+            gap, row["stage"], row["way"],
+        )  # fmt: skip
+    console.print(table)
+    for line in _savings(plan):
+        console.print(line, soft_wrap=True)
+
+
+def _savings(plan: Plan) -> list[str]:
+    """Say what the front saves over the weather-blind route at its highest and lowest speed."""
+    comparison = plan.front.comparison if plan.front is not None else None
+    if comparison is None or plan.front is None:
+        return []
+    lines = []
+    for row in {id(row): row for row in (comparison.rows[0], comparison.rows[-1])}.values():
+        saved = []
+        if row["saved"] is not None:
+            saved.append(
+                f"{row['saved']:,.2f} {plan.front.unit} ({row['saved_percent']:.1f} %) in its time"
+            )
+        if row["saved_h"] is not None:
+            saved.append(f"{row['saved_h']:.2f} h for what it burns")
+        lines.append(
+            f"Weather-blind at {row['speed_kn']:.1f} kn: {row['time_h']:.2f} h, "
+            f"{row['value']:,.2f} {plan.front.unit}"
+            + ("" if row["feasible"] else " (breaks a limit)")
+            + (f"; the front saves {', or '.join(saved)}." if saved else ".")
+        )
+    return lines
 
 
 def print_waypoints(console: Any, waypoints: list[dict[str, Any]], title: str) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS, Position
 from thalweg.kernels import graph
-from thalweg.network.endpoints import REACH, direct_pairs, join_pairs, links
+from thalweg.network.endpoints import REACH, canal_pairs, direct_pairs, join_pairs, links
 from thalweg.network.frame import Frame, arc, unit_vectors
 from thalweg.network.levels import Ground, Level, grow_levels
 from thalweg.network.network import BoolArray, FloatArray, IntArray, Network, NetworkMeta
@@ -31,6 +31,7 @@ from thalweg.network.pairs import (
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class LevelPairs:
 
 @dataclass(frozen=True)
 class Draft:
-    """A lattice before assembly; start and goal are its last two nodes.
+    """A lattice before assembly; start and goal are its last two nodes, before them ends of canals.
 
     ``refused`` is the number of points that the level left out would have brought, or 0.
     """
@@ -124,18 +125,32 @@ def make_draft(
     n = len(lat)
     rejected: Rejected = {}
     parts = [_join(ground.chart, level, lat, lon, di, dj, rejected) for level in levels]
-    lat, lon = np.append(lat, [start[0], goal[0]]), np.append(lon, [start[1], goal[1]])
-    stations = Stations(lat, lon, n + 2)
+    canals = canals_in(ground)
+    places = [*(end for canal in canals for end in canal.ends), start, goal]
+    lat, lon = (np.append(old, new) for old, new in zip((lat, lon), np.array(places, float).T))
+    stations = Stations(lat, lon, n + len(places))
     reach = max(REACH, 1.02 * float(np.hypot(di, dj).max()))  # in spacings
     spacing = ground.frame.largest_unit * ground.step(0)
     ends = []
-    for point in (n, n + 1):
+    for point in range(n, n + len(places)):
         own = spacing / np.cosh(_ordinate(ground.frame, lat[point], lon[point]))
         pairs, counts = links(ground.chart, lat, lon, point, n_nodes=n, reach=reach * own)
         ends.append(pairs)
         add_counts(rejected, counts)
     ends.append(direct_pairs(ground.chart, stations, n, reach=reach * spacing))
+    ends.append(canal_pairs(canals, n))
     return Draft(stations, parts, join_pairs(ends), rejected, refused)
+
+
+def canals_in(ground: Ground) -> list[Canal]:
+    """Return the canals of the chart with both ends in the region of a lattice."""
+    found = []
+    for canal in ground.chart.canals:
+        lat, lon = np.array(canal.ends, float).T
+        inside = ground.region.contains(unit_vectors(lat, lon)) & ground.region.in_box(lat, lon)
+        if bool(np.all(inside & ground.chart.is_navigable(lat, lon))):
+            found.append(canal)
+    return found
 
 
 def _ordinate(frame: Frame, lat: float, lon: float) -> float:
@@ -203,8 +218,12 @@ def _level_samples(
 
 
 def _spacing_of_ends(draft: Draft, spacing: float) -> FloatArray:
-    """Return the sample spacing of links to start and goal: half their length, or the lattice's."""
-    return np.minimum(spacing, np.maximum(draft.ends.length, 1.0))
+    """Return the sample spacing of links to single places: half their length, or the lattice's.
+
+    Canals, which join two such places, are not sampled.
+    """
+    apart = np.minimum(spacing, np.maximum(draft.ends.length, 1.0))
+    return np.asarray(np.where(np.isnan(draft.ends.course), np.inf, apart))
 
 
 def reached_sides(

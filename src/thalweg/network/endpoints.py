@@ -27,6 +27,7 @@ from thalweg.network.pairs import (
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
 
 REACH = 2.6  #: end points are linked to nodes within this many spacings
 _SHORTEST = 1.0  # links shorter than this are left out [m]
@@ -222,7 +223,20 @@ def direct_pairs(chart: Chart, stations: Stations, first: int, *, reach: float) 
         stations.lat, stations.lon, (a + first).astype(np.int32), (b + first).astype(np.int32)
     )
     pairs = pairs.where((pairs.length <= reach) & (pairs.length > _SHORTEST))
+    lat, lon = stations.lat, stations.lon
+    ends = lat[pairs.first], lon[pairs.first], lat[pairs.second], lon[pairs.second]
+    pairs = pairs.where(np.asarray(chart.canal_of_legs(*ends)) < 0)
     return pairs.where(free_legs(chart, stations.lat, stations.lon, pairs.first, pairs.second)[0])
+
+
+def canal_pairs(canals: Sequence[Canal], first: int) -> Pairs:
+    """Return the pairs of canals whose ends are nodes ``first``, ``first + 1`` and so on.
+
+    Their course is NaN, by which canals are known until the network is put together.
+    """
+    nodes = (first + 2 * np.arange(len(canals))).astype(np.int32)
+    length = np.array([canal.length for canal in canals], float)
+    return Pairs(nodes, nodes + np.int32(1), length, np.full(len(canals), np.nan, np.float32))
 
 
 def join_pairs(parts: Sequence[Pairs]) -> Pairs:

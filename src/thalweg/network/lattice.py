@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -56,6 +57,7 @@ class _Wish:
     area: Box | None
     budget: int
     coast_budget: int
+    corridor: Corridor | None = None
 
 
 def lattice(
@@ -69,6 +71,9 @@ def lattice(
     coast_levels: int | None = None,
     area: Box | None = None,
     slack: float | None = None,
+    along: Sequence[Position] | None = None,
+    width: float | None = None,
+    detour: float = math.inf,
 ) -> Network:
     """Build a lattice between two positions, with the positions themselves as nodes.
 
@@ -95,6 +100,13 @@ def lattice(
         Nodes are kept when the shortest way start-node-goal is at most ``1 + slack`` times the
         shortest way from start to goal; by default 1 under 100 nautical miles falling to 0.35
         over 1000. ``math.inf`` keeps every node within the area or on the globe.
+    along : sequence of (lat, lon), optional
+        A way from start to goal [deg], by great circles; only water about this way is covered.
+    width : float, optional
+        How far the corridor about that way reaches to each side, roughly [m]; by default an eighth
+        of its length, from 20 to 300 nautical miles.
+    detour : float, optional
+        Longest way that is looked for, as a multiple of the distance.
 
     Returns
     -------
@@ -106,15 +118,23 @@ def lattice(
     InputError
         For values out of range, start or goal not on navigable water, or both the same.
     NoRouteError
-        If start and goal do not connect however large and fine the lattice is made.
+        If start and goal do not connect however large and fine the lattice is made, or not by a
+        way within ``detour``.
     """
     start, goal = check_ends(chart, start, goal)
     di, dj = half_offsets(directions)
     distance = float(geodesy.distance(*start, *goal))
     _check(spacing, coast_levels, orientation, slack)
-    wish = _wish(chart, start, goal, distance, spacing, coast_levels, orientation, area)
-    slack = _default_slack(distance) if slack is None else slack
-    drawing = _connected(wish, (di, dj), distance, slack)
+    if along is None:
+        wish = _wish(chart, start, goal, distance, spacing, coast_levels, orientation, area)
+        slack = _default_slack(distance) if slack is None else slack
+        drawing = _connected(wish, (di, dj), distance, slack, detour)
+    else:
+        lat, lon, length = _densely(along)
+        wish = _wish(chart, start, goal, length, spacing, coast_levels, orientation, area)
+        side = min(max(length / 8.0, 20.0 * NAUTICAL_MILE), 300.0 * NAUTICAL_MILE)
+        wish = replace(wish, corridor=_corridor(lat, lon, side if width is None else width))
+        drawing = _followed(wish, (di, dj), lat, lon)
     ground = drawing.ground
     meta = NetworkMeta(
         kind="lattice/latlon" if ground.frame.upright else "lattice/great_circle",
@@ -170,7 +190,9 @@ def _wish(
     return _Wish(chart, start, goal, own, coast_levels, orientation, area, budget, coast_budget)
 
 
-def _connected(wish: _Wish, offsets: _Offsets, distance: float, slack: float) -> _Drawing:
+def _connected(
+    wish: _Wish, offsets: _Offsets, distance: float, slack: float, detour: float
+) -> _Drawing:
     """Grow and refine until start and goal connect and the slack fits; return the last lattice."""
     factor, extra = 1.01 * (1.0 + slack), 0
     while True:
@@ -179,6 +201,10 @@ def _connected(wish: _Wish, offsets: _Offsets, distance: float, slack: float) ->
         to_start = draft.distances(draft.start)
         length = to_start[draft.goal]
         whole = ground.region.global_
+        if float(length) > detour * distance and (
+            math.isfinite(length) or factor > detour * (1.0 + slack)
+        ):
+            raise _no_route(wish, draft, to_start)
         if math.isfinite(length):
             needed = (1.0 + slack) * float(length) / distance
             if whole or needed <= 1.005 * factor:
@@ -193,6 +219,39 @@ def _connected(wish: _Wish, offsets: _Offsets, distance: float, slack: float) ->
             extra += 1
         else:
             raise _no_route(wish, draft, to_start)
+
+
+def _densely(way: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
+    """Return positions [deg] close together along a way, and its length [m]."""
+    lat, lon = np.asarray(way, float).T
+    legs = geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    part = max(float(legs.sum()) / 2000.0, 500.0)
+    pieces = np.maximum(1, np.ceil(legs / part)).astype(int)
+    places = [
+        geodesy.along(lat[i], lon[i], lat[i + 1], lon[i + 1], np.linspace(0, 1, n + 1))
+        for i, n in enumerate(pieces)
+    ]
+    every = np.concatenate([np.asarray(place) for place in places], axis=1)
+    return every[0], every[1], float(legs.sum())
+
+
+def _corridor(lat: FloatArray, lon: FloatArray, width: float) -> Corridor:
+    """Return the cells about a way; they reach two cells and a half to each side."""
+    highest = float(np.abs(lat).max())
+    frame = mercator_frame((lat[0], lon[0]), 0.4 * width, latitude=highest, closed=False)
+    return Corridor.around(frame, 1.0, unit_vectors(lat, lon))
+
+
+def _followed(wish: _Wish, offsets: _Offsets, lat: FloatArray, lon: FloatArray) -> _Drawing:
+    """Draw the lattice of a corridor, finer at coasts until it connects."""
+    out = geodesy.distance(*wish.start, lat, lon) + geodesy.distance(lat, lon, *wish.goal)
+    limit = 1.1 * float(out.max()) + 10.0 * wish.spacing
+    for extra in range(_MOST_EXTRA + 1):
+        drawing = _drawn(wish, offsets, limit, extra, wish.corridor)
+        to_start = drawing.draft.distances(drawing.draft.start)
+        if math.isfinite(to_start[drawing.draft.goal]):
+            return _pruned(drawing, math.inf, to_start)
+    raise _no_route(wish, drawing.draft, to_start)
 
 
 def _refined(
@@ -274,9 +333,9 @@ def _coarser(
 
 
 def _box(chart: Chart) -> Box | None:
-    """Return the chart's area as a box, None for the whole world."""
+    """Return the chart's area as a box, None when it goes right round the world."""
     area = chart.area
-    if area.width >= 360.0 and area.south <= -89.0 and area.north >= 89.0:
+    if area.width >= 360.0:
         return None
     return area.south, area.north, area.west, area.west + area.width
 

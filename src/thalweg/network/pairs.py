@@ -49,7 +49,10 @@ class Samples:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Pairs of nodes joined both ways: their nodes, length [m] and mid-edge course [rad]."""
+    """Pairs of nodes joined both ways: their nodes, length [m] and mid-edge course [rad].
+
+    Canals have no course (NaN).
+    """
 
     first: Int32Array
     second: Int32Array
@@ -185,10 +188,11 @@ def assemble(
     depth, factor, price = _along(chart, stations, pairs)
     edges = edges or mirrored(n, pairs)
     pair = edges.pair
+    fixed_time, fee, own_course = _canals(chart, stations, pairs)
     via_ptr, via_a, via_b, via_w, via_s = graph.mirror_vias(
         pair, edges.back, samples.ptr, samples.a, samples.b, samples.w, samples.s
     )
-    course = pairs.course[pair]
+    course = own_course[pair]
     course[edges.back] += np.float32(np.pi)
     course[course >= 2 * np.pi] -= np.float32(2 * np.pi)
     return Network(
@@ -197,6 +201,7 @@ def assemble(
         depth=depth[pair], factor=factor[pair], price=price[pair],
         via_ptr=via_ptr, via_a=via_a, via_b=via_b, via_w=via_w, via_s=via_s,
         can_wait=_waiting_places(chart, stations, meta), meta=meta,
+        fixed_time=fixed_time[pair], fee=fee[pair],
     )  # fmt: skip
 
 
@@ -206,6 +211,22 @@ def _waiting_places(chart: Chart, stations: Stations, meta: NetworkMeta) -> Bool
     allowed = np.array(chart.may_wait(stations.lat[:n], stations.lon[:n]))
     allowed[[end for end in (meta.start, meta.goal) if end >= 0]] = True
     return allowed
+
+
+def _canals(
+    chart: Chart, stations: Stations, pairs: Pairs
+) -> tuple[FloatArray, FloatArray, Float32Array]:
+    """Return the time of pairs that are canals [s], else NaN, their fee [USD], all courses."""
+    time, fee = np.full(len(pairs.first), np.nan), np.zeros(len(pairs.first))
+    here = np.flatnonzero(np.isnan(pairs.course))
+    if not len(here):
+        return time, fee, pairs.course
+    a, b = pairs.first[here], pairs.second[here]
+    lat, lon, course = stations.lat, stations.lon, pairs.course.copy()
+    course[here] = measure(lat, lon, a, b).course
+    for pair, canal in zip(here, chart.canal_of_legs(lat[a], lon[a], lat[b], lon[b])):
+        time[pair], fee[pair] = chart.canals[canal].transit_time, chart.canals[canal].fee
+    return time, fee, course
 
 
 def _along(
@@ -222,4 +243,6 @@ def _along(
         if chart.has_depth:
             depth[part] = chart.depth_along(*ends)
         factor[part], price[part] = chart.zone_factor(*ends)
+    canal = np.isnan(pairs.course)
+    depth[canal], factor[canal], price[canal] = np.inf, 1.0, 1.0
     return depth, factor, price

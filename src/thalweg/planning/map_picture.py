@@ -81,7 +81,7 @@ def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
     if plan.surroundings is not None:
         _draw_sea(figure, axes, plan, plan.surroundings, box)
         _draw_land(axes, plan.surroundings.chart, box)
-    _draw_routes(axes, plan, box)
+    _draw_routes(figure, axes, plan, box)
     _finish(axes, plan, box)
     if path is not None:
         figure.savefig(path)
@@ -242,7 +242,23 @@ def _draw_land(axes: Any, chart: Any, box: Box) -> None:
         axes.add_patch(PathPatch(outline, fc=_LAND, ec=_SHORE, lw=0.4, zorder=3))
 
 
-def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
+def _draw_speed(figure: Any, axes: Any, route: Route, box: Box) -> None:
+    """Draw a route coloured by its speed over ground."""
+    from matplotlib.collections import LineCollection
+
+    points = np.column_stack([box.line(route.samples["lon"]), route.samples["lat"]])
+    speed = route.samples["speed_over_ground"] / KNOT
+    lines = LineCollection(
+        list(np.stack([points[:-1], points[1:]], axis=1)), cmap="plasma", lw=3.0, zorder=5
+    )
+    lines.set_array(0.5 * (speed[:-1] + speed[1:]))
+    axes.add_collection(lines)
+    bar = figure.colorbar(lines, ax=axes, shrink=0.5, pad=0.01, aspect=25, location="bottom")
+    bar.set_label("speed over ground [kn]", fontsize=8)
+    bar.ax.tick_params(labelsize=7)
+
+
+def _draw_routes(figure: Any, axes: Any, plan: Plan, box: Box) -> None:
     from matplotlib.patheffects import withStroke
 
     best = plan.best
@@ -253,15 +269,18 @@ def _draw_routes(axes: Any, plan: Plan, box: Box) -> None:
     axes.plot(
         box.line(direct_lon), direct_lat, "--", color=_INK, lw=0.9, zorder=4, label="geodesic"
     )
-    for number, route in enumerate(plan.routes):
+    for route in plan.routes[1:]:
         axes.plot(
-            box.line(route.samples["lon"]),
-            route.samples["lat"],
-            color=_ROUTE,
-            lw=2.2 if number == 0 else 1.0,
+            box.line(route.samples["lon"]), route.samples["lat"], color=_ROUTE, lw=0.8, alpha=0.5,
             zorder=5,
-            label="route" if number == 0 else None,
-        )
+        )  # fmt: skip
+    if plan.front is None:
+        axes.plot(
+            box.line(best.samples["lon"]), best.samples["lat"], color=_ROUTE, lw=2.2, zorder=5,
+            label="route",
+        )  # fmt: skip
+    else:
+        _draw_speed(figure, axes, best, box)
     track, track_lon = best.track, _on_line(best, box)
     axes.plot(track_lon, track.lat, ".", color=_ROUTE, ms=4, zorder=6)
     waits = track.wait > 0
@@ -303,10 +322,11 @@ def _on_line(route: Route, box: Box) -> np.ndarray:
 def _finish(axes: Any, plan: Plan, box: Box) -> None:
     best = plan.best
     fuel = "" if best.fuel_t is None else f", {best.fuel_t:.1f} t fuel"
+    certain = 100 * (1 - plan.proof.certain / plan.objective_value) if plan.objective_value else 0.0
     axes.set_title(
         f"{best.time_h:.1f} h, {best.distance_nm:.0f} nm{fuel}; depart "
         f"{format_time(best.depart)}; gap to the bound {100 * plan.gap:.1f} % (certain: "
-        f"{100 * (1 - plan.proof.certain / plan.objective_value):.1f} %)",
+        f"{certain:.1f} %)",
         fontsize=9,
         loc="left",
     )

@@ -7,15 +7,28 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError, unknown_name
-from thalweg.network import Network, check_network, lattice, mesh, with_endpoints
+from thalweg.core.errors import InputError, NoRouteError, unknown_name
+from thalweg.core.geodesy import Position, distance
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network import (
+    Network,
+    check_network,
+    globe,
+    lattice,
+    mesh,
+    shortest,
+    with_endpoints,
+)
 from thalweg.planning.ends import End
 from thalweg.sea import Mesh, Sea
 
 #: A builder of one's own: (chart, start, goal, spacing) -> Network with its endpoints attached.
 Builder: TypeAlias = Callable[..., Network]
 
-KINDS = ("auto", "lattice", "mesh")
+KINDS = ("auto", "lattice", "mesh", "globe")
+#: Voyages from this length [m] whose way is longer than this multiple of the distance are searched
+#: in a corridor about the way over the globe network.
+_FAR, _DETOUR = 1500.0 * NAUTICAL_MILE, 1.3
 
 
 @dataclass(frozen=True)
@@ -24,9 +37,10 @@ class NetworkChoice:
 
     Attributes
     ----------
-    network : {"auto", "lattice", "mesh"} or callable
+    network : {"auto", "lattice", "mesh", "globe"} or callable
         ``auto`` takes the nodes of the sea's own mesh where it has one that holds both ends, and a
-        lattice elsewhere. A callable gets ``(chart, start, goal, spacing=...)``.
+        lattice elsewhere. ``globe`` is the geodesic grid of the whole sea: coarse, for ways round
+        continents. A callable gets ``(chart, start, goal, spacing=...)``.
     spacing : float, optional
         Spacing of the nodes [m].
     """
@@ -63,7 +77,44 @@ def build_network(choice: NetworkChoice, chart: Chart, sea: Sea, start: End, goa
     if model is not None and (choice.network == "mesh" or _inside(model, ends)):
         network = mesh(chart, model.lat, model.lon, model.triangles, largest_spacing=choice.spacing)
         return with_endpoints(network, chart, *ends)
-    return lattice(chart, *ends, spacing=choice.spacing)
+    if choice.network == "globe":
+        return globe(chart, *ends)
+    return lattice_between(chart, *ends, spacing=choice.spacing)
+
+
+def lattice_between(
+    chart: Chart,
+    start: Position,
+    goal: Position,
+    *,
+    spacing: float | None = None,
+    coast_levels: int | None = None,
+) -> Network:
+    """Return a lattice; far round land, one along the way that the globe network shows.
+
+    The whole sea between the ends is covered unless the voyage is long and land lies in between.
+    """
+    options = {"spacing": spacing, "coast_levels": coast_levels}
+    far = float(distance(*start, *goal)) >= _FAR and chart.area.width >= 360.0
+    if not far:
+        return lattice(chart, start, goal, **options)  # type: ignore[arg-type]
+    try:
+        return lattice(chart, start, goal, detour=_DETOUR, **options)  # type: ignore[arg-type]
+    except NoRouteError:
+        way = _way_round(chart, start, goal)
+    if way is None:
+        return lattice(chart, start, goal, **options)  # type: ignore[arg-type]
+    return lattice(chart, start, goal, along=way, **options)  # type: ignore[arg-type]
+
+
+def _way_round(chart: Chart, start: Position, goal: Position) -> list[Position] | None:
+    """Return the shortest way over the globe network, if it knows one."""
+    try:
+        network = globe(chart, start, goal)
+    except NoRouteError:
+        return None
+    _, path = shortest(network, network.meta.start, network.meta.goal)
+    return list(zip(network.lat[path].tolist(), network.lon[path].tolist())) if path else None
 
 
 def _inside(model: Mesh, ends: tuple[tuple[float, float], ...]) -> bool:

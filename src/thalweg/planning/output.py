@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike
 from thalweg.planning.profile_picture import draw_profile
+from thalweg.planning.st_picture import write_st
 from thalweg.route import Route, write_csv, write_geojson, write_gpx
 
 if TYPE_CHECKING:
@@ -52,7 +54,36 @@ def write_plan(plan: Plan, folder: str | Path) -> list[Path]:
     files = [folder / "plan.json", *_write_formats(plan.best, folder)]
     plan.plot(folder / "map.png")
     draw_profile(plan.best, folder / "profile.png")
-    return [*files, folder / "map.png", folder / "profile.png"]
+    files += [folder / "map.png", folder / "profile.png", *write_st(plan, folder)]
+    return files if plan.front is None else files + _write_front(plan, folder)
+
+
+def _write_front(plan: Plan, folder: Path) -> list[Path]:
+    """Write front.csv, front.png, comparison.csv and, in ``routes``, each route."""
+    from thalweg.planning.front_picture import draw_front
+
+    front = plan.front
+    assert front is not None  # checked by the caller
+    files = [_write_table(front.rows(plan.routes), folder / "front.csv")]
+    draw_front(plan, folder / "front.png")
+    files.append(folder / "front.png")
+    if front.comparison is not None:
+        files.append(_write_table(front.comparison.rows, folder / "comparison.csv"))
+    each = check_folder(folder / "routes")
+    for number, route in enumerate(plan.routes, start=1):
+        files += _write_formats(route, each, f"route_{number:02d}")
+    return files
+
+
+def _write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> Path:
+    """Write plain rows as CSV; what is not known is left empty."""
+    import csv
+
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=list(rows[0]))
+        writer.writeheader()
+        writer.writerows({k: "" if v is None else v for k, v in row.items()} for row in rows)
+    return path
 
 
 def write_route(route: Route, folder: str | Path) -> list[Path]:
@@ -86,8 +117,8 @@ def _coast_of(sea: Sea, chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
     return rims
 
 
-def _write_formats(route: Route, folder: Path) -> list[Path]:
+def _write_formats(route: Route, folder: Path, name: str = "route") -> list[Path]:
     writers = {"geojson": write_geojson, "gpx": write_gpx, "csv": write_csv}
     for suffix, write in writers.items():
-        write(route, folder / f"route.{suffix}")
-    return [folder / f"route.{suffix}" for suffix in writers]
+        write(route, folder / f"{name}.{suffix}")
+    return [folder / f"{name}.{suffix}" for suffix in writers]

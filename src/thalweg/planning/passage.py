@@ -32,6 +32,8 @@ MEMORY_LIMIT = 4_000_000_000
 _HORIZONS = (2.5, 8.0, 30.0)
 #: Gap to the bound [fraction] from which the way of the bound is refined as well.
 _WIDE_GAP = 0.01
+#: Isochrones are drawn until this multiple of the passage's time.
+_ISOCHRONES = 1.5
 _TWO_TIDES = 25 * HOUR
 #: What is tried in turn while the referee finds a limit broken between the stations: how much finer
 #: the network, the margin on the depth [m], and on the limits of wave height and wind [fraction].
@@ -164,7 +166,7 @@ def _attempt(
 ) -> Passage:
     """Search, refine and bound once."""
     frozen, result = _search(task, network, limits, window, ends)
-    route = _refined(task, track_of(network, result, task.setting), limits)
+    route = refined(task, track_of(network, result, task.setting), limits)
     task.tell("bounding the answer")
     floor = _bound(task, network, frozen, result, route, any_departure=True)
     bound = floor
@@ -174,8 +176,9 @@ def _attempt(
         if other is not route:
             route, bound = other, _bound(task, network, frozen, result, other)
     notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
-    isochrones = _isochrones(task, network, frozen, route)
-    return Passage(route, result, bound, floor, network, isochrones, notes)
+    until = route.depart + _ISOCHRONES * route.time_h * HOUR if route.feasible else None
+    arrival = isochrones(task, network, frozen, route.depart, until)
+    return Passage(route, result, bound, floor, network, arrival, notes)
 
 
 def _other_way(
@@ -191,7 +194,7 @@ def _other_way(
         return route
     lat, lon = network.station_lat[bound.path], network.station_lon[bound.path]
     settings = np.full(len(lat) - 1, task.setting)
-    other = _refined(task, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
+    other = refined(task, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
     routes = (route, other)  # penalty zones count here as they did in the search
     return min(routes, key=lambda item: rank(item, task.voyage.objective, task.chart))
 
@@ -203,25 +206,27 @@ def _value(task: Task, route: Route) -> float:
     return route.time_h * HOUR
 
 
-def _isochrones(task: Task, network: Network, frozen: Frozen, route: Route) -> np.ndarray:
-    """Return the earliest arrival everywhere, until half as long again as the route takes."""
+def isochrones(
+    task: Task, network: Network, frozen: Frozen, depart: float, until: float | None
+) -> np.ndarray:
+    """Return the earliest arrival everywhere [s since 1970], until a time when one is given."""
     everywhere = earliest_arrival(
         network,
         frozen.stations,
         task.table,
         start=network.meta.start,
         goal=None,
-        depart=route.depart,
+        depart=depart,
         setting=task.setting,
         limits=task.needs.limits,
         wait=task.voyage.wait,
-        arrive_by=route.depart + 1.5 * route.time_h * HOUR if route.feasible else None,
+        arrive_by=until,
         top_speed=frozen.top_speed,
     )
     return everywhere.node_arrival
 
 
-def _refined(task: Task, track: Track, limits: np.ndarray) -> Route:
+def refined(task: Task, track: Track, limits: np.ndarray) -> Route:
     """Let the referee score a track, refine it, and return the better route."""
     task.tell("refining the route")
     scored = evaluate(
@@ -240,7 +245,7 @@ def _refined(task: Task, track: Track, limits: np.ndarray) -> Route:
         table=task.table,
         limits=limits,
         min_ukc=task.min_ukc,
-        objective=task.voyage.objective,
+        objective="distance" if task.voyage.objective == "distance" else "time",
         wait=task.voyage.wait,
     )
 
@@ -379,7 +384,7 @@ def _bound(
         depart=float(result.path_arrive[0]),
         setting=task.setting,
         limits=task.needs.limits,
-        objective=task.voyage.objective,
+        objective="distance" if task.voyage.objective == "distance" else "time",
         top_speed=frozen.top_speed,
         known=_value(task, route) if route.feasible else None,
         any_departure=any_departure,

@@ -12,6 +12,7 @@ import numpy as np
 
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.planning.fronts import FrontOfPlan
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 
@@ -71,6 +72,11 @@ class Plan:
         What is needed to repeat the plan: version, data fingerprints, ship, network, seed.
     surroundings : Surroundings
         For drawing; not part of the JSON.
+    front : FrontOfPlan, optional
+        The trade of time for fuel, cost or CO2, where one was asked; its routes are all of
+        `routes` when the whole front was asked, ordered by time.
+    ensemble : tuple of mappings
+        With a forecast of several members: how each of the routes fares over them.
     """
 
     voyage: Voyage
@@ -80,6 +86,8 @@ class Plan:
     notes: tuple[str, ...]
     provenance: Mapping[str, Any]
     surroundings: Surroundings | None = field(default=None, repr=False, compare=False)
+    front: FrontOfPlan | None = None
+    ensemble: tuple[Mapping[str, Any], ...] = ()
 
     @property
     def best(self) -> Route:
@@ -88,22 +96,31 @@ class Plan:
 
     @property
     def objective_value(self) -> float:
-        """What the best route costs by the referee: hours, or nautical miles."""
+        """What the best route counts by the referee, in `unit`.
+
+        With the objective ``"front"`` the hours of the fastest route; the other points are in
+        `front`.
+        """
+        if self.voyage.objective in ("fuel", "cost", "co2"):
+            assert self.front is not None  # such plans have one
+            return float(self.front.values[0])
         return self.best.distance_nm if self.voyage.objective == "distance" else self.best.time_h
 
     @property
     def unit(self) -> str:
-        """The unit of the objective: ``"h"`` or ``"nm"``."""
+        """The unit of the objective: ``"h"``, ``"nm"``, ``"t"`` or the currency."""
+        if self.voyage.objective in ("fuel", "cost", "co2") and self.front is not None:
+            return self.front.unit
         return "nm" if self.voyage.objective == "distance" else "h"
 
     @property
     def lower_bound(self) -> float:
-        """No route is better than this [h for time, nm for distance]."""
+        """No route is better than this, in `unit`."""
         return self.proof.lower_bound
 
     @property
     def solver_total(self) -> float:
-        """The total of the search on its network [h or nm]."""
+        """The total of the search on its network, in `unit`."""
         return self.proof.solver_total
 
     @property
@@ -114,6 +131,13 @@ class Plan:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the plan as plain data, ready for JSON (unknown numbers are None)."""
+        more: dict[str, Any] = {}
+        if self.ensemble:
+            more["ensemble"] = [dict(row) for row in self.ensemble]
+        if self.front is not None:
+            more["front"] = self.front.as_dict(self.routes)
+            if self.front.comparison is not None:
+                more["comparison"] = [dict(row) for row in self.front.comparison.rows]
         return {
             "voyage": self.voyage.to_dict(),
             "objective": self.voyage.objective,
@@ -126,6 +150,7 @@ class Plan:
             "solver_total": _number(self.solver_total),
             "rejections": dict(self.rejections),
             "notes": list(self.notes),
+            **more,
             "provenance": dict(self.provenance),
         }
 
@@ -144,6 +169,9 @@ class Plan:
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write plan.json, route.geojson, route.gpx, route.csv, map.png and profile.png.
+
+        Where the tide matters st.png, too. A plan with a front leaves front.csv, front.png,
+        comparison.csv and, in ``routes``, each route besides.
 
         Returns
         -------
@@ -169,6 +197,9 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
         "time_h": _number(route.time_h),
         "distance_nm": _number(route.distance_nm),
         "fuel_t": _number(route.fuel_t),
+        "co2_t": _number(route.co2_t),
+        route.cost_name: _number(route.cost),
+        "fuel_eca_t": _number(route.fuel_eca_t),
         "waiting_h": _number(route.waiting_h),
         "min_ukc_m": _number(route.min_ukc_m),
         "referee_tolerance_h": _number(route.tolerance_s / HOUR),

@@ -2,39 +2,30 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
-import math
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import format_position
-from thalweg.core.time import format_time
 from thalweg.core.units import KNOT
-from thalweg.kernels import codes
 from thalweg.planning.door import check_kinds, covered_ends
 from thalweg.planning.ends import End, check_apart, find_end
 from thalweg.planning.needs import check_period, find_needs
 from thalweg.planning.networks import Builder, NetworkChoice
 from thalweg.planning.passage import Passage, Task, make_passage, table_of
 from thalweg.planning.plan import Plan, Proof, Surroundings, in_unit
-from thalweg.planning.voyage import Voyage
-from thalweg.route import Route, with_wind_speed
+from thalweg.planning.telling import known, network_facts, provenance, route_notes
+from thalweg.planning.voyage import TRADES, Voyage
+from thalweg.planning.waters import open_canals, with_control_areas, without_ice
 from thalweg.route import join as join_routes
+from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-
-#: The coarse depth of the world is looked at only this far off the coast [m] ...
-_OFFSHORE = 15_000.0
-#: ... and doubted when it leaves less than this under the keel [m].
-_DOUBTFUL = 10.0
-#: Poleward of this [deg] ice is mentioned.
-_POLAR = 72.0
 
 
 def plan(
@@ -59,7 +50,7 @@ def plan(
         Currents, levels, wind and waves. Never assumed: ask for `Sea.calm` if there is none.
     chart : Chart, optional
         Land, depth and zones; GSHHG coastline at resolution "i" when not given.
-    network : {"auto", "lattice", "mesh"} or callable
+    network : {"auto", "lattice", "mesh", "globe"} or callable
         How the network is built; see `thalweg.planning.networks.NetworkChoice`.
     resolution : float, optional
         Spacing of the network [m]; chosen from the distance when not given.
@@ -82,9 +73,27 @@ def plan(
     """
     chart = Chart.gshhg("i") if chart is None else chart
     check_kinds(voyage, ship, sea, chart)
+    if sea.members:
+        from thalweg.planning.robust import plan_robust
+
+        options = {
+            "ship": ship,
+            "chart": chart,
+            "network": network,
+            "resolution": resolution,
+            "progress": progress,
+        }
+        return plan_robust(
+            voyage,
+            ship=ship,
+            sea=sea,
+            plan_one=lambda v, one: plan(v, sea=one, **options),  # type: ignore[arg-type]
+        )
     sea = with_wind_speed(ship, sea)
     choice = NetworkChoice(network, resolution)
     ends = _ends(voyage, chart)
+    chart, notes = open_canals(chart, voyage, ship, ends)
+    chart, more = with_control_areas(without_ice(chart, ends), voyage, ship)
     needs = find_needs(voyage, ship=ship, sea=sea, chart=chart)
     last = check_period(voyage, sea, needs)
     world = {"ship": ship, "sea": sea, "chart": chart}
@@ -94,13 +103,17 @@ def plan(
         ship=ship,
         sea=sea,
         chart=chart,
-        needs=needs,
+        needs=replace(needs, notes=(*notes, *more, *needs.notes)),
         table=table_of(ship),
         setting=_setting(voyage, ship),
         last=last,
         choice=choice,
         tell=progress or (lambda text: None),
     )
+    if voyage.objective in TRADES:
+        from thalweg.planning.trade_plan import trade
+
+        return trade(task, ends)
     passages = _make_passages(task, ends)
     return _gather(task, ends, passages)
 
@@ -160,46 +173,27 @@ def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
     )
     notes = [end.note for end in ends if end.note] + list(task.needs.notes)
     notes += [note for passage in passages for note in passage.notes]
-    notes += _ice_notes(route)
-    if not math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
-        notes += _shallow_notes(task, route)
+    notes += route_notes(task, route)
     return Plan(
         voyage=voyage,
         routes=(route,),
         proof=proof,
         rejections={reason: count for reason, count in refused.items() if count},
         notes=tuple(dict.fromkeys(notes)),
-        provenance=_provenance(task, ends, passages),
+        provenance=provenance(task, ends, _networks(passages), [_speed_kn(task)]),
         surroundings=_surroundings(task, passages),
     )
 
 
-def _shallow_notes(task: Task, route: Route) -> list[str]:
-    """Warn where the embedded coarse depth of the world looks shallow, well off the coast."""
-    lat, lon = route.samples["lat"][::4], route.samples["lon"][::4]
-    depth = np.asarray(task.chart.warning_depth_at(lat, lon))
-    offshore = np.asarray(task.chart.shore_distance(lat, lon, cap=_OFFSHORE)) >= _OFFSHORE
-    doubtful = offshore & (depth < float(task.ship.draught) + _DOUBTFUL)
-    if not doubtful.any():
-        return []
-    worst = int(np.argmin(np.where(doubtful, depth, np.inf)))
+def _networks(passages: list[Passage]) -> list[dict[str, Any]]:
     return [
-        f"The coarse depth of the world shows {max(float(depth[worst]), 0.0):.0f} m near "
-        f"{format_position(float(lat[worst]), float(lon[worst]))}: check the chart there."
+        network_facts(p.network, settled=int(p.result.settled), depart=p.route.depart)
+        for p in passages
     ]
 
 
-def _ice_notes(route: Route) -> list[str]:
-    """Warn where ice is likely, which no limit looks at."""
-    lat = route.samples["lat"]
-    worst = int(np.argmax(np.abs(lat)))
-    if abs(float(lat[worst])) < _POLAR:
-        return []
-    place = format_position(float(lat[worst]), float(route.samples["lon"][worst]))
-    return [
-        f"The route comes as far as {place} and sea ice is not considered: give a via point or a "
-        "no-go zone if that water is closed."
-    ]
+def _speed_kn(task: Task) -> float | None:
+    return known(float(task.ship.speeds[task.setting]) / KNOT)
 
 
 def _surroundings(task: Task, passages: list[Passage]) -> Surroundings:
@@ -212,41 +206,3 @@ def _surroundings(task: Task, passages: list[Passage]) -> Surroundings:
         sea=task.sea,
         ship=task.ship,
     )
-
-
-def _provenance(task: Task, ends: list[End], passages: list[Passage]) -> dict[str, Any]:
-    from importlib.metadata import version
-
-    table_error = dataclasses.asdict(task.table.error)
-    return {
-        "thalweg": version("thalweg"),
-        "from": ends[0].name,
-        "to": ends[-1].name,
-        "via": [end.name for end in ends[1:-1]],
-        "ship": {
-            "name": task.ship.name,
-            "fingerprint": task.ship.fingerprint(),
-            "speed_kn": _known(float(task.ship.speeds[task.setting]) / KNOT),
-            "draught_m": float(task.ship.draught),
-            "table_error": {k: _known(v) for k, v in table_error.items()},
-        },
-        "sea": task.sea.provenance() | {"fingerprint": task.sea.fingerprint()},
-        "chart": task.chart.fingerprint(),
-        "networks": [
-            {
-                "kind": p.network.meta.kind,
-                "nodes": int(p.network.n_nodes),
-                "edges": len(p.network.target),
-                "spacing_m": p.network.meta.spacing_m,
-                "directions": p.network.meta.directions,
-                "settled": int(p.result.settled),
-                "depart": format_time(p.route.depart),
-            }
-            for p in passages
-        ],
-        "seed": task.voyage.seed,
-    }
-
-
-def _known(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -15,9 +15,13 @@ from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import TimeLike, format_time, parse_time
 
 Place: TypeAlias = "Position | str"
-Objective: TypeAlias = Literal["time", "distance"]
+Objective: TypeAlias = Literal["time", "distance", "fuel", "cost", "co2", "front"]
 
-OBJECTIVES: tuple[Objective, ...] = ("time", "distance")
+OBJECTIVES: tuple[Objective, ...] = ("time", "distance", "fuel", "cost", "co2", "front")
+#: Objectives for which the ship's speed is chosen leg by leg.
+TRADES: tuple[Objective, ...] = ("fuel", "cost", "co2", "front")
+METHODS = ("default", "exact", "nsga2", "spea2", "mpaes")
+RISKS = ("mean", "cvar")
 _LARGEST_FILE = 1_000_000
 
 
@@ -35,8 +39,9 @@ class Voyage:
     depart_window : pair of times, optional
         Earliest and latest departure; the one with the shortest passage is chosen (with via points
         the shortest passage to the first of them).
-    objective : {"time", "distance"}
-        What to make least.
+    objective : {"time", "distance", "fuel", "cost", "co2", "front"}
+        What to make least; ``"front"`` asks for the whole trade of time against fuel, or against
+        cost where a price is given. For all but the first two the speed is chosen leg by leg.
     via : sequence of places
         Places to pass, in this order.
     arrive_by : time, optional
@@ -51,6 +56,21 @@ class Voyage:
         tells depth, a clearance cannot be asked, and the plan notes that none was checked.
     seed : int
         Seed of everything random.
+    fuel_price_usd : float, optional
+        Price of a tonne of fuel; the ship file's when not given.
+    eca_price_factor : float, optional
+        Price of fuel inside emission control areas over the price outside.
+    time_price_usd_per_h : float, optional
+        What an hour of the voyage costs besides fuel; the ship file's hire when not given.
+    forbid : sequence of str
+        Canals that may not be used (``"suez"``, ``"panama"``, ``"kiel"``, ``"corinth"``, or
+        ``"all"``).
+    method : {"default", "exact", "nsga2", "spea2", "mpaes"}
+        How a trade is searched: the exact front of a network, refined by evolution (default); the
+        exact front alone; or an evolutionary method from a few routes, to compare.
+    ensemble : {"mean", "cvar"}, optional
+        With a sea of several forecast members: choose the route with the least expected value, or
+        the least mean of the worst tenth.
 
     Raises
     ------
@@ -69,6 +89,12 @@ class Voyage:
     speed_kn: float | None = None
     min_ukc_m: float | None = None
     seed: int = 0
+    fuel_price_usd: float | None = None
+    eca_price_factor: float | None = None
+    time_price_usd_per_h: float | None = None
+    forbid: Sequence[str] = ()
+    method: str = "default"
+    ensemble: str | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.via, str) or not isinstance(self.via, Sequence):
@@ -87,6 +113,30 @@ class Voyage:
         self._settle_times()
         _check_number("speed_kn", self.speed_kn, above=0.0, below=100.0, unit="kn")
         _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
+        self._settle_trade()
+
+    def _settle_trade(self) -> None:
+        """Check what concerns prices, canals and methods."""
+        price, nothing = "fuel_price_usd", -1e-9
+        _check_number(price, self.fuel_price_usd, above=nothing, below=1e5, unit="USD/t")
+        _check_number("eca_price_factor", self.eca_price_factor, above=0.0, below=100.0, unit="")
+        _check_number(
+            "time_price_usd_per_h", self.time_price_usd_per_h, above=nothing, below=1e7, unit="USD"
+        )
+        forbidden = (self.forbid,) if isinstance(self.forbid, str) else tuple(self.forbid)
+        object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
+        if self.method not in METHODS:
+            raise unknown_name("method", str(self.method), METHODS)
+        if self.ensemble is not None and self.ensemble not in RISKS:
+            raise unknown_name("choice over an ensemble", str(self.ensemble), RISKS)
+        if self.objective in TRADES and self.depart_window is not None:
+            raise InputError(
+                f"A departure window cannot be asked with the objective {self.objective!r}.",
+                "Windows are for the objectives 'time' and 'distance'; waiting at the start is "
+                "part of every other plan.",
+                "Give a departure, and the latest arrival with arrive_by.",
+                field="depart_window",
+            )
 
     def _settle_times(self) -> None:
         if (self.depart is None) == (self.depart_window is None):
@@ -138,7 +188,9 @@ class Voyage:
         data: dict[str, Any] = {}
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
-            if value is None or (field.name == "via" and not value):
+            if value is None or (field.name in ("via", "forbid") and not value):
+                continue
+            if field.name == "method" and value == "default":
                 continue
             data[field.name] = _plain(field.name, value)
         return data

@@ -10,15 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.sea import freeze, inspection, storm
 from thalweg.sea import functions as formulas
+from thalweg.sea import names as nm
 from thalweg.sea.arguments import area_of, period_of, step_of
 from thalweg.sea.ensemble import together
 from thalweg.sea.fields import GridFields, StationFields
 from thalweg.sea.inspection import Inspection
+from thalweg.sea.layer import Layer
 from thalweg.sea.layered import LayeredSea
 from thalweg.sea.policies import CALM, policy_values
+from thalweg.sea.wind_sea import WindSeaLayer
 
 if TYPE_CHECKING:
     from thalweg.sea.constituents import Constituents
@@ -281,14 +285,15 @@ class Sea(LayeredSea):
     def __add__(self, other: Sea) -> Sea:
         return Sea.layered(self, other) if isinstance(other, Sea) else NotImplemented
 
-    def filled(self, **policies: float | tuple[float, float]) -> Sea:
+    def filled(self, **policies: float | tuple[float, float] | str) -> Sea:
         """Return a sea in which what is unknown takes a named value, on the user's word.
 
         Parameters
         ----------
         **policies
             ``currents`` and ``wind``: 0.0 or (east, north) [m/s]; ``waves``: significant height
-            [m] (0.0, or a height with direction north and period 8 s); ``water_level`` [m];
+            [m] (0.0, or a height with direction north and period 8 s), or ``"wind"`` for the waves
+            that the known wind raises (`thalweg.sea.wind_sea.carter_1982`); ``water_level`` [m];
             ``ice`` [fraction]. The value holds wherever and whenever no layer knows better.
 
         Returns
@@ -298,11 +303,30 @@ class Sea(LayeredSea):
         """
         values: dict[str, float] = {}
         told: list[str] = []
+        layers: list[Layer] = list(self.layers)
         for policy, value in policies.items():
-            values.update(policy_values(policy, value))
+            if policy == "waves" and value == "wind":
+                layers.append(self._wind_sea())
+                told.append(
+                    "where unknown, waves are those that the wind raises (Carter 1982, 500 km of "
+                    "fetch, 24 h)"
+                )
+                continue
+            values.update(policy_values(policy, value))  # type: ignore[arg-type]
             told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
-        layer = formulas.constant_layer(values, "filled")
-        return Sea((*self.layers, layer), (*self.assumptions, *told))
+        if values:
+            layers.append(formulas.constant_layer(values, "filled"))
+        return Sea(tuple(layers), (*self.assumptions, *told))
+
+    def _wind_sea(self) -> WindSeaLayer:
+        """Return a layer of the waves of this sea's wind."""
+        if not set(nm.WIND.pair) <= self.variables:
+            raise InputError(
+                "Waves are to be taken from the wind, but the sea holds no wind.",
+                f"The sea holds: {', '.join(sorted(self.variables)) or 'nothing'}.",
+                "Add wind, or fill waves with a height.",
+            )
+        return WindSeaLayer(Sea(self.layers))
 
     def describe(self) -> Inspection:
         """Return what was recognised in the files, what not and why, coverage and gaps."""

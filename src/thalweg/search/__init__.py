@@ -8,6 +8,7 @@ from thalweg.search.front import front
 from thalweg.search.front_points import Front, FrontPoint, FrontWork, cheapest
 from thalweg.search.profile import Passage, Passages, Profile
 from thalweg.search.result import SearchResult, SearchWork
+from thalweg.search.table_extremes import extreme
 from thalweg.search.waters import Waters
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "direction_factor",
     "earliest_arrival",
     "earliest_arrivals_with_waiting",
+    "extreme",
     "fifo_report",
     "front",
     "lower_bound",

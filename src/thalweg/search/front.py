@@ -171,7 +171,7 @@ def front(
     got = gather(network, fields, table, fuel, request=request, limits=limits, top_speed=top_speed)
     bounds = bounds_to_goal(got, request.goal)
     soonest = earliest_arrivals(got, request, everywhere=True)
-    known = _first_ways(network, got, request)
+    known = _first_ways(network, got, request, bounds)
     plan = make_plan(got, request, bounds, soonest.time, bin_s=bin_s, memory_limit=memory_limit)
     return _search(got, request, bounds, plan, known, lower=lower, progress=progress)
 
@@ -239,8 +239,10 @@ def _labelled(
     return found, dropped, agenda.counts
 
 
-def _first_ways(network: Network, got: Gathered, request: Request) -> list[FrontPoint]:
-    """Return the fastest way at every setting; raise if even the fastest is too late."""
+def _first_ways(
+    network: Network, got: Gathered, request: Request, bounds: Bounds
+) -> list[FrontPoint]:
+    """Return the ways to begin with; raise if even the fastest is too late."""
     arrivals = earliest_arrivals(got, request, everywhere=False)
     arrive = float(arrivals.time[request.goal])
     if not math.isfinite(arrive):
@@ -253,7 +255,7 @@ def _first_ways(network: Network, got: Gathered, request: Request) -> list[Front
             "Ask for a later arrival, depart earlier or allow a higher setting.",
             earliest=arrive,
         )
-    return seeds(got, request, arrivals)
+    return seeds(got, request, arrivals, bounds)
 
 
 def _no_route(

@@ -13,7 +13,9 @@ from thalweg.kernels.codes import OK
 from thalweg.kernels.front_labels import BinLabels, Clock, Target, trace
 from thalweg.kernels.front_legs import sail_path
 from thalweg.search.front_points import FrontPoint
-from thalweg.search.front_world import Arrivals, Gathered, Request, new_work
+from thalweg.search.front_world import Arrivals, Bounds, Gathered, Request, new_work
+
+_SWITCHES = 24  # places at most where a seed changes from one setting to the next
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -50,16 +52,37 @@ def sail_way(got: Gathered, request: Request, way: Way) -> FrontPoint | None:
     )
 
 
-def seeds(got: Gathered, request: Request, arrivals: Arrivals) -> list[FrontPoint]:
-    """Return the fastest way at every setting throughout, as far as in time; the fastest first."""
-    way = _fastest_way(got, request, arrivals)
-    found = []
-    for choice in range(len(request.settings) - 1, -1, -1):
-        same = way._replace(choices=_allowed(got, way.edges, choice))
-        point = sail_way(got, request, same)
-        if point is not None and point.time <= request.horizon:
-            found.append(point)
-    return found
+def seeds(got: Gathered, request: Request, arrivals: Arrivals, bounds: Bounds) -> list[FrontPoint]:
+    """Return ways that are likely to lie near the front; the fastest at the highest setting first.
+
+    They are the fastest way, and the best for each price of time in the most favourable weather, at
+    every setting and at two settings one after the other. Those that take too long are left out.
+    A dense front known from the beginning spares most labels.
+    """
+    ways = [_fastest_way(got, request, arrivals)]
+    known = {ways[0].states.tobytes()}
+    for rate in bounds.rates:
+        states = bounds.to_goal.way(request.start, float(rate))
+        if len(states) > 1 and states.tobytes() not in known:
+            known.add(states.tobytes())
+            ways.append(_way_through(got, states))
+    sailed = [
+        sail_way(got, request, way._replace(choices=choices))
+        for way in ways
+        for choices in _choices(got, way, len(request.settings))
+    ]
+    return [point for point in sailed if point is not None and point.time <= request.horizon]
+
+
+def _choices(got: Gathered, way: Way, count: int) -> list[IntArray]:
+    """Return settings for the edges of a way: one throughout, or two neighbours in turn."""
+    same = [_allowed(got, way.edges, choice) for choice in range(count)][::-1]
+    legs = len(way.edges)
+    switches = np.unique(np.linspace(1, legs - 1, min(_SWITCHES, max(legs - 1, 0))).astype(int))
+    turns = [
+        np.where(np.arange(legs) < k, fast, slow) for fast, slow in pairwise(same) for k in switches
+    ]
+    return same + turns
 
 
 def _allowed(got: Gathered, edges: IntArray, choice: int) -> IntArray:
@@ -74,20 +97,22 @@ def _fastest_way(got: Gathered, request: Request, arrivals: Arrivals) -> Way:
     while states[-1] != request.start:
         states.append(int(arrivals.before[states[-1]]))
     path = np.array(states[::-1], np.int64)
+    departed = arrivals.departed[path[1:]]
+    waited = departed > arrivals.time[path[:-1]]
+    way = _way_through(got, path)
+    return way._replace(leave=np.where(waited, departed, -math.inf))
+
+
+def _way_through(got: Gathered, path: IntArray) -> Way:
+    """Return the way through states, without waiting."""
     net = got.world.network
     edges = []
     for a, b in pairwise(path.tolist()):
         leaving = np.arange(net.indptr[a], net.indptr[a + 1])
         joining = leaving[net.target[leaving] == b]
         edges.append(joining[np.argmin(net.length[joining])])
-    departed = arrivals.departed[path[1:]]
-    waited = departed > arrivals.time[path[:-1]]
-    return Way(
-        path,
-        np.array(edges, np.int64),
-        np.zeros(len(edges), np.int64),
-        np.where(waited, departed, -math.inf),
-    )
+    still = np.full(len(edges), -math.inf)
+    return Way(path, np.array(edges, np.int64), np.zeros(len(edges), np.int64), still)
 
 
 def know(target: Target, clock: Clock, point: FrontPoint) -> None:

@@ -23,6 +23,7 @@ from thalweg.kernels.graph import static_distances
 from thalweg.kernels.label_setting import Query, label_setting, new_labels, new_workspace
 from thalweg.kernels.tables import TableArrays, axes_needed, table_value
 from thalweg.search.arrays import SHRINK, Problem, plain, problem, ship_arrays
+from thalweg.search.table_extremes import extreme
 from thalweg.search.tides import tidal_states
 
 if TYPE_CHECKING:
@@ -131,17 +132,6 @@ def _with_states(given: Problem, request: Request) -> tuple[Problem, IntArray]:
     return given._replace(network=net), origin
 
 
-def extreme(table: TableArrays, of: np.ufunc) -> FloatArray:
-    """Return the sum over parts of the largest (np.fmax) or least (np.fmin) value by setting."""
-    total = np.zeros(table.n_settings)
-    for part, start in enumerate(table.value_offset):
-        used = table.part_axes[part] >= 0
-        size = int(np.prod(table.axis_size[part][used])) * table.n_settings
-        values = table.values[start : start + size].reshape(-1, table.n_settings)
-        total += of.reduce(values.astype(float), axis=0)
-    return total
-
-
 def _prices(network: Network, origin: IntArray, ship: PricedShip, request: Request) -> Prices:
     fixed_time, fee = np.asarray(network.fixed_time), np.asarray(network.fee)
     fuel, choice = np.zeros(len(origin)), np.zeros(len(origin), np.int64)
@@ -233,6 +223,21 @@ class ToGoal:
 
     def floor(self, rate: float) -> FloatArray:
         """Return the least cost plus price of time to the goal."""
+        return self._least(self._costs(rate)) * (1.0 - 1e-6)
+
+    def way(self, start: int, rate: float) -> IntArray:
+        """Return the states of the way of least cost plus price of time; empty if there is none."""
+        parent = np.empty(len(self._indptr) - 1, np.int64)
+        distance = self._least(self._costs(rate), parent)
+        if not math.isfinite(distance[start]):
+            return np.empty(0, np.int64)
+        states = [start]
+        while states[-1] != self._goal:
+            states.append(int(parent[states[-1]]))
+        return np.array(states, np.int64)
+
+    def _costs(self, rate: float) -> FloatArray:
+        """Return the least cost plus price of time of every edge."""
         prices = self._got.world.prices
         second = prices.time_price + rate
         least = np.full(len(prices.fee), math.inf)
@@ -241,11 +246,13 @@ class ToGoal:
                 np.fmin(least, quickest * (fuel * prices.weight + second), out=least)
         still = prices.fixed_fuel * prices.weight + prices.fixed_time * second
         least = np.where(np.isnan(prices.fixed_time), least, still)
-        return self._least(least + prices.fee) * (1.0 - 1e-6)
+        return least + prices.fee
 
-    def _least(self, weights: FloatArray) -> FloatArray:
+    def _least(self, weights: FloatArray, parent: IntArray | None = None) -> FloatArray:
+        """Return the least sums of weights to the goal; ``parent`` is filled with what follows."""
         count = len(self._indptr) - 1
-        distance, parent = np.empty(count), np.empty(count, np.int64)
+        distance = np.empty(count)
+        parent = np.empty(count, np.int64) if parent is None else parent
         given = np.ascontiguousarray(weights[self._order])
         static_distances(self._indptr, self._target, given, self._goal, -1, distance, parent)
         return distance

@@ -1,0 +1,107 @@
+"""What a plan that trades time for something makes least: fuel, cost or carbon dioxide."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.units import DAY, HOUR, TONNE
+from thalweg.network import Network
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route
+from thalweg.ship import Ship
+from thalweg.ship.fuel_terms import FuelTerms
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """What is weighed against time.
+
+    Attributes
+    ----------
+    name : {"fuel", "cost", "co2"}
+    unit : str
+        Unit it is told in: t, or the currency of the prices.
+    inside, outside : float
+        What a kilogram of fuel counts inside and outside emission control areas [unit].
+    time_price : float
+        What a second counts besides [unit].
+    terms : FuelTerms
+        Prices and carbon factors, for the referee.
+    """
+
+    name: str
+    unit: str
+    inside: float
+    outside: float
+    time_price: float
+    terms: FuelTerms
+
+    def of(self, route: Route) -> float:
+        """Return what a refereed route counts [unit]; infinite where it is not known."""
+        value = {"fuel": route.fuel_t, "cost": route.cost, "co2": route.co2_t}[self.name]
+        return math.inf if value is None or not math.isfinite(value) else float(value)
+
+    def weights(self, network: Network, chart: Chart) -> FloatArray:
+        """Return what a kilogram of fuel counts on every edge of a network [unit]."""
+        price = np.asarray(network.price, float) if self.name == "cost" else 1.0
+        weight = np.full(network.n_edges, self.outside)
+        if self.inside != self.outside:
+            sailed = np.flatnonzero(np.isnan(network.fixed_time))
+            a, b = network.tails()[sailed], network.target[sailed]
+            low, high = np.minimum(a, b), np.maximum(a, b)  # each pair is looked at once
+            keys, back = np.unique(
+                low.astype(np.int64) * network.n_nodes + high, return_inverse=True
+            )
+            one, two = keys // network.n_nodes, keys % network.n_nodes
+            lat, lon = network.lat, network.lon
+            share = np.asarray(chart.eca_share(lat[one], lon[one], lat[two], lon[two]))[back]
+            weight[sailed] += share * (self.inside - self.outside)
+        return np.asarray(weight * price)
+
+
+def find_criterion(voyage: Voyage, ship: Ship) -> Criterion:
+    """Return what the voyage weighs against time, with prices where they are needed.
+
+    Raises
+    ------
+    InputError
+        If a price or a carbon factor is needed and nothing tells it.
+    """
+    hourly = voyage.time_price_usd_per_h
+    terms = ship.fuel_terms.with_prices(
+        usd_per_t=voyage.fuel_price_usd,
+        eca_price_factor=voyage.eca_price_factor,
+        time_usd_per_day=None if hourly is None else hourly * DAY / HOUR,
+    )
+    name = voyage.objective
+    if name == "front":
+        asked = (voyage.fuel_price_usd, voyage.eca_price_factor, voyage.time_price_usd_per_h)
+        name = "fuel" if all(value is None for value in asked) else "cost"
+    inside, outside = (terms.per_kg(name, inside=inside) for inside in (True, False))
+    if not (math.isfinite(inside) and math.isfinite(outside)):
+        raise _unknown(name, ship)
+    if name == "cost":
+        return Criterion(name, terms.currency or "USD", inside, outside, terms.time_price, terms)
+    return Criterion(name, "t", inside / TONNE, outside / TONNE, 0.0, terms)
+
+
+def _unknown(name: str, ship: Ship) -> InputError:
+    if name == "cost":
+        return InputError(
+            f"The cost of a voyage of {ship.name!r} is asked, but no price of fuel is known.",
+            "Prices come from --fuel-price USD, or fuel.price_per_t in the ship file.",
+            "Give one.",
+            field="fuel_price_usd",
+        )
+    return InputError(
+        f"The CO2 of {ship.name!r} is asked, but its fuel is not known.",
+        "Carbon comes from fuel.type or fuel.carbon_factor in the ship file.",
+        "Name the fuel, or ask for the objective 'fuel'.",
+        field="objective",
+    )

@@ -1,0 +1,300 @@
+"""Plans that trade time for fuel, cost or emissions: exact front, refinement, referee."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import FloatArray, inverse
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR
+from thalweg.kernels import codes
+from thalweg.network import Network, shortest
+from thalweg.planning import warming
+from thalweg.planning.criterion import Criterion
+from thalweg.planning.ends import End
+from thalweg.planning.passage import Frozen, Task, freeze, isochrones, refined, track_of
+from thalweg.planning.refusal import no_route
+from thalweg.planning.voyage import Voyage
+from thalweg.planning.ways import Way
+from thalweg.route import Route, Track
+from thalweg.sea import StationFields
+from thalweg.search import Front, SearchResult, direction_factor, earliest_arrival, front
+from thalweg.ship import Conditions, PerformanceTable, Ship
+
+#: How much longer than in still water the slowest ship worth looking at may take.
+_PATIENCE = 1.25
+_TWO_TIDES = 25 * HOUR
+#: A turn [rad] that is none: by it a leg of 100 km is a metre off at its middle at most.
+_STRAIGHT = 2e-5
+#: Into how many bins the time of a front is divided; refinement makes up for what they miss.
+_BINS = 720
+#: What a ship meets in still water; the period of no waves is any.
+_STILL = {
+    "wind_speed": 0.0,
+    "wind_angle": 0.0,
+    "wave_height": 0.0,
+    "wave_angle": 0.0,
+    "wave_period": 8.0,
+    "depth": 1e4,
+    "heading": 0.0,
+    "current_east": 0.0,
+    "current_north": 0.0,
+}
+
+
+@dataclass(frozen=True)
+class Explored:
+    """What came of one way round.
+
+    Attributes
+    ----------
+    way : Way
+    frozen : Frozen
+    fastest : Route
+        The fastest route, refined and refereed.
+    first : SearchResult
+        The fastest way on the network.
+    exact : Front
+        The exact front of the network.
+    isochrones : ndarray
+        Earliest arrival at every node [s since 1970]; inf where never reached.
+    factor : float
+        How much shorter than the network's way the way in open water may be.
+    """
+
+    way: Way
+    frozen: Frozen
+    fastest: Route
+    first: SearchResult
+    exact: Front
+    isochrones: np.ndarray
+    factor: float
+
+
+@dataclass(frozen=True)
+class Means:
+    """What all ways round are explored with."""
+
+    task: Task
+    criterion: Criterion
+    fuel: PerformanceTable
+    ends: tuple[End, ...]
+    settings: np.ndarray
+    limits: np.ndarray
+
+    @property
+    def via(self) -> tuple[End, ...]:
+        """The places between the first end and the last."""
+        return self.ends[1:-1]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A track with what the solver says of it.
+
+    Attributes
+    ----------
+    track : Track
+    stage : str
+        Where it comes from.
+    way : str
+        The way round.
+    time : float
+        [s].
+    value : float
+        [unit of the criterion].
+    """
+
+    track: Track
+    stage: str
+    way: str
+    time: float
+    value: float
+
+
+def explore(means: Means, way: Way) -> Explored:
+    """Search the exact front of one way round.
+
+    Raises
+    ------
+    NoRouteError
+        If there is no way in time, with the earliest arrival when there is one.
+    """
+    task = means.task
+    depart = task.voyage.earliest_departure
+    latest, until = _horizons(means, way.network)
+    task.tell(f"freezing the sea: {way.name}")
+    frozen = freeze(task, way.network, depart, until)
+    warming.finish()
+    task.tell(f"searching: {way.name}")
+    first = _fastest(means, way.network, frozen)
+    if not first.found:
+        raise no_route(
+            way.network,
+            first,
+            (means.ends[0], means.ends[-1]),
+            depart=depart,
+            last=task.last,
+            fields=frozen.stations,
+            required=float(means.limits[codes.LIMIT_REQUIRED_DEPTH]),
+        )
+    _in_time(first, task.voyage)
+    dues = way.network.fee if means.criterion.name == "cost" else np.zeros(way.network.n_edges)
+    exact = front(
+        replace(way.network, fee=dues),
+        frozen.stations,
+        task.table,
+        means.fuel,
+        start=way.network.meta.start,
+        goal=way.network.meta.goal,
+        depart=depart,
+        limits=means.limits,
+        latest=latest,
+        settings=means.settings,
+        weight=means.criterion.weights(way.network, task.chart),
+        time_price=means.criterion.time_price,
+        waiting_fuel=task.ship.waiting_fuel_rate,
+        waiting_weight=means.criterion.outside,
+        wait=task.voyage.wait,
+        bin_s=(latest - depart) / _BINS,
+        top_speed=frozen.top_speed,
+    )
+    fastest = refined(task, track_of(way.network, first, task.setting), means.limits)
+    until = first.arrive + 0.5 * first.duration
+    arrival = isochrones(task, way.network, frozen, depart, until)
+    return Explored(way, frozen, fastest, first, exact, arrival, _factor(means, way, frozen))
+
+
+def _factor(means: Means, way: Way, frozen: Frozen) -> float:
+    """Return the factor of directions for the slowest setting in the strongest current."""
+    slowest = float(np.min(np.asarray(means.task.ship.speeds)[means.settings]))
+    ratio = strongest_current(frozen.stations) / slowest if slowest > 0.0 else 1.0
+    return direction_factor(way.network.meta.gap_rad, ratio)
+
+
+def _fastest(means: Means, network: Network, frozen: Frozen) -> SearchResult:
+    task = means.task
+    return earliest_arrival(
+        network,
+        frozen.stations,
+        task.table,
+        start=network.meta.start,
+        goal=network.meta.goal,
+        depart=task.voyage.earliest_departure,
+        setting=int(means.settings[-1]),
+        limits=means.limits,
+        wait=task.voyage.wait,
+        top_speed=frozen.top_speed,
+    )
+
+
+def _in_time(first: SearchResult, voyage: Voyage) -> None:
+    """Raise `NoRouteError` if even the fastest way arrives too late."""
+    if voyage.arrive_by is not None and first.arrive > float(voyage.arrive_by):  # type: ignore[arg-type]
+        raise NoRouteError(
+            f"No route arrives by {format_time(float(voyage.arrive_by))}.",  # type: ignore[arg-type]
+            f"The earliest arrival on the network is {format_time(first.arrive)}.",
+            "Allow a later arrival, or depart earlier.",
+            reasons={"arrives too late": 1},
+            earliest=format_time(first.arrive),
+        )
+
+
+def _horizons(means: Means, network: Network) -> tuple[float, float]:
+    """Return the latest arrival of the front, and until when the sea is frozen [s since 1970]."""
+    task = means.task
+    length = shortest_length(network)
+    until = task.last
+    if math.isfinite(length):
+        speed = float(task.ship.speeds[economical(means)])
+        until = task.voyage.earliest_departure + _PATIENCE * length / speed
+        if math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
+            until += _TWO_TIDES
+    if task.voyage.arrive_by is None:
+        latest = min(until, task.last)
+        return latest, latest
+    latest = min(float(task.voyage.arrive_by), task.last)  # type: ignore[arg-type]
+    return latest, min(max(latest, until), task.last)
+
+
+def shortest_length(network: Network) -> float:
+    """Return the length of the shortest way over a network [m]; inf if there is none."""
+    meta = network.meta
+    return float(shortest(network, meta.start, meta.goal)[0][meta.goal])
+
+
+def economical(means: Means) -> int:
+    """Return the setting that makes a mile cheapest in still water."""
+    ship = means.task.ship
+    rate = still_rates(ship)[means.settings]
+    speeds = np.asarray(ship.speeds)[means.settings]
+    cost = (means.criterion.outside * rate + means.criterion.time_price) / speeds
+    known = np.where(np.isfinite(cost), cost, np.inf)
+    return int(means.settings[np.argmin(known)])
+
+
+def still_rates(ship: Ship) -> FloatArray:
+    """Return the fuel rate of every setting in still, deep water [kg/s]."""
+    conditions = Conditions({name: value for name, value in _STILL.items() if name in ship.reads})
+    settings = np.arange(len(ship.speeds))
+    return np.asarray(ship.fuel_rate(conditions, settings), float)
+
+
+def track_of_point(network: Network, point: Any) -> Track:
+    """Turn a point of an exact front into a track."""
+    path = np.asarray(point.path)
+    wait = np.maximum(0.0, np.asarray(point.path_depart) - np.asarray(point.path_arrive))
+    wait[-1] = 0.0
+    wait = np.where(wait < 1.0, 0.0, wait)
+    setting = np.asarray(point.setting)
+    lat, lon = network.station_lat[path], network.station_lon[path]
+    kept = np.flatnonzero(_corners(lat, lon, setting, wait))
+    return Track(lat[kept], lon[kept], float(point.path_arrive[0]), wait[kept], setting[kept[:-1]])
+
+
+def _corners(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:
+    """Return which points of a path are needed: it turns, waits or changes its speed there."""
+    keep = np.ones(len(lat), bool)
+    _, course, back = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    turn = np.angle(np.exp(1j * (course[1:] - back[:-1])))
+    same = (np.abs(turn) < _STRAIGHT) & (setting[1:] == setting[:-1]) & (wait[1:-1] == 0.0)
+    keep[1:-1] = ~same
+    return keep
+
+
+def spread(time: FloatArray, value: FloatArray, count: int) -> np.ndarray:
+    """Return indices of at most ``count`` points of a front: its ends, and evenly between."""
+    order = np.argsort(time, kind="stable")
+    if len(order) <= count:
+        return order
+    x = (time[order] - time[order[0]]) / max(float(np.ptp(time)), 1e-12)
+    y = (value[order] - value.min()) / max(float(np.ptp(value)), 1e-12)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    wanted = np.linspace(0.0, along[-1], count)
+    picked = np.unique(np.abs(along[None, :] - wanted[:, None]).argmin(axis=1))
+    return np.asarray(order[picked])
+
+
+def not_dominated(time: FloatArray, value: FloatArray) -> list[int]:
+    """Return the indices of what is not dominated, by ascending time."""
+    kept: list[int] = []
+    least = math.inf
+    for index in np.lexsort((value, time)):
+        if value[index] * (1.0 + 1e-9) < least:
+            kept.append(int(index))
+            least = float(value[index])
+    return kept
+
+
+def strongest_current(stations: StationFields) -> float:
+    """Return the strongest current [m/s] in frozen fields; 0 where there is none."""
+    east, north = (stations.channel_index[c] for c in (codes.CURRENT_EAST, codes.CURRENT_NORTH))
+    if east < 0 or north < 0:
+        return 0.0
+    squared = stations.values[:, :, east] ** 2 + stations.values[:, :, north] ** 2
+    return math.sqrt(float(np.nanmax(squared, initial=0.0)))

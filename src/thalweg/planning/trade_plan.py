@@ -1,0 +1,345 @@
+"""From the fronts of all ways round to one plan."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import distance
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT
+from thalweg.kernels import codes
+from thalweg.network import shortest
+from thalweg.planning.comparison import blind_tracks, compare, sail_blind
+from thalweg.planning.criterion import find_criterion
+from thalweg.planning.ends import End
+from thalweg.planning.fronts import FrontOfPlan
+from thalweg.planning.passage import Task
+from thalweg.planning.plan import Plan, Proof, Surroundings
+from thalweg.planning.telling import known, network_facts, provenance, route_notes
+from thalweg.planning.trade import (
+    Candidate,
+    Explored,
+    Means,
+    explore,
+    not_dominated,
+    shortest_length,
+    spread,
+    strongest_current,
+    track_of_point,
+)
+from thalweg.planning.ways import find_ways
+from thalweg.route import Route, evaluate
+from thalweg.search import extreme
+
+#: Margins on the depth [m] and on wave height and wind [fraction], tried in turn while the referee
+#: finds no route within the limits.
+_MARGINS = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.1))
+#: A route that ends so near the end of the data was bounded by it [s].
+_NEAR_THE_END = 3.0 * HOUR
+_KIND = (
+    "the lower front of the network: all as favourable as at any moment of each time step, "
+    "lengths as short as in open water"
+)
+#: Routes of a front that are refereed and published.
+_MOST_ROUTES = 24
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A candidate with what the referee says of it."""
+
+    candidate: Candidate
+    route: Route
+    value: float
+
+
+def trade(task: Task, ends: list[End]) -> Plan:
+    """Plan a voyage whose objective trades time for fuel, cost or CO2.
+
+    Raises
+    ------
+    InputError
+        If the ship's fuel or its price is not known.
+    NoRouteError
+        If no route exists within the limits and in time.
+    """
+    criterion = find_criterion(task.voyage, task.ship)
+    fuel = task.ship.tabulate_fuel()
+    single = task.voyage.speed_kn is not None
+    settings = np.array([task.setting]) if single else np.arange(len(task.ship.speeds))
+    means = Means(task, criterion, fuel, tuple(ends), settings, task.needs.limits)
+    ways = find_ways(task, ends)
+    for depth, fraction in _MARGINS:
+        limits = task.needs.limits * (1.0 - fraction)
+        limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+        explored = _explored(replace(means, limits=limits), ways)
+        scored = _scored(means, _candidates(replace(means, limits=limits), explored))
+        if any(item.route.feasible for item in scored):
+            break
+    return _gathered(means, ends, explored, scored)
+
+
+def _explored(means: Means, ways: list[Any]) -> list[Explored]:
+    """Explore all ways round; one that cannot be sailed is left out if another can."""
+    found: list[Explored] = []
+    refusal: NoRouteError | None = None
+    for way in ways:
+        try:
+            found.append(explore(means, way))
+        except NoRouteError as error:
+            refusal = refusal or error
+    if not found:
+        assert refusal is not None  # there is at least one way
+        raise refusal
+    return found
+
+
+def _candidates(means: Means, explored: list[Explored]) -> list[Candidate]:
+    """Return routes worth the referee's time, by ascending time."""
+    found: list[Candidate] = []
+    for one in explored:
+        exact = [
+            Candidate(
+                track_of_point(one.way.network, point),
+                "exact",
+                one.way.name,
+                point.time,
+                point.cost,
+            )
+            for point in one.exact.points
+        ]
+        if means.task.voyage.method != "exact":
+            from thalweg.planning.evolving import evolved
+
+            means.task.tell(f"refining the front: {one.way.name}")
+            exact += evolved(means, one, exact)
+        found += exact
+    time = np.array([item.time for item in found])
+    value = np.array([item.value for item in found])
+    kept = not_dominated(time, value)
+    picked = spread(time[kept], value[kept], _MOST_ROUTES)
+    return [found[kept[index]] for index in picked]
+
+
+def _scored(means: Means, candidates: list[Candidate]) -> list[Scored]:
+    """Let the referee score candidates; what is dominated is dropped, what breaks limits too."""
+    task = means.task
+    task.tell(f"refereeing {len(candidates)} routes")
+    scored = []
+    for candidate in candidates:
+        route = evaluate(
+            candidate.track,
+            ship=task.ship,
+            sea=task.sea,
+            chart=task.chart,
+            min_ukc=task.min_ukc,
+            strict=False,
+            terms=means.criterion.terms,
+        )
+        scored.append(Scored(candidate, route, means.criterion.of(route)))
+    latest = latest_arrival(task)
+    usable = [
+        item
+        for item in scored
+        if item.route.feasible and math.isfinite(item.value) and item.route.arrive <= latest + 1.0
+    ]
+    if not usable:
+        return [item for item in scored if math.isfinite(item.route.arrive)]
+    time = np.array([item.route.time_h for item in usable])
+    value = np.array([item.value for item in usable])
+    return [usable[index] for index in not_dominated(time, value)]
+
+
+def _gathered(
+    means: Means, ends: list[End], explored: list[Explored], scored: list[Scored]
+) -> Plan:
+    """Put the plan together."""
+    task, criterion = means.task, means.criterion
+    whole = task.voyage.objective == "front"
+    blind = _blind(means, explored)
+    scored = _with_blind(means, scored, blind)
+    if not scored:
+        raise _nothing_sails(means, explored)
+    ordered = sorted(scored, key=lambda item: item.route.time_h)
+    if not whole:
+        best = min(ordered, key=lambda item: item.value)
+        ordered = [best, *(item for item in ordered if item is not best)]
+    routes = tuple(item.route for item in ordered)
+    values = np.array([item.value for item in ordered])
+    lower = _lower(explored, certain(means, explored)[1])
+    shortest_way = min(explored, key=lambda one: shortest_length(one.way.network)).way.name
+    front = FrontOfPlan(
+        criterion=criterion.name,
+        unit=criterion.unit,
+        values=values,
+        stages=tuple(item.candidate.stage for item in ordered),
+        ways=tuple(item.candidate.way or shortest_way for item in ordered),
+        lower=lower,
+        comparison=compare(task, criterion, routes, values, blind),
+    )
+    return Plan(
+        voyage=task.voyage,
+        routes=routes,
+        proof=_proof(means, explored, front, whole=whole),
+        rejections=_rejections(explored),
+        notes=tuple(dict.fromkeys(_notes(means, ends, explored, ordered))),
+        provenance=provenance(task, ends, _networks(explored), _speeds_kn(means)),
+        surroundings=_surroundings(task, explored),
+        front=front,
+    )
+
+
+def _lower(explored: list[Explored], criterion_floor: float) -> np.ndarray:
+    """Return the lower front of open water over all ways round: times [h] and values.
+
+    A way in open water that takes T and costs C has one on the network that takes at most T / k
+    and costs at most C / k, with k the factor of directions: so C is at least k L(T / k), L being
+    the lower front of the network. As certain as that factor.
+    """
+    time, value = [], []
+    for one in explored:
+        k = one.factor
+        time.append(k * one.exact.lower_time / HOUR)
+        value.append(np.maximum(k * one.exact.lower_cost, criterion_floor))
+    times, values = np.concatenate(time), np.concatenate(value)
+    kept = not_dominated(times, values)
+    return np.array([times[kept], values[kept]]).reshape(2, -1)
+
+
+def _proof(means: Means, explored: list[Explored], front: FrontOfPlan, *, whole: bool) -> Proof:
+    """Return the bound: of the fast end for a whole front, else of the criterion."""
+    certain_time, certain_value = certain(means, explored)
+    if whole:
+        fastest = min(one.first.duration for one in explored) / HOUR
+        lower = front.lower[0].min(initial=fastest) if front.lower.size else certain_time
+        return Proof(max(float(lower), certain_time), _KIND, certain_time, fastest)
+    solver = min(point.cost for one in explored for point in one.exact.points)
+    value = float(front.values[0])
+    lower = float(front.lower[1].min()) if front.lower.size else certain_value
+    if lower > value:  # disproved by the route itself, which is not confined to the network
+        lower = certain_value
+    return Proof(max(lower, certain_value), _KIND, certain_value, solver)
+
+
+def _blind(means: Means, explored: list[Explored]) -> list[Route]:
+    """Return the weather-blind routes of the shortest way round, in the weather of the plan."""
+    network = min((one.way.network for one in explored), key=shortest_length)
+    _, path = shortest(network, network.meta.start, network.meta.goal)
+    means.task.tell("sailing the weather-blind route")
+    tracks = blind_tracks(means.task, network.lat[path], network.lon[path], means.settings)
+    return sail_blind(means.task, means.criterion, tracks)
+
+
+def _with_blind(means: Means, scored: list[Scored], blind: list[Route]) -> list[Scored]:
+    """Return all that is not dominated, constant speeds on the shortest way among it."""
+    latest = latest_arrival(means.task)
+    constant = [
+        Scored(Candidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value)
+        for r, value in ((route, means.criterion.of(route)) for route in blind)
+        if r.feasible and r.arrive <= latest + 1.0
+    ]
+    if not any(item.route.feasible for item in scored):
+        return constant or scored
+    pool = [*scored, *constant]
+    time = np.array([item.route.time_h for item in pool])
+    value = np.array([item.value for item in pool])
+    return [pool[index] for index in not_dominated(time, value)]
+
+
+def latest_arrival(task: Task) -> float:
+    """Return the latest arrival asked for [s since 1970]; inf without any."""
+    asked = task.voyage.arrive_by
+    return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
+
+
+def _rejections(explored: list[Explored]) -> dict[str, int]:
+    refused: Counter[str] = Counter()
+    for one in explored:
+        refused.update(one.way.network.meta.rejected)
+        refused.update(one.first.refused)
+        refused.update(one.exact.refused)
+    return {reason: count for reason, count in refused.items() if count}
+
+
+def _networks(explored: list[Explored]) -> list[dict[str, Any]]:
+    return [
+        network_facts(
+            one.way.network,
+            settled=int(one.first.settled),
+            depart=one.fastest.depart,
+            way=one.way.name,
+        )
+        for one in explored
+    ]
+
+
+def _speeds_kn(means: Means) -> list[float | None]:
+    return [known(float(means.task.ship.speeds[s]) / KNOT) for s in means.settings]
+
+
+def _surroundings(task: Task, explored: list[Explored]) -> Surroundings:
+    """Return what the pictures need, the earliest arrivals of all ways round."""
+    networks = [one.way.network for one in explored]
+    return Surroundings(
+        lat=np.concatenate([network.lat for network in networks]),
+        lon=np.concatenate([network.lon for network in networks]),
+        arrival=np.concatenate([one.isochrones for one in explored]),
+        chart=task.chart,
+        sea=task.sea,
+        ship=task.ship,
+    )
+
+
+def certain(means: Means, explored: list[Explored]) -> tuple[float, float]:
+    """Return what no route at all undercuts: a time [h] and a value of the criterion.
+
+    The geodesic at the greatest speed over ground that the data allow, for the value with the
+    least fuel rate of the best setting and the least weight of fuel.
+    """
+    task, criterion = means.task, means.criterion
+    start, goal = means.ends[0], means.ends[-1]
+    geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
+    current = max(strongest_current(one.frozen.stations) for one in explored)
+    least = min(criterion.inside, criterion.outside)
+    if criterion.name == "cost":
+        least *= min(float(one.way.network.price.min()) for one in explored)
+    rates = np.maximum(extreme(means.fuel.kernel_arrays(), np.fmin), 0.0)
+    fastest, value = 0.0, math.inf
+    for setting in means.settings:
+        over_ground = float(task.ship.top_speed(int(setting)) or math.inf) + current
+        fastest = max(fastest, over_ground)
+        per_second = least * float(rates[setting]) + criterion.time_price
+        value = min(value, per_second * geodesic / over_ground)
+    return geodesic / fastest / HOUR, value
+
+
+def _notes(
+    means: Means, ends: list[End], explored: list[Explored], ordered: list[Scored]
+) -> list[str]:
+    task, best = means.task, ordered[0].route
+    notes = [end.note for end in ends if end.note] + list(task.needs.notes)
+    notes += [f"The referee finds a limit broken: {v}." for v in best.violations[:5]]
+    notes += route_notes(task, best)
+    slowest = max(item.route.arrive for item in ordered)
+    bounded = task.voyage.arrive_by is None and math.isfinite(task.last)
+    if bounded and slowest > task.last - _NEAR_THE_END:
+        notes.append(f"The data end at {format_time(task.last)}: slower routes were not looked at.")
+    return notes
+
+
+def _nothing_sails(means: Means, explored: list[Explored]) -> NoRouteError:
+    latest = means.task.voyage.arrive_by
+    by = "" if latest is None else f" by {format_time(float(latest))}"  # type: ignore[arg-type]
+    soonest = min(one.first.arrive for one in explored)
+    return NoRouteError(
+        f"No route arrives{by} when it is sailed in fine steps.",
+        f"The network's earliest arrival is {format_time(soonest)}.",
+        "Allow more time, or relax the limits.",
+        reasons=_rejections(explored),
+    )

@@ -1,0 +1,184 @@
+"""Plans that trade time for fuel, cost or CO2, in worlds where the best is known."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, InputError, NoRouteError, Sea, Ship, Voyage, plan
+from thalweg.core.geodesy import distance
+
+START, GOAL = (0.0, 0.0), (0.0, 2.0)
+CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)
+KNOT, HOUR = 1852.0 / 3600.0, 3600.0
+LENGTH = float(distance(*START, *GOAL))
+
+
+def cubic_ship(**fuel):
+    data = {
+        "name": "cubic",
+        "hull": {"draught_m": 5.0},
+        "speeds_kn": [6.0, 8.0, 10.0, 12.0],
+        "engine": {"reference_speed_kn": 12.0},
+        "fuel": {"reference_t_per_day": 24.0, **fuel},
+        "models": {"calm_water": "cubic"},
+    }
+    return Ship.from_dict(data)
+
+
+def fuel_per_second(speed_kn):
+    """Fuel rate of the ship above [t/s]."""
+    return 24.0 / 86400.0 * (speed_kn / 12.0) ** 3
+
+
+def still(objective, ship, **more):
+    voyage = Voyage(start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective=objective, **more)
+    return plan(voyage, ship=ship, sea=Sea.calm(), chart=CHART)
+
+
+def test_least_fuel_is_the_slowest_speed_on_the_geodesic():
+    answer = still("fuel", cubic_ship())
+    wanted = fuel_per_second(6.0) * LENGTH / (6.0 * KNOT)
+    assert answer.best.fuel_t == pytest.approx(wanted, rel=1e-3)
+    assert answer.objective_value == answer.best.fuel_t and answer.unit == "t"
+    assert answer.lower_bound <= answer.objective_value
+    assert answer.proof.certain == pytest.approx(wanted, rel=1e-3)
+
+
+def test_with_a_deadline_two_neighbouring_speeds_are_mixed():
+    # at 9 kn on the mean, time is shared between 8 and 10 kn so that the distance is covered
+    hours = LENGTH / (9.0 * KNOT) / HOUR
+    arrive = 1767225600.0 + hours * HOUR
+    answer = still("fuel", cubic_ship(), arrive_by=arrive)
+    share = 0.5  # of the time at each of the two speeds
+    wanted = hours * HOUR * (share * fuel_per_second(8.0) + share * fuel_per_second(10.0))
+    assert answer.best.arrive <= arrive + 1.0
+    assert answer.best.fuel_t == pytest.approx(wanted, rel=0.01)
+    assert answer.best.fuel_t >= wanted * (1.0 - 1e-4)
+
+
+def test_the_front_runs_from_the_fastest_to_the_cheapest_and_no_route_beats_another():
+    answer = still("front", cubic_ship())
+    time = np.array([route.time_h for route in answer.routes])
+    fuel = np.array([route.fuel_t for route in answer.routes])
+    assert np.all(np.diff(time) > 0) and np.all(np.diff(fuel) < 0)
+    assert time[0] == pytest.approx(LENGTH / (12.0 * KNOT) / HOUR, rel=1e-3)
+    assert fuel[-1] == pytest.approx(fuel_per_second(6.0) * LENGTH / (6.0 * KNOT), rel=1e-3)
+    # the true front is the lower hull of the four pure speeds
+    speeds = np.array([12.0, 10.0, 8.0, 6.0])
+    pure_time = LENGTH / (speeds * KNOT) / HOUR
+    pure_fuel = [fuel_per_second(s) * LENGTH / (s * KNOT) for s in speeds]
+    best = np.interp(time, pure_time, pure_fuel)
+    assert np.all(fuel >= best * (1.0 - 1e-4))
+    assert np.all(fuel <= best * 1.01)
+    gaps = [gap for gap in answer.front.gaps(answer.routes) if gap is not None]
+    # 32 directions may be 1.3 % longer than open water; fuel goes with the time to the power -3
+    assert gaps and max(gaps) < 0.055
+
+
+def test_least_cost_weighs_time_against_fuel():
+    # cost per metre (p k v^3 + c) / v is least where 2 p k v^3 = c
+    price, per_hour = 500.0, 2.0 * 500.0 * 24.0 / 24.0 * (10.0 / 12.0) ** 3
+    answer = still("cost", cubic_ship(), fuel_price_usd=price, time_price_usd_per_h=per_hour)
+    hours = LENGTH / (10.0 * KNOT) / HOUR
+    wanted = price * fuel_per_second(10.0) * hours * HOUR + per_hour * hours
+    assert answer.best.cost == pytest.approx(wanted, rel=1e-3)
+    assert answer.best.time_h == pytest.approx(hours, rel=1e-3)
+    assert answer.unit == "USD"
+
+
+def test_waiting_is_hardly_chosen_where_nothing_changes():
+    answer = still("front", cubic_ship(), method="exact")
+    bins = 25.1 / 720  # a ship may wait for the next bin of time
+    assert all(route.waiting_h <= 2 * bins for route in answer.routes)
+
+
+def test_what_the_front_saves_over_constant_speeds_is_told():
+    answer = still("front", cubic_ship())
+    rows = answer.front.comparison.rows
+    assert [row["speed_kn"] for row in rows] == pytest.approx([12.0, 10.0, 8.0, 6.0])
+    assert all(abs(row["saved"]) < 0.01 * row["value"] for row in rows)  # still water: nothing
+
+
+def test_the_json_tells_the_whole_front():
+    answer = still("front", cubic_ship(), fuel_price_usd=500.0)
+    told = json.loads(answer.to_json())
+    assert told["front"]["criterion"] == "cost" and told["front"]["unit"] == "USD"
+    assert len(told["front"]["points"]) == len(told["routes"])
+    for point, route in zip(told["front"]["points"], told["routes"]):
+        assert point["time_h"] == route["time_h"] and point["cost_usd"] == route["cost_usd"]
+    assert told["comparison"]
+
+
+def test_the_same_request_gives_the_same_plan():
+    first, second = (still("front", cubic_ship(), seed=7) for _ in range(2))
+    assert [r.time_h for r in first.routes] == [r.time_h for r in second.routes]
+    assert [r.fuel_t for r in first.routes] == [r.fuel_t for r in second.routes]
+
+
+def test_exact_alone_is_possible_and_says_so():
+    answer = still("front", cubic_ship(), method="exact")
+    assert set(answer.front.stages) <= {"exact", "fastest"}
+
+
+def test_too_early_an_arrival_is_refused_with_the_earliest():
+    hours = LENGTH / (12.0 * KNOT) / HOUR
+    with pytest.raises(NoRouteError) as refusal:
+        still("fuel", cubic_ship(), arrive_by=1767225600.0 + 0.9 * hours * HOUR)
+    assert "earliest arrival" in refusal.value.possible
+    earliest = refusal.value.details["earliest"]
+    assert earliest.startswith("2026-01-01T10:0")  # 120 nm at 12 kn
+
+
+def test_cost_without_a_price_is_refused():
+    with pytest.raises(InputError, match="no price"):
+        still("cost", cubic_ship())
+
+
+def test_co2_of_an_unknown_fuel_is_refused():
+    with pytest.raises(InputError, match="fuel is not known"):
+        still("co2", cubic_ship())
+
+
+def test_co2_is_fuel_times_carbon():
+    answer = still("co2", cubic_ship(type="HFO"))
+    assert answer.objective_value == pytest.approx(3.114 * answer.best.fuel_t, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"fuel_price_usd": -1.0},
+        {"eca_price_factor": 0.0},
+        {"method": "nsga3"},
+        {"objective": "front", "depart_window": ("2026-01-01", "2026-01-02"), "depart": None},
+        {"ensemble": "median"},
+    ],
+)
+def test_impossible_requests_are_refused(more):
+    request = {"start": START, "goal": GOAL, "depart": "2026-01-01T00:00Z", **more}
+    with pytest.raises(InputError):
+        Voyage(**request)
+
+
+def test_a_ship_without_fuel_has_no_front():
+    ship = Ship.simple(speeds_kn=[8.0, 10.0])
+    with pytest.raises(InputError, match="fuel"):
+        still("front", ship)
+
+
+def test_unknown_canals_are_refused_with_near_matches():
+    voyage = Voyage(start=START, goal=GOAL, depart="2026-01-01T00:00Z", forbid=["sues"])
+    with pytest.raises(InputError, match="suez"):
+        plan(voyage, ship=cubic_ship(), sea=Sea.calm(), chart=Chart.gshhg("c"))
+
+
+def test_a_voyage_with_prices_round_trips(tmp_path):
+    voyage = Voyage(
+        start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective="cost", forbid=["suez"],
+        fuel_price_usd=500.0, eca_price_factor=1.5, time_price_usd_per_h=10.0, method="exact",
+    )  # fmt: skip
+    voyage.save(tmp_path / "v.yaml")
+    assert Voyage.load(tmp_path / "v.yaml") == voyage
+    assert not math.isnan(voyage.fuel_price_usd)

@@ -1,0 +1,88 @@
+"""Ways round: canals, ice and places between."""
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, Sea, Ship, Voyage, plan
+from thalweg.core.errors import NoRouteError
+from thalweg.network import check_network, lattice, shortest
+from thalweg.network.joined import Link, joined
+from thalweg.planning.ends import End
+from thalweg.planning.waters import NORTHERN, open_canals, without_ice
+
+SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
+CHART = Chart.gshhg("i")
+ELBE, GDANSK = (53.9, 8.9), (54.6, 18.9)
+
+
+def network(start, goal, **more):
+    return lattice(Chart.open_water(-3.0, 3.0, -3.0, 8.0), start, goal, **more)
+
+
+def length(net):
+    return shortest(net, net.meta.start, net.meta.goal)[0][net.meta.goal]
+
+
+def test_joined_networks_are_as_long_as_their_parts():
+    parts = [network((0.0, 0.0), (1.0, 2.0)), network((1.0, 2.0), (0.0, 4.0))]
+    whole = joined(parts, [None])
+    check_network(whole)
+    assert whole.n_nodes == parts[0].n_nodes + parts[1].n_nodes - 1
+    assert length(whole) == pytest.approx(sum(length(part) for part in parts), rel=1e-12)
+
+
+def test_a_canal_between_networks_takes_its_time_and_fee():
+    parts = [network((0.0, 0.0), (0.0, 1.0)), network((0.0, 1.5), (0.0, 3.0))]
+    link = Link(80_000.0, 36_000.0, 5_000.0)
+    whole = joined(parts, [link])
+    check_network(whole)
+    canal = np.flatnonzero(np.isfinite(whole.fixed_time))
+    assert len(canal) == 1
+    assert whole.fixed_time[canal[0]] == 36_000.0 and whole.fee[canal[0]] == 5_000.0
+    assert length(whole) == pytest.approx(sum(length(part) for part in parts) + 80_000.0)
+
+
+@pytest.mark.slow
+def test_the_kiel_canal_is_taken_unless_forbidden():
+    voyage = {"start": ELBE, "goal": GDANSK, "depart": "2026-01-01T00:00Z"}
+    by_canal = plan(Voyage(**voyage), ship=SHIP, sea=Sea.calm(), chart=CHART)
+    round_skagen = plan(Voyage(**voyage, forbid=["kiel"]), ship=SHIP, sea=Sea.calm(), chart=CHART)
+    track = by_canal.best.track
+    legs = CHART.canal_of_legs(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    assert [CHART.canals[i].name for i in legs if i >= 0] == ["kiel"]
+    assert by_canal.best.feasible and round_skagen.best.feasible
+    assert by_canal.best.distance_nm == pytest.approx(372.0, abs=4.0)
+    assert round_skagen.best.track.lat.max() > 57.7  # Skagen
+    canal = CHART.canals[[c.name for c in CHART.canals].index("kiel")]
+    sailed = by_canal.best.distance_nm - canal.length / 1852.0
+    assert by_canal.best.time_h == pytest.approx(
+        sailed / 12.0 + canal.transit_time / 3600.0, rel=1e-3
+    )
+
+
+def test_a_deep_ship_does_not_pass_a_shallow_canal():
+    ends = [End("a", *ELBE, 0.0), End("b", *GDANSK, 0.0)]
+    voyage = Voyage(start=ELBE, goal=GDANSK, depart="2026-01-01T00:00Z")
+    chart, notes = open_canals(CHART, voyage, Ship.simple(draught_m=12.0), ends)
+    assert "kiel" not in [canal.name for canal in chart.canals]
+    assert "suez" in [canal.name for canal in chart.canals]
+    assert len(notes) == 1 and "Kiel Canal" in notes[0] and "draught of 12 m" in notes[0]
+
+
+def test_ice_is_left_out_unless_the_voyage_goes_there():
+    def reach(lat):
+        chart = without_ice(CHART, [End("a", 60.0, 0.0, 0.0), End("b", lat, 10.0, 0.0)])
+        return chart.is_navigable(np.array([73.0, 79.5]), np.array([10.0, 5.0])).tolist()
+
+    assert reach(62.0) == [False, False]
+    assert reach(78.0) == [True, True]
+    assert NORTHERN < 72.0  # Bellot Strait, the way round the north of America
+
+
+def test_no_way_without_canals_is_said():
+    chart = Chart.gshhg("c").within(25.0, 45.0, 10.0, 40.0)  # the Mediterranean and the Red Sea
+    voyage = Voyage(
+        start=(33.0, 30.0), goal=(27.5, 34.5), depart="2026-01-01T00:00Z", forbid=["all"]
+    )
+    with pytest.raises(NoRouteError):
+        plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart)

@@ -1,0 +1,29 @@
+"""Extremes of tables bound every value they give."""
+
+import numpy as np
+import pytest
+
+from thalweg import Ship
+from thalweg.kernels.tables import table_value
+from thalweg.search.table_extremes import extreme
+
+
+@pytest.mark.parametrize("name", ["handysize-bulker", "s175", "vox-olympia"])
+@pytest.mark.parametrize("what", ["tabulate", "tabulate_fuel"])
+def test_no_value_lies_beyond_the_extremes(name, what):
+    arrays = getattr(Ship.load(name), what)().kernel_arrays()
+    low, high = extreme(arrays, np.fmin), extreme(arrays, np.fmax)
+    assert len(low) == arrays.n_settings and np.all(low <= high)
+    rng = np.random.default_rng(1)
+    known = 0
+    for _ in range(400):
+        at = (
+            rng.uniform(0, 25), rng.uniform(0, np.pi), rng.uniform(0, 5), rng.uniform(0, np.pi),
+            rng.uniform(5, 14), rng.uniform(15, 200),
+        )  # fmt: skip
+        setting = int(rng.integers(arrays.n_settings))
+        value, ok = table_value(arrays, at, setting)
+        if ok:
+            known += 1
+            assert low[setting] - 1e-6 <= value <= high[setting] * (1 + 1e-6) + 1e-9
+    assert known > 50
