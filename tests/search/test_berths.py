@@ -114,7 +114,7 @@ def test_the_wait_before_a_bar_is_taken_at_the_anchorage():
 
 def test_without_an_anchorage_the_berth_serves():
     network, fields = barred_line(4.0 * HOUR)
-    network = replace(network, can_wait=np.zeros(6, bool))
+    network = replace(network, can_wait=np.arange(6) == 0)
     found = earliest_arrival(network, fields, steady(4.0), start=0, goal=5, depart=0.0, **GIVEN)
     assert found.found
     waits = found.path_depart - found.path_arrive

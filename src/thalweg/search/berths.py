@@ -126,7 +126,7 @@ def earliest_from_berths(
     Parameters
     ----------
     network : Network
-        Its ``can_wait`` tells where; at the start it always is.
+        Its ``can_wait`` tells where, of the start too.
     given : Problem
         Gathered without times afloat (``ends=None``).
     start, goal : int
@@ -153,7 +153,7 @@ def earliest_from_berths(
     horizon = math.inf if arrive_by is None else float(arrive_by)
     end = min(horizon, float(given.sea.times[-1]))
     sweep = Sweep(network, given, goal, depart, end)
-    sweep.stays[start] = [Stay(depart, math.inf, -1)]
+    sweep.stays[start] = [Stay(depart, math.inf if network.can_wait[start] else depart, -1)]
     afloat = _afloat(network, given, np.asarray(limits, float), start)
     reached = np.full(network.n_nodes, math.inf)
     best, best_wave = math.inf, -1
