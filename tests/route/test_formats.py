@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from tests.route.planar import ship
 from thalweg.core.errors import InputError
-from thalweg.route import evaluate, read_track, write_csv, write_geojson, write_gpx
+from thalweg.core.units import KNOT
+from thalweg.route import Track, evaluate, read_track, write_csv, write_geojson, write_gpx
 from thalweg.sea import Sea
 
 WRITERS = {"csv": write_csv, "geojson": write_geojson, "gpx": write_gpx}
@@ -40,6 +41,36 @@ def test_round_trip(tmp_path, suffix, positions):
     assert track.depart == expected.depart
     again = evaluate(path, ship=ship(5.0), sea=Sea.calm())
     assert again.time_h == pytest.approx(route_along(positions).time_h, rel=1e-9)
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_waits_and_ordered_speeds_come_back(tmp_path, suffix):
+    vessel = ship(7.5).with_speeds([5.0, 7.5])
+    track = Track(
+        [52.0, 52.1, 52.2, 52.3], [4.0, 3.9, 3.9, 3.8], 0.0, [600.0, 0.0, 1234.5, 0.0], [1, 0, 1]
+    )
+    route = evaluate(track, ship=vessel, sea=Sea.calm(), depart=DEPART)
+    assert route.legs["ordered_speed"].tolist() == [7.5, 5.0, 7.5]
+    path = tmp_path / f"route.{suffix}"
+    WRITERS[suffix](route, path)
+    read = read_track(path)
+    np.testing.assert_allclose(read.wait, track.wait, rtol=1e-12)
+    np.testing.assert_allclose(read.speed, [7.5, 5.0, 7.5], rtol=1e-12)
+    again = evaluate(path, ship=vessel, sea=Sea.calm())
+    assert again.track.setting.tolist() == [1, 0, 1]
+    assert again.time_h == pytest.approx(route.time_h, rel=1e-9)
+    assert again.waiting_h == pytest.approx(1834.5 / 3600.0)
+    other = evaluate(path, ship=ship(9.0).with_speeds([4.0, 9.0]), sea=Sea.calm())  # has no 7.5 m/s by itself
+    assert other.time_h == pytest.approx(route.time_h, rel=1e-9)
+    ordered = evaluate(path, ship=vessel, sea=Sea.calm(), speed_kn=7.5 / KNOT)
+    assert ordered.time_h < route.time_h
+    assert ordered.waiting_h == pytest.approx(again.waiting_h)
+
+
+def test_csv_waits_in_other_units_and_at_repeated_positions(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("lat,lon,wait_s\n1,2,60\n1,2,30\n3,4,\n3.5,4\n")
+    assert read_track(path, depart=0).wait.tolist() == [90.0, 0.0, 0.0]
 
 
 @given(
@@ -114,6 +145,10 @@ def test_geojson_points_and_plain_lines(tmp_path):
         ("a.csv", "lat,lon\n120.5,30\n121,31\n", "swapped"),
         ("a.csv", "lat,lon,time\n1,2,yesterday\n3,4,\n", "not a time"),
         ("a.csv", "lat,lon\n1,2\n3,4\n", "no departure"),
+        ("a.csv", "lat,lon,time,waiting_h\n1,2,2026-01-01,-1\n3,4,,\n", "zero or more"),
+        ("a.csv", "lat,lon,time,waiting_h\n1,2,2026-01-01,soon\n3,4,,\n", "wait at waypoint 1"),
+        ("a.csv", "lat,lon,time,waiting_h\n1,2,2026-01-01,0\n3,4,,1\n", "end before the goal"),
+        ("a.csv", "lat,lon,time,ordered_speed_kn\n1,2,2026-01-01,0\n3,4,,\n", "above zero"),
         ("a.geojson", "{", "cannot be read"),
         ("a.geojson", "[]", "no route"),
         ("a.geojson", '{"type": "Polygon", "coordinates": []}', "no route"),

@@ -48,6 +48,8 @@ class Trip(NamedTuple):
         Lower bound of the time per metre anywhere [s/m].
     wait : bool
         Whether waiting is allowed at all.
+    eager : float
+        Weight of the bounds of the time to go: 1 finds the best way; more finds some way, sooner.
     """
 
     start: int
@@ -56,6 +58,7 @@ class Trip(NamedTuple):
     limit: float
     slowness: float
     wait: bool
+    eager: float
 
 
 class Marks(NamedTuple):
@@ -262,7 +265,8 @@ def _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, siz
                 marks.counts[TOUCHED] += 1
             marks.cost[s], marks.time[s] = new, arrival
             marks.before[s], marks.departed[s] = state, departure
-            size = heap.put(marks.nodes, marks.keys, marks.place, size, s, new + left)
+            key = new + trip.eager * left
+            size = heap.put(marks.nodes, marks.keys, marks.place, size, s, key)
     return size
 
 

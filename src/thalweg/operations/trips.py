@@ -19,7 +19,7 @@ from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.operations.trip_tables import TripTable
 from thalweg.route.physics import Motion, World, conditions_at, look, move, open_world
 from thalweg.route.pieces import Pieces, Points, cut
-from thalweg.route.referee import Routable, as_track
+from thalweg.route.referee import Routable, as_track, ordered
 from thalweg.route.wind import with_wind_speed
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
@@ -76,7 +76,8 @@ def trip_table(
         draught; None: not looked at.
     name : str
     setting : int
-        Speed setting of the ship on positions and files; a Track brings its own.
+        Speed setting of the ship on positions and files (whose waits and speeds are not taken); a
+        Track brings its own.
 
     Returns
     -------
@@ -98,8 +99,9 @@ def trip_table(
     departs, step = _departures(first, end, period, step)
     track = as_track(route, first)
     if not hasattr(route, "setting") and not hasattr(route, "track"):
-        track = track.replaced(setting=np.full(len(track) - 1, setting))
-    track = track.replaced(setting=np.asarray(track.setting) % len(ship.speeds))
+        settings = np.full(len(track) - 1, setting)
+        track = track.replaced(setting=settings, speed=None, wait=None)
+    ship, track = ordered(ship, track)
     world = open_world(ship, with_wind_speed(ship, sea), chart)
     check_depth_is_told(world)
     pieces = cut(track, float(track.lengths.sum()) / LEAST_STEPS, 1)

@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route.limits import coverage_error, is_gap
@@ -35,6 +37,7 @@ Routable: TypeAlias = "Track | Route | str | Path | Iterable[Sequence[float]]"
 LEAST_PIECES = 8  #: of every leg
 LARGEST_STEP = 0.5 * NAUTICAL_MILE  #: [m]
 MOST_PIECES = 2000  #: of a route at the coarser of its two step sizes (besides `LEAST_PIECES`)
+_SAME_SPEED = 1e-6  # relative, for speeds that went through a file
 
 
 def evaluate(
@@ -72,8 +75,8 @@ def evaluate(
     load_factor : float, optional
         0 empty to 1 full; by default as the ship is loaded.
     speed_kn : float, optional
-        Ordered calm-water speed on every leg [kn]; by default the track's own settings, and the
-        ship's highest for positions and files.
+        Ordered calm-water speed on every leg [kn]; by default the track's own speeds and settings,
+        those a file tells, and the ship's highest for positions and other files.
     strict : bool
         Raise if the data end before the route does. Otherwise that is listed among the violations
         and the totals are NaN.
@@ -115,7 +118,7 @@ def evaluate(
     _check_given(ship, sea, min_ukc)
     terms = _checked_terms(ship, terms)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
-    ship, track = _order(ship, as_track(route, depart), speed_kn)
+    ship, track = ordered(ship, as_track(route, depart), speed_kn)
     world = open_world(ship, with_wind_speed(ship, sea), chart)
     step = _default_step(world, track) if step is None else _checked_step(step)
     coarse = sail(world, track, step, LEAST_PIECES, None)
@@ -154,20 +157,45 @@ def as_track(route: Routable, depart: TimeLike | None = None) -> Track:
     return Track.from_positions(route, depart=depart)
 
 
-def _order(ship: Ship, track: Track, speed_kn: float | None) -> tuple[Ship, Track]:
-    """Return the ship and track with every setting an index from the bottom."""
+def ordered(ship: Ship, track: Track, speed_kn: float | None = None) -> tuple[Ship, Track]:
+    """Return the ship and the track with every setting an index from the bottom, by its speeds.
+
+    Where the track orders speeds that are none of the ship's, the ship gets these.
+
+    Raises
+    ------
+    InputError
+        If a setting does not exist, or the ship cannot sail at a speed.
+    """
     if speed_kn is not None:
         ship = ship.with_speeds([speed_kn * KNOT])
-        return ship, track.replaced(setting=np.zeros(len(track) - 1, dtype=np.int64))
+        return ship, _settled(track, np.zeros(len(track) - 1, dtype=np.int64))
     count = len(ship.speeds)
     setting = np.where(track.setting < 0, track.setting + count, track.setting)
+    by_speed = np.isfinite(track.speed)
     if np.any((setting < 0) | (setting >= count)):
         raise InputError(
             f"The track asks for a speed setting that {ship.name!r} does not have.",
             f"It has {count} settings, 0 to {count - 1}.",
             "Give the settings of this ship, or an ordered speed.",
         )
-    return ship, track.replaced(setting=setting)
+    if not by_speed.any():
+        return ship, _settled(track, setting)
+    wanted = np.where(by_speed, track.speed, ship.speeds[setting])
+    if not _matched(ship, wanted)[1]:
+        ship = ship.with_speeds(wanted)
+    return ship, _settled(track, _matched(ship, wanted)[0])
+
+
+def _settled(track: Track, setting: NDArray[np.int64]) -> Track:
+    return track.replaced(setting=setting, speed=None)
+
+
+def _matched(ship: Ship, wanted: FloatArray) -> tuple[NDArray[np.int64], bool]:
+    """Return the setting nearest to each speed, and whether all are the same to rounding."""
+    off = np.abs(ship.speeds[None, :] - wanted[:, None])
+    same = bool(np.all(off.min(axis=1) <= _SAME_SPEED * wanted))
+    return np.asarray(np.argmin(off, axis=1), dtype=np.int64), same
 
 
 def _check_given(ship: Ship, sea: Sea, min_ukc: float | None) -> None:

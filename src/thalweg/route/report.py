@@ -64,6 +64,7 @@ def waypoint_columns(route: Route) -> dict[str, FloatArray]:
         "distance_nm": np.concatenate([[0.0], np.cumsum(length)]) / NAUTICAL_MILE,
         "course_deg": np.degrees(samples["course"][at]),
         "heading_deg": np.degrees(samples["heading"][at]),
+        "ordered_speed_kn": np.append(legs["ordered_speed"], math.nan) / KNOT,
         "speed_through_water_kn": np.append(_mean_over_time(route), math.nan) / KNOT,
         "speed_over_ground_kn": np.append(over_ground, math.nan) / KNOT,
         "fuel_t": _so_far(fuel) / TONNE,

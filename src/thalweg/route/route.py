@@ -69,7 +69,8 @@ class Route:
         What was sailed; settings are indices from the bottom.
     legs : mapping of str to ndarray
         Per leg: ``length`` [m], ``course`` (at its start) [rad], ``depart``, ``arrive`` [s since
-        1970], ``under_keel_clearance`` (least) [m]; NaN if unknown: ``fuel`` of sailing it and
+        1970], ``under_keel_clearance`` (least) [m], ``ordered_speed`` (in calm water, through it)
+        [m/s]; NaN if unknown: ``fuel`` of sailing it and
         ``waiting_fuel`` of lying still before it [kg], and of both ``fuel_in_eca`` [kg], ``co2``
         [kg] and ``cost`` [``currency``] (with canal dues and the price of time).
     samples : mapping of str to ndarray

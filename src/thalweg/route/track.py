@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +16,7 @@ from thalweg.core.geodesy import FloatArray, Position, check_position, distance,
 from thalweg.core.time import TimeLike, parse_time
 
 TOP_SETTING = -1  #: the ship's highest speed setting, counted from the end as in Python
+_FIELDS = ("lat", "lon", "depart", "wait", "setting", "speed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +34,9 @@ class Track:
     setting : array_like of int, shape (n - 1,), optional
         Index into the ship's speeds for each leg; negative numbers count from the top as in
         Python. None: the highest on every leg.
+    speed : array_like of float, shape (n - 1,), optional
+        Ordered calm-water speed on each leg [m/s], which goes before its setting; NaN (or None):
+        the setting tells. Files tell speeds, as they know no ship.
 
     Raises
     ------
@@ -44,6 +49,7 @@ class Track:
     depart: float
     wait: FloatArray = None  # type: ignore[assignment]
     setting: NDArray[np.int64] = None  # type: ignore[assignment]
+    speed: FloatArray = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         lat = np.array(self.lat, dtype=float).reshape(-1)
@@ -56,8 +62,12 @@ class Track:
         else:
             setting = np.array(self.setting, dtype=np.int64)
         _check_lengths(count, wait, setting)
+        no_speed = self.speed is None
+        speed = np.full(count - 1, math.nan) if no_speed else np.array(self.speed, dtype=float)
+        _check_speeds(count, speed)
         depart = parse_time(self.depart)
         fields = {"lat": lat, "lon": wrap_longitude(lon), "wait": wait, "setting": setting}
+        fields["speed"] = speed
         for name, values in fields.items():
             values.setflags(write=False)
             object.__setattr__(self, name, values)
@@ -84,8 +94,8 @@ class Track:
         if not isinstance(other, Track):
             return NotImplemented
         return self.depart == other.depart and all(
-            np.array_equal(getattr(self, name), getattr(other, name))
-            for name in ("lat", "lon", "wait", "setting")
+            np.array_equal(getattr(self, name), getattr(other, name), equal_nan=True)
+            for name in ("lat", "lon", "wait", "setting", "speed")
         )
 
     __hash__ = None  # type: ignore[assignment]
@@ -101,8 +111,8 @@ class Track:
         return list(zip(self.lat.tolist(), self.lon.tolist()))
 
     def replaced(self, **changes: Any) -> Track:
-        """Return a copy with some fields changed (``lat, lon, depart, wait, setting``)."""
-        fields = {name: getattr(self, name) for name in ("lat", "lon", "depart", "wait", "setting")}
+        """Return a copy with some fields changed (``lat, lon, depart, wait, setting, speed``)."""
+        fields = {name: getattr(self, name) for name in _FIELDS}
         return Track(**{**fields, **changes})
 
     def kept(self, keep: ArrayLike) -> Track:
@@ -112,7 +122,7 @@ class Track:
         ----------
         keep : array_like of int
             Ascending indices of the waypoints to keep, first and last included. A joined leg takes
-            the setting of its first part; waits at dropped waypoints are dropped.
+            the setting (and speed) of its first part; waits at dropped waypoints are dropped.
         """
         index = np.asarray(keep, dtype=np.int64)
         return Track(
@@ -121,6 +131,7 @@ class Track:
             self.depart,
             self.wait[index],
             self.setting[index[:-1]],
+            self.speed[index[:-1]],
         )
 
     def part(self, first: int, last: int, depart: float) -> Track:
@@ -130,7 +141,7 @@ class Track:
         """
         wait = np.append(self.wait[first:last], 0.0)
         lat, lon = self.lat[first : last + 1], self.lon[first : last + 1]
-        return Track(lat, lon, depart, wait, self.setting[first:last])
+        return Track(lat, lon, depart, wait, self.setting[first:last], self.speed[first:last])
 
     def with_part(self, first: int, last: int, part: Track) -> Track:
         """Return the track with another one between two of its waypoints."""
@@ -140,6 +151,7 @@ class Track:
             self.depart,
             np.concatenate([self.wait[:first], part.wait[:-1], self.wait[last:]]),
             np.concatenate([self.setting[:first], part.setting, self.setting[last:]]),
+            np.concatenate([self.speed[:first], part.speed, self.speed[last:]]),
         )
 
 
@@ -189,4 +201,13 @@ def _check_lengths(count: int, wait: FloatArray, setting: NDArray[np.int64]) -> 
             "A track has a wait that is negative, not a number, or at its last waypoint.",
             "Waits are seconds, zero or more, and end before the goal.",
             "Correct the waits.",
+        )
+
+
+def _check_speeds(count: int, speed: FloatArray) -> None:
+    if speed.shape != (count - 1,) or not np.all(np.isnan(speed) | (speed > 0.0)):
+        raise InputError(
+            f"A track of {count} waypoints has ordered speeds {speed.tolist()!r}.",
+            f"It needs {count - 1}, above zero, NaN where the setting tells.",
+            "Leave them out, or give one speed per leg [m/s].",
         )

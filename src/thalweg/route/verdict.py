@@ -59,6 +59,7 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelT
         "depart": departs,
         "arrive": arrives,
         "under_keel_clearance": least,
+        "ordered_speed": np.asarray(world.ship.speeds, float)[pieces.track.setting],
     }
     spent = bill(sailed, rate[order], terms)
     if np.any(pieces.track.wait) and world.has_depth:

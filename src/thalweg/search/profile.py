@@ -26,6 +26,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _SPARE = 1e-3  # an arrival this much above a known one is still looked at [s]
+_EAGER = 1.5  # weight of the time to go in a hasty search
 _FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
 _SAME = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
 
@@ -164,12 +165,20 @@ class Passages:
             return _nothing(depart)
         limit = known - depart + _SPARE if known < math.inf else 0.0
         search = self._from_berths if self._has_berths else self._search
+        if known == math.inf and not self._has_berths:
+            limit = self._possible(depart, min(1.6 * self.shortest + _FIRST_SLACK, longest))
         while True:
             limit = limit if limit >= self.shortest else 1.6 * self.shortest + _FIRST_SLACK
             found = search(depart, min(limit, longest))
             if found.found or limit >= longest:
                 return found
             limit = max(2.0 * limit, 1.6 * self.shortest + _FIRST_SLACK)
+
+    def _possible(self, depart: float, limit: float) -> float:
+        """Return a cost [s] that some way has, found by a hasty search; 0 if it finds none."""
+        _, cost = self._labelled(depart, limit, _EAGER)
+        kernel.forget(self._marks)
+        return cost + _SPARE if cost < math.inf else 0.0
 
     @cached_property
     def _has_berths(self) -> bool:
@@ -179,9 +188,8 @@ class Passages:
     def _from_berths(self, depart: float, limit: float) -> Passage:
         """Search where waiting is allowed at some nodes only (`thalweg.search.berths`)."""
         waters = self.waters
-        sea = waters.window(depart, depart + limit)
         top = SHRINK / self.slowness - waters.top_current
-        given = Problem(waters.network, sea, self.ship, top, waters.top_current)
+        given = Problem(waters.network, waters.sea, self.ship, top, waters.top_current)
         found = earliest_from_berths(
             waters.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
             limits=self.ship.limits, arrive_by=depart + limit,
@@ -191,11 +199,8 @@ class Passages:
         )
 
     def _search(self, depart: float, limit: float) -> Passage:
-        first = self.states.ptr
-        start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
-        trip = kernel.Trip(start, goal, depart, float(limit), self.slowness, bool(self.wait))
-        marks, sea = self._marks, self.waters.window(depart, depart + limit)
-        cost = kernel.sail_once(self._network, self.states, sea, self.ship, trip, self.ahead, marks)
+        trip, cost = self._labelled(depart, limit, 1.0)
+        marks = self._marks
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
             kernel.forget(marks)
@@ -205,6 +210,17 @@ class Passages:
         kernel.forget(marks)
         path, when, out = nodes[-count:], arrive[-count:].copy(), leave[-count:].copy()
         return Passage(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
+
+    def _labelled(self, depart: float, limit: float, eager: float) -> tuple[kernel.Trip, float]:
+        """Search one departure; return it and its cost. The marks hold its labels."""
+        first = self.states.ptr
+        start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
+        trip = kernel.Trip(start, goal, depart, float(limit), self.slowness, bool(self.wait), eager)
+        sea = self.waters.by_time
+        cost = kernel.sail_once(
+            self._network, self.states, sea, self.ship, trip, self.ahead, self._marks
+        )
+        return trip, float(cost)
 
     def profile(self, departures: ArrayLike, *, arrive_by: float = math.inf) -> Profile:
         """Find the passages of many departures.

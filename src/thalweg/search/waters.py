@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from threading import Lock
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,8 +29,6 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _MOST_DEPTH = 60.0  # deeper than this the greatest speed is that anywhere [m]
-_WINDOW = 7200.0  # windows of the fields begin at multiples of this [s] ...
-_KEPT = 6  # ... and so many are kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,32 +86,14 @@ class Waters:
         return found
 
     @cached_property
-    def _windows(self) -> tuple[Lock, dict[tuple[int, int], SeaArrays]]:
-        return Lock(), {}
-
-    def window(self, depart: float, last: float) -> SeaArrays:
-        """Return the fields around some times, close together in memory.
+    def by_time(self) -> SeaArrays:
+        """The same fields with all stations of one time close together in memory.
 
         A search reads few times at many stations; in the fields of a long period these lie so far
         apart that fetching them takes most of its time.
         """
-        times = self.sea.times
-        first = int(np.searchsorted(times, depart - depart % _WINDOW, side="right")) - 1
-        first = max(first, 0)
-        hours = 4 * _WINDOW
-        while times[first] + hours < last:
-            hours *= 2.0
-        end = min(int(np.searchsorted(times, times[first] + hours)) + 2, len(times))
-        lock, windows = self._windows
-        with lock:
-            found = windows.pop((first, end), None)
-            if found is None:
-                values = np.ascontiguousarray(self.sea.values[:, first:end])
-                found = self.sea._replace(times=times[first:end].copy(), values=values)
-                while len(windows) >= _KEPT:
-                    windows.pop(next(iter(windows)))
-            windows[first, end] = found
-            return found
+        values = np.ascontiguousarray(self.sea.values.transpose(1, 0, 2))
+        return self.sea._replace(values=values.transpose(1, 0, 2))
 
     @cached_property
     def top_current(self) -> float:

@@ -32,15 +32,17 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
     Parameters
     ----------
     path : str or Path
-        ``.csv`` or ``.txt`` (columns lat and lon, perhaps time), ``.geojson`` or ``.json``
-        (LineString, MultiLineString or Points), ``.gpx`` (one route or track).
+        ``.csv`` or ``.txt`` (columns lat and lon, perhaps time, waiting_h, ordered_speed_kn),
+        ``.geojson`` or ``.json`` (LineString, MultiLineString or Points), ``.gpx`` (one route or
+        track).
     depart : time, optional
         Departure; by default the first time in the file.
 
     Returns
     -------
     Track
-        At the ship's highest setting, without waits; repeated positions are merged.
+        With the waits and ordered speeds the file tells, as files written here do; else without
+        waits, at the ship's highest setting. Repeated positions are merged.
 
     Raises
     ------

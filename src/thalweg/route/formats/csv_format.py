@@ -10,7 +10,7 @@ from pathlib import Path
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.route.formats.parsed import ParsedTrack, position_of
+from thalweg.route.formats.parsed import SPEEDS, WAITS, ParsedTrack, order_of, position_of
 from thalweg.route.route import Route
 
 _NAMES = {
@@ -21,7 +21,9 @@ _NAMES = {
 
 
 def parse_csv(text: str) -> ParsedTrack:
-    """Read CSV text with columns lat and lon (and time), separated by comma, semicolon or tab.
+    """Read CSV text with columns lat and lon, separated by comma, semicolon or tab.
+
+    Columns time, waiting_h and ordered_speed_kn are taken, too.
 
     Raises
     ------
@@ -47,7 +49,12 @@ def parse_csv(text: str) -> ParsedTrack:
     first = (
         rows[1][time].strip() if time is not None and len(rows) > 1 and len(rows[1]) > time else ""
     )
-    return ParsedTrack(positions, parse_time(first) if first else None)
+    told = [name for name in (*WAITS, *SPEEDS) if name in header]
+    orders = [
+        order_of({name: _cell_of(row, header.index(name)) for name in told}, number)
+        for number, row in enumerate(rows[1:] if told else (), start=1)
+    ]
+    return ParsedTrack(positions, parse_time(first) if first else None, orders)
 
 
 def write_csv(route: Route, path: str | Path) -> None:
@@ -77,6 +84,10 @@ def _position(row: list[str], lat: int, lon: int, number: int) -> tuple[float, f
             "Complete the row.",
         )
     return position_of(row[lat].strip(), row[lon].strip(), number)
+
+
+def _cell_of(row: list[str], column: int) -> str:
+    return row[column].strip() if column < len(row) else ""
 
 
 def _cell(value: object) -> object:

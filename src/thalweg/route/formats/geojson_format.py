@@ -12,7 +12,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, along, densify
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.formats.parsed import ParsedTrack, position_of
+from thalweg.route.formats.parsed import ParsedTrack, order_of, position_of
 from thalweg.route.route import Route
 
 _LINE_SPACING = 20.0 * NAUTICAL_MILE  # legs are geodesics, GeoJSON lines are not: cut them finely
@@ -23,7 +23,8 @@ def parse_geojson(text: str) -> ParsedTrack:
     """Read the first line of a GeoJSON text, or its points in order.
 
     Lines cut at the antimeridian are joined again. Where there are both lines and points, the
-    points are taken if there are two or more (they are the waypoints), else the lines.
+    points are taken if there are two or more (they are the waypoints, with their ``waiting_h`` and
+    ``ordered_speed_kn``), else the lines.
 
     Raises
     ------
@@ -37,7 +38,7 @@ def parse_geojson(text: str) -> ParsedTrack:
             f"The GeoJSON cannot be read: {error}.", "", "Check that the file is whole."
         ) from None
     lines: list[list[Any]] = []
-    points: list[Any] = []
+    points: list[tuple[Any, dict[str, Any]]] = []
     first_time = None
     for geometry, properties in _geometries(data):
         kind, coordinates = geometry.get("type"), geometry.get("coordinates")
@@ -46,16 +47,23 @@ def parse_geojson(text: str) -> ParsedTrack:
         elif kind == "MultiLineString":
             lines += [_listed(line) for line in _listed(coordinates)]
         elif kind in ("Point", "MultiPoint"):
-            points += [coordinates] if kind == "Point" else _listed(coordinates)
+            places = [coordinates] if kind == "Point" else _listed(coordinates)
+            points += [(place, properties if kind == "Point" else {}) for place in places]
         if first_time is None and properties.get("time", properties.get("depart")):
             first_time = parse_time(str(properties.get("time", properties.get("depart"))))
-    chosen = points if len(points) > 1 else [position for line in lines for position in line]
+    on_line: list[tuple[Any, dict[str, Any]]] = [
+        (position, {}) for line in lines for position in line
+    ]
+    chosen = points if len(points) > 1 else on_line
     if not chosen:
         raise InputError(
             "The GeoJSON holds no route.", f"A route is a {_KINDS}.", "Export the route as a line."
         )
-    positions = [_position(item, i) for i, item in enumerate(chosen, start=1)]
-    return ParsedTrack(_without_cuts(positions), first_time)
+    positions = [_position(item, i) for i, (item, _) in enumerate(chosen, start=1)]
+    if chosen is on_line:
+        return ParsedTrack(_without_cuts(positions), first_time)
+    orders = [order_of(told, i) for i, (_, told) in enumerate(chosen, start=1)]
+    return ParsedTrack(positions, first_time, orders)
 
 
 def write_geojson(route: Route, path: str | Path) -> None:

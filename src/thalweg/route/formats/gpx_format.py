@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.route.formats.parsed import ParsedTrack, position_of
+from thalweg.route.formats.parsed import SPEEDS, WAITS, ParsedTrack, order_of, position_of
 from thalweg.route.route import Route
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
+_OWN = "urn:thalweg:route:1"
 
 
 def parse_gpx(text: str) -> ParsedTrack:
@@ -39,7 +42,8 @@ def parse_gpx(text: str) -> ParsedTrack:
         )
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
     time = next((e.text for e in points[0] if _plain(e.tag) == "time" and e.text), None)
-    return ParsedTrack(positions, parse_time(time) if time else None)
+    orders = [order_of(_extensions(point), i) for i, point in enumerate(points, start=1)]
+    return ParsedTrack(positions, parse_time(time) if time else None, orders)
 
 
 def write_gpx(route: Route, path: str | Path) -> None:
@@ -53,9 +57,26 @@ def write_gpx(route: Route, path: str | Path) -> None:
         if row["time"] is not None:
             ElementTree.SubElement(point, "time").text = row["time"]
         ElementTree.SubElement(point, "name").text = f"WP{number:03d}"
+        _extend(point, row)
     tree = ElementTree.ElementTree(root)
+    ElementTree.register_namespace("thalweg", _OWN)
     ElementTree.indent(tree)
     tree.write(Path(path), encoding="utf-8", xml_declaration=True)
+
+
+def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:
+    """Add the wait and the ordered speed, which GPX has no elements for."""
+    told = {name: row[name] for name in (*WAITS, *SPEEDS) if row.get(name)}
+    if told:
+        extensions = ElementTree.SubElement(point, "extensions")
+        for name, value in told.items():
+            ElementTree.SubElement(extensions, f"{{{_OWN}}}{name}").text = repr(value)
+
+
+def _extensions(point: ElementTree.Element) -> dict[str, str]:
+    """Return what a point has of our own elements, by name."""
+    own = [e for e in point.iter() if str(e.tag).startswith(f"{{{_OWN}}}")]
+    return {_plain(element.tag): (element.text or "").strip() for element in own}
 
 
 def _points(root: ElementTree.Element, parent: str, name: str) -> list[ElementTree.Element]:

@@ -3,32 +3,86 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import TimeLike, parse_time
+from thalweg.core.units import HOUR, KNOT
 from thalweg.route.track import Track
 
 
 @dataclass(frozen=True)
 class ParsedTrack:
-    """Positions (lat, lon) [deg] of a file in order, and its first time [s] (None: not told)."""
+    """What a file holds of a route.
+
+    Attributes
+    ----------
+    positions : list of (lat, lon)
+        In order [deg].
+    first_time : float or None
+        [s]; None: not told.
+    orders : list of Order
+        By position; empty where the file tells none.
+    """
 
     positions: list[Position]
     first_time: float | None = None
+    orders: list[Order] = field(default_factory=list)
 
 
-def number_of(text: object, what: str) -> float:
+class Order(NamedTuple):
+    """How long to wait at a waypoint [s], and the calm-water speed ordered after it [m/s]."""
+
+    wait: float = 0.0
+    speed: float = math.nan
+
+
+#: What files call the wait at a waypoint and the speed ordered from there on, with units in SI.
+WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
+SPEEDS = {"ordered_speed_kn": KNOT}
+
+
+def order_of(values: Mapping[str, object], number: int) -> Order:
+    """Return what a file orders at the numbered waypoint (from 1), by name; blanks are none.
+
+    Raises
+    ------
+    InputError
+        If a value is not a number, a wait negative or a speed not above zero.
+    """
+    wait = _told(values, WAITS, f"wait at waypoint {number}")
+    speed = _told(values, SPEEDS, f"ordered speed at waypoint {number}")
+    if not (wait is None or wait >= 0.0) or not (speed is None or speed > 0.0):
+        raise InputError(
+            f"Waypoint {number} has a wait of {wait} s and an ordered speed of {speed} m/s.",
+            "Waits are zero or more, speeds above zero.",
+            "Correct them, or leave them empty.",
+            waypoint=number,
+        )
+    return Order(wait or 0.0, math.nan if speed is None else speed)
+
+
+def _told(values: Mapping[str, object], names: Mapping[str, float], what: str) -> float | None:
+    """Return the value under the first of some names, in SI; None if there is none."""
+    for name, unit in names.items():
+        if values.get(name) not in (None, ""):
+            return unit * number_of(values[name], what, "Correct it, or leave it empty.")
+    return None
+
+
+def number_of(text: object, what: str, remedy: str = "Give degrees, such as 52.5.") -> float:
     """Return a finite number, or raise `InputError` naming what it should have been."""
     try:
         value = float(text)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(
-            f"The {what} is {text!r}, not a number.", "", "Give degrees, such as 52.5.", value=text
-        )
+        raise InputError(f"The {what} is {text!r}, not a number.", "", remedy, value=text)
     return value
 
 
@@ -65,4 +119,18 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
             field="depart",
         )
     start = parsed.first_time if depart is None else parse_time(depart)
-    return Track.from_positions(parsed.positions, depart=start)  # type: ignore[arg-type]
+    return _track(parsed, start)  # type: ignore[arg-type]
+
+
+def _track(parsed: ParsedTrack, depart: float) -> Track:
+    """Merge repeated positions: their waits add up, the last of their speeds holds."""
+    orders = parsed.orders or [Order()] * len(parsed.positions)
+    merged: list[tuple[Position, Order]] = []
+    for place, order in zip(parsed.positions, orders):
+        if merged and merged[-1][0] == place:
+            order = Order(merged.pop()[1].wait + order.wait, order.speed)
+        merged.append((place, order))
+    lat, lon = np.array([place for place, _ in merged]).T
+    wait = np.array([order.wait for _, order in merged])
+    speed = np.array([order.speed for _, order in merged[:-1]])
+    return Track(lat, lon, depart, wait, speed=speed)
