@@ -60,7 +60,9 @@ def test_waits_and_ordered_speeds_come_back(tmp_path, suffix):
     assert again.track.setting.tolist() == [1, 0, 1]
     assert again.time_h == pytest.approx(route.time_h, rel=1e-9)
     assert again.waiting_h == pytest.approx(1834.5 / 3600.0)
-    other = evaluate(path, ship=ship(9.0).with_speeds([4.0, 9.0]), sea=Sea.calm())  # has no 7.5 m/s by itself
+    other = evaluate(
+        path, ship=ship(9.0).with_speeds([4.0, 9.0]), sea=Sea.calm()
+    )  # has no 7.5 m/s by itself
     assert other.time_h == pytest.approx(route.time_h, rel=1e-9)
     ordered = evaluate(path, ship=vessel, sea=Sea.calm(), speed_kn=7.5 / KNOT)
     assert ordered.time_h < route.time_h

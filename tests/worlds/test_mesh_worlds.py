@@ -14,6 +14,7 @@ from tests.worlds.test_current_worlds import HALEM, rotating
 from tests.worlds.test_waiting_worlds import bar_sea
 from thalweg import Sea, Voyage, plan
 from thalweg.network import with_endpoints
+from thalweg.planning import model_mesh
 from thalweg.planning.model_mesh import flow_of, pruned_mesh
 
 WATER = HALEM.water(-0.5, 0.5, -0.5, 0.5)
@@ -133,6 +134,31 @@ def test_what_the_nodes_are_thinned_by():
     assert curl[inner] == pytest.approx(
         (turning * length / exact.max())[inner], rel=0.1, abs=0.02
     )  # the largest of the triangles around a node
+
+
+def on_mesh(run: Sea, **options):
+    voyage = Voyage(start=HALEM.position(-0.4, -0.4), goal=HALEM.position(0.4, 0.4), depart=T0)
+    return plan(voyage, ship=simple_ship(4.0), sea=run, chart=WATER, network="mesh", **options)
+
+
+def test_a_mesh_that_is_asked_for_is_thinned_by_the_flow_to_the_resolution():
+    """Case 1: 2 m/s and much curl leave more nodes than a weak even flow."""
+    run = model(rotating(2.0, False), 0.025)
+    whole = on_mesh(run).provenance["networks"][0]["nodes"]
+    thinned = on_mesh(run, resolution=0.1 * HALEM.unit).provenance["networks"][0]["nodes"]
+    even = on_mesh(
+        model(lambda t, x, y: (0.1 + 0.0 * x, 0.0 * x), 0.025), resolution=0.1 * HALEM.unit
+    ).provenance["networks"][0]["nodes"]
+    assert whole == pytest.approx(run.mesh().lat.size + 2, abs=2)
+    assert even < 0.7 * thinned
+    assert thinned < 0.15 * whole
+
+
+def test_large_models_are_thinned_to_what_can_be_searched(monkeypatch):
+    monkeypatch.setattr(model_mesh, "MOST_NODES", 400)
+    found = on_mesh(model(rotating(2.0, False), 0.025))
+    assert 100 < found.provenance["networks"][0]["nodes"] <= 402
+    assert found.best.time_h * 3600.0 == pytest.approx(26240.4617, rel=2e-3)
 
 
 def test_without_currents_only_the_spacing_counts():

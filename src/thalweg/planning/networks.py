@@ -15,11 +15,11 @@ from thalweg.network import (
     check_network,
     globe,
     lattice,
-    mesh,
     shortest,
     with_endpoints,
 )
 from thalweg.planning.ends import End
+from thalweg.planning.model_mesh import model_network
 from thalweg.sea import Mesh, Sea
 
 #: A builder of one's own: (chart, start, goal, spacing) -> Network with its endpoints attached.
@@ -39,10 +39,12 @@ class NetworkChoice:
     ----------
     network : {"auto", "lattice", "mesh", "globe"} or callable
         ``auto`` takes the nodes of the sea's own mesh where it has one that holds both ends, and a
-        lattice elsewhere. ``globe`` is the geodesic grid of the whole sea: coarse, for ways round
-        continents. A callable gets ``(chart, start, goal, spacing=...)``.
+        lattice elsewhere. ``mesh`` takes them always. ``globe`` is the geodesic grid of the whole
+        sea: coarse, for ways round continents. A callable gets ``(chart, start, goal,
+        spacing=...)``.
     spacing : float, optional
-        Spacing of the nodes [m].
+        Spacing of the nodes [m]; of a mesh that in still water, less where the flow is strong or
+        turns.
     """
 
     network: str | Builder = "auto"
@@ -60,26 +62,27 @@ class NetworkChoice:
             )
 
 
-def build_network(choice: NetworkChoice, chart: Chart, sea: Sea, start: End, goal: End) -> Network:
-    """Build the network between two ends, as chosen."""
-    ends = ((start.lat, start.lon), (goal.lat, goal.lon))
+def build_network(
+    choice: NetworkChoice,
+    chart: Chart,
+    sea: Sea,
+    ends: tuple[End, End],
+    *,
+    period: tuple[float, float],
+) -> Network:
+    """Build the network between two ends, as chosen, for a voyage in a period [s since 1970]."""
+    places = (ends[0].lat, ends[0].lon), (ends[1].lat, ends[1].lon)
     if callable(choice.network):
-        network = choice.network(chart, *ends, spacing=choice.spacing)
+        network = choice.network(chart, *places, spacing=choice.spacing)
         check_network(network)
         return network
     model = sea.mesh() if choice.network in ("auto", "mesh") else None
-    if choice.network == "mesh" and model is None:
-        raise InputError(
-            "A mesh network is asked, but the sea has no mesh.",
-            "Meshes come from UGRID files of hydrodynamic models.",
-            "Use network='lattice', or open such a file first.",
-        )
-    if model is not None and (choice.network == "mesh" or _inside(model, ends)):
-        network = mesh(chart, model.lat, model.lon, model.triangles, largest_spacing=choice.spacing)
-        return with_endpoints(network, chart, *ends)
+    if choice.network == "mesh" or (model is not None and _inside(model, places)):
+        network = model_network(chart, sea, period, spacing=choice.spacing)
+        return with_endpoints(network, chart, *places)
     if choice.network == "globe":
-        return globe(chart, *ends)
-    return lattice_between(chart, *ends, spacing=choice.spacing)
+        return globe(chart, *places)
+    return lattice_between(chart, *places, spacing=choice.spacing)
 
 
 def lattice_between(
@@ -117,7 +120,7 @@ def _way_round(chart: Chart, start: Position, goal: Position) -> list[Position] 
     return list(zip(network.lat[path].tolist(), network.lon[path].tolist())) if path else None
 
 
-def _inside(model: Mesh, ends: tuple[tuple[float, float], ...]) -> bool:
+def _inside(model: Mesh, ends: tuple[Position, Position]) -> bool:
     """Return whether both ends lie in the box of a model's nodes."""
     south, north, west, east = model.lat.min(), model.lat.max(), model.lon.min(), model.lon.max()
     return all(south <= lat <= north and west <= lon <= east for lat, lon in ends)

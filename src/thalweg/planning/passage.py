@@ -152,9 +152,14 @@ def _network(
         # The nodes of a model cannot be made finer; a lattice over the same water can.
         spacing = networks[2].meta.spacing_m * 2 / finer if 2 in networks else choice.spacing
         choice = replace(choice, network="lattice", spacing=spacing)
+    elif first is not None and first.meta.kind == "mesh":
+        if choice.spacing is None:  # all nodes, or as many as can be searched
+            return first
+        choice = replace(choice, spacing=choice.spacing / finer)
     elif first is not None:
         choice = replace(choice, spacing=first.meta.spacing_m / finer)
-    return build_network(choice, task.chart, task.sea, *ends)
+    period = task.voyage.earliest_departure, task.last
+    return build_network(choice, task.chart, task.sea, ends, period=period)
 
 
 def _attempt(

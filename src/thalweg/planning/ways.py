@@ -83,10 +83,11 @@ def _way(task: Task, ends: Sequence[End], chart: Chart) -> Way:
 def _network(task: Task, start: End, goal: End) -> Network:
     """Return a network that is not too large for the search of a whole front."""
     choice = task.choice
+    period = task.voyage.earliest_departure, task.last
     if choice.network not in ("auto", "lattice") or choice.spacing is not None:
-        return build_network(choice, task.chart, task.sea, start, goal)
+        return build_network(choice, task.chart, task.sea, (start, goal), period=period)
     if choice.network == "auto" and task.sea.mesh() is not None:
-        network = build_network(choice, task.chart, task.sea, start, goal)
+        network = build_network(choice, task.chart, task.sea, (start, goal), period=period)
         if network.meta.kind == "mesh":
             return network
     places = (start.lat, start.lon), (goal.lat, goal.lon)

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
+
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.route.formats.parsed import SPEEDS, WAITS, ParsedTrack, order_of, position_of
@@ -52,7 +54,7 @@ def write_gpx(route: Route, path: str | Path) -> None:
     line = ElementTree.SubElement(root, "rte")
     ElementTree.SubElement(line, "name").text = "Thalweg route"
     for number, row in enumerate(route.waypoints(), start=1):
-        place = {"lat": f"{row['lat']:.8f}", "lon": f"{row['lon']:.8f}"}
+        place = {name: np.format_float_positional(row[name], trim="-") for name in ("lat", "lon")}
         point = ElementTree.SubElement(line, "rtept", place)
         if row["time"] is not None:
             ElementTree.SubElement(point, "time").text = row["time"]
