@@ -50,6 +50,8 @@ class Trip(NamedTuple):
         Whether waiting is allowed at all.
     eager : float
         Weight of the bounds of the time to go: 1 finds the best way; more finds some way, sooner.
+    most : int
+        The search gives up after settling so many nodes.
     """
 
     start: int
@@ -59,6 +61,7 @@ class Trip(NamedTuple):
     slowness: float
     wait: bool
     eager: float
+    most: int
 
 
 class Marks(NamedTuple):
@@ -304,7 +307,7 @@ def sail_once(network, states, sea, ship, trip, ahead, marks):
     marks.touched[0], counts[TOUCHED] = trip.start, 1
     marks.cost[trip.start], marks.time[trip.start] = 0.0, trip.depart
     size = heap.put(nodes, keys, place, 0, trip.start, ahead.node[states.node[trip.start]])
-    while size > 0:
+    while size > 0 and counts[SETTLED] < trip.most:
         state, _, size = heap.take(nodes, keys, place, size)
         marks.settled[state] = True
         counts[SETTLED] += 1

@@ -8,6 +8,7 @@ is prepared once: the network and the frozen sea as kernels see them and the str
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,7 +27,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _SPARE = 1e-3  # an arrival this much above a known one is still looked at [s]
-_EAGER = 1.5  # weight of the time to go in a hasty search
+_EAGER = 1.5  # weight of the time to go in a hasty search ...
+_HASTY = 2000  # ... which settles at most so many nodes
 _FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
 _SAME = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
 
@@ -176,7 +178,7 @@ class Passages:
 
     def _possible(self, depart: float, limit: float) -> float:
         """Return a cost [s] that some way has, found by a hasty search; 0 if it finds none."""
-        _, cost = self._labelled(depart, limit, _EAGER)
+        _, cost = self._labelled(depart, limit, _EAGER, _HASTY)
         kernel.forget(self._marks)
         return cost + _SPARE if cost < math.inf else 0.0
 
@@ -199,7 +201,7 @@ class Passages:
         )
 
     def _search(self, depart: float, limit: float) -> Passage:
-        trip, cost = self._labelled(depart, limit, 1.0)
+        trip, cost = self._labelled(depart, limit)
         marks = self._marks
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
@@ -211,11 +213,15 @@ class Passages:
         path, when, out = nodes[-count:], arrive[-count:].copy(), leave[-count:].copy()
         return Passage(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
 
-    def _labelled(self, depart: float, limit: float, eager: float) -> tuple[kernel.Trip, float]:
+    def _labelled(
+        self, depart: float, limit: float, eager: float = 1.0, most: int = sys.maxsize
+    ) -> tuple[kernel.Trip, float]:
         """Search one departure; return it and its cost. The marks hold its labels."""
         first = self.states.ptr
         start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
-        trip = kernel.Trip(start, goal, depart, float(limit), self.slowness, bool(self.wait), eager)
+        trip = kernel.Trip(
+            start, goal, depart, float(limit), self.slowness, bool(self.wait), eager, most
+        )
         sea = self.waters.by_time
         cost = kernel.sail_once(
             self._network, self.states, sea, self.ship, trip, self.ahead, self._marks
