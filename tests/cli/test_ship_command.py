@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from thalweg.cli.ship import add_ship_command, parse_speeds
+from thalweg.cli.ship import add_ship_command, gathered_notes, parse_speeds
 from thalweg.core.errors import InputError, ModelRangeError
 
 KEYS = {
@@ -128,8 +128,48 @@ def test_pictures_and_json_are_written(capsys, ship_file, tmp_path):
     folder = tmp_path / "out"
     _run(capsys, ship_file, "--speed", "8:14", "--hs", 2, "--out", folder)
     names = {path.name for path in folder.iterdir()}
-    assert names == {"ship.json", "resistance.png", "power.png", "fuel.png", "speed_loss.png"}
+    pictures = {f"{name}.png" for name in ("resistance", "power", "fuel", "cii", "speed_loss")}
+    assert names == {"ship.json", *pictures}
     assert all(path.stat().st_size > 1000 for path in folder.iterdir())
+
+
+def test_a_single_speed_is_drawn_too(capsys, ship_file, tmp_path):
+    _run(capsys, ship_file, "--speed", 12, "--wind", 10, "--out", tmp_path / "one")
+    assert (tmp_path / "one" / "resistance.png").stat().st_size > 1000
+
+
+def test_weather_that_is_half_told_is_completed_and_said(capsys, ship_file):
+    sheet = json.loads(_run(capsys, ship_file, "--speed", 12, "--hs", 2, "--json"))
+    assert sheet["assumed"] == [
+        "a peak period of 7.07 s, of a fully developed sea",
+        "waves from ahead",
+    ]
+    whole = ("--hs", 2, "--tp", 8, "--wave-from", 0, "--wind", 9, "--wind-from", 20)
+    assert json.loads(_run(capsys, ship_file, "--speed", 12, *whole, "--json"))["assumed"] == []
+    assert "Assumed: waves from ahead" in _run(capsys, ship_file, "--speed", 12, "--hs", 2)
+
+
+def test_notes_that_differ_in_a_value_are_printed_once():
+    rows = [
+        {"speed_kn": speed, "warnings": [f"engine: load is {load}, outside 0 to 1", "too fast"]}
+        for speed, load in ((14.0, 1.1), (15.0, 1.2), (16.0, 1.4))
+    ]
+    assert gathered_notes(rows) == [
+        ("14 to 16", "engine: load is 1.1 to 1.4, outside 0 to 1"),
+        ("14 to 16", "too fast"),
+    ]
+
+
+def test_kwon_on_a_ship_with_a_resistance_has_a_sheet_over_many_speeds(capsys, ship_file):
+    text = ship_file.read_text().replace("waves: stawave_1, wind: ittc", "speed_loss: kwon_2008")
+    ship_file.write_text(text)
+    words = ("--speed", "8:12", "--wind", 19, "--wind-from", 30, "--json")
+    rows = json.loads(_run(capsys, ship_file, *words))["conditions"]
+    calm = json.loads(_run(capsys, ship_file, "--speed", "8:12", "--json"))["conditions"]
+    assert len(rows) == 5
+    for windy, still in zip(rows, calm):
+        assert windy["brake_power_kw"] is None or windy["brake_power_kw"] > still["brake_power_kw"]
+        assert any("kwon_2008: Beaufort number is 8" in note for note in windy["warnings"])
 
 
 def test_a_folder_that_cannot_be_written_is_said(capsys, ship_file, tmp_path):

@@ -42,7 +42,7 @@ def _ship(models=None, hull=None, **sections):
         "engine": {"power_kw": 9000, "type": "slow_speed_diesel"},
         "fuel": {"type": "hfo"},
         "powers_kw": [3600, 7650],
-        "models": {**MODELS, **(models or {})},
+        "models": {k: v for k, v in {**MODELS, **(models or {})}.items() if v is not None},
     }
     data.update(sections)
     return Ship.from_dict({key: value for key, value in data.items() if value is not None})
@@ -266,6 +266,77 @@ def test_engines_and_orders_that_cannot_be_are_refused(sections, message):
 def test_hulls_of_two_lengths_are_refused():
     with pytest.raises(InputError, match="waterline is 100 m long"):
         _ship(hull={"length_waterline_m": 100.0, "block_coefficient": 0.5})
+
+
+@pytest.mark.parametrize(
+    ("hull", "message"),
+    [
+        ({"bulb_area_m2": 400.0}, "bulb's section of 400 m2 is larger than the midship section"),
+        ({"transom_area_m2": 400.0}, "immersed transom of 400 m2 is larger"),
+        ({"bulb_area_m2": 20.0, "bulb_centre_height_m": 11.0}, "bulb's centre lies 11 m above"),
+        ({"wetted_surface_m2": 100.0}, "100 m2 is not that of a hull of"),
+        ({"wetted_surface_m2": 50000.0}, "50000 m2 is not that of a hull of"),
+        ({"length_over_surface_m": 50.0}, "surface under water is 50 m long"),
+    ],
+)
+def test_hulls_that_cannot_be_are_refused(hull, message):
+    with pytest.raises(InputError, match=message) as refusal:
+        _ship(hull=hull)
+    assert refusal.value.possible and refusal.value.remedy
+    assert refusal.value.details["key"].removeprefix("hull.") in hull
+
+
+@pytest.mark.parametrize("word", ["U", "u", "u_shaped", "U-shaped", 10])
+def test_stern_shapes_are_words_or_numbers(word):
+    stern = {"hull": {"stern_shape": word}}
+    assert _ship(**stern).resistance(Conditions(CALM, depth=1e4), 7.0)["form_factor"] == (
+        pytest.approx(
+            _ship(hull={"stern_shape": 10.0}).resistance(Conditions(CALM, depth=1e4), 7.0)[
+                "form_factor"
+            ]
+        )
+    )
+    with pytest.raises(InputError, match="Known: normal, pram, u"):
+        _ship(hull={"stern_shape": "X"})
+
+
+def test_shallow_water_by_friction_alone_and_by_printed_bands():
+    at = Conditions({**CALM, "depth": 15.0})
+    friction = _ship({"shallow_water": "zeng_2019"}).resistance(at, 6.0)
+    assert friction["shallow"] == _ship({"friction": "zeng_2019"}).resistance(at, 6.0)["shallow"]
+    assert friction["shallow"] > 0.0
+    smooth = _ship({"shallow_water": "karpov"})
+    bands = _ship({"shallow_water": "karpov_bands"})
+    depths = Conditions({**CALM, "depth": np.array([17.4, 17.6])})
+    step = np.diff(bands.resistance(depths, 7.0)["shallow"])[0]
+    assert abs(step) > 5.0 * abs(np.diff(smooth.resistance(depths, 7.0)["shallow"])[0])
+    middle = Conditions({**CALM, "depth": 20.0})
+    assert float(bands.resistance(middle, 7.0)["shallow"]) == pytest.approx(
+        float(smooth.resistance(middle, 7.0)["shallow"])
+    )
+    with pytest.raises(InputError, match="lackenby_1963"):
+        _ship({"shallow_water": "lackenby"})
+
+
+def test_the_type_of_ship_for_the_wind_follows_from_the_hull_and_is_told():
+    def estimated(**hull):
+        ship = _ship({"wind_type": None}, hull=hull)
+        return {e.key: e.value for e in ship.estimated}["models.wind_type"]
+
+    assert estimated(type="crude oil tanker") == "tanker_loaded"
+    assert estimated(type="LNG carrier") == "lng_tanker"
+    assert estimated() == "cargo_loaded"
+    assert "models.wind_type" not in {e.key for e in _ship().estimated}
+    named = [_ship({"wind": name, "wind_type": "tanker_laden"}) for name in ("ittc", "iso_15016")]
+    at = Conditions({**CALM, "wind_speed": 12.0, "depth": 1e4})
+    assert named[0].resistance(at, 6.0)["wind"] == named[1].resistance(at, 6.0)["wind"]
+
+
+def test_turbines_burn_the_same_at_every_load():
+    ship = _ship(engine={"power_kw": 9000, "type": "steam_turbine"})
+    at = Conditions({**CALM, "depth": 1e4})
+    rates = ship.fuel_rate(at, np.array([0, 1])) / ship.power(at, np.array([0, 1]))
+    assert rates[0] == pytest.approx(rates[1], rel=1e-3)
 
 
 def test_power_that_falls_with_speed_is_refused(monkeypatch):

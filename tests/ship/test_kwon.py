@@ -40,6 +40,23 @@ def test_the_loss_is_a_share_and_greatest_from_ahead(wind, angle, block, volume,
     assert loss <= _loss(wind, 0.0, block, volume, loading=loading) + 1e-12
 
 
+def test_one_weather_for_many_speeds_is_that_weather_for_each():
+    speeds = np.array([5.0, 6.0, 7.0, 7.5, 8.0])
+    assert kwon_speed_loss(
+        14.0, 0.4, speed=speeds, length=152.9, block_coefficient=0.8, displacement_volume=27150.0
+    ) == pytest.approx([_loss(14.0, 0.4, speed=speed) for speed in speeds])
+    many = kwon_speed_loss(
+        np.array([[8.0], [14.0]]),
+        0.4,
+        speed=speeds,
+        length=152.9,
+        block_coefficient=0.8,
+        displacement_volume=27150.0,
+    )
+    assert many.shape == (2, 5)
+    assert many[1, 2] == pytest.approx(_loss(14.0, 0.4))
+
+
 @given(winds, winds, angles, blocks, volumes)
 def test_more_wind_never_costs_less(first, second, angle, block, volume):
     low, high = sorted((first, second))

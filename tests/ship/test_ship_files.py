@@ -286,3 +286,66 @@ def test_squat_and_speed_loss_go_together(tmp_path):
 def test_squat_that_cannot_be_is_refused(tmp_path, change, words):
     with pytest.raises(InputError, match=words):
         Ship.load(_write(tmp_path, DREDGER.replace(*change)))
+
+
+@pytest.mark.parametrize(
+    ("engine", "sfoc"),
+    [
+        ({"type": "slow_speed_diesel", "power_kw": 6000}, [188.6035, 181.7813]),
+        ({"power_kw": 6000, "sfoc_load": [0.25, 0.75], "sfoc_curve_g_per_kwh": [200, 180]}, None),
+        ({"sfoc_g_per_kwh": 175.0, "power_kw": 6000}, [175.0, 175.0]),
+    ],
+)
+@pytest.mark.parametrize("law", ["table", "cubic"])
+def test_engines_burn_for_the_power_of_a_ship_with_known_speeds(engine, sfoc, law):
+    data = {
+        "name": "known",
+        "hull": {"draught_m": 8.0},
+        "fuel": {"type": "hfo"},
+        "models": {"calm_water": law},
+    }
+    powers = np.array([2250.0, 3000.0])
+    speeds = 12.0 * (powers / 3000.0) ** (1.0 / 3.0)
+    if law == "table":
+        data["table"] = {"speed_kn": speeds.tolist(), "power_kw": powers.tolist()}
+    else:
+        data["speeds_kn"] = speeds.tolist()
+        engine = {**engine, "reference_power_kw": 3000.0, "reference_speed_kn": 12.0}
+    ship = Ship.from_dict({**data, "engine": {**engine, "hotel_load_kw": 100.0}})
+    if sfoc is None:
+        sfoc = np.interp(powers / 6000.0, [0.25, 0.75], [200, 180])
+    else:
+        share = powers / 6000.0
+        curve = 0.455 * share**2 - 0.710 * share + 1.280
+        assert sfoc == pytest.approx(175 * curve if "type" in engine else [175, 175], rel=1e-4)
+    burnt = (powers * sfoc + 100.0 * 195.0) / 3.6e6
+    assert ship.fuel_rate(Conditions(), np.array([0, 1])) == pytest.approx(burnt, rel=1e-4)
+    slow = ship.with_speeds(speeds[:1] * 1852 / 3600)
+    assert float(slow.fuel_rate(Conditions(), 0)) == pytest.approx(burnt[0], rel=1e-4)
+    told = {e.key for e in ship.estimated}
+    assert ("engine.sfoc_g_per_kwh" in told) == ("type" in engine)
+
+
+def test_a_table_that_is_missing_is_named():
+    with pytest.raises(InputError, match="has no table with speed_kn"):
+        Ship.from_dict({"name": "x", "hull": {"draught_m": 5}, "models": {"calm_water": "table"}})
+
+
+def test_a_ship_without_draught_hears_all_that_its_method_needs():
+    with pytest.raises(InputError) as refusal:
+        Ship.from_dict({"name": "x", "speeds_kn": [9], "models": {"calm_water": "holtrop_1984"}})
+    assert refusal.value.details["missing"] == [
+        "hull.draught_m",
+        "hull.length_between_perpendiculars_m",
+        "hull.breadth_m",
+        "hull.displacement_m3",
+    ]
+
+
+def test_what_kwon_needs_and_was_estimated_is_told():
+    hull = {"length_waterline_m": 160, "breadth_m": 25, "draught_m": 9, "displacement_m3": 26000}
+    ship = Ship.from_dict(
+        {"name": "x", "hull": hull, "speeds_kn": [9], "models": {"speed_loss": "kwon_2008"}}
+    )
+    told = {e.key for e in ship.estimated}
+    assert told == {"length_between_perpendiculars_m", "block_coefficient"}

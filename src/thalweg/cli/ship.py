@@ -110,8 +110,10 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
     for name, value in found.items():
         if not (math.isfinite(value) and value >= 0.0):
             raise InputError(f"{name} is {value:g}.", "It is at least 0.", "Correct it.")
-    if found.get("wave_period", 1.0) == 0.0:
-        raise InputError("The wave period is 0 s.", "It is above 0.", "Correct --tp.")
+    for name, option in (("wave_period", "--tp"), ("depth", "--water-depth")):
+        if found.get(name) == 0.0:
+            words = name.replace("_", " ")
+            raise InputError(f"The {words} is 0.", "It is above 0.", f"Correct {option}.")
     for name, degrees in (("wave_angle", arguments.wave_from), ("wind_angle", arguments.wind_from)):
         if degrees is not None:
             if not math.isfinite(degrees):
@@ -179,23 +181,38 @@ def show_sheet(sheet: dict[str, Any]) -> None:
 def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
     for note in sheet["warnings"]:
         console.print(f"[yellow]warning:[/yellow] {note}", highlight=False)
-    speeds: dict[str, list[float]] = {}
-    for row in sheet["conditions"]:
-        for note in row["warnings"]:
-            speeds.setdefault(note, []).append(row["speed_kn"] or 0.0)
-    for note, where in speeds.items():
-        ends = dict.fromkeys(f"{speed:.4g}" for speed in (min(where), max(where)))
-        console.print(
-            f"[yellow]warning[/yellow] at {' to '.join(ends)} kn: {note}", highlight=False
-        )
+    for note in sheet["assumed"]:
+        console.print(f"Assumed: {note}", highlight=False)
+    for where, note in gathered_notes(sheet["conditions"]):
+        console.print(f"[yellow]warning[/yellow] at {where} kn: {note}", highlight=False)
     if sheet["estimated"]:
         console.print("Estimated, not given:")
         for one in sheet["estimated"]:
-            console.print(
-                f"  {one['key']} = {one['value']:.5g}  ({one['method']})", highlight=False
-            )
+            value = one["value"] if isinstance(one["value"], str) else f"{one['value']:.5g}"
+            console.print(f"  {one['key']} = {value}  ({one['method']})", highlight=False)
     for source in sheet["sources"]:
         console.print(f"Source: {source}", highlight=False)
+
+
+def gathered_notes(rows: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    """Return the warnings of rows as (speeds, text); those that differ in a value only, once."""
+    found: dict[str, list[tuple[float, str]]] = {}
+    for row in rows:
+        for note in row["warnings"]:
+            head, _, value = note.partition(" is ")
+            value, _, bounds = value.partition(", ")
+            found.setdefault(f"{head} is {{}}, {bounds}" if bounds else note, []).append(
+                (row["speed_kn"] or 0.0, value)
+            )
+    gathered = []
+    for note, where in found.items():
+        speeds = _ends([f"{speed:.4g}" for speed, _ in sorted(where)])
+        gathered.append((speeds, note.replace("{}", _ends([value for _, value in where]))))
+    return gathered
+
+
+def _ends(words: list[str]) -> str:
+    return " to ".join(dict.fromkeys((words[0], words[-1])))
 
 
 def _draw(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str) -> list[Path]:
@@ -208,7 +225,7 @@ def _draw(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str)
     except OSError as problem:
         raise InputError(
             f"The folder {folder} cannot be written: {problem.strerror or problem}.",
-            "",
+            "It is made when it does not exist, with ship.json and pictures in it.",
             "Give another folder with --out.",
             folder=str(folder),
         ) from None

@@ -10,6 +10,7 @@ import numpy as np
 
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
+from thalweg.ship.sheet import assumed_period
 
 #: component: label and colour, from the hull outwards
 _PARTS = {
@@ -25,6 +26,10 @@ _PARTS = {
     "wind": ("wind", "#f0b27a"),
     "rudder": ("rudder", "#76448a"),
 }
+
+
+_BANDS = ("#2e7d32", "#9ccc65", "#fff176", "#ffb74d", "#e57373")
+_RIGHT = {"ha": "right", "va": "center", "fontweight": "bold"}
 
 
 def draw_ship(
@@ -46,6 +51,7 @@ def draw_ship(
         ("resistance.png", lambda axes: _resistance(axes, sheet)),
         ("power.png", lambda axes: _power(axes, sheet)),
         ("fuel.png", lambda axes: _fuel(axes, sheet)),
+        ("cii.png", lambda axes: _cii(axes, sheet)),
     ]
     written = [folder / name for name, draw in drawings if _save(folder / name, draw)]
     polar = folder / "speed_loss.png"
@@ -73,7 +79,7 @@ def _column(sheet: Mapping[str, Any], name: str) -> np.ndarray:
 
 def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
     rows = sheet["conditions"]
-    if len(rows) < 2 or rows[0]["resistance_n"]["total"] is None:
+    if rows[0]["resistance_n"]["total"] is None:
         return False
     speed = _column(sheet, "speed_kn")
     parts = {
@@ -81,6 +87,8 @@ def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
         for name in _PARTS
     }
     shown = [name for name in _PARTS if np.abs(parts[name]).max() > 0.0]
+    if len(rows) == 1:
+        return _bars(axes, sheet, {name: float(parts[name][0]) for name in shown})
     up = [np.maximum(parts[name], 0.0) for name in shown]
     down = [np.minimum(parts[name], 0.0) for name in shown]
     colours = [_PARTS[name][1] for name in shown]
@@ -93,6 +101,19 @@ def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
     axes.legend(handles[::-1], labels[::-1], loc="upper left", frameon=False, fontsize=8)
     axes.set(xlabel="speed through water [kn]", ylabel="resistance [kN]", title=sheet["name"])
     axes.margins(x=0)
+    return True
+
+
+def _bars(axes: Any, sheet: Mapping[str, Any], parts: Mapping[str, float]) -> bool:
+    """The components at a single speed, the largest on top."""
+    names = sorted(parts, key=lambda name: parts[name])
+    values = [parts[name] for name in names]
+    places = axes.barh([_PARTS[n][0] for n in names], values, color=[_PARTS[n][1] for n in names])
+    axes.bar_label(places, fmt="%.4g", padding=3, fontsize=8)
+    (row,) = sheet["conditions"]
+    title = f"{sheet['name']}: {sum(values):.4g} kN at {row['speed_kn']:g} kn"
+    axes.set(xlabel="resistance [kN]", title=title)
+    axes.margins(x=0.12)
     return True
 
 
@@ -122,21 +143,46 @@ def _fuel(axes: Any, sheet: Mapping[str, Any]) -> bool:
     return True
 
 
+def _cii(axes: Any, sheet: Mapping[str, Any]) -> bool:
+    """Carbon intensity over speed, before the bands of its rating."""
+    known = [row for row in sheet["conditions"] if row["cii"] is not None]
+    if len(known) < 2:
+        return False
+    speed = [row["speed_kn"] for row in known]
+    attained = [row["cii"]["attained_g_per_t_nm"] for row in known]
+    limits = known[0]["cii"]["boundaries_2026"]
+    top = 1.1 * max([*attained, *(limits or [])])
+    for low, high, letter, colour in zip(
+        [0.0, *(limits or [])], [*(limits or []), top], "ABCDE", _BANDS
+    ):
+        axes.axhspan(low, high, color=colour, alpha=0.35, linewidth=0)
+        axes.text(0.99, 0.5 * (low + high), letter, transform=axes.get_yaxis_transform(), **_RIGHT)
+    axes.plot(speed, attained, color="#222222", marker="o", markersize=3)
+    axes.set(
+        xlabel="speed through water [kn]",
+        ylabel="CII if always sailed so [g CO2/(t nm)]",
+        title=f"{sheet['name']}: ratings of 2026" if limits else sheet["name"],
+    )
+    axes.set_ylim(0.0, top)
+    return True
+
+
 def _polar(axes: Any, ship: Ship, weather: Mapping[str, float]) -> bool:
     """Speed attained over the direction of wind and waves, in three strengths."""
     if ship.speed_field is not None or not ship.reads & {"wind_angle", "wave_angle"}:
         return False
     angle = np.linspace(0.0, np.pi, 181)
-    both = np.concatenate([angle, -angle[::-1]])
+    both, top = np.concatenate([angle, -angle[::-1]]), 0.0
     for label, wind, waves, colour in _strengths(weather):
-        at = {"depth": np.inf, "wave_period": 10.0, **weather}
+        at = {"depth": np.inf, "wave_period": assumed_period(waves), **weather}
         at |= {"wind_speed": wind, "wave_height": waves}
         conditions = Conditions({**at, "wind_angle": angle, "wave_angle": angle})
         speed = ship.speed_through_water(conditions, len(ship.speeds) - 1) / KNOT
         axes.plot(both, np.concatenate([speed, speed[::-1]]), color=colour, label=label)
+        top = max(top, float(np.nanmax(speed, initial=0.0)))
     axes.set_theta_zero_location("N")
     axes.set_theta_direction(-1)
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.05 * top if top > 0.0 else 1.0)
     axes.set_title(f"{ship.name}\nspeed [kn] by where wind and waves come from (0 = ahead)", size=9)
     axes.legend(loc="lower left", bbox_to_anchor=(-0.35, -0.05), frameon=False, fontsize=8)
     return True

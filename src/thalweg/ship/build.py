@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
+from thalweg.ship.fuel_of_power import fuel_estimates, fuel_of_power
 from thalweg.ship.fuel_terms import fuel_terms
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.model import ShipModel
+from thalweg.ship.model import Estimate, ShipModel
 from thalweg.ship.nominal import KwonLoss, NominalModel, check_rising, cubic_law
 from thalweg.ship.squat_part import build_squat
 
@@ -25,7 +26,6 @@ Data = Mapping[str, Any]
 SAFETY_KEYS: Final = frozenset(
     {"msc_circ_1228", "max_vertical_acceleration_m_s2", "max_motion_sickness_percent"}
 )
-HOTEL_SFOC: Final = 195.0  #: of auxiliary engines, when the ship file does not tell [g/kWh]
 
 
 def simple_data(*, name: str, speeds_kn: list[float], **sections: Data) -> dict[str, Any]:
@@ -44,7 +44,7 @@ def build_limits(data: Data) -> ShipLimits:
     if "max_wind_speed_m_s" in given and "max_wind_speed_kn" in given:
         raise InputError(
             "The wind limit is given twice, in knots and in m/s.",
-            "",
+            "One of them is enough; 1 kn is 0.5144 m/s.",
             "Keep max_wind_speed_kn or max_wind_speed_m_s.",
             key="limits.max_wind_speed_kn",
         )
@@ -67,24 +67,6 @@ def with_safety(limits: ShipLimits, data: Data, hull: Hull, loading: Loading) ->
     return replace(limits, safety=build_safety(data, hull, loading))
 
 
-def hotel_fuel(data: Data) -> float:
-    """Fuel rate of the hotel load [kg/s]; 0 when the ship file states none."""
-    engine = data.get("engine", {})
-    power_kw = float(engine.get("hotel_load_kw", 0.0))
-    return power_kw * float(engine.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC)) / 3.6e6
-
-
-def fuel_is_from_power(data: Data) -> bool:
-    """Whether a ship with known speeds gives its fuel by power and consumption.
-
-    Then the hotel load comes on top; fuel that is given itself is the whole ship's.
-    """
-    known = "fuel_t_per_day" in data.get("table", {}) or "reference_t_per_day" in data.get(
-        "fuel", {}
-    )
-    return "sfoc_g_per_kwh" in data.get("engine", {}) and not known
-
-
 def build_loading(data: Data, hull: Hull) -> Loading:
     """Return the loading of a ship file.
 
@@ -96,12 +78,7 @@ def build_loading(data: Data, hull: Hull) -> Loading:
     given = data.get("loading", {})
     full = given.get("draught_full_m", hull.number("draught_m"))
     if full is None:
-        raise InputError(
-            "The ship file gives no draught.",
-            "It is hull.draught_m, or loading.draught_full_m with loading.draught_empty_m.",
-            "Add one of them.",
-            missing=["hull.draught_m"],
-        )
+        raise _no_draught(data, hull)
     return Loading(
         draught_full=full,
         draught_empty=given.get("draught_empty_m", full),
@@ -112,6 +89,26 @@ def build_loading(data: Data, hull: Hull) -> Loading:
         load_factor=given.get("load_factor", 1.0),
         condition=given.get("condition", "loaded"),
         capacity=given.get("capacity_m3", math.nan),
+    )
+
+
+def _no_draught(data: Data, hull: Hull) -> InputError:
+    """The error for a ship without draught; it names what else a resistance would need."""
+    missing = ["hull.draught_m"]
+    method = data.get("models", {}).get("calm_water", "none")
+    if method not in _LAWS:
+        lengths = ("length_between_perpendiculars_m", "length_waterline_m", "length_overall_m")
+        volumes = ("displacement_m3", "displacement_t", "block_coefficient")
+        for keys in (lengths, ("breadth_m",), volumes):
+            if all(key not in hull.values for key in keys):
+                missing.append(f"hull.{keys[0]}")
+    more = f" {method} also needs {', '.join(missing[1:])}." if missing[1:] else ""
+    return InputError(
+        "The ship file gives no draught.",
+        "It is hull.draught_m, the mean of hull.draught_fore_m and hull.draught_aft_m, or "
+        f"loading.draught_full_m with loading.draught_empty_m.{more}",
+        f"Add {' and '.join(missing)}.",
+        missing=missing,
     )
 
 
@@ -154,12 +151,16 @@ def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
     """
     law = _law(data)
     _check_margin(data)
+    if law == "table":
+        _check_table(data)
     full, empty = _speeds(data)
     fuel, power = _LAWS[law](data, full)
+    burn = None if law == "none" else fuel_of_power(data)
+    if burn is not None:
+        fuel = burn(power)
     check_rising(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
     loss, squat = build_loss(data, hull, loading), build_squat(data, hull, loading)
-    hotel = hotel_fuel(data) if fuel_is_from_power(data) else 0.0
-    return NominalModel(full, empty, fuel, power, law, loss, squat, hotel)
+    return NominalModel(full, empty, fuel, power, law, loss, squat, burn)
 
 
 def _check_margin(data: Data) -> None:
@@ -186,15 +187,8 @@ def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
         raise unknown_name("speed loss", name, SPEED_LOSSES)
     if name == "none":
         return None
-    needed = ("length_between_perpendiculars_m", "block_coefficient")
-    if hull.number("displacement_m3") is None and not math.isnan(loading.displacement_full):
-        deep = {"displacement_m3": loading.displacement_full, "draught_m": loading.draught_full}
-        hull = Hull({**hull.values, **deep}, hull.estimated)
-    if any(hull.number(key) is None for key in needed):
-        from thalweg.ship.hull_estimates import estimate  # reads many regressions
-
-        hull = estimate(hull, needed)
-    length, block = require(hull, needed, "kwon_2008", instead="speed_loss: none")
+    hull = _hull_for_kwon(hull, loading)
+    length, block = require(hull, _KWON_NEEDS, "kwon_2008", instead="speed_loss: none")
     if math.isnan(loading.displacement_full):
         require(hull, ("displacement_m3",), "kwon_2008", instead="speed_loss: none")
     return KwonLoss(
@@ -205,6 +199,28 @@ def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
         ship_type=models.get("kwon_ship_type", "other"),
         classes=models.get("kwon_classes", False),
     )
+
+
+_KWON_NEEDS: Final = ("length_between_perpendiculars_m", "block_coefficient")
+
+
+def _hull_for_kwon(hull: Hull, loading: Loading) -> Hull:
+    """The hull with what Kwon's method needs, estimated where that is possible."""
+    if hull.number("displacement_m3") is None and not math.isnan(loading.displacement_full):
+        deep = {"displacement_m3": loading.displacement_full, "draught_m": loading.draught_full}
+        hull = Hull({**hull.values, **deep}, hull.estimated)
+    if any(hull.number(key) is None for key in _KWON_NEEDS):
+        from thalweg.ship.hull_estimates import estimate  # reads many regressions
+
+        hull = estimate(hull, _KWON_NEEDS)
+    return hull
+
+
+def estimates_of_known_speeds(data: Data, hull: Hull, loading: Loading) -> tuple[Estimate, ...]:
+    """What was estimated of a ship that gives its speeds."""
+    if data.get("models", {}).get("speed_loss", "none") != "none":
+        hull = _hull_for_kwon(hull, loading)
+    return (*hull.estimated, *fuel_estimates(data))
 
 
 def _law(data: Data) -> str:
@@ -279,17 +295,19 @@ def _cubic(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
         )
     power_kw = engine.get("reference_power_kw", math.nan)
     burnt = fuel.get("reference_t_per_day", math.nan) * TONNE / DAY
-    hotel = 0.0
-    if fuel_is_from_power(data):
-        burnt, hotel = power_kw * engine["sfoc_g_per_kwh"] / 3.6e6, hotel_fuel(data)
     return (
-        hotel + cubic_law(speeds, reference_speed=reference, reference_value=burnt),
+        cubic_law(speeds, reference_speed=reference, reference_value=burnt),
         cubic_law(speeds, reference_speed=reference, reference_value=power_kw * 1000.0),
     )
 
 
-def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Fuel rates [kg/s] and powers [W] of the table's rows, in the order of speed."""
+def _check_table(data: Data) -> None:
+    """Refuse a table that is not there, or whose columns differ in length.
+
+    Raises
+    ------
+    InputError
+    """
     table = data.get("table")
     if table is None or "speed_kn" not in table:
         raise InputError(
@@ -306,12 +324,15 @@ def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
             "Fill the missing numbers.",
             key="table",
         )
+
+
+def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Fuel rates [kg/s] and powers [W] of the table's rows, in the order of speed."""
+    table = data["table"]
     order = np.argsort(table["speed_kn"], kind="stable")
     blank = [math.nan] * len(order)
     power = np.array(table.get("power_kw", blank), float)[order] * 1000.0
     fuel = np.array(table.get("fuel_t_per_day", blank), float)[order] * TONNE / DAY
-    if fuel_is_from_power(data):
-        fuel = power * data["engine"]["sfoc_g_per_kwh"] / 3.6e9 + hotel_fuel(data)
     return fuel, power
 
 

@@ -10,7 +10,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import unknown_name
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.hull import Hull
 from thalweg.ship.hull_estimates import estimated_or_error
@@ -38,9 +38,13 @@ COMPONENTS: Final = (
     *("friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
     *("correlation", "residuary"),
 )
-SHALLOW_WATER: Final = ("none", "karpov", "lackenby_1963")
+#: ``karpov_bands`` has the steps that Karpov's curves are printed with; ``zeng_2019`` is friction
+SHALLOW_WATER: Final = ("none", "karpov", "karpov_bands", "lackenby_1963", "zeng_2019")
+_KARPOV: Final = ("karpov", "karpov_bands")
 FRICTION: Final = ("ittc_1957", "zeng_2019")
-STERN_SHAPES: Final = MappingProxyType({"pram": -25.0, "v": -10.0, "normal": 0.0, "u": 10.0})
+STERN_SHAPES: Final = MappingProxyType(
+    {"pram": -25.0, "v": -10.0, "v_shaped": -10.0, "normal": 0.0, "u": 10.0, "u_shaped": 10.0}
+)
 #: (speed, speed of the waves, friction coefficient or None) -> components
 Deep = Callable[[FloatArray, FloatArray, "FloatArray | None"], dict[str, FloatArray]]
 
@@ -84,8 +88,9 @@ class CalmWater:
         if self.shallow_water == "lackenby_1963":
             return self._lackenby(speed, depth)
         waves = speed
-        if self.shallow_water == "karpov":
-            waves = karpov_speed(speed, depth=depth, draught=self._number("draught_m"))
+        if self.shallow_water in _KARPOV:
+            bands, draught = self.shallow_water == "karpov_bands", self._number("draught_m")
+            waves = karpov_speed(speed, depth=depth, draught=draught, raw_bands=bands)
         return _sum(self.deep(speed, waves, self._line(speed, depth)))
 
     def components(self, speed: FloatArray, depth: FloatArray) -> dict[str, FloatArray]:
@@ -99,7 +104,7 @@ class CalmWater:
     def notes(self, speed: FloatArray, depth: FloatArray) -> list[RangeNote]:
         """Where the methods are outside their ranges."""
         found = self.notes_of(speed)
-        if self.shallow_water == "karpov":
+        if self.shallow_water in _KARPOV:
             found = [*found, *karpov_validity(speed, depth=depth)]
         if self.shallow_water == "lackenby_1963":
             area = self._midship_area()
@@ -315,6 +320,8 @@ def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWater:
         raise unknown_name("shallow-water method", shallow, SHALLOW_WATER)
     if friction not in FRICTION:
         raise unknown_name("friction line", friction, FRICTION)
+    if shallow == "zeng_2019":
+        shallow, friction = "none", "zeng_2019"
     calm = CALM_WATER[models["calm_water"]](hull, data)
     if shallow == "lackenby_1963":
         keys = ("midship_coefficient",)
@@ -322,20 +329,3 @@ def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWater:
         calm = CalmWater(calm.method, hull, calm.deep, calm.notes_of)
     viscosity = _water(data)["viscosity"]
     return CalmWater(calm.method, calm.hull, calm.deep, calm.notes_of, shallow, friction, viscosity)
-
-
-def check_length_order(hull: Hull) -> None:
-    """Refuse a waterline shorter than three quarters of the length between perpendiculars.
-
-    Raises
-    ------
-    InputError
-    """
-    lwl, lpp = hull.number("length_waterline_m"), hull.number("length_between_perpendiculars_m")
-    if lwl is not None and lpp is not None and not 0.75 < lwl / lpp < 1.25:
-        raise InputError(
-            f"The waterline is {lwl:g} m long and the length between perpendiculars {lpp:g} m.",
-            "They differ by a few per cent.",
-            "Correct one of them.",
-            key="hull.length_waterline_m",
-        )

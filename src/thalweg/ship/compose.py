@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import KNOT
 from thalweg.ship.build import FORCES, build_limits, build_loss
-from thalweg.ship.calm_parts import CALM_WATER, build_calm_water, check_length_order
+from thalweg.ship.calm_parts import CALM_WATER, build_calm_water
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.hull_estimates import estimate, hull_at
 from thalweg.ship.kwon_on_resistance import KwonOnResistance
@@ -82,7 +82,6 @@ def _resistance_model(
         )
     if models.get("rudder", "none") not in RUDDER:
         raise unknown_name("rudder method", models["rudder"], RUDDER)
-    check_length_order(hull)
     full = estimate(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
     if full.number("draught_m") is None:
         deep = loading.draught_full
@@ -188,7 +187,12 @@ def _orders(
 
 def _check_powers(powers: tuple[float, ...], plant: Plant) -> None:
     if len(set(powers)) != len(powers):
-        raise InputError("powers_kw has a power twice.", "", "Remove one of them.", key="powers_kw")
+        raise InputError(
+            "powers_kw has a power twice.",
+            "Each power is one setting.",
+            "Remove one of them.",
+            key="powers_kw",
+        )
     least = plant.loads[0] * plant.rating
     if np.isfinite(least) and min(powers) * 1000.0 < least * (1 - 1e-9):
         raise InputError(

@@ -7,8 +7,11 @@ from dataclasses import dataclass, field
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import SEA_WATER_DENSITY, TONNE
+from thalweg.ship.hull_checks import check_ends_and_surface, check_lengths
 from thalweg.ship.model import Estimate
 
+#: how keys of a hull end; a regression from anything else cannot be fed by a ship file
+_UNITS = ("_m", "_m2", "_m3", "_t", "_coefficient", "_percent")
 _DENSITY = SEA_WATER_DENSITY / TONNE  # t/m3
 
 
@@ -129,6 +132,7 @@ def _check_block(block: float) -> None:
 
 
 def _check_possible(hull: Hull) -> None:
+    check_lengths(hull)
     _check_box(hull)
     depth, draught = hull.number("depth_m"), hull.number("draught_m")
     if depth is not None and draught is not None and draught > depth:
@@ -139,6 +143,7 @@ def _check_possible(hull: Hull) -> None:
             key="hull.draught_m",
         )
     _check_coefficients(hull)
+    check_ends_and_surface(hull)
 
 
 def _check_box(hull: Hull) -> None:
@@ -200,5 +205,6 @@ def _regressions(missing: list[str]) -> str:
         f"{key} follows from {', '.join(one.inputs)} ({one.source})"
         for key in missing
         for one in ESTIMATORS.get(key, ())
+        if all(name.endswith(_UNITS) for name in one.inputs)
     ]
     return f" {'; '.join(ways)}." if ways else ""

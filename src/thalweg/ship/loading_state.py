@@ -46,7 +46,7 @@ class Loading:
                 f"The load factor is {self.load_factor:g}.",
                 "It lies between 0 (empty) and 1 (full).",
                 "Give it as a fraction.",
-                value=self.load_factor,
+                value=f"{self.load_factor:g}",
             )
         if not 0.0 <= self.draught_empty <= self.draught_full < math.inf:
             raise InputError(

@@ -26,13 +26,14 @@ class Estimate:
     ----------
     key : str
         Its key in a ship file, with the unit.
-    value : float
+    value : float or str
+        A word for choices.
     method : str
         What it was estimated by.
     """
 
     key: str
-    value: float
+    value: float | str
     method: str
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -88,8 +88,8 @@ class NominalModel:
         Involuntary speed loss.
     squat : Squat, optional
         Limits the speed in shallow water; power and fuel stay those of the setting.
-    hotel : float
-        Part of the fuel rates that does not follow the speed [kg/s].
+    burn : callable, optional
+        Fuel rate [kg/s] of a power [W], where fuel follows from power and not from ``law``.
     """
 
     speeds_full: FloatArray
@@ -99,7 +99,7 @@ class NominalModel:
     law: str = "none"
     loss: KwonLoss | None = None
     squat: Squat | None = None
-    hotel: float = 0.0
+    burn: Callable[[FloatArray], FloatArray] | None = None
 
     @property
     def reads(self) -> frozenset[str]:
@@ -200,14 +200,16 @@ class NominalModel:
         full = speeds / between(ratio, 1.0, load_factor)
         if self.law == "table":
             full = np.interp(speeds, own, self.speeds_full)
+        powers = self._follow(self.powers, full)
+        burnt = self._follow(self.fuel_rates, full) if self.burn is None else self.burn(powers)
         return replace(
             self,
             speeds_full=full,
             speeds_empty=np.interp(speeds, own, self.speeds_empty)
             if self.law == "table"
             else full * ratio,
-            fuel_rates=self.hotel + self._follow(self.fuel_rates - self.hotel, full),
-            powers=self._follow(self.powers, full),
+            fuel_rates=burnt,
+            powers=powers,
         )
 
     def _follow(self, values: FloatArray, speeds_full: FloatArray) -> FloatArray:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
-from thalweg.ship.build import HOTEL_SFOC
 from thalweg.ship.calm_parts import stern_shape
+from thalweg.ship.fuel_of_power import HOTEL_SFOC
 from thalweg.ship.hull import Hull
 from thalweg.ship.hull_estimates import estimated_or_error
 from thalweg.ship.methods.engine import (
@@ -353,6 +353,8 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
             missing=["engine.power_kw"],
         )
     sfoc, guessed = _sfoc(data)
+    if not curve and "turbine" in given.get("type", ""):
+        loads, curve = (0.0, 1.0), (sfoc, sfoc)  # the study lets theirs vary with nothing
     return Plant(
         rating=given.get("power_kw", float("inf")) * 1000.0,
         count=int(given.get("count", 1)),

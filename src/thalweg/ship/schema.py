@@ -43,6 +43,7 @@ def _not_negative(high: float = math.inf) -> Key:
     return Key(low=0.0, high=high)
 
 
+STERN_WORDS: Final = ("pram", "v", "v_shaped", "normal", "u", "u_shaped")
 _HULL: Final = {
     "length_overall_m": _positive(500.0),
     "length_waterline_m": _positive(500.0),
@@ -69,7 +70,7 @@ _HULL: Final = {
     "transom_area_m2": _not_negative(2000.0),
     "appendage_area_m2": _not_negative(5000.0),
     "appendage_factor": Key(low=1.0, high=10.0),
-    "stern_shape": Key("word_or_number", -25.0, 10.0, words=("pram", "v", "normal", "u")),
+    "stern_shape": Key("word_or_number", -25.0, 10.0, words=STERN_WORDS),
     "half_entrance_angle_deg": _positive(90.0),
     "length_entrance_m": _positive(500.0),
     "length_run_m": _positive(500.0),
@@ -311,9 +312,12 @@ def _check_value(where: str, value: Any, key: Key) -> Any:
         return tuple(many)
     if not isinstance(value, str) or not value.strip():
         raise _wrong(where, value, "text")
-    if key.words and value not in key.words:
+    if not key.words:
+        return value
+    word = value.strip().casefold().replace("-", "_").replace(" ", "_")
+    if word not in key.words:
         raise unknown_name(f"{where}", value, key.words)
-    return value
+    return word
 
 
 def _number(where: str, value: Any, key: Key) -> float:

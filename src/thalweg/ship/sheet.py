@@ -16,12 +16,16 @@ from thalweg.ship.methods.indicators import (
     attained_cii,
     cii_rating,
     cii_ship_type,
+    rating_boundaries,
     required_cii,
 )
+from thalweg.ship.methods.wave_spectra import pierson_moskowitz_period
 from thalweg.ship.sheet_seaway import Seaway
 from thalweg.ship.ship import Ship
 
 FloatArray = NDArray[np.float64]
+_CALM_PERIOD = 10.0  #: [s]; nothing depends on it
+_SIZED = (("wave_height", "wave_angle", "waves"), ("wind_speed", "wind_angle", "wind"))
 COMPONENTS = (
     *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
     *("correlation", "waves", "wind", "shallow", "rudder"),
@@ -48,7 +52,8 @@ def performance_sheet(
         add up to its ``total``; what Hollenbach's method has besides friction, all of it pressure,
         stands under ``wave_making``;
         ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
-        ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``warnings[]`` (speeds
+        ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``assumed[]`` (period
+        and directions of weather that were not given), ``warnings[]`` (speeds
         left out, weather the ship has no model of), ``settings[]`` (what each setting attains in
         this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
 
@@ -76,6 +81,7 @@ def performance_sheet(
         "draught_m": ship.draught,
         "load_factor": ship.loading.load_factor,
         "weather": {name: _number(value) for name, value in (weather or {}).items()},
+        "assumed": _assumed(weather or {}),
         "conditions": rows,
         "warnings": [*left_out, *_unfelt(ship, weather or {}), *_beyond(ship, weather or {})],
         "settings": _settings(ship, conditions),
@@ -88,7 +94,25 @@ def performance_sheet(
 
 def _conditions(ship: Ship, weather: Mapping[str, float]) -> Conditions:
     calm = {name: 0.0 for name in ("wind_speed", "wind_angle", "wave_height", "wave_angle")}
-    return Conditions({**calm, "wave_period": 10.0, "depth": np.inf, **weather})
+    period = assumed_period(weather.get("wave_height", 0.0))
+    return Conditions({**calm, "wave_period": period, "depth": np.inf, **weather})
+
+
+def assumed_period(height: float) -> float:
+    """Peak period [s] of waves whose period is not told: a fully developed sea's."""
+    return float(pierson_moskowitz_period(height)) if height > 0.0 else _CALM_PERIOD
+
+
+def _assumed(weather: Mapping[str, float]) -> list[str]:
+    """Say what was taken for weather that was only half told."""
+    height, found = weather.get("wave_height", 0.0), []
+    if height > 0.0 and "wave_period" not in weather:
+        period = assumed_period(height)
+        found.append(f"a peak period of {period:.3g} s, of a fully developed sea")
+    for size, angle, words in _SIZED:
+        if weather.get(size, 0.0) > 0.0 and angle not in weather:
+            found.append(f"{words} from ahead")
+    return found
 
 
 def _orderable(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
@@ -171,13 +195,16 @@ def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> li
     parts["wave_making"] = parts["wave_making"] + parts.pop("residuary")
     power = ship.power_at_speed(conditions, speeds)
     plant = ship.model.plant  # type: ignore[attr-defined]
-    balance = ship.model.balance(ship.loading.load_factor)  # type: ignore[attr-defined]
+    loss, loaded = getattr(ship.model, "loss", None), ship.loading.load_factor
+    balance = ship.model.balance(loaded)  # type: ignore[attr-defined]
+    weather = conditions.with_values(load_factor=loaded)
     fuel = np.where(power <= plant.largest_power, plant.fuel(power), np.nan)
     rows = []
     for k, speed in enumerate(speeds):
         at = {n: np.array([float(np.asarray(conditions[n]))]) for n in _FLAT}
         notes = [str(n) for n in balance.notes(at, speeds[k : k + 1])]
         notes += [str(n) for n in plant.notes(power[k : k + 1])]
+        notes += [str(n) for n in loss.notes(weather)] if loss is not None else []
         if power[k] > plant.largest_power:
             notes.append(f"the engines give {plant.largest_power / 1e3:.0f} kW: not reached")
         rows.append(
@@ -250,10 +277,12 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
         "attained_g_per_t_nm": attained,
         "required_2026": None,
         "rating_2026": None,
+        "boundaries_2026": None,
     }
     if known:
         here: dict[str, Any] = {"ship_type": kind, "capacity": capacity, "year": 2026}
         found["required_2026"] = float(required_cii(**here))
+        found["boundaries_2026"] = [float(limit) for limit in rating_boundaries(**here)]
         found["rating_2026"] = str(cii_rating(attained, **here))
     return found
 

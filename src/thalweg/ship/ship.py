@@ -21,10 +21,11 @@ from thalweg.ship.build import (
     build_limits,
     build_loading,
     build_model,
-    hotel_fuel,
+    estimates_of_known_speeds,
     simple_data,
     with_safety,
 )
+from thalweg.ship.fuel_of_power import hotel_fuel
 from thalweg.ship.fuel_terms import FuelTerms, fuel_terms
 from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.hull import complete_hull
@@ -109,7 +110,9 @@ class Ship(Answers):
             loading=loading,
             limits=with_safety(build_limits(checked), checked, hull, loading),
             data=MappingProxyType(checked),
-            estimated=getattr(model, "estimated", hull.estimated),
+            estimated=getattr(
+                model, "estimated", estimates_of_known_speeds(checked, hull, loading)
+            ),
         )
 
     @classmethod

@@ -205,7 +205,10 @@ def kwon_speed_loss(
     number = beaufort_number(wind_speed, classes=classes)
     volume = np.asarray(displacement_volume, float)
     options: dict[str, Any] = {"loading": loading, "ship_type": ship_type}
-    number, angle, volume = np.broadcast_arrays(number, np.asarray(wind_angle, float), volume)
+    axes = np.empty((1,) * max(np.ndim(speed), np.ndim(block_coefficient)))
+    number, angle, volume, _ = np.broadcast_arrays(
+        number, np.asarray(wind_angle, float), volume, axes
+    )  # so that the axis of the sectors stays ahead of those of the speeds
     by_sector = np.empty((4, *number.shape))
     for sector in range(4):
         at = np.minimum(number, _peak(sector, volume, **options)) if hold else number

@@ -216,7 +216,26 @@ def _fujiwara(hull: Hull, kind: str) -> Wind:
     return Wind("fujiwara_2006", hull, front, lambda angle: fujiwara_2006(angle, vessel))
 
 
+#: words in ``hull.type`` and Blendermann's type for them, the first that fits
+_TYPES: Final = {
+    **{"container": "container_loaded", "lng": "lng_tanker", "gas": "lng_tanker"},
+    **{"tanker": "tanker_loaded", "vehicle": "car_carrier", "car carrier": "car_carrier"},
+    **{"cruise": "cruise", "ferry": "ferry", "ro-pax": "ferry", "passenger": "ferry"},
+    **{"supply": "offshore_supply", "offshore": "offshore_supply", "research": "research"},
+}
+
+
+def _with_type(hull: Hull) -> tuple[Hull, str]:
+    """Blendermann's type of ship from ``hull.type``, cargo ships when it tells none."""
+    told = str(hull.values.get("type", "")).casefold().replace("_", " ")
+    kind = next((kind for word, kind in _TYPES.items() if word in told), "cargo_loaded")
+    why = f"from hull.type {told!r}" if told else "no hull.type given"
+    return hull.with_estimates(Estimate("models.wind_type", kind, why)), kind
+
+
 def _blendermann(hull: Hull, kind: str) -> Wind:
+    if not kind:
+        hull, kind = _with_type(hull)
     if kind not in BLENDERMANN:
         raise unknown_name(
             "type of ship for blendermann_1994 (models.wind_type)", kind, BLENDERMANN
@@ -234,6 +253,8 @@ def _blendermann(hull: Hull, kind: str) -> Wind:
 
 def _ittc(hull: Hull, kind: str) -> Wind:
     curve = kind or "tanker_laden"
+    if not kind:
+        hull = hull.with_estimates(Estimate("models.wind_type", curve, "the usual curve"))
     if curve not in ITTC_CURVES:
         raise unknown_name("wind curve (models.wind_type)", curve, ITTC_CURVES)
     (front,) = require(hull, ("frontal_area_m2",), "ittc", instead="wind: yu_2021")
@@ -258,6 +279,7 @@ WIND: Final[Mapping[str, Callable[[Hull, str], Wind]]] = MappingProxyType(
         "fujiwara_2006": _fujiwara,
         "blendermann_1994": _blendermann,
         "ittc": _ittc,
+        "iso_15016": _ittc,
         "yu_2021": _yu,
     }
 )

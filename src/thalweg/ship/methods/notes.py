@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -32,10 +33,12 @@ class RangeNote:
     high: float
 
     def __str__(self) -> str:
-        return (
-            f"{self.method}: {self.quantity} is {self.value:.4g}, "
-            f"outside {self.low:.4g} to {self.high:.4g}"
-        )
+        bounds = f"outside {self.low:.4g} to {self.high:.4g}"
+        if math.isinf(self.high):
+            bounds = f"outside {self.low:.4g} and more"
+        elif math.isinf(self.low):
+            bounds = f"outside {self.high:.4g} and less"
+        return f"{self.method}: {self.quantity} is {self.value:.4g}, {bounds}"
 
 
 def range_notes(

@@ -1,0 +1,90 @@
+"""Refuse hulls that cannot be: lengths that do not go together, ends and skin of no such body."""
+
+from __future__ import annotations
+
+from typing import Final, Protocol
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+
+_LENGTHS: Final = {
+    "length_waterline_m": "waterline",
+    "length_over_surface_m": "surface under water",
+}
+_FEW_PER_CENT: Final = (0.75, 1.3)  #: shares of the length between perpendiculars
+_WRINKLED: Final = 1.5  #: most wetted surface, as a share of that of a box
+
+
+class _Numbers(Protocol):
+    def number(self, key: str) -> float | None: ...
+
+
+def check_lengths(hull: _Numbers) -> None:
+    """Refuse lengths that differ by more than a third from that between perpendiculars.
+
+    Raises
+    ------
+    InputError
+    """
+    lpp = hull.number("length_between_perpendiculars_m")
+    for key, words in _LENGTHS.items():
+        other = hull.number(key)
+        if lpp is None or other is None or _FEW_PER_CENT[0] < other / lpp < _FEW_PER_CENT[1]:
+            continue
+        raise InputError(
+            f"The {words} is {other:g} m long and the length between perpendiculars {lpp:g} m.",
+            "They differ by a few per cent.",
+            "Correct one of them.",
+            key=f"hull.{key}",
+        )
+
+
+def check_ends_and_surface(hull: _Numbers) -> None:
+    """Refuse a bulb or transom larger than the midship section, and impossible wetted surfaces.
+
+    Raises
+    ------
+    InputError
+    """
+    breadth, draught = hull.number("breadth_m"), hull.number("draught_m")
+    if not breadth or not draught:
+        return
+    section = breadth * draught * (hull.number("midship_coefficient") or 1.0)
+    for key, words in (("bulb_area_m2", "bulb's section"), ("transom_area_m2", "immersed transom")):
+        area = hull.number(key)
+        if area is not None and area > section:
+            raise InputError(
+                f"The {words} of {area:g} m2 is larger than the midship section, {section:.4g} m2.",
+                "No section of a hull is larger than its midship section.",
+                f"Correct {key}.",
+                key=f"hull.{key}",
+            )
+    centre, fore = hull.number("bulb_centre_height_m"), hull.number("draught_fore_m") or draught
+    if centre is not None and hull.number("bulb_area_m2") and centre >= fore:
+        raise InputError(
+            f"The bulb's centre lies {centre:g} m above the keel, and the water {fore:g} m there.",
+            "The section at the fore perpendicular is the part of the bulb below the water.",
+            "Correct bulb_centre_height_m or draught_fore_m.",
+            key="hull.bulb_centre_height_m",
+        )
+    _check_surface(hull, breadth, draught)
+
+
+def _check_surface(hull: _Numbers, breadth: float, draught: float) -> None:
+    """The skin of a body under water: more than a hemisphere's, less than a wrinkled box's."""
+    surface, volume = hull.number("wetted_surface_m2"), hull.number("displacement_m3")
+    lengths = (hull.number("length_waterline_m"), hull.number("length_between_perpendiculars_m"))
+    length = max(known or 0.0 for known in lengths)
+    if surface is None or volume is None or not length:
+        return
+    least = (18.0 * np.pi) ** (1.0 / 3.0) * volume ** (2.0 / 3.0)
+    most = _WRINKLED * (length * (breadth + 2.0 * draught) + 2.0 * breadth * draught)
+    if not least <= surface <= most:
+        raise InputError(
+            f"A wetted surface of {surface:g} m2 is not that of a hull of {volume:g} m3, "
+            f"{length:g} m long.",
+            f"It is more than {least:.0f} m2, a hemisphere's, and less than {most:.0f} m2.",
+            "Correct wetted_surface_m2, or leave it out: it is estimated.",
+            key="hull.wetted_surface_m2",
+        )
