@@ -19,7 +19,7 @@ def add_ship_command(commands: Any) -> None:
         description="Resistance by component, power, fuel and CO2 of a ship in given weather.",
     )
     parser.add_argument("ship", nargs="?", metavar="NAME|FILE", help="library ship or YAML file")
-    parser.add_argument("--list", action="store_true", help="list the ships of the library")
+    parser.add_argument("--list", action="store_true", help="list the ships that have a name")
     parser.add_argument("--speed", metavar="KN", help="8:16, 8:16:0.5 or 10,12,14")
     parser.add_argument("--hs", type=float, metavar="M", help="significant wave height")
     parser.add_argument("--tp", type=float, metavar="S", help="peak wave period")
@@ -37,16 +37,16 @@ def add_ship_command(commands: Any) -> None:
 
 def run_ship(arguments: argparse.Namespace) -> int:
     """Compute, print and draw."""
-    from thalweg.ship import Ship, library_names
+    from thalweg.ship import Ship, library_names, plugin_names
     from thalweg.ship.sheet import performance_sheet
 
     if arguments.list:
-        print("\n".join(library_names()))
+        print("\n".join([*library_names(), *plugin_names()]))
         return 0
     if arguments.ship is None:
         raise InputError(
             "No ship is named.",
-            f"Library: {', '.join(library_names())}.",
+            f"Ships with a name: {', '.join([*library_names(), *plugin_names()])}.",
             "Give a name or a ship file.",
         )
     ship = Ship.load(arguments.ship)

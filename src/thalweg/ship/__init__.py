@@ -5,9 +5,11 @@ In: ship files (YAML), functions, conditions as arrays in SI. Out: speeds, power
 """
 
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.contract import check_ship_model
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.plugins import plugin_names
 from thalweg.ship.ship import Ship
 from thalweg.ship.ship_file import library_names
 from thalweg.ship.table import PerformanceTable, TableError, TablePart
@@ -22,5 +24,7 @@ __all__ = [
     "ShipModel",
     "TableError",
     "TablePart",
+    "check_ship_model",
     "library_names",
+    "plugin_names",
 ]

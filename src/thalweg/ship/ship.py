@@ -32,8 +32,9 @@ from thalweg.ship.hull import complete_hull
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.plugins import plugin
 from thalweg.ship.schema import check_ship_data
-from thalweg.ship.ship_file import library_names, plugin, read_ship
+from thalweg.ship.ship_file import library_names, read_ship
 from thalweg.ship.table import PerformanceTable
 from thalweg.ship.variables import HEADING_DEPENDENT, needed_variables
 
@@ -86,10 +87,29 @@ class Ship(Answers):
         """
         known = not isinstance(name_or_path, str) or name_or_path in library_names()
         offered = None if known else plugin(str(name_or_path))
+        if offered is None:
+            data, source = read_ship(name_or_path)
+            return cls.from_dict(data, source=source)
+        return cls._of_plugin(str(name_or_path), offered)
+
+    @classmethod
+    def _of_plugin(cls, name: str, offered: Any) -> Ship:
+        """What a plug-in offers, as a ship."""
         if isinstance(offered, Ship):
             return offered
-        data, source = read_ship(name_or_path) if offered is None else (offered, "plug-in ship")
-        return cls.from_dict(data, source=source)
+        if isinstance(offered, Mapping):
+            return cls.from_dict(offered, source=f"plug-in ship {name!r}")
+        if hasattr(offered, "speed_through_water") and hasattr(offered, "tabulate"):
+            draught = float(getattr(offered, "draught", 0.0))
+            return cls(name, offered, Loading(draught, draught))
+        if callable(offered):
+            return cls.from_speed_function(offered, name=name)
+        raise InputError(
+            f"The plug-in ship {name!r} is {type(offered).__name__}.",
+            "A plug-in offers a Ship, a mapping like a ship file, a ship model, or a function of "
+            "conditions that returns speeds.",
+            "Tell its author.",
+        )
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], *, source: str = "ship") -> Ship:

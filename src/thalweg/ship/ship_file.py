@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.core.errors import InputError, near_matches
+from thalweg.ship.plugins import plugin_names
 
 LARGEST_FILE: Final = 256 * 1024  #: bytes; a ship file has a few thousand
 _SUFFIXES = (".yaml", ".yml")
@@ -18,20 +19,6 @@ def library_names() -> list[str]:
     return sorted(
         f.name.removesuffix(".yaml") for f in folder.iterdir() if f.name.endswith(".yaml")
     )
-
-
-def plugin(name: str) -> Any:
-    """Return the ship that a third-party package offers under a name, or None.
-
-    Packages register a callable without arguments that returns a `Ship` (or a mapping like a ship
-    file) in the entry-point group ``thalweg.ships``.
-    """
-    from importlib.metadata import entry_points
-
-    for entry in entry_points(group="thalweg.ships"):
-        if entry.name == name:
-            return entry.load()()
-    return None
 
 
 def read_ship(name_or_path: str | Path) -> tuple[Any, str]:
@@ -51,10 +38,11 @@ def read_ship(name_or_path: str | Path) -> tuple[Any, str]:
         return parse_ship(found.read_text(encoding="utf-8"), text), f"library ship {text!r}"
     if path.is_file():
         return _read_file(path)
-    near = near_matches(text, library_names())
+    names = [*library_names(), *plugin_names()]
+    near = near_matches(text, names)
     raise InputError(
         f"There is no ship named {text!r}, and no file of that name.",
-        f"Library: {', '.join(library_names())}.",
+        f"Ships with a name: {', '.join(names)}.",
         f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Give a name or a file.",
         value=text,
         near=near,
