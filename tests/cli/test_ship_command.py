@@ -92,6 +92,9 @@ def test_waves_from_port_and_starboard_are_the_same_and_from_astern_cost_less(ca
 
     assert waves(40) == waves(-40) == waves(320) > 0
     assert waves(120) == 0.0
+    words = ("--speed", 10, "--hs", 2, "--wave-from", 120, "--json")
+    (row,) = json.loads(_run(capsys, ship_file, *words))["conditions"]
+    assert "stawave1: wave angle is 120, outside 0 to 45" in row["warnings"]
 
 
 def test_a_power_that_cannot_be_reached_is_said_and_has_no_fuel(capsys, ship_file):

@@ -107,7 +107,8 @@ class Balance:
         found = [*self.calm.notes(speed, at["depth"]), *self.propulsion.notes]
         rough = at["wave_height"] > 0.0
         if self.waves is not None and rough.any():
-            found += self.waves.notes_of(speed[rough], at["wave_height"][rough])
+            height, angle = at["wave_height"][rough], at["wave_angle"][rough]
+            found += self.waves.notes_of(speed[rough], height, angle)
         return found
 
     def _rudder(self, at: Flat, speed: FloatArray) -> FloatArray | float:

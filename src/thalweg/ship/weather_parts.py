@@ -16,6 +16,7 @@ from thalweg.ship.hull_estimates import estimated_or_error
 from thalweg.ship.methods.holtrop_form import hull_form, length_of_run
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.methods.waves import (
+    head_sector_validity,
     stawave1,
     stawave1_validity,
     stawave2,
@@ -54,7 +55,7 @@ class Waves:
     force : callable
         [N] from speed [m/s], significant height [m], peak period [s], angle off the bow [rad].
     notes_of : callable
-        Where the method is outside its range, from speeds and wave heights.
+        Where the method is outside its range, from speeds, wave heights and angles off the bow.
     reads : frozenset of str
         Conditions that matter.
     """
@@ -62,7 +63,7 @@ class Waves:
     method: str
     hull: Hull
     force: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
-    notes_of: Callable[[FloatArray, FloatArray], list[RangeNote]]
+    notes_of: Callable[[FloatArray, FloatArray, FloatArray], list[RangeNote]]
     reads: frozenset[str]
 
 
@@ -112,8 +113,9 @@ def _stawave_1(hull: Hull) -> Waves:
         found = stawave1(height, angle, breadth=breadth, bow_length=bow)
         return np.where(np.isnan(speed), np.nan, found)
 
-    def notes(speed: FloatArray, height: FloatArray) -> list[RangeNote]:
-        return stawave1_validity(height, length_between_perpendiculars=length)
+    def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
+        high = stawave1_validity(height, length_between_perpendiculars=length)
+        return [*high, *head_sector_validity(angle, method="stawave1")]
 
     return Waves("stawave_1", hull, force, notes, _BOTH)
 
@@ -133,8 +135,9 @@ def _stawave_2(hull: Hull) -> Waves:
     ) -> FloatArray:
         return stawave2(speed, height, _tame(period), angle, **sizes, pitch_gyration=gyration)
 
-    def notes(speed: FloatArray, height: FloatArray) -> list[RangeNote]:
-        return stawave2_validity(speed, **sizes)
+    def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
+        ahead = head_sector_validity(angle, method="stawave2")
+        return [*stawave2_validity(speed, **sizes), *ahead]
 
     return Waves("stawave_2", hull, force, notes, _BOTH | {"wave_period"})
 
@@ -166,7 +169,7 @@ def _snnm(hull: Hull) -> Waves:
     ) -> FloatArray:
         return table(speed, height, _tame(period), angle)
 
-    def notes(speed: FloatArray, height: FloatArray) -> list[RangeNote]:
+    def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
         return snnm_validity(speed, vessel)
 
     return Waves("snnm", hull, force, notes, _BOTH | {"wave_period"})

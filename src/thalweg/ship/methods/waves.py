@@ -42,6 +42,13 @@ def in_head_sector(wave_angle: ArrayLike) -> FloatArray:
     return np.where(np.isnan(ahead), np.nan, inside)
 
 
+def head_sector_validity(wave_angle: ArrayLike, *, method: str) -> list[RangeNote]:
+    """Say which waves come from outside the sector, where the resistance is taken as zero."""
+    degrees = np.degrees(np.abs(np.asarray(wave_angle, dtype=float)))
+    outside = np.where(in_head_sector(wave_angle) == 1.0, 0.0, degrees)
+    return range_notes(method, {"wave angle": (outside, 0.0, np.degrees(SECTOR))})
+
+
 def stawave1(
     wave_height: ArrayLike,
     wave_angle: ArrayLike,
