@@ -413,3 +413,13 @@ def test_fuels_and_rudders_are_checked_when_the_file_is_read():
 def test_squat_of_a_ship_with_a_resistance_is_no_limit_of_speed():
     with pytest.raises(InputError, match=r"models\.shallow_water"):
         _ship(models={"squat": "van_halem_2019"})
+
+
+def test_engine_types_are_words_and_fuels_they_cannot_burn_are_named():
+    spoken = _ship(engine={"power_kw": 9000, "type": "Slow-speed Diesel"})
+    at = Conditions({**CALM, "depth": 1e4})
+    assert float(spoken.fuel_rate(at, 0)) == float(_ship().fuel_rate(at, 0))
+    with pytest.raises(InputError, match="Give the engine's own sfoc_g_per_kwh"):
+        _ship(fuel={"type": "lng"})
+    with pytest.raises(InputError, match="Did you mean 'slow_speed_diesel'"):
+        _ship(engine={"power_kw": 9000, "type": "slow_speed_disel"})

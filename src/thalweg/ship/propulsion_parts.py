@@ -353,7 +353,7 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
             missing=["engine.power_kw"],
         )
     sfoc, guessed = _sfoc(data)
-    if not curve and "turbine" in given.get("type", ""):
+    if not curve and "turbine" in given.get("type", "").casefold():
         loads, curve = (0.0, 1.0), (sfoc, sfoc)  # the study lets theirs vary with nothing
     return Plant(
         rating=given.get("power_kw", float("inf")) * 1000.0,

@@ -106,11 +106,18 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
         For an unknown engine, or a pair or year the study has no number for.
     """
     engines = {pair[0] for pair in BASE_SFOC}
+    named, engine = engine, engine.casefold().replace(" ", "_").replace("-", "_")
     if engine not in engines:
-        raise unknown_name("engine type", engine, engines)
+        raise unknown_name("engine type", named, engines)
     kinds = {pair[1] for pair in BASE_SFOC if pair[0] == engine}
     if fuel_kind not in kinds:
-        raise unknown_name(f"fuel kind for a {engine}", fuel_kind, kinds)
+        raise InputError(
+            f"There is no fuel consumption for a {engine} on fuel of the kind {fuel_kind!r}.",
+            f"The study has one for {', '.join(sorted(kinds))} fuel.",
+            "Give the engine's own sfoc_g_per_kwh, or another type of engine or fuel.",
+            engine=engine,
+            kind=fuel_kind,
+        )
     record = BASE_SFOC[engine, fuel_kind]
     value = record.from_2001
     if built < 2001:
@@ -119,7 +126,7 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
         raise InputError(
             f"There is no fuel consumption for a {engine} on {fuel_kind} built in {built}.",
             "The study gives one for younger engines.",
-            "Give the engine's own sfoc_g_kwh.",
+            "Give the engine's own sfoc_g_per_kwh.",
             engine=engine,
             built=built,
         )
