@@ -14,6 +14,7 @@ from scipy.optimize import linprog
 from thalweg.chart import Chart
 from thalweg.core.geodesy import along
 from thalweg.core.units import DAY, NAUTICAL_MILE, TONNE
+from thalweg.planning import Voyage, plan
 from thalweg.route import Route, Track, evaluate, polish
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -173,3 +174,34 @@ def test_polishing_finds_the_speeds_or_better(fastest, chart, way, days):
     assert route.time_h <= 24.0 * days + 1e-3
     assert route.cost <= mixed.cost * 1.0005
     assert route.cost > 0.95 * mixed.cost
+
+
+@pytest.fixture(scope="module")
+def planned(chart):
+    voyage = Voyage(
+        start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective="front",
+        fuel_price_usd=300.0, eca_price_factor=1.5593,
+    )  # fmt: skip
+    return plan(voyage, ship=SHIP, sea=Sea.calm(), chart=chart)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("days", DAYS)
+def test_the_front_of_a_plan_costs_what_the_exact_ways_do(planned, days):
+    best = min(costs[DAYS.index(days)] or np.inf for costs in THOUSANDS.values())
+    hours = np.array([route.time_h for route in planned.routes])
+    # between two points of the front a ship may sail part of the way as in each
+    cost = float(np.interp(24.0 * days, hours, planned.front.values)) / 1000.0
+    assert cost == pytest.approx(best, rel=0.01)
+
+
+@pytest.mark.slow
+def test_the_front_of_a_plan_holds_all_three_ways_round(planned):
+    lengths = np.array([route.distance_nm for route in planned.routes])
+    for wanted in (sum(LENGTHS[way]) for way in WAYS):
+        assert np.abs(lengths / wanted - 1.0).min() < 0.003
+    assert np.all(np.diff(planned.front.values) < 0.0)
+    lower_time, lower_cost = planned.front.lower
+    for hours, cost in zip([route.time_h for route in planned.routes], planned.front.values):
+        earlier = lower_time <= hours
+        assert not earlier.any() or cost >= lower_cost[earlier].min() * (1.0 - 1e-9)

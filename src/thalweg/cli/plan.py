@@ -57,7 +57,11 @@ def _add_trade_options(group: Any) -> None:
     )
     group.add_argument("--time-price", type=float, metavar="USD", help="what an hour costs besides")
     group.add_argument(
-        "--forbid", nargs="+", action="extend", default=[], metavar="CANAL", help="canals, or all"
+        "--forbid",
+        action="append",
+        default=[],
+        metavar="CANAL",
+        help="a canal, several with commas, or all; may be given again",
     )
     group.add_argument("--method", default="default", metavar="default|exact|nsga2|spea2|mpaes")
     group.add_argument(
@@ -118,7 +122,7 @@ def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:
         fuel_price_usd=arguments.fuel_price,
         eca_price_factor=arguments.eca_price_factor,
         time_price_usd_per_h=arguments.time_price,
-        forbid=tuple(arguments.forbid),
+        forbid=tuple(name for given in arguments.forbid for name in given.split(",") if name),
         method=arguments.method,
         ensemble=arguments.ensemble,
     )

@@ -3,10 +3,11 @@
 from thalweg.network.endpoints import with_endpoints
 from thalweg.network.globe import globe
 from thalweg.network.lattice import default_spacing, lattice
+from thalweg.network.line import line
 from thalweg.network.mesh import mesh
 from thalweg.network.network import Network, NetworkMeta, check_network, shortest
 from thalweg.network.pruning import spacing_fraction
-from thalweg.network.way import Way, Weighing
+from thalweg.network.way import Way, Weighing, eca_shares
 from thalweg.network.ways import alternatives, ways_round
 
 __all__ = [
@@ -17,8 +18,10 @@ __all__ = [
     "alternatives",
     "check_network",
     "default_spacing",
+    "eca_shares",
     "globe",
     "lattice",
+    "line",
     "mesh",
     "shortest",
     "spacing_fraction",

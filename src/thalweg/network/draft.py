@@ -10,6 +10,7 @@ import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS, Position
 from thalweg.kernels import graph
+from thalweg.network.channels import channel_nodes, channel_pairs
 from thalweg.network.endpoints import REACH, canal_pairs, direct_pairs, join_pairs, links
 from thalweg.network.frame import Frame, arc, unit_vectors
 from thalweg.network.levels import Ground, Level, grow_levels
@@ -126,7 +127,10 @@ def make_draft(
     rejected: Rejected = {}
     parts = [_join(ground.chart, level, lat, lon, di, dj, rejected) for level in levels]
     canals = canals_in(ground)
+    amid = channel_nodes(ground) if ground.region.bounded else np.empty((2, 0))
     places = [*(end for canal in canals for end in canal.ends), start, goal]
+    lat, lon = np.append(lat, amid[0]), np.append(lon, amid[1])
+    grid, n = n, len(lat)
     lat, lon = (np.append(old, new) for old, new in zip((lat, lon), np.array(places, float).T))
     stations = Stations(lat, lon, n + len(places))
     reach = max(REACH, 1.02 * float(np.hypot(di, dj).max()))  # in spacings
@@ -139,6 +143,8 @@ def make_draft(
         add_counts(rejected, counts)
     ends.append(direct_pairs(ground.chart, stations, n, reach=reach * spacing))
     ends.append(canal_pairs(canals, n))
+    near = ground.frame.largest_unit * ground.step(ground.coast_levels)
+    ends.append(channel_pairs(ground.chart, stations, grid, n, near))
     return Draft(stations, parts, join_pairs(ends), rejected, refused)
 
 

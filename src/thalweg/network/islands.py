@@ -14,6 +14,7 @@ from thalweg.network.network import IntArray, Network
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.rings import Rings
 
 Counts: TypeAlias = NDArray[np.int8]
 _MOST = 120  # islands that count, the largest ones
@@ -92,7 +93,7 @@ def _land(network: Network, chart: Chart, island: float) -> FloatArray:
     lon0 = float(network.lon[network.meta.start])
     away = (rings.lon - lon0 + 540.0) % 360.0 - 180.0
     west, east = (f.reduceat(away, begin) for f in (np.minimum, np.maximum))
-    area = _areas(rings.lat, rings.lon, rings.start)
+    area = ring_areas(rings)
     mine = (network.lon - lon0 + 540.0) % 360.0 - 180.0
     near = (low <= network.lat.max()) & (high >= network.lat.min())
     near &= (west <= mine.max()) & (east >= mine.min())
@@ -101,8 +102,9 @@ def _land(network: Network, chart: Chart, island: float) -> FloatArray:
     return np.stack([rings.lat[begin[chosen]], rings.lon[begin[chosen]]], axis=1)
 
 
-def _areas(lat: FloatArray, lon: FloatArray, start: IntArray) -> FloatArray:
+def ring_areas(rings: Rings) -> FloatArray:
     """Return the areas [m2] of rings on a sphere, from sums of strips under their edges."""
+    lat, lon, start = rings.lat, rings.lon, rings.start
     step = np.radians(np.diff(lon)) * np.sin(np.radians(0.5 * (lat[:-1] + lat[1:])))
     step[start[1:-1] - 1] = 0.0
     return np.asarray(np.abs(np.add.reduceat(np.append(step, 0.0), start[:-1])) * MEAN_RADIUS**2)

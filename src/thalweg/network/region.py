@@ -100,6 +100,11 @@ class Region:
         """Whether neither an ellipse nor a box bounds the region."""
         return self.global_ and self.area is None and self.chart_area is None
 
+    @property
+    def bounded(self) -> bool:
+        """Whether an ellipse, a box or a corridor bounds the region."""
+        return not self.unbounded or self.corridor is not None
+
     def slack(self, vectors: FloatArray) -> FloatArray:
         """Return how much shorter than the limit the way start-place-goal is [m]."""
         total = arc(vectors, unit_vectors(*self.start)) + arc(vectors, unit_vectors(*self.goal))

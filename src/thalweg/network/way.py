@@ -63,12 +63,8 @@ class Weighing:
             share = chart.eca_share(*ends)
             return np.asarray(leg_lengths(*ends) * penalty * price * (1.0 + (factor - 1.0) * share))
 
-        tail, head = network.tails(), network.target
-        lat, lon = network.lat, network.lon
         weight = network.length * network.factor * network.price
-        share = chart.eca_share(lat[tail], lon[tail], lat[head], lon[head])
-        share[~np.isnan(network.fixed_time)] = 0.0
-        return cls(weight * (1.0 + (factor - 1.0) * share), leg_cost)
+        return cls(weight * (1.0 + (factor - 1.0) * eca_shares(network, chart)), leg_cost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +100,21 @@ class Way:
     def waypoints(self) -> list[tuple[float, float]]:
         """The waypoints as (lat, lon) [deg]."""
         return list(zip(self.lat.tolist(), self.lon.tolist()))
+
+
+def eca_shares(network: Network, chart: Chart) -> FloatArray:
+    """Return the share (0 to 1) of every edge inside emission control areas; 0 of canals."""
+    share = np.zeros(network.n_edges)
+    if not chart.zones.eca:
+        return share
+    sailed = np.flatnonzero(np.isnan(network.fixed_time))
+    a, b = network.tails()[sailed].astype(np.int64), network.target[sailed].astype(np.int64)
+    key = np.minimum(a, b) * network.n_nodes + np.maximum(a, b)  # each pair is looked at once
+    keys, back = np.unique(key, return_inverse=True)
+    a, b = keys // network.n_nodes, keys % network.n_nodes
+    lat, lon = network.lat, network.lon
+    share[sailed] = np.asarray(chart.eca_share(lat[a], lon[a], lat[b], lon[b]))[back]
+    return share
 
 
 def weights_of(network: Network, weighing: Weighing) -> FloatArray:

@@ -11,7 +11,7 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.units import DAY, HOUR, TONNE
-from thalweg.network import Network
+from thalweg.network import Network, eca_shares
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 from thalweg.ship import Ship
@@ -52,16 +52,7 @@ class Criterion:
         price = np.asarray(network.price, float) if self.name == "cost" else 1.0
         weight = np.full(network.n_edges, self.outside)
         if self.inside != self.outside:
-            sailed = np.flatnonzero(np.isnan(network.fixed_time))
-            a, b = network.tails()[sailed], network.target[sailed]
-            low, high = np.minimum(a, b), np.maximum(a, b)  # each pair is looked at once
-            keys, back = np.unique(
-                low.astype(np.int64) * network.n_nodes + high, return_inverse=True
-            )
-            one, two = keys // network.n_nodes, keys % network.n_nodes
-            lat, lon = network.lat, network.lon
-            share = np.asarray(chart.eca_share(lat[one], lon[one], lat[two], lon[two]))[back]
-            weight[sailed] += share * (self.inside - self.outside)
+            weight += eca_shares(network, chart) * (self.inside - self.outside)
         return np.asarray(weight * price)
 
 

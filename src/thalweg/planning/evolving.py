@@ -11,14 +11,14 @@ from thalweg.core.geodesy import wrap_longitude
 from thalweg.evolution import Evaluator, Evolution, Genome, evolve, make_evaluator
 from thalweg.evolution.refine import refine_front
 from thalweg.network.network import FloatArray
-from thalweg.planning.trade import Candidate, Explored, Means, spread
+from thalweg.planning.trade import Candidate, Explored, Means, not_dominated, spread
 from thalweg.route import Track
 
 if TYPE_CHECKING:
     from thalweg.sea import GridFields
 
-#: Tracks of the exact front that refinement begins with.
-_MOST_SEEDS = 48
+#: Tracks that refinement begins with: of the front, and others.
+_MOST_SEEDS, _MOST_DOMINATED = 48, 16
 #: Tracks that are kept, and generations, of the refinement and of an evolution of its own.
 _SIZE, _GENERATIONS = 160, 40
 _OWN_SIZE, _OWN_GENERATIONS = 100, 300
@@ -28,18 +28,18 @@ _FINEST = 240  # cells along the longer side
 _COARSEST = 24
 
 
-def evolved(means: Means, explored: Explored, exact: list[Candidate]) -> list[Candidate]:
-    """Return the tracks that evolution finds on one way round, beginning with exact ones."""
+def evolved(means: Means, explored: Explored, found: list[Candidate]) -> list[Candidate]:
+    """Return the tracks that evolution finds on one way round, beginning with those found."""
     task, method = means.task, means.task.voyage.method
-    seeds = _seeds(means, explored, exact)
+    seeds = _seeds(means, explored, found)
     evaluator = _evaluator(means, explored, seeds)
     genomes = [_genome(means, seed) for seed in seeds]
     seed = task.voyage.seed
     if method == "default":
-        found = refine_front(evaluator, genomes, size=_SIZE, generations=_GENERATIONS, seed=seed)
+        result = refine_front(evaluator, genomes, size=_SIZE, generations=_GENERATIONS, seed=seed)
     else:
         ends = [genomes[0], genomes[-1]]
-        found = evolve(
+        result = evolve(
             evaluator,
             ends,
             method=method,
@@ -47,16 +47,25 @@ def evolved(means: Means, explored: Explored, exact: list[Candidate]) -> list[Ca
             generations=_OWN_GENERATIONS,
             seed=seed,
         )
-    return _candidates(found, explored, task.voyage.earliest_departure)
+    return _candidates(result, explored, task.voyage.earliest_departure)
 
 
-def _seeds(means: Means, explored: Explored, exact: list[Candidate]) -> list[Track]:
-    """Return the fastest refined track and a selection of exact ones, by ascending time."""
-    time = np.array([item.time for item in exact])
-    value = np.array([item.value for item in exact])
-    chosen = [exact[index].track for index in spread(time, value, _MOST_SEEDS)]
+def _seeds(means: Means, explored: Explored, found: list[Candidate]) -> list[Track]:
+    """Return the fastest refined track and a selection of those found, by ascending time.
+
+    Most are not dominated; some are though, since refinement may make these the better ones.
+    """
+    time = np.array([item.time for item in found])
+    value = np.array([item.value for item in found])
+    kept = np.array(not_dominated(time, value))
+    rest = np.setdiff1d(np.arange(len(found)), kept)
+    chosen = kept[spread(time[kept], value[kept], _MOST_SEEDS)]
+    if len(rest):
+        chosen = np.append(chosen, rest[spread(time[rest], value[rest], _MOST_DOMINATED)])
+    chosen = chosen[np.argsort(time[chosen], kind="stable")]
     fastest = explored.fastest
-    return [fastest.track, *chosen] if fastest.feasible else chosen
+    tracks = [found[index].track for index in chosen]
+    return [fastest.track, *tracks] if fastest.feasible else tracks
 
 
 def _genome(means: Means, track: Track) -> Genome:

@@ -29,6 +29,8 @@ from thalweg.ship import Conditions, PerformanceTable, Ship
 #: How much longer than in still water the slowest ship worth looking at may take.
 _PATIENCE = 1.25
 _TWO_TIDES = 25 * HOUR
+#: How much longer the sea is frozen, so that edges left last can be sailed to their end.
+_MORE = 0.05
 #: A turn [rad] that is none: by it a leg of 100 km is a metre off at its middle at most.
 _STRAIGHT = 2e-5
 #: Into how many bins the time of a front is divided; refinement makes up for what they miss.
@@ -127,12 +129,12 @@ def explore(means: Means, way: Way) -> Explored:
     """
     task = means.task
     depart = task.voyage.earliest_departure
-    latest, until = _horizons(means, way.network)
+    latest, until = horizons(means, way.network)
     task.tell(f"freezing the sea: {way.name}")
     frozen = freeze(task, way.network, depart, until)
     warming.finish()
     task.tell(f"searching: {way.name}")
-    first = _fastest(means, way.network, frozen)
+    first = fastest_way(means, way.network, frozen)
     if not first.found:
         raise no_route(
             way.network,
@@ -144,30 +146,40 @@ def explore(means: Means, way: Way) -> Explored:
             required=float(means.limits[codes.LIMIT_REQUIRED_DEPTH]),
         )
     _in_time(first, task.voyage)
-    dues = way.network.fee if means.criterion.name == "cost" else np.zeros(way.network.n_edges)
-    exact = front(
-        replace(way.network, fee=dues),
+    exact = network_front(means, way.network, frozen, latest)
+    fastest = refined(task, track_of(way.network, first, task.setting), means.limits)
+    until = first.arrive + 0.5 * first.duration
+    arrival = isochrones(task, way.network, frozen, depart, until)
+    return Explored(way, frozen, fastest, first, exact, arrival, _factor(means, way, frozen))
+
+
+def network_front(
+    means: Means, network: Network, frozen: Frozen, latest: float, *, lower: bool = True
+) -> Front:
+    """Search the exact front of a network."""
+    task = means.task
+    depart = task.voyage.earliest_departure
+    dues = network.fee if means.criterion.name == "cost" else np.zeros(network.n_edges)
+    return front(
+        replace(network, fee=dues),
         frozen.stations,
         task.table,
         means.fuel,
-        start=way.network.meta.start,
-        goal=way.network.meta.goal,
+        start=network.meta.start,
+        goal=network.meta.goal,
         depart=depart,
         limits=means.limits,
         latest=latest,
         settings=means.settings,
-        weight=means.criterion.weights(way.network, task.chart),
+        weight=means.criterion.weights(network, task.chart),
         time_price=means.criterion.time_price,
         waiting_fuel=task.ship.waiting_fuel_rate,
         waiting_weight=means.criterion.outside,
         wait=task.voyage.wait,
         bin_s=(latest - depart) / _BINS,
         top_speed=frozen.top_speed,
+        lower=lower,
     )
-    fastest = refined(task, track_of(way.network, first, task.setting), means.limits)
-    until = first.arrive + 0.5 * first.duration
-    arrival = isochrones(task, way.network, frozen, depart, until)
-    return Explored(way, frozen, fastest, first, exact, arrival, _factor(means, way, frozen))
 
 
 def _factor(means: Means, way: Way, frozen: Frozen) -> float:
@@ -177,7 +189,8 @@ def _factor(means: Means, way: Way, frozen: Frozen) -> float:
     return direction_factor(way.network.meta.gap_rad, ratio)
 
 
-def _fastest(means: Means, network: Network, frozen: Frozen) -> SearchResult:
+def fastest_way(means: Means, network: Network, frozen: Frozen) -> SearchResult:
+    """Search the fastest way over a network."""
     task = means.task
     return earliest_arrival(
         network,
@@ -205,7 +218,7 @@ def _in_time(first: SearchResult, voyage: Voyage) -> None:
         )
 
 
-def _horizons(means: Means, network: Network) -> tuple[float, float]:
+def horizons(means: Means, network: Network) -> tuple[float, float]:
     """Return the latest arrival of the front, and until when the sea is frozen [s since 1970]."""
     task = means.task
     length = shortest_length(network)
@@ -217,7 +230,7 @@ def _horizons(means: Means, network: Network) -> tuple[float, float]:
             until += _TWO_TIDES
     if task.voyage.arrive_by is None:
         latest = min(until, task.last)
-        return latest, latest
+        return latest, min(latest + _MORE * (latest - task.voyage.earliest_departure), task.last)
     latest = min(float(task.voyage.arrive_by), task.last)  # type: ignore[arg-type]
     return latest, min(max(latest, until), task.last)
 

@@ -47,7 +47,7 @@ _KIND = (
     "lengths as short as in open water"
 )
 #: Routes of a front that are refereed and published.
-_MOST_ROUTES = 24
+_MOST_ROUTES = 100
 
 
 @dataclass(frozen=True)
@@ -102,29 +102,32 @@ def _explored(means: Means, ways: list[Any]) -> list[Explored]:
 
 def _candidates(means: Means, explored: list[Explored]) -> list[Candidate]:
     """Return routes worth the referee's time, by ascending time."""
-    found: list[Candidate] = []
-    for one in explored:
-        exact = [
-            Candidate(
-                track_of_point(one.way.network, point),
-                "exact",
-                one.way.name,
-                point.time,
-                point.cost,
-            )
-            for point in one.exact.points
-        ]
-        if means.task.voyage.method != "exact":
-            from thalweg.planning.evolving import evolved
+    found = [candidate for one in explored for candidate in _exact(one)]
+    method = means.task.voyage.method
+    if method != "exact":
+        from thalweg.planning.evolving import evolved
+        from thalweg.planning.rounds import round_candidates
 
+        found += round_candidates(means) if method == "default" else []
+        for one in explored:
             means.task.tell(f"refining the front: {one.way.name}")
-            exact += evolved(means, one, exact)
-        found += exact
-    time = np.array([item.time for item in found])
-    value = np.array([item.value for item in found])
-    kept = not_dominated(time, value)
-    picked = spread(time[kept], value[kept], _MOST_ROUTES)
-    return [found[kept[index]] for index in picked]
+            found += evolved(means, one, [c for c in found if c.way == one.way.name])
+    kept = not_dominated(*_points(found))
+    time, value = _points([found[index] for index in kept])
+    return [found[kept[index]] for index in spread(time, value, _MOST_ROUTES)]
+
+
+def _exact(one: Explored) -> list[Candidate]:
+    """Return the exact front of one way round."""
+    network, name = one.way.network, one.way.name
+    return [
+        Candidate(track_of_point(network, point), "exact", name, point.time, point.cost)
+        for point in one.exact.points
+    ]
+
+
+def _points(found: list[Candidate]) -> tuple[np.ndarray, np.ndarray]:
+    return np.array([item.time for item in found]), np.array([item.value for item in found])
 
 
 def _scored(means: Means, candidates: list[Candidate]) -> list[Scored]:
@@ -173,6 +176,8 @@ def _gathered(
     routes = tuple(item.route for item in ordered)
     values = np.array([item.value for item in ordered])
     lower = _lower(explored, certain(means, explored)[1])
+    share = _disproved(lower, np.array([route.time_h for route in routes]), values)
+    lower[1] *= share
     shortest_way = min(explored, key=lambda one: shortest_length(one.way.network)).way.name
     front = FrontOfPlan(
         criterion=criterion.name,
@@ -188,7 +193,7 @@ def _gathered(
         routes=routes,
         proof=_proof(means, explored, front, whole=whole),
         rejections=_rejections(explored),
-        notes=tuple(dict.fromkeys(_notes(means, ends, explored, ordered))),
+        notes=tuple(dict.fromkeys([*_notes(means, ends, explored, ordered), *_lowered(share)])),
         provenance=provenance(task, ends, _networks(explored), _speeds_kn(means)),
         surroundings=_surroundings(task, explored),
         front=front,
@@ -210,6 +215,20 @@ def _lower(explored: list[Explored], criterion_floor: float) -> np.ndarray:
     times, values = np.concatenate(time), np.concatenate(value)
     kept = not_dominated(times, values)
     return np.array([times[kept], values[kept]]).reshape(2, -1)
+
+
+def _disproved(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> float:
+    """Return the factor by which routes show the lower front to be too high; 1 where none does.
+
+    Ways between islands may be shorter, by more than the factor of directions, than those of a
+    coarse network.
+    """
+    factor = 1.0
+    for time, value in zip(time_h, values):
+        bound = lower[1, lower[0] <= time].min(initial=math.inf)
+        if value < bound < math.inf:
+            factor = min(factor, float(value / bound))
+    return factor
 
 
 def _proof(means: Means, explored: list[Explored], front: FrontOfPlan, *, whole: bool) -> Proof:
@@ -331,6 +350,15 @@ def _notes(
     if bounded and slowest > task.last - _NEAR_THE_END:
         notes.append(f"The data end at {format_time(task.last)}: slower routes were not looked at.")
     return notes
+
+
+def _lowered(share: float) -> list[str]:
+    if share == 1.0:
+        return []
+    return [
+        f"Refined routes undercut the lower front of the network by up to {1.0 - share:.1%}, in "
+        "narrow waters mostly; it was lowered by that, and is evidence there, no proof."
+    ]
 
 
 def _nothing_sails(means: Means, explored: list[Explored]) -> NoRouteError:

@@ -25,6 +25,7 @@ _MOST_BINS = 2000
 _COARSEST_BINS = 250
 _MOST_RELAXED = 4e9  # that bins chosen here may allow for; a good third of them come about
 _AMPLE = 1e9  # tables are not made larger than that for the sake of finer slices [bytes]
+_AT_THE_END = 0.05  # of the horizon: longer than edges take
 _SAMPLED = 400  # edges looked at to choose the slices
 _LABEL_BYTES = 20
 _NICE = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 90.0, 120.0, 180.0, 240.0]
@@ -155,7 +156,8 @@ def _slices(
 def _ladder(times: FloatArray, horizon: float) -> list[FloatArray]:
     """Return slices from coarse to fine: every n-th time of the sea, then parts of its steps."""
     inside = times[(times > 0.0) & (times < horizon)]
-    own = np.unique(np.concatenate(([0.0], inside, [horizon])))
+    # edges left at the end of the data cannot be sailed; those before are not judged by them
+    own = np.unique(np.concatenate(([0.0], inside, [(1.0 - _AT_THE_END) * horizon, horizon])))
     rungs = []
     stride = 1 << max(0, int(math.log2(max(len(own) / 8.0, 1.0))))
     while stride > 1:
