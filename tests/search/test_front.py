@@ -171,6 +171,21 @@ def test_certificate_closes_with_the_bins(wait):
     assert gaps[0] > 2.0 * gaps[1] and gaps[1] > 2.0 * gaps[2] and gaps[2] < 0.001
 
 
+@pytest.mark.parametrize("prices", [{}, {"time_price": 5.0}, {"waiting_fuel": 1.0}])
+def test_certificate_where_the_sea_changes_fast_between_slices(prices):
+    """A current holds the ship for a moment, so that tables are off by more than they say."""
+    network = line(5, 500.0)
+    times = np.arange(0.0, 40_001.0, 4000.0)
+    against = np.where(np.arange(len(times)) % 2 == 1, -3.995, 0.0)
+    fields = make_fields(network, times, current_east=against[None, :], current_north=0.0)
+    gaps = []
+    for bin_s in (500.0, 10.0):
+        found = search(network, fields, 4, 12_000.0, tables=ship([4.0]), bin_s=bin_s, **prices)
+        assert np.all(found.gap >= 0.0) and np.all(np.diff(found.lower_cost) <= 0.0)
+        gaps.append(found.gap.max())
+    assert gaps[1] < gaps[0] and gaps[1] < 0.07
+
+
 def test_lower_front_where_some_nodes_do_not_let_wait():
     network, fields = random_world(3)
     can_wait = np.arange(network.n_nodes) % 2 == 0

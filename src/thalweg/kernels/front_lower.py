@@ -21,6 +21,7 @@ from thalweg.kernels.front_legs import fill_block, sail_priced
 
 _SAFETY = 2.0  # of the difference met amid two slices
 _ROUNDING = 1e-6  # of tables in single precision
+_LOST = 0.25  # off by more: what holds whatever the sea is may be the larger bound
 
 
 class LowerLabels(NamedTuple):
@@ -57,7 +58,7 @@ class Slack(NamedTuple):
     state : uint8[B]
         By block: 0 not looked at; 1 known.
     off : float32[:, 2]
-        Of duration and of cost, as a share.
+        Of duration and of cost without the price of time, as a share.
     gains : uint8[:]
         Whether leaving later may be of use; 2 where the edge is shut at one of the two slices.
     along : float64[E]
@@ -77,8 +78,11 @@ class Slack(NamedTuple):
 
 @inlined
 def _off_amid(world, blocks, edge, at, span, k, t, count, work):
-    """Return how far duration and cost amid two slices are from the mean of the two."""
-    values = blocks.values
+    """Return how far duration and cost amid two slices are from the mean of the two.
+
+    The cost is that without the price of time.
+    """
+    values, price = blocks.values, world.prices.time_price
     off_time, off_cost = 0.0, 0.0
     for s in range(0, count, max(count - 1, 1)):
         d0, d1 = np.float64(values[at + s]), np.float64(values[at + span + s])
@@ -89,8 +93,9 @@ def _off_amid(world, blocks, edge, at, span, k, t, count, work):
         blocks.sailed[0] += 1
         if status == OK:
             off_time = max(off_time, abs(2.0 * (then - t) / (d0 + d1) - 1.0))
-            if c0 + c1 > 0.0:
-                off_cost = max(off_cost, abs(2.0 * cost / (c0 + c1) - 1.0))
+            mean = 0.5 * (c0 + c1 - price * (d0 + d1))
+            if mean > 0.0:
+                off_cost = max(off_cost, abs((cost - price * (then - t)) / mean - 1.0))
     return _SAFETY * off_time + _ROUNDING, _SAFETY * off_cost + _ROUNDING
 
 
@@ -163,6 +168,28 @@ def least_amid(world, slack, edge, s, rate, longest):
     return took, prices.fee[edge] + net * (took if net > 0.0 else longest)
 
 
+@inlined
+def least_between(world, slack, edge, s, rate, longest, begin, end, pair, off):
+    """Return the earliest and latest arrival, and the least reduced cost, between two slices.
+
+    ``pair`` holds durations and costs at begin and end by the tables, ``off`` how far these may
+    be off.
+    """
+    da, db, ca, cb = pair
+    off_time, off_cost = off
+    price = world.prices.time_price
+    left = max(1.0 - off_time, 0.0)
+    net, dear = price - rate, max(1.0 - off_cost, 0.0)
+    slow = net * (left if net > 0.0 else 1.0 + off_time)
+    least = min(dear * (ca - price * da) + slow * da, dear * (cb - price * db) + slow * db)
+    least = max(least - _ROUNDING * max(ca, cb), 0.0)
+    sooner = min(begin + da * left, end + db * left)
+    if off_time > _LOST or off_cost > _LOST:
+        took, amid = least_amid(world, slack, edge, s, rate, longest)
+        sooner, least = max(sooner, begin + took), max(least, amid)
+    return sooner, max(begin + da * (1.0 + off_time), end + db * (1.0 + off_time)), least
+
+
 @inner
 def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_edges, counts, work):
     """Sail on from a node at any moment of a piece of a bin that lies between two slices."""
@@ -181,7 +208,7 @@ def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_ed
     values, again = blocks.values, False
     for edge in range(e0, e1):
         head, gains = network.target[edge], slack.gains[here]
-        off_time, off_cost = np.float64(slack.off[here, 0]), np.float64(slack.off[here, 1])
+        off = (np.float64(slack.off[here, 0]), np.float64(slack.off[here, 1]))
         here += 1
         ample = clock.latest - target.togo[head]
         waits = clock.wait and network.can_wait[head]
@@ -196,12 +223,10 @@ def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_ed
                 )
                 if d0 < math.inf and d1 < math.inf:
                     da, db = d0 + f * (d1 - d0), d0 + g * (d1 - d0)
-                    ca, cb = c0 + f * (c1 - c0), c0 + g * (c1 - c0)
-                    ra = ca * (1.0 - off_cost) - rate * da * (1.0 + off_time)
-                    rb = cb * (1.0 - off_cost) - rate * db * (1.0 + off_time)
-                    least = min(ra, rb)
-                    sooner = min(begin + da * (1.0 - off_time), end + db * (1.0 - off_time))
-                    later = max(begin + da * (1.0 + off_time), end + db * (1.0 + off_time))
+                    pair = (da, db, c0 + f * (c1 - c0), c0 + g * (c1 - c0))
+                    sooner, later, least = least_between(
+                        world, slack, edge, s, rate, ample - begin, begin, end, pair, off
+                    )
                 elif d0 < math.inf or d1 < math.inf:
                     took, least = least_amid(world, slack, edge, s, rate, ample - begin)
                     sooner = begin + took

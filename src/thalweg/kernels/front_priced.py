@@ -7,7 +7,7 @@ import numpy as np
 
 from thalweg.kernels.bare import bare, inlined, inner
 from thalweg.kernels.front_labels import ACTIVE, RELAXED, STARTED, VISITED, interval_at
-from thalweg.kernels.front_lower import least_amid, look_between
+from thalweg.kernels.front_lower import least_amid, least_between, look_between
 
 
 class TimePriced(NamedTuple):
@@ -68,7 +68,7 @@ def _price_piece(world, labels, target, clock, blocks, slack, node, piece, count
     values, again = blocks.values, False
     for edge in range(e0, e1):
         head, gains = network.target[edge], slack.gains[here]
-        off_time, off_cost = np.float64(slack.off[here, 0]), np.float64(slack.off[here, 1])
+        off = (np.float64(slack.off[here, 0]), np.float64(slack.off[here, 1]))
         here += 1
         room = target.known - target.floor[head] - value
         ample = clock.latest - target.togo[head]
@@ -82,14 +82,12 @@ def _price_piece(world, labels, target, clock, blocks, slack, node, piece, count
                 )
                 if d0 < math.inf and d1 < math.inf:
                     da, db = d0 + f * (d1 - d0), d0 + g * (d1 - d0)
-                    ca, cb = c0 + f * (c1 - c0), c0 + g * (c1 - c0)
-                    dear, slow = 1.0 - off_cost, (1.0 - off_time) * rate
-                    least = min(dear * ca + slow * da, dear * cb + slow * db)
-                    sooner = min(begin + da * (1.0 - off_time), end + db * (1.0 - off_time))
-                    later = max(begin + da * (1.0 + off_time), end + db * (1.0 + off_time))
+                    pair = (da, db, c0 + f * (c1 - c0), c0 + g * (c1 - c0))
+                    sooner, later, least = least_between(
+                        world, slack, edge, s, -rate, ample - begin, begin, end, pair, off
+                    )
                 elif gains == 2 and (d0 < math.inf or d1 < math.inf):
-                    took, least = least_amid(world, slack, edge, s, 0.0, ample - begin)
-                    least += rate * took
+                    took, least = least_amid(world, slack, edge, s, -rate, ample - begin)
                     sooner = begin + took
                     later = end + (1.5 * d0 if d0 < math.inf else 1.5 * d1)
                 else:

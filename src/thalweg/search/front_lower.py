@@ -64,11 +64,25 @@ def lower_front(
         Called with the share done, ``chunks`` times.
     chunks : int
     """
+    got = _waiting_no_dearer_than_sailing(got)
     slack = _new_slack(got, bounds, blocks)
     halves = _by_bins(got, request, bounds, plan, blocks, slack, points, tell, chunks)
     lines, priced = _by_prices(got, request, bounds, plan, blocks, slack, points)
     time, cost = _together(plan, points, halves.time, halves.cost, lines)
     return Lower(time, cost, halves.labels + priced[0], halves.relaxed + priced[1], halves.pruned)
+
+
+def _waiting_no_dearer_than_sailing(got: Gathered) -> Gathered:
+    """Return a world whose price of waiting is at most that of sailing at its cheapest.
+
+    Sailing then never gains on waiting, so that no circle within a bin can fall without end.
+    """
+    prices = got.world.prices
+    spent = (prices.fixed_fuel * prices.weight + prices.fee) / prices.fixed_time
+    sailed = np.nanmin(got.thriftiest, initial=np.inf) * prices.weight
+    least = float(np.where(np.isnan(prices.fixed_time), sailed, spent).min(initial=np.inf))
+    rate = min(prices.wait_rate, prices.time_price + least)
+    return got._replace(world=got.world._replace(prices=prices._replace(wait_rate=rate)))
 
 
 def _by_bins(
