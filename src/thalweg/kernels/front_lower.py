@@ -22,6 +22,8 @@ from thalweg.kernels.front_legs import fill_block, sail_priced
 _SAFETY = 2.0  # of the difference met amid two slices
 _ROUNDING = 1e-6  # of tables in single precision
 _LOST = 0.25  # off by more: what holds whatever the sea is may be the larger bound
+_HALVINGS = 4  # to find when an edge shuts
+_UNSEEN = 0.01  # what an edge may be off by after the last moment it was met open
 
 
 class LowerLabels(NamedTuple):
@@ -57,8 +59,9 @@ class Slack(NamedTuple):
         Where a node's first block starts.
     state : uint8[B]
         By block: 0 not looked at; 1 known.
-    off : float32[:, 2]
-        Of duration and of cost without the price of time, as a share.
+    off : float32[:, 3]
+        How much shorter a passage may be, how much cheaper without the price of time, and how much
+        longer; each as a share.
     gains : uint8[:]
         Whether leaving later may be of use; 2 where the edge is shut at one of the two slices.
     along : float64[E]
@@ -77,13 +80,18 @@ class Slack(NamedTuple):
 
 
 @inlined
-def _off_amid(world, blocks, edge, at, span, k, t, count, work):
-    """Return how far duration and cost amid two slices are from the mean of the two.
+def _off_from(off, took, spent, time, cost, price):
+    """Return shares widened by a passage that takes and costs more or less than thought."""
+    own = spent - price * took
+    dear = (cost - price * time) / own - 1.0 if own > 0.0 else 0.0
+    slow = time / took - 1.0
+    return max(off[0], -slow), max(off[1], -dear), max(off[2], slow)
 
-    The cost is that without the price of time.
-    """
-    values, price = blocks.values, world.prices.time_price
-    off_time, off_cost = 0.0, 0.0
+
+@inlined
+def _off_amid(world, blocks, edge, at, span, k, t, count, work):
+    """Return how far passages amid two slices are from the mean of the two."""
+    values, off = blocks.values, (0.0, 0.0, 0.0)
     for s in range(0, count, max(count - 1, 1)):
         d0, d1 = np.float64(values[at + s]), np.float64(values[at + span + s])
         c0, c1 = np.float64(values[at + count + s]), np.float64(values[at + span + count + s])
@@ -92,11 +100,28 @@ def _off_amid(world, blocks, edge, at, span, k, t, count, work):
         then, cost, status = sail_priced(world, edge, s, k, t, work)
         blocks.sailed[0] += 1
         if status == OK:
-            off_time = max(off_time, abs(2.0 * (then - t) / (d0 + d1) - 1.0))
-            mean = 0.5 * (c0 + c1 - price * (d0 + d1))
-            if mean > 0.0:
-                off_cost = max(off_cost, abs((cost - price * (then - t)) / mean - 1.0))
-    return _SAFETY * off_time + _ROUNDING, _SAFETY * off_cost + _ROUNDING
+            took, spent = 0.5 * (d0 + d1), 0.5 * (c0 + c1)
+            off = _off_from(off, took, spent, then - t, cost, world.prices.time_price)
+    return off
+
+
+@inlined
+def _off_open(world, blocks, node, edge, s, open_at, shut_at, took, spent, work):
+    """Return how far passages of an edge that is open at one slice are off until it shuts."""
+    sea, off = world.sea, (0.0, 0.0, 0.0)
+    for _ in range(_HALVINGS):
+        t = world.depart + 0.5 * (open_at + shut_at)
+        k, status, then, cost = interval_of(sea.times, t), -1, t, 0.0
+        if k >= 0:
+            sample_station(sea, world.network.station[node], k, t, work[1])
+            then, cost, status = sail_priced(world, edge, s, k, t, work)
+            blocks.sailed[0] += 1
+        if status == OK:
+            open_at = t - world.depart
+            off = _off_from(off, took, spent, then - t, cost, world.prices.time_price)
+        else:
+            shut_at = t - world.depart
+    return off
 
 
 @inner
@@ -110,16 +135,17 @@ def look_between(world, blocks, slack, node, i, work):
     span = (e1 - e0) * 2 * count
     at, here = blocks.offset[node] + i * span, slack.start[node] + i * (e1 - e0)
     k0 = blocks.first[node] + i
-    length = blocks.times[k0 + 1] - blocks.times[k0]
-    t = world.depart + blocks.times[k0] + 0.5 * length
+    sooner, later = blocks.times[k0], blocks.times[k0 + 1]
+    length = later - sooner
+    t = world.depart + sooner + 0.5 * length
     k = interval_of(world.sea.times, t)
     if k >= 0:
         sample_station(world.sea, network.station[node], k, t, work[1])
     values = blocks.values
     for edge in range(e0, e1):
-        off_time, off_cost, gains = 0.0, 0.0, 0
+        off, gains = (0.0, 0.0, 0.0), 0
         if k >= 0:
-            off_time, off_cost = _off_amid(world, blocks, edge, at, span, k, t, count, work)
+            off = _off_amid(world, blocks, edge, at, span, k, t, count, work)
         for s in range(count):
             d0, d1 = values[at + s], values[at + span + s]
             if d0 < math.inf and d1 < math.inf:
@@ -131,7 +157,16 @@ def look_between(world, blocks, slack, node, i, work):
                     gains = 1
             elif d0 < math.inf or d1 < math.inf:
                 gains = 2
-        slack.off[here, 0], slack.off[here, 1], slack.gains[here] = off_time, off_cost, gains
+                row, begin, end = (
+                    (at, sooner, later) if d0 < math.inf else (at + span, later, sooner)
+                )
+                took, spent = np.float64(values[row + s]), np.float64(values[row + count + s])
+                more = _off_open(world, blocks, node, edge, s, begin, end, took, spent, work)
+                off = max(off[0], more[0]), max(off[1], more[1]), max(off[2], more[2])
+        least = _UNSEEN if gains == 2 else _ROUNDING
+        for j in range(3):
+            slack.off[here, j] = _SAFETY * off[j] + least
+        slack.gains[here] = gains
         here += 1
         at += 2 * count
     slack.state[blocks.place[node] + i] = 1
@@ -169,6 +204,26 @@ def least_amid(world, slack, edge, s, rate, longest):
 
 
 @inlined
+def shares_off(slack, here):
+    """Return a row of ``slack.off`` in double precision."""
+    off = slack.off
+    return np.float64(off[here, 0]), np.float64(off[here, 1]), np.float64(off[here, 2])
+
+
+@inlined
+def between(d0, d1, c0, c1, f, g):
+    """Return durations and costs at two shares of the time between two slices.
+
+    An edge that is shut at one of the slices is as at the other.
+    """
+    if not d0 < math.inf:
+        return d1, d1, c1, c1
+    if not d1 < math.inf:
+        return d0, d0, c0, c0
+    return d0 + f * (d1 - d0), d0 + g * (d1 - d0), c0 + f * (c1 - c0), c0 + g * (c1 - c0)
+
+
+@inlined
 def least_between(world, slack, edge, s, rate, longest, begin, end, pair, off):
     """Return the earliest and latest arrival, and the least reduced cost, between two slices.
 
@@ -176,18 +231,18 @@ def least_between(world, slack, edge, s, rate, longest, begin, end, pair, off):
     be off.
     """
     da, db, ca, cb = pair
-    off_time, off_cost = off
+    early, cheap, late = off
     price = world.prices.time_price
-    left = max(1.0 - off_time, 0.0)
-    net, dear = price - rate, max(1.0 - off_cost, 0.0)
-    slow = net * (left if net > 0.0 else 1.0 + off_time)
+    left = max(1.0 - early, 0.0)
+    net, dear = price - rate, max(1.0 - cheap, 0.0)
+    slow = net * (left if net > 0.0 else 1.0 + late)
     least = min(dear * (ca - price * da) + slow * da, dear * (cb - price * db) + slow * db)
     least = max(least - _ROUNDING * max(ca, cb), 0.0)
     sooner = min(begin + da * left, end + db * left)
-    if off_time > _LOST or off_cost > _LOST:
+    if early > _LOST or cheap > _LOST or (late > _LOST and net < 0.0):
         took, amid = least_amid(world, slack, edge, s, rate, longest)
         sooner, least = max(sooner, begin + took), max(least, amid)
-    return sooner, max(begin + da * (1.0 + off_time), end + db * (1.0 + off_time)), least
+    return sooner, max(begin + da * (1.0 + late), end + db * (1.0 + late)), least
 
 
 @inner
@@ -208,7 +263,7 @@ def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_ed
     values, again = blocks.values, False
     for edge in range(e0, e1):
         head, gains = network.target[edge], slack.gains[here]
-        off = (np.float64(slack.off[here, 0]), np.float64(slack.off[here, 1]))
+        off = shares_off(slack, here)
         here += 1
         ample = clock.latest - target.togo[head]
         waits = clock.wait and network.can_wait[head]
@@ -221,18 +276,12 @@ def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_ed
                     np.float64(values[at + count + s]),
                     np.float64(values[at + span + count + s]),
                 )
-                if d0 < math.inf and d1 < math.inf:
-                    da, db = d0 + f * (d1 - d0), d0 + g * (d1 - d0)
-                    pair = (da, db, c0 + f * (c1 - c0), c0 + g * (c1 - c0))
-                    sooner, later, least = least_between(
-                        world, slack, edge, s, rate, ample - begin, begin, end, pair, off
-                    )
-                elif d0 < math.inf or d1 < math.inf:
-                    took, least = least_amid(world, slack, edge, s, rate, ample - begin)
-                    sooner = begin + took
-                    later = end + (1.5 * d0 if d0 < math.inf else 1.5 * d1)
-                else:
+                if not (d0 < math.inf or d1 < math.inf):
                     continue
+                pair = between(d0, d1, c0, c1, f, g)
+                sooner, later, least = least_between(
+                    world, slack, edge, s, rate, ample - begin, begin, end, pair, off
+                )
                 if sooner <= ample and least < room:
                     again |= _keep(labels, clock, waits, head, sooner, later, cost + least, b)
         at += 2 * count

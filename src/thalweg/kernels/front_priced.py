@@ -7,7 +7,7 @@ import numpy as np
 
 from thalweg.kernels.bare import bare, inlined, inner
 from thalweg.kernels.front_labels import ACTIVE, RELAXED, STARTED, VISITED, interval_at
-from thalweg.kernels.front_lower import least_amid, least_between, look_between
+from thalweg.kernels.front_lower import between, least_between, look_between, shares_off
 
 
 class TimePriced(NamedTuple):
@@ -67,8 +67,8 @@ def _price_piece(world, labels, target, clock, blocks, slack, node, piece, count
     f, g = (begin - start) / length, (end - start) / length
     values, again = blocks.values, False
     for edge in range(e0, e1):
-        head, gains = network.target[edge], slack.gains[here]
-        off = (np.float64(slack.off[here, 0]), np.float64(slack.off[here, 1]))
+        head = network.target[edge]
+        off = shares_off(slack, here)
         here += 1
         room = target.known - target.floor[head] - value
         ample = clock.latest - target.togo[head]
@@ -80,18 +80,12 @@ def _price_piece(world, labels, target, clock, blocks, slack, node, piece, count
                     np.float64(values[at + count + s]),
                     np.float64(values[at + span + count + s]),
                 )
-                if d0 < math.inf and d1 < math.inf:
-                    da, db = d0 + f * (d1 - d0), d0 + g * (d1 - d0)
-                    pair = (da, db, c0 + f * (c1 - c0), c0 + g * (c1 - c0))
-                    sooner, later, least = least_between(
-                        world, slack, edge, s, -rate, ample - begin, begin, end, pair, off
-                    )
-                elif gains == 2 and (d0 < math.inf or d1 < math.inf):
-                    took, least = least_amid(world, slack, edge, s, -rate, ample - begin)
-                    sooner = begin + took
-                    later = end + (1.5 * d0 if d0 < math.inf else 1.5 * d1)
-                else:
+                if not (d0 < math.inf or d1 < math.inf):
                     continue
+                pair = between(d0, d1, c0, c1, f, g)
+                sooner, later, least = least_between(
+                    world, slack, edge, s, -rate, ample - begin, begin, end, pair, off
+                )
                 if least < room and sooner <= ample:
                     again |= _spread(labels, clock, target, head, sooner, later, value + least, b)
         at += 2 * count

@@ -156,9 +156,10 @@ def front(
       loses nothing to the bins but bounds the lower hull of the front only. Both take an edge at
       the most favourable moment of the bin, less twice the difference to the leg itself met amid
       the two slices around at the lowest and the highest setting; both let a ship wait as long as
-      it likes where it may wait at all. They are certain as far as durations and costs between
-      slices stay within twice that difference, and no edge that is shut at both slices opens for
-      a moment between them.
+      it likes where it may wait at all; waiting then costs no more than sailing at its cheapest.
+      They are certain as far as durations and costs between slices stay within twice that
+      difference, and no edge that is shut at both slices opens for a moment between them. An edge
+      open at one slice only is looked at up to when it shuts, less 1 %.
     * Labels are dropped as well when even the largest currents along the edges, the best weather
       and the best prices of every edge do not lead them below what is known of the goal. This
       loses nothing.

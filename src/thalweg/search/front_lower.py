@@ -222,7 +222,7 @@ def _new_slack(got: Gathered, bounds: Bounds, blocks: Blocks) -> Slack:
     return Slack(
         start=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),
         state=np.zeros(len(blocks.state), np.uint8),
-        off=np.empty((total, 2), np.float32),
+        off=np.empty((total, 3), np.float32),
         gains=np.empty(total, np.uint8),
         along=bounds.to_goal.along,
         fastest=got.fastest,

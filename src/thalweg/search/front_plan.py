@@ -191,7 +191,7 @@ def _memory(got: Gathered, clock: Clock, windows: Windows, slices: FloatArray) -
     _, count = slice_windows(clock, windows, slices)
     degree = np.diff(got.world.network.indptr)
     values = int((count * degree).sum()) * 2 * len(got.world.ship.settings) * 4
-    slack = int((count * degree).sum()) * 9
+    slack = int((count * degree).sum()) * 13
     return values + slack + int(count.sum()) * 2 + windows.bins * _LABEL_BYTES + 200 * len(degree)
 
 
