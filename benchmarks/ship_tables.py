@@ -122,9 +122,11 @@ def direct_rows(count: int) -> None:
         "calm + wind + STAwave-2": {"waves": "stawave_2", "shallow_water": "none"},
         "calm + wind + SNNM": {"waves": "snnm", "shallow_water": "none"},
         "calm + shallow + wind + SNNM": {},
+        "the same, with a propeller": {"propulsion": "wageningen_b"},
     }
+    screw = {"propulsion": Ship.load("jbc").data["propulsion"]}
     for name, models in cases.items():
-        ship = Ship.from_dict({**FULL, "models": {**FULL["models"], **models}})
+        ship = Ship.from_dict({**FULL, **screw, "models": {**FULL["models"], **models}})
         scale = 1e6 / count
         power = _cpu(lambda ship=ship: ship.power_at_speed(conditions, 6.5), 3) * scale
         speed = _cpu(lambda ship=ship: ship.speed_through_water(conditions, 4), 1) * scale

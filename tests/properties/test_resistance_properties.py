@@ -12,7 +12,13 @@ from hypothesis import strategies as st
 from thalweg.ship.methods.calm_water_hollenbach import hollenbach_1998, hollenbach_validity
 from thalweg.ship.methods.calm_water_holtrop import Extremities, holtrop
 from thalweg.ship.methods.holtrop_form import hull_form
-from thalweg.ship.methods.propeller_b_series import Propeller, operating_point
+from thalweg.ship.methods.propeller_b_series import (
+    Propeller,
+    b_series_polynomials,
+    largest_advance,
+    operating_point,
+    solve_advance,
+)
 from thalweg.ship.methods.propulsion import propulsion
 from thalweg.ship.methods.shallow_water import (
     karpov_speed,
@@ -323,6 +329,33 @@ def test_more_thrust_needs_more_turns_and_power(thrust, inflow, more):
     assert second.rate > first.rate
     assert second.power > first.power
     assert 0.0 <= first.efficiency < 0.85
+
+
+@quick
+@given(
+    force=st.floats(-2.0, 8.0).map(lambda power: 10.0**power),
+    inflow=st.floats(-4.0, 1.5).map(lambda power: 10.0**power),
+    pitch=st.floats(0.5, 1.4),
+    area=st.floats(0.3, 1.05),
+    blades=st.integers(2, 7),
+)
+def test_the_propeller_gives_the_thrust_asked_for(force, inflow, pitch, area, blades):
+    screw = Propeller(diameter=5.0, pitch_ratio=pitch, area_ratio=area, blades=blades)
+    thrust, _ = b_series_polynomials(screw)
+    largest = largest_advance(screw)
+    stream = 1025.0 * (inflow * 5.0) ** 2
+    found = solve_advance(
+        [force, 0.0, -1.0, force],
+        [inflow, inflow, inflow, 0.0],
+        polynomial=thrust,
+        largest=largest,
+        diameter=5.0,
+        density=1025.0,
+    )
+    given_ = stream * np.polynomial.polynomial.polyval(found[0], thrust)
+    assert 0.0 <= found[0] <= largest
+    assert given_ == pytest.approx(force * found[0] ** 2, abs=1e-9 * max(force, stream))
+    assert found[1] == pytest.approx(largest) and np.isnan(found[2]) and found[3] == 0.0
 
 
 @quick

@@ -28,6 +28,7 @@ Flat = Mapping[str, FloatArray]
 #: parts, their error, and what follows their sum
 Tabulated: TypeAlias = tuple[tuple[TablePart, ...], TableError, Finish | None]
 FASTEST: Final = 1.25  #: weather never takes a ship beyond this many times its calm-water speed
+_STOPPED: Final = 0.01  #: below this the weather may stop the ship altogether [m/s]
 _CALM: Final = {
     "wind_speed": 0.0,
     "wind_angle": 0.0,
@@ -100,7 +101,12 @@ class Balance:
             here = {name: values[index] for name, values in at.items()}
             return np.cbrt(self.brake_power(here, speed)) - target[index]
 
-        return bracketed_root(excess, np.zeros(power.shape), highest, tolerance=1e-4)
+        low = np.zeros(power.shape)
+        # at rest only a propeller at the bollard takes power; less than ordered unless it is stopped
+        root = bracketed_root(excess, low, highest, at_low=-target, tolerance=1e-4)
+        slow = np.flatnonzero(root < _STOPPED)
+        root[slow] = np.where(excess(low[slow], slow) >= 0.0, 0.0, root[slow])
+        return root
 
     def notes(self, at: Flat, speed: FloatArray) -> list[RangeNote]:
         """Where methods are outside their ranges."""

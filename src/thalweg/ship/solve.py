@@ -13,7 +13,12 @@ Indexed = Callable[[FloatArray, NDArray[np.intp]], FloatArray]
 
 
 def bracketed_root(
-    function: Indexed, low: FloatArray, high: FloatArray, *, tolerance: float = 1e-7
+    function: Indexed,
+    low: FloatArray,
+    high: FloatArray,
+    *,
+    at_low: FloatArray | None = None,
+    tolerance: float = 1e-7,
 ) -> FloatArray:
     """Return where functions cross zero from below, by the method of Anderson and Bjorck.
 
@@ -23,6 +28,8 @@ def bracketed_root(
         ``f(x, index)``: values of the functions ``index`` at ``x``, both 1-D of one length.
     low, high : ndarray
         1-D; the brackets.
+    at_low : ndarray, optional
+        Values at ``low`` where they are known, or as good as known.
     tolerance : float
         Absolute, in x.
 
@@ -40,7 +47,8 @@ def bracketed_root(
     """
     everywhere = np.arange(low.size)
     a, b = low.astype(float).copy(), high.astype(float).copy()
-    fa, fb = function(a, everywhere), function(b, everywhere)
+    fa = function(a, everywhere) if at_low is None else at_low
+    fb = function(b, everywhere)
     root = np.where(np.isnan(fa) | np.isnan(fb), np.nan, np.where(fa >= 0.0, a, b))
     active = np.flatnonzero((fa < 0.0) & (fb > 0.0))
     a, b, fa, fb = a[active], b[active], fa[active], fb[active]

@@ -9,141 +9,19 @@ independent reprints; the worked example of Holtrop and Mennen (1982) is among t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.units import SEA_WATER_DENSITY
+from thalweg.ship.methods.b_series_coefficients import (
+    THRUST,
+    THRUST_REYNOLDS,
+    TORQUE,
+    TORQUE_REYNOLDS,
+)
 from thalweg.ship.methods.friction import FloatArray
 from thalweg.ship.methods.notes import RangeNote, range_notes
-
-# Coefficient and powers of J, P/D, A_E/A_0 and Z.
-_THRUST: Final = np.array(
-    [
-        [0.00880496, 0, 0, 0, 0],
-        [-0.204554, 1, 0, 0, 0],
-        [0.166351, 0, 1, 0, 0],
-        [0.158114, 0, 2, 0, 0],
-        [-0.147581, 2, 0, 1, 0],
-        [-0.481497, 1, 1, 1, 0],
-        [0.415437, 0, 2, 1, 0],
-        [0.0144043, 0, 0, 0, 1],
-        [-0.0530054, 2, 0, 0, 1],
-        [0.0143481, 0, 1, 0, 1],
-        [0.0606826, 1, 1, 0, 1],
-        [-0.0125894, 0, 0, 1, 1],
-        [0.0109689, 1, 0, 1, 1],
-        [-0.133698, 0, 3, 0, 0],
-        [0.00638407, 0, 6, 0, 0],
-        [-0.00132718, 2, 6, 0, 0],
-        [0.168496, 3, 0, 1, 0],
-        [-0.0507214, 0, 0, 2, 0],
-        [0.0854559, 2, 0, 2, 0],
-        [-0.0504475, 3, 0, 2, 0],
-        [0.010465, 1, 6, 2, 0],
-        [-0.00648272, 2, 6, 2, 0],
-        [-0.00841728, 0, 3, 0, 1],
-        [0.0168424, 1, 3, 0, 1],
-        [-0.00102296, 3, 3, 0, 1],
-        [-0.0317791, 0, 3, 1, 1],
-        [0.018604, 1, 0, 2, 1],
-        [-0.00410798, 0, 2, 2, 1],
-        [-0.000606848, 0, 0, 0, 2],
-        [-0.0049819, 1, 0, 0, 2],
-        [0.0025983, 2, 0, 0, 2],
-        [-0.000560528, 3, 0, 0, 2],
-        [-0.00163652, 1, 2, 0, 2],
-        [-0.000328787, 1, 6, 0, 2],
-        [0.000116502, 2, 6, 0, 2],
-        [0.000690904, 0, 0, 1, 2],
-        [0.00421749, 0, 3, 1, 2],
-        [0.0000565229, 3, 6, 1, 2],
-        [-0.00146564, 0, 3, 2, 2],
-    ]
-)
-_TORQUE: Final = np.array(
-    [
-        [0.00379368, 0, 0, 0, 0],
-        [0.00886523, 2, 0, 0, 0],
-        [-0.032241, 1, 1, 0, 0],
-        [0.00344778, 0, 2, 0, 0],
-        [-0.0408811, 0, 1, 1, 0],
-        [-0.108009, 1, 1, 1, 0],
-        [-0.0885381, 2, 1, 1, 0],
-        [0.188561, 0, 2, 1, 0],
-        [-0.00370871, 1, 0, 0, 1],
-        [0.00513696, 0, 1, 0, 1],
-        [0.0209449, 1, 1, 0, 1],
-        [0.00474319, 2, 1, 0, 1],
-        [-0.00723408, 2, 0, 1, 1],
-        [0.00438388, 1, 1, 1, 1],
-        [-0.0269403, 0, 2, 1, 1],
-        [0.0558082, 3, 0, 1, 0],
-        [0.0161886, 0, 3, 1, 0],
-        [0.00318086, 1, 3, 1, 0],
-        [0.015896, 0, 0, 2, 0],
-        [0.0471729, 1, 0, 2, 0],
-        [0.0196283, 3, 0, 2, 0],
-        [-0.0502782, 0, 1, 2, 0],
-        [-0.030055, 3, 1, 2, 0],
-        [0.0417122, 2, 2, 2, 0],
-        [-0.0397722, 0, 3, 2, 0],
-        [-0.00350024, 0, 6, 2, 0],
-        [-0.0106854, 3, 0, 0, 1],
-        [0.00110903, 3, 3, 0, 1],
-        [-0.000313912, 0, 6, 0, 1],
-        [0.0035985, 3, 0, 1, 1],
-        [-0.00142121, 0, 6, 1, 1],
-        [-0.00383637, 1, 0, 2, 1],
-        [0.0126803, 0, 2, 2, 1],
-        [-0.00318278, 2, 3, 2, 1],
-        [0.00334268, 0, 6, 2, 1],
-        [-0.00183491, 1, 1, 0, 2],
-        [0.000112451, 3, 2, 0, 2],
-        [-0.0000297228, 3, 6, 0, 2],
-        [0.000269551, 1, 0, 1, 2],
-        [0.00083265, 2, 0, 1, 2],
-        [0.00155334, 0, 2, 1, 2],
-        [0.000302683, 0, 6, 1, 2],
-        [-0.0001843, 0, 0, 2, 2],
-        [-0.000425399, 0, 3, 2, 2],
-        [0.0000869243, 3, 3, 2, 2],
-        [-0.0004659, 0, 6, 2, 2],
-        [0.0000554194, 1, 6, 2, 2],
-    ]
-)
-# The same for the Reynolds correction, with the power of log10(Rn) - 0.301 last.
-_THRUST_REYNOLDS: Final = np.array(
-    [
-        [0.000353485, 0, 0, 0, 0, 0],
-        [-0.00333758, 2, 0, 1, 0, 0],
-        [-0.00478125, 1, 1, 1, 0, 0],
-        [0.000257792, 2, 0, 1, 0, 2],
-        [0.0000643192, 2, 6, 0, 0, 1],
-        [-0.0000110636, 2, 6, 0, 0, 2],
-        [-0.0000276305, 2, 0, 1, 1, 2],
-        [0.0000954, 1, 1, 1, 1, 1],
-        [0.0000032049, 1, 3, 1, 2, 1],
-    ]
-)
-_TORQUE_REYNOLDS: Final = np.array(
-    [
-        [-0.000591412, 0, 0, 0, 0, 0],
-        [0.00696898, 0, 1, 0, 0, 0],
-        [-0.0000666654, 0, 6, 0, 1, 0],
-        [0.0160818, 0, 0, 2, 0, 0],
-        [-0.000938091, 0, 1, 0, 0, 1],
-        [-0.00059593, 0, 2, 0, 0, 1],
-        [0.0000782099, 0, 2, 0, 0, 2],
-        [0.0000052199, 2, 0, 1, 1, 1],
-        [-0.00000088528, 1, 1, 1, 1, 2],
-        [0.0000230171, 0, 6, 0, 1, 1],
-        [-0.00000184341, 0, 6, 0, 1, 2],
-        [-0.00400252, 0, 0, 2, 0, 1],
-        [0.000220915, 0, 0, 2, 0, 2],
-    ]
-)
 
 
 @dataclass(frozen=True)
@@ -225,11 +103,11 @@ def b_series_polynomials(
     thrust, torque : ndarray
         Four coefficients each.
     """
-    thrust, torque = _collapse(_THRUST, propeller), _collapse(_TORQUE, propeller)
+    thrust, torque = _collapse(THRUST, propeller), _collapse(TORQUE, propeller)
     if reynolds is not None:
         log = float(np.log10(reynolds)) - 0.301
-        thrust = thrust + _collapse(_THRUST_REYNOLDS, propeller, log)
-        torque = torque + _collapse(_TORQUE_REYNOLDS, propeller, log)
+        thrust = thrust + _collapse(THRUST_REYNOLDS, propeller, log)
+        torque = torque + _collapse(TORQUE_REYNOLDS, propeller, log)
     return thrust, torque
 
 
@@ -283,7 +161,8 @@ def solve_advance(
     """Advance coefficient at which a propeller gives a thrust at a speed of advance.
 
     The root of K_T(J) rho V_A^2 D^2 = T J^2 is unique between J = 0 (at the bollard) and the J of
-    no thrust; Newton steps are kept inside the bracket.
+    no thrust. Newton's method finds it from a point near by; where it strays, its steps are kept
+    inside the bracket.
 
     Parameters
     ----------
@@ -310,22 +189,60 @@ def solve_advance(
     scale = np.maximum(stream, force)
     share = force / np.where(scale > 0.0, scale, 1.0)
     stream = stream / np.where(scale > 0.0, scale, 1.0)
-    low, high = np.zeros_like(share), np.full_like(share, largest)
-    ratio = 0.5 * (low + high)
-    _, b, c, d = polynomial
-    for _ in range(60):
-        value = stream * _cubic(polynomial, ratio) - share * ratio**2
-        low, high = np.where(value > 0.0, ratio, low), np.where(value > 0.0, high, ratio)
-        slope = stream * (b + ratio * (2.0 * c + ratio * 3.0 * d)) - 2.0 * share * ratio
-        step = value / np.where(slope < 0.0, slope, -1.0)
-        new = ratio - step
-        new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
-        moved = np.nanmax(np.abs(new - ratio), initial=0.0)
-        ratio = new
-        if not moved > 1e-11:  # Newton's next step would be its square
-            break
+    ratio = _near_advance(share, stream, polynomial, largest)
+    for _ in range(3):
+        step = _newton_step(ratio, share, stream, polynomial)
+        ratio = ratio - step
+    # Newton's next step would be the square of the last one
+    settled = (np.abs(step) < 1e-6) & (ratio >= 0.0) & (ratio <= largest)
+    rough = ~settled & np.isfinite(share) & np.isfinite(stream)
+    if rough.any():
+        sure = _bracketed_advance(share[rough], stream[rough], polynomial, largest)
+        ratio = np.array(ratio)
+        ratio[rough] = sure
     known = (force >= 0.0) & (flow >= 0.0)
     return np.where(known, np.where(flow == 0.0, 0.0, ratio), np.nan)
+
+
+def _newton_step(
+    ratio: FloatArray, share: FloatArray, stream: FloatArray, polynomial: FloatArray
+) -> FloatArray:
+    _, b, c, d = polynomial
+    value = stream * _cubic(polynomial, ratio) - share * ratio**2
+    slope = stream * (b + ratio * (2.0 * c + ratio * 3.0 * d)) - 2.0 * share * ratio
+    return np.asarray(value / np.where(slope < 0.0, slope, -1.0))
+
+
+def _bracketed_advance(
+    share: FloatArray, stream: FloatArray, polynomial: FloatArray, largest: float
+) -> FloatArray:
+    """The same root, slower and for certain: Newton steps that are kept inside the bracket."""
+    low, high = np.zeros_like(share), np.full_like(share, largest)
+    ratio = 0.5 * (low + high)
+    for _ in range(60):
+        above = stream * _cubic(polynomial, ratio) > share * ratio**2
+        low, high = np.where(above, ratio, low), np.where(above, high, ratio)
+        new = ratio - _newton_step(ratio, share, stream, polynomial)
+        new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
+        moved = np.max(np.abs(new - ratio), initial=0.0)
+        ratio = new
+        if moved <= 1e-11:
+            break
+    return ratio
+
+
+def _near_advance(
+    share: FloatArray, stream: FloatArray, polynomial: FloatArray, largest: float
+) -> FloatArray:
+    """Where to start the search for J: between 129 points of K_T / (K_T + J^2), which falls."""
+    points = np.linspace(0.0, largest, 129)
+    thrust = np.maximum(_cubic(polynomial, points), 0.0)
+    loading = thrust / (thrust + points**2)
+    both = share + stream
+    with np.errstate(invalid="ignore"):
+        wanted = share / np.where(both > 0.0, both, np.nan)
+    found = np.interp(wanted, loading[::-1], points[::-1])
+    return np.where(np.isnan(found), 0.5 * largest, found)
 
 
 def operating_point(
