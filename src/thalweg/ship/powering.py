@@ -102,7 +102,7 @@ class Balance:
             return np.cbrt(self.brake_power(here, speed)) - target[index]
 
         low = np.zeros(power.shape)
-        # at rest only a propeller at the bollard takes power; less than ordered unless it is stopped
+        # at rest only a propeller at the bollard takes power: less than ordered, unless stopped
         root = bracketed_root(excess, low, highest, at_low=-target, tolerance=1e-4)
         slow = np.flatnonzero(root < _STOPPED)
         root[slow] = np.where(excess(low[slow], slow) >= 0.0, 0.0, root[slow])
