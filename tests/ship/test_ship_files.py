@@ -349,3 +349,15 @@ def test_what_kwon_needs_and_was_estimated_is_told():
     )
     told = {e.key for e in ship.estimated}
     assert told == {"length_between_perpendiculars_m", "block_coefficient"}
+
+
+def test_the_sign_in_kwons_table_is_a_choice():
+    def speed(sign):
+        hull = {"length_between_perpendiculars_m": 150, "breadth_m": 23.4, "draught_m": 9.5}
+        hull["block_coefficient"] = 0.8
+        models = {"speed_loss": "kwon_2008", **({"kwon_sign": sign} if sign else {})}
+        data = {"name": "x", "hull": hull, "speeds_kn": [12], "models": models}
+        there = Conditions(wind_speed=12.0, wind_angle=0.0)
+        return float(Ship.from_dict(data).speed_through_water(there, 0))
+
+    assert speed(None) == speed("plus") < speed("printed") == speed("minus")

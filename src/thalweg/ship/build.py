@@ -195,7 +195,7 @@ def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
         length=length,
         block_coefficient=block,
         loading=loading,
-        sign=models.get("kwon_sign", "plus"),
+        sign="plus" if models.get("kwon_sign", "plus") == "plus" else "printed",
         ship_type=models.get("kwon_ship_type", "other"),
         classes=models.get("kwon_classes", False),
     )

@@ -184,7 +184,7 @@ _MODELS: Final = (
     }
     | {name: Key("text") for name in ("friction", "squat", "rudder", "wind_type")}
     | {
-        "kwon_sign": Key("word", words=("plus", "printed")),
+        "kwon_sign": Key("word", words=("plus", "printed", "minus")),
         "kwon_classes": Key("flag"),
         "wave_push": Key("flag"),
         "correlation_area": Key("word", words=("hull_and_appendages", "hull")),

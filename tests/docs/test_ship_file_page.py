@@ -1,0 +1,49 @@
+"""The page on ship files names every key and every method there is, and no others."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from thalweg.ship.build import SPEED_LOSSES
+from thalweg.ship.calm_parts import CALM_WATER, FRICTION, SHALLOW_WATER, STERN_SHAPES
+from thalweg.ship.compose import RUDDER
+from thalweg.ship.methods.engine import BASE_SFOC
+from thalweg.ship.propulsion_parts import PROPULSION
+from thalweg.ship.schema import SECTIONS, TOP
+from thalweg.ship.weather_parts import WAVES, WIND
+
+PAGE = (Path(__file__).parents[2] / "docs" / "howto" / "ship_file.md").read_text(encoding="utf-8")
+ROWS = {
+    key: cells[1]
+    for cells in re.findall(r"^\| (.+?) \| (.+) \|$", PAGE, flags=re.MULTILINE)
+    for key in re.findall(r"`([a-z0-9_]+)`", cells[0])
+}
+NAMES = {
+    "calm_water": {*CALM_WATER, "table", "cubic", "none"},
+    "waves": {*WAVES, "none"},
+    "wind": {*WIND, "none"},
+    "shallow_water": set(SHALLOW_WATER),
+    "friction": set(FRICTION),
+    "propulsion": set(PROPULSION),
+    "speed_loss": set(SPEED_LOSSES),
+    "rudder": set(RUDDER),
+}
+
+
+def test_every_key_is_on_the_page_and_no_other():
+    keys = {key for section in SECTIONS.values() for key in section}
+    told = set(ROWS) | {"name", "description", "sources"}
+    assert told - {"table"} == keys | set(TOP)
+
+
+@pytest.mark.parametrize("key", NAMES)
+def test_every_method_is_on_the_page_and_no_other(key):
+    assert set(re.findall(r"`([a-z0-9_]+)`", ROWS[key])) == NAMES[key]
+
+
+def test_engines_and_sterns_are_on_the_page():
+    (engines,) = re.findall(r"^\| `type` \| (`slow.+) \|$", PAGE, flags=re.MULTILINE)
+    assert {engine for engine, _ in BASE_SFOC} == set(re.findall(r"`([a-z_]+)`", engines))
+    sterns = re.findall(r"`([a-z]+)` \((-?\d+)\)", ROWS["stern_shape"])
+    assert {word: float(value) for word, value in sterns}.items() <= dict(STERN_SHAPES).items()
