@@ -204,6 +204,8 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"volumes": 1}, "no project entry named 'volumes'"),
         ({"start": None}, "lacks start"),
         ({"base_case": {"route": [[51.7, 3.5]]}}, "no way"),
+        ({"base_case": {"route": [[51.7, 3.5], [51.6596, 3.6514]]}}, "starts 7,"),
+        ({"base_case": {"route": [[51.7449, 3.579], [51.7, 3.5]]}}, "ends 11,"),
         ({"base_case": {"route": [[51.7, 3.5], [51.8, 3.5]], "load_factor": 0}}, "load_factor is"),
     ],
 )

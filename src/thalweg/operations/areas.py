@@ -121,7 +121,7 @@ def _check_apart(names: list[tuple[str, str, Any]]) -> None:
                 share = 100.0 * common / min(shape.area, its.area)
                 raise InputError(
                     f"The areas {first!r} ({kind}) and {second!r} ({other}) overlap "
-                    f"({share:.2g} % of the smaller).",
+                    f"({share:.0f} % of the smaller).",
                     "A position must tell one activity.",
                     "Draw them apart.",
                     areas=[first, second],

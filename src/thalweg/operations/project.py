@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name
-from thalweg.core.geodesy import Position, check_position
+from thalweg.core.geodesy import Position, check_position, distance
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import DAY
 from thalweg.operations.loading_curves import Pumping
@@ -19,6 +19,7 @@ from thalweg.operations.loading_curves import Pumping
 LARGEST_FILE = 1_000_000  #: bytes
 MOST_FACTORS = 201
 BEST = "best"
+_AT_SITE = 250.0  # how far from the sites the route of the base case may start and end [m]
 
 
 @dataclass(frozen=True)
@@ -141,15 +142,16 @@ class Project:
             unloading=Pumping.from_data(data["unloading"], hopper, "unloading"),
             load_factors=_factors(data.get("load_factors", 11)),
         )
+        sites = _sites(data)
         return cls(
             name=str(data.get("name", "dredging project")),
-            sites=_sites(data),
+            sites=sites,
             work=work,
             start=parse_time(data["start"]),
             days=_positive(data, "days", 35.0),
             ship=data.get("ship", "hopper-dredger"),
             world={key: data[key] for key in _WORLD if key in data},
-            base=_base(data.get("base_case"), work),
+            base=_base(data.get("base_case"), sites),
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -243,7 +245,11 @@ def _sites(data: Mapping[str, Any]) -> Sites:
         raise InputError(f"rings is {rings!r}.", "1, 2 or 3.", "Choose one.", field="rings")
     load, unload = _place(data["load"], "load"), _place(data["unload"], "unload")
     if load == unload:
-        raise InputError("Loading and unloading site are the same place.", "", "Give two places.")
+        raise InputError(
+            "Loading and unloading site are the same place.",
+            "A project sails between two.",
+            "Give two places.",
+        )
     detour = _positive(data, "detour", 3.0)
     if detour < 1.2:
         raise InputError(f"detour is {detour:g}.", "It is at least 1.2.", "Give 3.", field="detour")
@@ -258,7 +264,7 @@ def _sites(data: Mapping[str, Any]) -> Sites:
     )
 
 
-def _base(data: Any, work: Work) -> BaseCase | None:
+def _base(data: Any, sites: Sites) -> BaseCase | None:
     if data is None:
         return None
     if not isinstance(data, Mapping) or not isinstance(data.get("route"), Sequence):
@@ -272,7 +278,9 @@ def _base(data: Any, work: Work) -> BaseCase | None:
             raise unknown_name("entry of the base case", str(key), ("route", "load_factor"))
     route = tuple(_place(place, f"base_case.route[{k}]") for k, place in enumerate(data["route"]))
     if len(route) < 2:
-        raise InputError("The route of the base case is no way.", "Two places or more.", "")
+        raise InputError(
+            "The route of the base case is no way.", "Two places or more.", "Add the others."
+        )
     factor = data.get("load_factor", 1.0)
     if factor != BEST:
         number = isinstance(factor, (int, float)) and not isinstance(factor, bool)
@@ -284,7 +292,20 @@ def _base(data: Any, work: Work) -> BaseCase | None:
                 field="base_case.load_factor",
             )
         factor = float(factor)
+    _check_ends(route, sites)
     return BaseCase(route, factor)
+
+
+def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
+    for end, site, which in ((route[0], sites.load, "starts"), (route[-1], sites.unload, "ends")):
+        away = float(distance(*end, *site))
+        if away > _AT_SITE:
+            raise InputError(
+                f"The route of the base case {which} {away:,.0f} m from the site.",
+                "It leads from the loading site to the unloading site.",
+                f"Let it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
+                field="base_case.route",
+            )
 
 
 def _factors(value: Any) -> tuple[float, ...]:

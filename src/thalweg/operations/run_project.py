@@ -180,7 +180,7 @@ def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteEr
     loaded = world.loaded(load_factor)
     required = loaded.required_depth
     open_to = _passable_depth(ways, loaded)
-    asked = f"No tide opens a way for the {name} with load factor {load_factor:g}."
+    asked = f"No tide opens a way with load factor {load_factor:g} ({name})."
     if not math.isfinite(open_to):
         return NoRouteError(
             asked, "The sites are not joined by water at all.", "Check the chart and the detour."
