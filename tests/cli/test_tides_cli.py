@@ -11,6 +11,7 @@ import xarray as xr
 
 from tests.conftest import data_file
 from thalweg.cli import tides
+from thalweg.cli.main import main
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import format_time, parse_time
 from thalweg.sea import names as nm
@@ -156,3 +157,16 @@ def test_a_record_that_is_none(tmp_path, text):
 def test_a_span_that_is_none(tmp_path, span):
     with pytest.raises(InputError):
         tide("predict", tmp_path / "x.json", *span)
+
+
+def test_a_run_in_metres_is_analysed_with_its_projection(tmp_path, capsys):
+    path = data_file("tide/adh_sandiego_waterlevel_ugrid_30min.nc")
+    assert main(["tides", "analyse", str(path), "--constituents", "M2"]) == 2
+    assert "--map crs=EPSG" in capsys.readouterr().err
+    out = str(tmp_path / "run.json")
+    words = ["--constituents", "M2", "--map", "crs=EPSG:32611", "--out", out]
+    assert main(["tides", "analyse", str(path), *words]) == 0
+    assert "9140 nodes" in capsys.readouterr().out
+    there = ["--at", "32.65,-117.25", "--start", "2031-01-01", "--end", "2031-01-01T01:00"]
+    assert main(["tides", "predict", out, *there]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 8

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
+from thalweg.cli import common
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time, parse_time
 
@@ -46,6 +47,7 @@ def _add_analyse(actions: Any) -> None:
         description="Find the tidal constituents of a record (CSV) or a model run (NetCDF).",
     )
     parser.add_argument("file", metavar="FILE", help="record (CSV) or model run (NetCDF)")
+    common.add_mapping_option(parser)
     parser.add_argument("--at", metavar="LAT,LON", help="position of the record")
     parser.add_argument(
         "--constituents", nargs="+", metavar="NAME", help="by default all the length can tell apart"
@@ -128,7 +130,7 @@ def _model(arguments: argparse.Namespace) -> TideAnalysis:
     from thalweg.sea.tidal_run import tidal_analysis
 
     return tidal_analysis(
-        Sea.open(arguments.file),
+        Sea.open(arguments.file, mapping=common.mapping_of(arguments)),
         constituents=arguments.constituents,
         rayleigh=arguments.rayleigh,
         progress=_progress(arguments),

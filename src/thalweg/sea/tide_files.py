@@ -122,7 +122,7 @@ def station_of(
         raise InputError(
             f"{source} holds {len(stations)} stations and none is named.",
             f"For example {', '.join(list(names)[:3])}.",
-            "Name one by its id or name.",
+            "Name one by its id or name (on the command line --station).",
             file=source,
         )
     if wanted is not None and wanted not in names:
