@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
+from tests.conftest import data_file
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.time import parse_time
@@ -277,3 +278,51 @@ def test_the_example_for_some_days_on_the_full_network():
     assert min(leg.clearance for leg in legs) >= 1.0
     assert all(leg.route.feasible for leg in legs)
     assert np.isfinite([leg.energy for leg in legs]).all()
+
+
+def san_diego(**changes):
+    path = data_file("tide/adh_sandiego_waterlevel_ugrid_30min.nc")
+    return Project.from_dict(
+        {
+            "ship": "hopper-dredger",
+            "sea": str(path),
+            "map": {"crs": "EPSG:32611"},
+            "coast": "none",
+            "load": [32.65, -117.25],
+            "unload": [32.70, -117.165],
+            "volume_m3": 6000,
+            "hopper_m3": 4000,
+            "loading": 1.5,
+            "unloading": 2.0,
+            "load_factors": 5,
+            "start": "2000-01-01T01:00Z",
+            "days": 0.9,
+            "min_ukc_m": 0.5,
+            **changes,
+        }
+    )
+
+
+def test_a_project_on_the_mesh_of_a_real_model():
+    """Ways along the rim of the mesh keep the nodes that hold them inside it."""
+    project = san_diego()
+    ship, sea, chart = open_things(project)
+    run = run_project(project, ship=ship, sea=sea, chart=chart).optimised
+    assert run.feasible
+    assert sum(cycle.volume for cycle in run.cycles) >= 6000.0
+    assert min(leg.clearance for cycle in run.cycles for leg in cycle.legs) >= 0.5
+
+
+def test_a_project_outside_the_period_of_its_data():
+    project = san_diego(start="2030-01-01T00:00Z")
+    ship, sea, chart = open_things(project)
+    with pytest.raises(OutsidePeriodError, match="outside the data"):
+        run_project(project, ship=ship, sea=sea, chart=chart)
+
+
+@pytest.mark.slow
+def test_a_project_on_the_tide_of_a_real_model_for_another_year():
+    pytest.importorskip("utide")
+    project = san_diego(start="2030-01-01T00:00Z", days=2, tides=["M2"])
+    ship, sea, chart = open_things(project)
+    assert run_project(project, ship=ship, sea=sea, chart=chart).optimised.feasible

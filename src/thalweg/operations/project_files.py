@@ -69,7 +69,10 @@ def _sea(world: Mapping[str, Any]) -> Sea | None:
         )
     files = [given] if isinstance(given, str) else list(given)
     sea = Sea.open(*files, mapping=world.get("map"))
-    return Sea.from_tides(sea) if world.get("tides") else sea
+    tides = world.get("tides")
+    if not tides:
+        return sea
+    return Sea.from_tides(sea, constituents=None if tides is True else _listed(tides))
 
 
 def _chart(world: Mapping[str, Any], chart: Chart | None) -> Chart:

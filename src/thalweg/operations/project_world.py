@@ -19,7 +19,7 @@ from thalweg.network import Network, NetworkMeta, lattice, mesh
 from thalweg.network.pairs import Stations, assemble, measure, no_samples
 from thalweg.network.sides import sampled_on_sides
 from thalweg.operations.project import Sites
-from thalweg.planning.needs import Needs, find_needs
+from thalweg.planning.needs import Needs, check_period, find_needs
 from thalweg.planning.passage import MEMORY_LIMIT, table_of
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import names as nm
@@ -72,12 +72,13 @@ class World:
         Raises
         ------
         CoverageError
-            If the sea lacks a variable.
+            If the sea lacks a variable, or does not hold the beginning of the period.
         """
         voyage = Voyage(
             start=sites.load, goal=sites.unload, depart=period[0], min_ukc_m=sites.min_ukc
         )
         needs = find_needs(voyage, ship=ship.with_load_factor(1.0), sea=sea, chart=chart)
+        check_period(voyage, sea, needs)
         return cls(sites, period, ship, sea, chart, needs)
 
     @property

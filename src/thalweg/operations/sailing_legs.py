@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from thalweg.operations.cycles import Leg, leg_energy
 from thalweg.operations.project_world import Loaded, Ways, World
 from thalweg.route import Route, Track, evaluate
+from thalweg.route.limits import is_gap
 from thalweg.search import Passage, Passages
 
 FloatArray = NDArray[np.float64]
@@ -91,9 +92,17 @@ class LegSailor:
         return Leg(best, leg_energy(best, loaded.ship))
 
     def _judged(self, passage: Passage, loaded: Loaded) -> Route:
+        """Score a passage by its corners; by all its nodes where these just leave the data."""
+        route = self._scored(track_of_passage(self.ways, passage, loaded.setting), loaded)
+        if any(is_gap(violation) for violation in route.violations):
+            track = track_of_passage(self.ways, passage, loaded.setting, corners=False)
+            return self._scored(track, loaded)
+        return route
+
+    def _scored(self, track: Track, loaded: Loaded) -> Route:
         world = self.world
         return evaluate(
-            track_of_passage(self.ways, passage, loaded.setting),
+            track,
             ship=loaded.ship,
             sea=world.sea,
             chart=world.chart,
@@ -103,14 +112,14 @@ class LegSailor:
         )
 
 
-def track_of_passage(ways: Ways, passage: Passage, setting: int) -> Track:
-    """Return the track of a passage; waits below a second are none."""
+def track_of_passage(ways: Ways, passage: Passage, setting: int, *, corners: bool = True) -> Track:
+    """Return the track of a passage, by its corners or all its nodes; waits below 1 s are none."""
     wait = np.maximum(0.0, passage.node_depart - passage.node_arrive)
     wait[-1] = 0.0
     wait = np.where(wait < 1.0, 0.0, wait)
     network = ways.network
     lat, lon = network.lat[passage.nodes], network.lon[passage.nodes]
-    keep = _corners(lat, lon) | (wait > 0.0)
+    keep = _corners(lat, lon) | (wait > 0.0) if corners else np.ones(len(lat), bool)
     count = int(keep.sum())
     return Track(lat[keep], lon[keep], passage.depart, wait[keep], np.full(count - 1, setting))
 
