@@ -307,10 +307,16 @@ def test_a_project_on_the_mesh_of_a_real_model():
     """Ways along the rim of the mesh keep the nodes that hold them inside it."""
     project = san_diego()
     ship, sea, chart = open_things(project)
-    run = run_project(project, ship=ship, sea=sea, chart=chart).optimised
+    result = run_project(project, ship=ship, sea=sea, chart=chart)
+    run = result.optimised
     assert run.feasible
     assert sum(cycle.volume for cycle in run.cycles) >= 6000.0
     assert min(leg.clearance for cycle in run.cycles for leg in cycle.legs) >= 0.5
+    figure = draw_routes(result)
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())
+    x, y = figure.axes[0].transData.transform((-117.19, 32.70))  # Coronado is land: not deep blue
+    assert pixels[len(pixels) - 1 - int(y), int(x), :3].tolist() == [0xD9, 0xD4, 0xC8]
 
 
 def test_a_project_outside_the_period_of_its_data():

@@ -21,6 +21,7 @@ _ACTIVITIES = {
     "unloading": "#c9a227",
     "sailing empty": "#8fc1d4",
 }
+_UNKNOWN = "#d9d4c8"  # land, and where no depth is known
 _FIRST_DAYS = 4.0  # shown hour by hour
 _MOST_LINES = 600  # ways drawn of each run
 
@@ -227,7 +228,7 @@ def _depth(result: ProjectResult, axes: Any) -> Any:
     (west, east), (south, north) = axes.get_xlim(), axes.get_ylim()
     lon, lat = np.meshgrid(np.linspace(west, east, 160), np.linspace(south, north, 160))
     chart, sea = result.world.chart, result.world.sea
-    depth = np.full(lat.shape, np.inf)
+    depth = np.full(lat.shape, np.nan)
     if chart.has_depth:
         depth = np.asarray(chart.depth_at(lat, lon), float)
     if nm.BED_DEPTH in sea.variables:
@@ -235,7 +236,8 @@ def _depth(result: ProjectResult, axes: Any) -> Any:
         depth = np.fmin(depth, sea.sample([nm.BED_DEPTH], time, lat, lon)[nm.BED_DEPTH])
     if not np.isfinite(depth).any():
         return None
-    shown = np.clip(depth, -2.0, 20.0)
+    axes.set_facecolor(_UNKNOWN)
+    shown = np.where(np.isfinite(depth), np.clip(depth, -2.0, 20.0), np.nan)
     filled = axes.contourf(lon, lat, shown, levels=np.arange(-2.0, 20.5, 1.0), cmap="Blues",
                            alpha=0.75, zorder=0)  # fmt: skip
     axes.contour(lon, lat, shown, levels=[0.0], colors="#8f8672", linewidths=0.8, zorder=1)
