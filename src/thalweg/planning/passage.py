@@ -127,7 +127,8 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
             tried = _attempt(task, networks[finer], (start, goal), window, limits)
         except NoRouteError as error:
             refusal = refusal or error
-            if passage is None and not _replaceable(task, networks[finer]):
+            denser = _replaceable(task, networks[finer]) or _thinned(task, networks[finer])
+            if passage is None and not denser:
                 raise refusal from None
             continue
         if passage is None or tried.route.feasible:
@@ -143,6 +144,11 @@ def _replaceable(task: Task, network: Network) -> bool:
     return task.choice.network == "auto" and network.meta.kind == "mesh"
 
 
+def _thinned(task: Task, network: Network) -> bool:
+    """Whether a mesh lacks nodes of the model, as a spacing was asked."""
+    return network.meta.kind == "mesh" and task.choice.spacing is not None
+
+
 def _network(
     task: Task, ends: tuple[End, End], finer: int, networks: Mapping[int, Network]
 ) -> Network:
@@ -153,9 +159,9 @@ def _network(
         spacing = networks[2].meta.spacing_m * 2 / finer if 2 in networks else choice.spacing
         choice = replace(choice, network="lattice", spacing=spacing)
     elif first is not None and first.meta.kind == "mesh":
-        if choice.spacing is None:  # all nodes, or as many as can be searched
+        if not _thinned(task, first):
             return first
-        choice = replace(choice, spacing=choice.spacing / finer)
+        choice = replace(choice, spacing=None)  # all nodes, or as many as can be searched
     elif first is not None:
         choice = replace(choice, spacing=first.meta.spacing_m / finer)
     period = task.voyage.earliest_departure, task.last
