@@ -1,0 +1,108 @@
+"""Lower front, front and evolution in the jet and eddies: none lies above the next."""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from tests.evolution import jet
+from tests.search.small import NO_LIMITS
+from tests.worlds import jet_and_eddies as world
+from thalweg.evolution import Genome, Habits, evolve
+from thalweg.evolution.evolve import METHODS
+from thalweg.evolution.operators import Mix
+from thalweg.search import Front, earliest_arrival, front
+from thalweg.search.front_points import FrontPoint
+from thalweg.search.front_ways import Way, sail_way
+from thalweg.search.front_world import Request, gather
+
+GRID = world.Grid(20.0, 3)
+LATEST = world.T0 + world.LATEST * world.HOUR
+SPEEDS_ONLY = Mix(insert=0.0, translate=0.0, delete=0.0, speed=1.0, split=0.0, merge=0.0)
+
+
+@cache
+def network():
+    return GRID.network()
+
+
+@cache
+def fields():
+    return world.freeze(network())
+
+
+@cache
+def exact() -> Front:
+    table, fuel = world.tables()
+    start, goal = GRID.node(world.START), GRID.node(world.GOAL)
+    return front(
+        network(), fields(), table, fuel, start=start, goal=goal, depart=world.T0,
+        latest=LATEST, limits=NO_LIMITS, bin_s=2.0 * world.HOUR / 60.0,
+    )  # fmt: skip
+
+
+@cache
+def seeds() -> tuple[Genome, ...]:
+    """Return the quickest way at each setting, and at each of these settings every such way."""
+    table, _ = world.tables()
+    ways = set()
+    for setting in range(table.n_settings):
+        found = earliest_arrival(
+            network(), fields(), table, start=GRID.node(world.START), goal=GRID.node(world.GOAL),
+            depart=world.T0, setting=setting, limits=NO_LIMITS, top_speed=12.0,
+        )  # fmt: skip
+        ways.add(tuple(found.path))
+    lat, lon = network().station_lat, network().station_lon
+    return tuple(
+        Genome(lat[list(way)], lon[list(way)], np.full(len(way) - 1, setting))
+        for way in sorted(ways)
+        for setting in range(table.n_settings)
+    )
+
+
+def nodes_of(genome: Genome) -> np.ndarray:
+    x, y = world.xy(genome.lat, genome.lon)
+    return np.rint(x / GRID.spacing).astype(int) + GRID.side * np.rint(y / GRID.spacing).astype(int)
+
+
+def sailed(genome: Genome) -> FrontPoint | None:
+    """Sail a track edge by edge as the front does; None if it leaves the network."""
+    net, nodes = network(), nodes_of(genome)
+    off = np.abs(net.station_lat[nodes] - genome.lat) + np.abs(net.station_lon[nodes] - genome.lon)
+    if off.max() > 1e-9:
+        return None
+    edges = []
+    for a, b in pairwise(nodes):
+        there = np.flatnonzero(net.target[net.indptr[a] : net.indptr[a + 1]] == b)
+        if not len(there):
+            return None
+        edges.append(net.indptr[a] + there[0])
+    table, fuel = world.tables()
+    request = Request(
+        int(nodes[0]), int(nodes[-1]), world.T0, LATEST, np.arange(table.n_settings),
+        np.ones(net.n_edges), 0.0, 0.0, True,
+    )  # fmt: skip
+    got = gather(net, fields(), table, fuel, request=request, limits=NO_LIMITS, top_speed=None)
+    leave = np.full(len(edges), -np.inf)
+    return sail_way(got, request, Way(nodes, np.array(edges), np.asarray(genome.setting), leave))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_evolution_on_the_network_stays_above_front_and_lower_front(method):
+    best = exact()
+    assert np.all(best.gap >= 0.0) and np.median(best.gap) < 0.02
+    found = evolve(
+        jet.evaluator(), seeds(), method=method, size=len(seeds()), evaluations=3000,
+        settled=None, seed=2, operators=Habits(mix=SPEEDS_ONLY, crossover=0.3),
+    )  # fmt: skip
+    points = [point for genome in found.genomes if (point := sailed(genome)) is not None]
+    assert len(points) > 20  # most: crossover alone may leave the network
+    start = [point for genome in seeds() if (point := sailed(genome)) is not None]
+    assert len(start) == len(seeds())
+    for point in (*start, *points):
+        if point.time > LATEST - world.T0:
+            continue
+        assert best.lower_at(point.time) <= point.cost * (1 + 1e-9)
+        reached = best.cost[best.time <= point.time + 2.0 * best.bin_s].min(initial=np.inf)
+        assert reached <= point.cost * (1 + 1e-3)  # what the bins cost the front
