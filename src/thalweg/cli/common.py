@@ -110,17 +110,32 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
             "Give --sea FILE..., --sea storm, or ask for --calm.",
         )
     if arguments.calm:
-        return Sea.calm()
+        return _with_members(Sea.calm(), arguments)
     files = [name for name in arguments.sea if name != "storm"]
     options: dict[str, Any] = {
         "mapping": mapping_of(arguments),
         "draught_m": arguments.average_over,
     }
     layers = [Sea.open(*files, **options)] if files else []
+    if len(files) > 1 and getattr(arguments, "ensemble", None) and not layers[0].members:
+        layers = [Sea.ensemble(*files, **options)]
     if "storm" in arguments.sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
+    sea = _with_members(sea, arguments)
     return sea.filled(**policies) if policies else sea
+
+
+def _with_members(sea: Sea, arguments: argparse.Namespace) -> Sea:
+    """Return a sea; raise `InputError` if a choice over members is asked for and it has none."""
+    if getattr(arguments, "ensemble", None) and not sea.members:
+        raise InputError(
+            "--ensemble chooses over the members of a forecast, but the sea has none.",
+            "A file may have a dimension of members (number, realization, ...), or there is a file "
+            "for each member.",
+            "Give such files by --sea, or leave --ensemble out.",
+        )
+    return sea
 
 
 def _policy(text: str) -> tuple[str, float | str]:
