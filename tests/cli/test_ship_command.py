@@ -152,6 +152,25 @@ def test_weather_that_is_half_told_is_completed_and_said(capsys, ship_file):
     assert "Assumed: waves from ahead" in _run(capsys, ship_file, "--speed", 12, "--hs", 2)
 
 
+def test_what_is_not_known_comes_with_the_keys_that_would_tell_it(capsys, ship_file):
+    def missing(text):
+        ship_file.write_text(text)
+        return json.loads(_run(capsys, ship_file, "--speed", "10:12", "--json"))["missing"]
+
+    assert missing(FILE) == []
+    (capacity,) = missing(FILE.replace("deadweight_t: 35000,", ""))
+    assert "hull.deadweight_t" in capacity
+    (kind,) = missing(FILE.replace("type: bulk carrier", "type: big ship"))
+    assert "hull.type" in kind
+    (fuel,) = missing(FILE.replace(", type: slow_speed_diesel", ""))
+    assert fuel.startswith("fuel") and "engine.sfoc_g_per_kwh" in fuel
+    (carbon,) = missing(FILE.replace("fuel: {type: hfo}", ""))
+    assert "fuel.type" in carbon
+    bare = "name: x\nhull: {draught_m: 5}\nspeeds_kn: [10, 11, 12]\n"
+    assert [note.split(":")[0] for note in missing(bare)] == ["power", "fuel"]
+    assert "Not known: power" in _run(capsys, ship_file)
+
+
 def test_notes_that_differ_in_a_value_are_printed_once():
     rows = [
         {"speed_kn": speed, "warnings": [f"engine: load is {load}, outside 0 to 1", "too fast"]}

@@ -185,6 +185,8 @@ def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
         console.print(f"Assumed: {note}", highlight=False)
     for where, note in gathered_notes(sheet["conditions"]):
         console.print(f"[yellow]warning[/yellow] at {where} kn: {note}", highlight=False)
+    for note in sheet["missing"]:
+        console.print(f"Not known: {note}", highlight=False)
     if sheet["estimated"]:
         console.print("Estimated, not given:")
         for one in sheet["estimated"]:

@@ -54,7 +54,8 @@ def performance_sheet(
         ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
         ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``assumed[]`` (period
         and directions of weather that were not given), ``warnings[]`` (speeds
-        left out, weather the ship has no model of), ``settings[]`` (what each setting attains in
+        left out, weather the ship has no model of), ``missing[]`` (what is not known and which keys
+        would tell it), ``settings[]`` (what each setting attains in
         this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
 
     Raises
@@ -84,6 +85,7 @@ def performance_sheet(
         "assumed": _assumed(weather or {}),
         "conditions": rows,
         "warnings": [*left_out, *_unfelt(ship, weather or {}), *_beyond(ship, weather or {})],
+        "missing": _missing(ship, rows),
         "settings": _settings(ship, conditions),
         "estimated": [{"key": e.key, "value": e.value, "method": e.method} for e in ship.estimated],
         "sources": list(ship.data.get("sources", ())),
@@ -284,6 +286,29 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
         found["required_2026"] = float(required_cii(**here))
         found["boundaries_2026"] = [float(limit) for limit in rating_boundaries(**here)]
         found["rating_2026"] = str(cii_rating(attained, **here))
+    return found
+
+
+def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Say what the sheet does not know, and which keys of the ship file would tell it."""
+
+    def known(name: str) -> bool:
+        return any(row[name] is not None for row in rows)
+
+    if ship.speed_field is not None or not ship.data:
+        return []
+    found = []
+    if not known("brake_power_kw"):
+        found.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")
+    if not known("fuel_kg_per_h"):
+        ways = "engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
+        found.append(f"fuel: {ways}" if known("brake_power_kw") else "fuel: power, or a table")
+    elif not known("co2_kg_per_h"):
+        found.append("CO2: fuel.type or fuel.carbon_factor")
+    elif not known("cii"):
+        found.append("CII: hull.deadweight_t, or hull.gross_tonnage for some types of ship")
+    elif all(row["cii"] is None or row["cii"]["rating_2026"] is None for row in rows):
+        found.append("rating of the CII: hull.type as the regulation has it")
     return found
 
 
