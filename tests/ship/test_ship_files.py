@@ -6,6 +6,7 @@ import pytest
 from thalweg.core.errors import InputError
 from thalweg.core.units import DAY, KNOT
 from thalweg.ship import Conditions, Ship, library_names
+from thalweg.ship.sheet import performance_sheet
 
 CALM = Conditions(wind_speed=0.0, wind_angle=0.0)
 GOOD = """
@@ -91,7 +92,10 @@ def test_cubic_law_through_a_reference_power():
         (("name: Test ship", "name: [1, 2]"), "'name' is a list"),
         (("max_wind_speed_m_s: 20", "max_wind_speed_m_s: 20, max_wind_speed_kn: 40"), "twice"),
         (("max_wind_speed_m_s: 20", "max_wind_speed_m_s: -1"), "max_wind_speed_m_s"),
-        (("name: Test ship", "name: Test ship\nspeeds_kn: [10]"), "speeds_kn and table"),
+        (
+            ("name: Test ship", "name: Test ship\nloading: {speeds_full_kn: [10]}"),
+            "table.speed_kn and loading.speeds_full_kn",
+        ),
         (("name: Test ship", "name: Test ship\nname: Other"), "'name' is given twice"),
         (
             ("name: Test ship", "name: Test ship\nmodels: {calm_water: tabel}"),
@@ -361,3 +365,64 @@ def test_the_sign_in_kwons_table_is_a_choice():
         return float(Ship.from_dict(data).speed_through_water(there, 0))
 
     assert speed(None) == speed("plus") < speed("printed") == speed("minus")
+
+
+HULL = {
+    "length_waterline_m": 172.42,
+    "length_between_perpendiculars_m": 169.0,
+    "breadth_m": 32.0,
+    "draught_m": 10.0,
+    "block_coefficient": 0.785,
+}
+ROWS = {"speed_kn": [8, 12, 16], "power_kw": [1000, 3000, 8000], "fuel_t_per_day": [5, 14, 36]}
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        *("holtrop_mennen_1982", "holtrop_1984", "hollenbach_1998_mean", "hollenbach_1998_min"),
+        *("table", "cubic"),
+    ],
+)
+def test_one_file_serves_every_calm_water_method(method):
+    data = {"name": "x", "hull": HULL, "speeds_kn": [10, 14], "table": ROWS}
+    ship = Ship.from_dict({**data, "models": {"calm_water": method}})
+    assert ship.speeds / KNOT == pytest.approx([10, 14])
+    sheet = performance_sheet(ship, speeds_kn=[8, 12, 16])
+    assert [row["speed_kn"] for row in sheet["conditions"]] == pytest.approx([8, 12, 16])
+    power = [row["brake_power_kw"] for row in sheet["conditions"]]
+    if method == "table":
+        assert power == pytest.approx([1000, 3000, 8000]) and sheet["assumed"] == []
+    elif method == "cubic":
+        assert power == pytest.approx([1000, 3375, 8000])
+        assert sheet["conditions"][0]["fuel_kg_per_h"] == pytest.approx(36000 / 24 / 8)
+        assert sheet["assumed"] == ["calm_water: cubic leaves the table aside"]
+    else:
+        assert (np.diff(power) > 0).all()
+        assert sheet["assumed"] == [f"calm_water: {method} leaves the table aside"]
+
+
+def test_powers_are_settings_of_a_table_and_of_the_cubic_law():
+    data = {"name": "x", "hull": HULL, "powers_kw": [2000, 5500]}
+    table = Ship.from_dict({**data, "table": ROWS, "models": {"calm_water": "table"}})
+    assert table.speeds / KNOT == pytest.approx([10, 14])
+    assert table.power(CALM, np.array([0, 1])) == pytest.approx([2e6, 5.5e6])
+    engine = {"reference_power_kw": 8000, "reference_speed_kn": 16}
+    cubic = Ship.from_dict({**data, "engine": engine, "models": {"calm_water": "cubic"}})
+    assert cubic.speeds / KNOT == pytest.approx(16 * np.cbrt([0.25, 5.5 / 8]))
+    assert cubic.power(CALM, np.array([0, 1])) == pytest.approx([2e6, 5.5e6])
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"powers_kw": [9000], "table": ROWS}, "The table runs from 1000 to 8000 kW"),
+        ({"powers_kw": [2000], "table": {"speed_kn": [8, 9]}}, "does not tie power to speed"),
+        ({"powers_kw": [2000], "speeds_kn": [9]}, "both powers_kw and speeds_kn"),
+        ({"speeds_kn": [20], "table": ROWS, "models": {"calm_water": "table"}}, "ordered to 20 kn"),
+        ({"powers_kw": [2000], "models": {"calm_water": "cubic"}}, "no reference speed"),
+    ],
+)
+def test_settings_off_the_law_are_refused(more, words):
+    with pytest.raises(InputError, match=words):
+        Ship.from_dict({"name": "x", "hull": HULL, **more})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -15,10 +15,11 @@ from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
 from thalweg.ship.fuel_of_power import fuel_estimates, fuel_of_power
 from thalweg.ship.fuel_terms import fuel_terms
 from thalweg.ship.hull import Hull, require
+from thalweg.ship.laws import LAWS, calm_speeds, check_table, law_of, with_settings
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate, ShipModel
-from thalweg.ship.nominal import KwonLoss, NominalModel, check_rising, cubic_law
+from thalweg.ship.nominal import KwonLoss, Law, NominalModel, check_rising
 from thalweg.ship.squat_part import build_squat
 
 FloatArray = NDArray[np.float64]
@@ -96,7 +97,7 @@ def _no_draught(data: Data, hull: Hull) -> InputError:
     """The error for a ship without draught; it names what else a resistance would need."""
     missing = ["hull.draught_m"]
     method = data.get("models", {}).get("calm_water", "none")
-    if method not in _LAWS:
+    if method not in LAWS:
         lengths = ("length_between_perpendiculars_m", "length_waterline_m", "length_overall_m")
         volumes = ("displacement_m3", "displacement_t", "block_coefficient")
         for keys in (lengths, ("breadth_m",), volumes):
@@ -134,7 +135,7 @@ def build_model(data: Data, hull: Hull, loading: Loading) -> ShipModel:
     fuel_terms(data)  # refuses unknown fuels and two prices for one thing
     models = data.get("models", {})
     acting = [name for name in FORCES if models.get(name, "none") != "none"]
-    if models.get("calm_water", "none") in _LAWS and not acting:
+    if models.get("calm_water", "none") in LAWS and not acting:
         return build_nominal(data, hull, loading)
     from thalweg.ship.compose import compose_model  # the physics is needed from here on
 
@@ -149,18 +150,19 @@ def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
     InputError
         If there are no speeds, several kinds of them, or they contradict each other.
     """
-    law = _law(data)
+    law = law_of(data)
     _check_margin(data)
     if law == "table":
-        _check_table(data)
-    full, empty = _speeds(data)
-    fuel, power = _LAWS[law](data, full)
+        check_table(data)
+    full, empty = calm_speeds(data, law)
+    fuel, power = LAWS[law](data, full)
     burn = None if law == "none" else fuel_of_power(data)
     if burn is not None:
         fuel = burn(power)
     check_rising(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
     loss, squat = build_loss(data, hull, loading), build_squat(data, hull, loading)
-    return NominalModel(full, empty, fuel, power, law, loss, squat, burn)
+    model = NominalModel(full, empty, fuel, power, Law(law, burn), loss, squat)
+    return with_settings(model, data)
 
 
 def _check_margin(data: Data) -> None:
@@ -223,124 +225,6 @@ def estimates_of_known_speeds(data: Data, hull: Hull, loading: Loading) -> tuple
     return (*hull.estimated, *fuel_estimates(data))
 
 
-def _law(data: Data) -> str:
-    """Which law ties fuel and power to speed."""
-    name = data.get("models", {}).get("calm_water")
-    if name is None:
-        return "table" if "table" in data else "cubic" if _has_reference(data) else "none"
-    if name not in _LAWS:
-        raise unknown_name("calm-water model", name, _LAWS)
-    return str(name)
-
-
-def _has_reference(data: Data) -> bool:
-    return "reference_power_kw" in data.get("engine", {}) or "reference_t_per_day" in data.get(
-        "fuel", {}
-    )
-
-
-def _speeds(data: Data) -> tuple[FloatArray, FloatArray]:
-    """Calm-water speeds full and empty [m/s], ascending, from the one place that gives them."""
-    loading = data.get("loading", {})
-    places = {
-        "speeds_kn": data.get("speeds_kn"),
-        "table.speed_kn": data.get("table", {}).get("speed_kn"),
-        "loading.speeds_full_kn": loading.get("speeds_full_kn"),
-    }
-    given = {name: values for name, values in places.items() if values is not None}
-    if len(given) != 1:
-        found = f"gives speeds under {' and '.join(given)}" if given else "gives no speeds"
-        raise InputError(
-            f"The ship file {found}.",
-            "Speeds come from speeds_kn, from a table, or from loading.speeds_full_kn.",
-            "Keep one of them." if given else "Add 'speeds_kn: [...]'.",
-            missing=[] if given else ["speeds_kn"],
-        )
-    full = np.array(next(iter(given.values())), float)
-    empty = np.array(loading.get("speeds_empty_kn", full), float)
-    if empty.shape != full.shape:
-        raise InputError(
-            f"There are {len(full)} speeds full and {len(empty)} speeds empty.",
-            "Each setting has one of both.",
-            "Give loading.speeds_empty_kn as many numbers.",
-            key="loading.speeds_empty_kn",
-        )
-    order = np.argsort(full, kind="stable")
-    if (np.diff(full[order]) <= 0).any() or (np.diff(empty[order]) <= 0).any():
-        raise InputError(
-            "A speed is given twice.",
-            "Each setting has its own speed, full and empty in the same order.",
-            "Remove one of them.",
-            key=next(iter(given)),
-        )
-    return full[order] * KNOT, empty[order] * KNOT
-
-
-def _no_law(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-    unknown = np.full(len(speeds), math.nan)
-    return unknown, unknown
-
-
-def _cubic(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Fuel rates [kg/s] and powers [W] through the reference point."""
-    engine, fuel = data.get("engine", {}), data.get("fuel", {})
-    reference = engine.get("reference_speed_kn", speeds.max() / KNOT) * KNOT
-    if not _has_reference(data):
-        raise InputError(
-            "The cubic law has no reference point.",
-            "It goes through engine.reference_power_kw or fuel.reference_t_per_day at "
-            "engine.reference_speed_kn (the highest speed when not given).",
-            "Add one, or choose calm_water: none.",
-            missing=["engine.reference_power_kw", "fuel.reference_t_per_day"],
-        )
-    power_kw = engine.get("reference_power_kw", math.nan)
-    burnt = fuel.get("reference_t_per_day", math.nan) * TONNE / DAY
-    return (
-        cubic_law(speeds, reference_speed=reference, reference_value=burnt),
-        cubic_law(speeds, reference_speed=reference, reference_value=power_kw * 1000.0),
-    )
-
-
-def _check_table(data: Data) -> None:
-    """Refuse a table that is not there, or whose columns differ in length.
-
-    Raises
-    ------
-    InputError
-    """
-    table = data.get("table")
-    if table is None or "speed_kn" not in table:
-        raise InputError(
-            "calm_water: table is chosen, but the ship file has no table with speed_kn.",
-            "A table has columns speed_kn and fuel_t_per_day, power_kw or both.",
-            "Add 'table:', or choose another calm_water model.",
-            missing=["table.speed_kn"],
-        )
-    ragged = {name for name, column in table.items() if len(column) != len(table["speed_kn"])}
-    if ragged:
-        raise InputError(
-            f"In the ship's table {', '.join(sorted(ragged))} has another length than speed_kn.",
-            "Every row has every column.",
-            "Fill the missing numbers.",
-            key="table",
-        )
-
-
-def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Fuel rates [kg/s] and powers [W] of the table's rows, in the order of speed."""
-    table = data["table"]
-    order = np.argsort(table["speed_kn"], kind="stable")
-    blank = [math.nan] * len(order)
-    power = np.array(table.get("power_kw", blank), float)[order] * 1000.0
-    fuel = np.array(table.get("fuel_t_per_day", blank), float)[order] * TONNE / DAY
-    return fuel, power
-
-
-_LAWS: Final[dict[str, Callable[[Data, FloatArray], tuple[FloatArray, FloatArray]]]] = {
-    "none": _no_law,
-    "cubic": _cubic,
-    "table": _table,
-}
 #: models that act on a resistance
 FORCES: Final = ("waves", "wind", "shallow_water", "friction", "propulsion", "rudder")
 SPEED_LOSSES: Final = ("none", "kwon_2008")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -71,6 +71,25 @@ class KwonLoss:
 
 
 @dataclass(frozen=True, eq=False)
+class Law:
+    """How power and fuel follow the speed.
+
+    Attributes
+    ----------
+    name : {"none", "cubic", "table"}
+    burn : callable, optional
+        Fuel rate [kg/s] of a power [W], where fuel follows from power and not from the speed.
+    rows : tuple of ndarray, optional
+        Speeds full and empty, fuel rates and powers that the settings were taken from; those of the
+        settings themselves when not given.
+    """
+
+    name: str = "none"
+    burn: Callable[[FloatArray], FloatArray] | None = None
+    rows: tuple[FloatArray, FloatArray, FloatArray, FloatArray] | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class NominalModel:
     """A ship whose engine settings have known calm-water speeds.
 
@@ -82,24 +101,21 @@ class NominalModel:
         Calm-water speed of each setting, full and empty [m/s], ascending.
     fuel_rates, powers : ndarray
         Of each setting [kg/s], [W]; NaN when unknown.
-    law : {"none", "cubic", "table"}
+    law : Law
         How fuel and power follow the speed between and beyond the settings.
     loss : KwonLoss, optional
         Involuntary speed loss.
     squat : Squat, optional
         Limits the speed in shallow water; power and fuel stay those of the setting.
-    burn : callable, optional
-        Fuel rate [kg/s] of a power [W], where fuel follows from power and not from ``law``.
     """
 
     speeds_full: FloatArray
     speeds_empty: FloatArray
     fuel_rates: FloatArray
     powers: FloatArray
-    law: str = "none"
+    law: Law = field(default_factory=Law)
     loss: KwonLoss | None = None
     squat: Squat | None = None
-    burn: Callable[[FloatArray], FloatArray] | None = None
 
     @property
     def reads(self) -> frozenset[str]:
@@ -189,36 +205,40 @@ class NominalModel:
         InputError
             If a speed lies outside the table, or above the highest speed of a ship without law.
         """
-        own = self.speeds(load_factor)
-        low, high = (own[0], own[-1]) if self.law == "table" else (0.0, np.inf)
-        if self.law == "none":
+        rows = self.law.rows or (
+            *(self.speeds_full, self.speeds_empty),
+            *(self.fuel_rates, self.powers),
+        )
+        own, name = between(rows[1], rows[0], load_factor), self.law.name
+        low, high = (own[0], own[-1]) if name == "table" else (0.0, np.inf)
+        if name == "none":
             high = own[-1] if len(own) > 1 else np.inf
         possible = np.isfinite(speeds) & (speeds > 0)
         if not (possible & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
             raise _speed_out_of_range(speeds, low, high)
-        ratio = float(np.mean(self.speeds_empty / self.speeds_full))
+        ratio = float(np.mean(rows[1] / rows[0]))
         full = speeds / between(ratio, 1.0, load_factor)
-        if self.law == "table":
-            full = np.interp(speeds, own, self.speeds_full)
-        powers = self._follow(self.powers, full)
-        burnt = self._follow(self.fuel_rates, full) if self.burn is None else self.burn(powers)
+        empty = full * ratio
+        if name == "table":
+            full, empty = (np.interp(speeds, own, column) for column in rows[:2])
+        fuel, power = (_follow(name, rows[0], column, full) for column in rows[2:])
         return replace(
             self,
             speeds_full=full,
-            speeds_empty=np.interp(speeds, own, self.speeds_empty)
-            if self.law == "table"
-            else full * ratio,
-            fuel_rates=burnt,
-            powers=powers,
+            speeds_empty=empty,
+            fuel_rates=fuel if self.law.burn is None else self.law.burn(power),
+            powers=power,
+            law=replace(self.law, rows=rows),
         )
 
-    def _follow(self, values: FloatArray, speeds_full: FloatArray) -> FloatArray:
-        """Fuel rates or powers at other full speeds, by the model's law."""
-        if self.law == "cubic":
-            return values[-1] * (speeds_full / self.speeds_full[-1]) ** 3
-        if self.law == "table":
-            return np.interp(speeds_full, self.speeds_full, values)
-        return np.full(len(speeds_full), np.nan)
+
+def _follow(law: str, speeds: FloatArray, values: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Fuel rates or powers at other full speeds, by a law."""
+    if law == "cubic":
+        return np.asarray(values[-1] * (wanted / speeds[-1]) ** 3)
+    if law == "table":
+        return np.interp(wanted, speeds, values)
+    return np.full(len(wanted), np.nan)
 
 
 def cubic_law(speed: ArrayLike, *, reference_speed: float, reference_value: float) -> FloatArray:

@@ -82,7 +82,7 @@ def performance_sheet(
         "draught_m": ship.draught,
         "load_factor": ship.loading.load_factor,
         "weather": {name: _number(value) for name, value in (weather or {}).items()},
-        "assumed": _assumed(weather or {}),
+        "assumed": [*_assumed(weather or {}), *_left_aside(ship)],
         "conditions": rows,
         "warnings": [*left_out, *_unfelt(ship, weather or {}), *_beyond(ship, weather or {})],
         "missing": _missing(ship, rows),
@@ -287,6 +287,21 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
         found["boundaries_2026"] = [float(limit) for limit in rating_boundaries(**here)]
         found["rating_2026"] = str(cii_rating(attained, **here))
     return found
+
+
+def _left_aside(ship: Ship) -> list[str]:
+    """Say what a ship file gives that its calm-water method does not look at."""
+    data = ship.data
+    method = data.get("models", {}).get("calm_water", "none")
+    if not hasattr(ship.model, "power_at_speed"):
+        table = method in ("none", "cubic") and {"table", "speeds_kn"} <= data.keys()
+        return [f"calm_water: {method} leaves the table aside"] if table else []
+    given = {"table": "table" in data}
+    given["speeds under loading"] = "speeds_full_kn" in data.get("loading", {})
+    given["reference point"] = "reference_power_kw" in data.get(
+        "engine", {}
+    ) or "reference_t_per_day" in data.get("fuel", {})
+    return [f"calm_water: {method} leaves the {w} aside" for w, there in given.items() if there]
 
 
 def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
