@@ -5,6 +5,7 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 
 from tests.conftest import data_file
@@ -242,6 +243,28 @@ def test_too_few_days_are_told_with_what_is_moved():
     with pytest.raises(OutsidePeriodError, match="can be moved") as caught:
         sail(volume_m3=60_000, days=1.0)
     assert 8_000 <= caught.value.details["moved_m3"] <= 24_000
+
+
+def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
+    hours = np.array([0.0, 0.5, 1.0, 1.5, 10.0, 10.5, 11.0])
+    axes, ones = ("time", "lat", "lon"), np.ones((7, 5, 5))
+    path = tmp_path / "gap.nc"
+    xr.Dataset(
+        {"zeta": (axes, ones, {"standard_name": "sea_surface_height", "units": "m"}),
+         "h": (axes[1:], 15.0 * ones[0], {"standard_name": "sea_floor_depth_below_geoid",
+                                         "units": "m"})},
+        {"time": np.datetime64("2026-01-01", "ns") + (3600.0 * hours).astype("timedelta64[s]"),
+         "lat": np.linspace(51.6, 52.0, 5), "lon": np.linspace(3.4, 3.8, 5)},
+    ).to_netcdf(path)  # fmt: skip
+    changes = {"sea": str(path), "coast": "none", "start": "2026-01-01", "days": 2}
+    project = Project.from_dict(
+        example(base_case=None, load=[51.71, 3.45], unload=[51.77, 3.7], **changes)
+    )
+    ship, sea, chart = open_things(project)
+    with pytest.raises(OutsidePeriodError) as caught:
+        run_project(project, ship=ship, sea=sea, chart=chart)
+    assert "The data end 2026-01-01T11:00:00Z." in caught.value.possible
+    assert "nothing from 2026-01-01T01:30:00Z to 2026-01-01T10:00:00Z" in caught.value.possible
 
 
 def test_no_sea_is_never_assumed():

@@ -15,6 +15,7 @@ from thalweg.operations.cycles import Cycle
 from thalweg.operations.project import Project
 from thalweg.operations.project_world import Tell, Ways, World
 from thalweg.operations.sailing_legs import LegSailor
+from thalweg.sea import names as nm
 from thalweg.search import Passage, Passages
 
 _LEAST = 1e-6  # share of a hopper that is still worth a cycle
@@ -191,10 +192,26 @@ class Simulator:
         return OutsidePeriodError(
             f"By {format_time(project.end)} only {moved:,.0f} of {project.work.volume:,.0f} m3 "
             "can be moved.",
-            f"The last cycle that is sailed out ends {format_time(time)}.",
+            f"The last cycle that is sailed out ends {format_time(time)}."
+            + lacking_data(self.sailor.world, (project.start, project.end)),
             "Give more days (and data for them), or a smaller volume.",
             moved_m3=moved,
         )
+
+
+def lacking_data(world: World, period: tuple[float, float]) -> str:
+    """Return sentences on what a period lacks: the end of the data, gaps in them; maybe none."""
+    sea = world.sea
+    needed = {nm.CHANNEL_VARIABLES[channel] for channel in world.needs.channels}
+    ends = [r.end for r in sea.coverage() if r.end is not None and r.variable in needed]
+    last = min(ends, default=math.inf)
+    told = [f" The data end {format_time(last)}."] if last < period[1] else []
+    told += [
+        f" They tell nothing from {format_time(gap.after)} to {format_time(gap.before)}."
+        for gap in sea.describe().gaps
+        if gap.before > period[0] and gap.after < period[1]
+    ]
+    return "".join(told)
 
 
 def _lots(options: list[Option], size: int) -> Iterator[list[Option]]:
