@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.time import parse_time
@@ -54,3 +55,25 @@ def test_waiting_for_the_flood_along_the_coast_pays_in_time():
     }  # fmt: skip
     still = 30.05 / 8.0  # h for half a degree of latitude
     assert found["04:15"] < still - 0.2 < still + 0.1 < found["10:30"]
+
+
+def test_a_gap_in_the_data_that_a_voyage_waits_through_is_told(tmp_path):
+    hours = np.array([0.0, 0.5, 1.0, 5.0, 5.5, 6.0, 6.5, 7.0])
+    axes, ones = ("time", "lat", "lon"), np.ones((8, 5, 5))
+    path = tmp_path / "gap.nc"
+    xr.Dataset(
+        {"zeta": (axes, ones, {"standard_name": "sea_surface_height", "units": "m"}),
+         "h": (axes[1:], 15.0 * ones[0], {"standard_name": "sea_floor_depth_below_geoid",
+                                         "units": "m"})},
+        {"time": np.datetime64("2026-01-01", "ns") + (3600.0 * hours).astype("timedelta64[s]"),
+         "lat": np.linspace(51.6, 52.0, 5), "lon": np.linspace(3.4, 3.8, 5)},
+    ).to_netcdf(path)  # fmt: skip
+    voyage = Voyage(
+        start=(51.71, 3.45), goal=(51.77, 3.70), depart="2026-01-01T00:30Z", min_ukc_m=1.0
+    )
+    chart = Chart.open_water(51.6, 52.0, 3.4, 3.8)
+    found = plan(voyage, ship=Ship.load("hopper-dredger"), sea=Sea.open(path), chart=chart)
+    assert found.best.feasible and found.best.waiting_h > 4.0
+    assert any(
+        "nothing from 2026-01-01T01:00:00Z to 2026-01-01T05:00:00Z" in note for note in found.notes
+    )

@@ -16,6 +16,7 @@ from thalweg.operations.project import Project
 from thalweg.operations.project_world import Tell, Ways, World
 from thalweg.operations.sailing_legs import LegSailor
 from thalweg.sea import names as nm
+from thalweg.sea.inspection import gaps_of
 from thalweg.search import Passage, Passages
 
 _LEAST = 1e-6  # share of a hopper that is still worth a cycle
@@ -208,7 +209,7 @@ def lacking_data(world: World, period: tuple[float, float]) -> str:
     told = [f" The data end {format_time(last)}."] if last < period[1] else []
     told += [
         f" They tell nothing from {format_time(gap.after)} to {format_time(gap.before)}."
-        for gap in sea.describe().gaps
+        for gap in gaps_of(sea)
         if gap.before > period[0] and gap.after < period[1]
     ]
     return "".join(told)

@@ -15,6 +15,7 @@ from thalweg.network import Network
 from thalweg.planning.ends import End
 from thalweg.planning.passage import Task
 from thalweg.route import Route
+from thalweg.sea.inspection import gaps_of
 
 #: The coarse depth of the world is looked at only this far off the coast [m] ...
 _OFFSHORE = 15_000.0
@@ -26,7 +27,7 @@ _POLAR = 72.0
 
 def route_notes(task: Task, route: Route) -> list[str]:
     """Return the warnings about a route that no limit looks at."""
-    notes = ice_notes(route)
+    notes = ice_notes(route) + gap_notes(task, route)
     if not math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
         notes += shallow_notes(task, route)
     return notes
@@ -44,6 +45,18 @@ def shallow_notes(task: Task, route: Route) -> list[str]:
     return [
         f"The coarse depth of the world shows {max(float(depth[worst]), 0.0):.0f} m near "
         f"{format_position(float(lat[worst]), float(lon[worst]))}: check the chart there."
+    ]
+
+
+def gap_notes(task: Task, route: Route) -> list[str]:
+    """Warn where files tell nothing for a part of the voyage: the ship cannot sail by them then."""
+    if not math.isfinite(route.arrive):
+        return []
+    return [
+        f"{gap.source} tells nothing from {format_time(gap.after)} to {format_time(gap.before)}: "
+        "what it alone holds is not known then, and no leg is sailed on it."
+        for gap in gaps_of(task.sea)
+        if gap.before > route.depart and gap.after < route.arrive
     ]
 
 

@@ -124,8 +124,17 @@ def inspect(sea: Sea) -> Inspection:
         tuple(ignored),
         tuple(one.coverage()),
         missing,
-        tuple(gap for layer in layers for gap in _gaps(layer)),
+        gaps_of(one),
         sea.members,
+    )
+
+
+def gaps_of(sea: Sea) -> tuple[Gap, ...]:
+    """Return the stretches of time for which files have no data between data."""
+    from thalweg.sea.gridded import GridLayer
+
+    return tuple(
+        gap for layer in sea.layers if isinstance(layer, GridLayer) for gap in _gaps(layer)
     )
 
 
