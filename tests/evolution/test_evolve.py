@@ -1,5 +1,6 @@
 """Evolution runs: repeatable, cancellable, feasible by the referee, and as good as is told."""
 
+import signal
 from functools import cache
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from tests.evolution import jet
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.evolution import Genome, Habits, evolve, refine_front
 from thalweg.evolution.evolve import METHODS, Settling
 from thalweg.evolution.initial import thriftiest
@@ -126,6 +127,26 @@ def test_cancelled_runs_keep_the_best_so_far_and_say_so():
         front = refine_front(evaluator, [jet.straight(6)], size=20, cancel=lambda: next(left))  # noqa: B023
         assert front.cancelled
         assert len(front)
+
+
+@pytest.mark.parametrize("search", [evolve, refine_front])
+def test_ctrl_c_keeps_the_best_so_far_and_a_second_one_interrupts(search):
+    def press(_):
+        signal.raise_signal(signal.SIGINT)
+
+    seeds = [jet.straight(s) for s in (0, 6, 11)]
+    with pytest.warns(ThalwegWarning, match="Stopped by Ctrl-C"):
+        front = search(
+            jet.evaluator(),
+            seeds,
+            size=20,
+            progress=lambda told: press(told) if told.generation == 3 else None,
+        )
+    assert front.cancelled and len(front)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    with pytest.raises(KeyboardInterrupt):
+        search(jet.evaluator(), seeds, size=20, progress=lambda told: (press(told), press(told)))
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_runs_end_by_what_limits_them():

@@ -21,6 +21,7 @@ from thalweg.evolution.nsga2 import Nsga2
 from thalweg.evolution.operators import Habits
 from thalweg.evolution.ranking import front_of, thinned
 from thalweg.evolution.spea2 import Spea2
+from thalweg.evolution.stopping import stoppable
 from thalweg.evolution.strategy import Strategy
 from thalweg.kernels import fitness
 from thalweg.route.track import Track
@@ -132,6 +133,7 @@ class Evolution:
         return len(self.genomes)
 
 
+@stoppable
 def evolve(
     evaluator: Evaluator,
     seeds: Sequence[Genome | Track],
@@ -169,7 +171,8 @@ def evolve(
     progress : callable, optional
         Called with a `Progress` after every generation.
     cancel : callable, optional
-        Asked after every generation; true ends the run with the best so far.
+        Asked after every generation; true ends the run with the best so far. Without it, Ctrl-C
+        does so, with a warning; pressed again it interrupts.
     operators : Habits, optional
         How children are made.
 

@@ -27,6 +27,7 @@ from thalweg.evolution.nsga2 import Nsga2
 from thalweg.evolution.operators import Habits
 from thalweg.evolution.polish import fill, polish, prepared
 from thalweg.evolution.ranking import front_of, thinned
+from thalweg.evolution.stopping import stoppable
 from thalweg.evolution.strategy import check_size
 from thalweg.route.track import Track
 
@@ -39,6 +40,7 @@ EXPLORING = 60  #: generations they do it for
 EXPLORED = 24  #: of their front that are polished
 
 
+@stoppable
 def refine_front(
     evaluator: Evaluator,
     seeds: Sequence[Genome | Track],
@@ -76,7 +78,7 @@ def refine_front(
     progress : callable, optional
         Called after every stage of polishing and every generation.
     cancel : callable, optional
-        Asked between steps; true ends the run with the best so far.
+        Asked between steps; true ends the run with the best so far. Without it, Ctrl-C does so.
     operators : Habits, optional
 
     Returns
