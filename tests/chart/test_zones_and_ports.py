@@ -137,3 +137,20 @@ def test_an_unknown_port_names_near_ones():
         OPEN.port("Rotterdm")
     with pytest.raises(InputError, match="no port"):
         OPEN.port("")
+
+
+@pytest.mark.parametrize(
+    ("ring", "said"),
+    [
+        ([[900, 0], [910, 0], [910, 5], [900, 0]], "longitude 900|longitude 910"),
+        ([[0, -80], [10, -80], [10, -99], [0, -80]], "latitude -99"),
+    ],
+)
+def test_positions_off_the_globe_are_named(ring, said):
+    zone = {
+        "type": "Feature",
+        "properties": {"kind": "no-go"},
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+    with pytest.raises(InputError, match=said):
+        Chart.open_water().with_zones(zone)

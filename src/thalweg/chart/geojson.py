@@ -125,14 +125,15 @@ def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:
             "",
             "Give closed rings of numbers in degrees, longitude first.",
         )
-    worst = float(np.abs(ring[:, 1]).max())
-    if worst > 90.0 or float(np.abs(ring[:, 0]).max()) > 540.0:
-        raise InputError(
-            f"A ring of the {what} has a position outside the globe (latitude {worst:g}).",
-            "GeoJSON puts longitude first, then latitude, in degrees.",
-            "Check the order and the units (no projected coordinates).",
-            value=worst,
-        )
+    for column, name, most in ((1, "latitude", 90.0), (0, "longitude", 540.0)):
+        worst = float(ring[np.abs(ring[:, column]).argmax(), column])
+        if abs(worst) > most:
+            raise InputError(
+                f"A ring of the {what} has a position outside the globe ({name} {worst:g}).",
+                "GeoJSON puts longitude first, then latitude, in degrees.",
+                "Check the order and the units (no projected coordinates).",
+                value=worst,
+            )
     if not np.array_equal(ring[0], ring[-1]):
         ring = np.vstack([ring, ring[:1]])
     step = np.diff(ring[:, 0])
