@@ -181,7 +181,7 @@ def test_price_and_penalty_zones_and_control_areas():
         def legs_blocked(self, lat1, lon1, lat2, lon2):
             return np.zeros(len(lat1), bool)
 
-        def eca_share(self, lat1, lon1, lat2, lon2):
+        def eca_share(self, lat1, lon1, lat2, lon2, *, finest):
             return np.full(len(lat1), 0.25)
 
         def zone_factor(self, lat1, lon1, lat2, lon2):

@@ -182,3 +182,8 @@ def test_a_voyage_with_prices_round_trips(tmp_path):
     voyage.save(tmp_path / "v.yaml")
     assert Voyage.load(tmp_path / "v.yaml") == voyage
     assert not math.isnan(voyage.fuel_price_usd)
+
+
+def test_a_choice_over_members_needs_members():
+    with pytest.raises(InputError, match="no members"):
+        still("fuel", cubic_ship(), ensemble="mean")

@@ -234,15 +234,21 @@ class Chart:
         return self.zones.in_eca(lat, lon)
 
     def eca_share(
-        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+        self,
+        lat1: ArrayLike,
+        lon1: ArrayLike,
+        lat2: ArrayLike,
+        lon2: ArrayLike,
+        *,
+        finest: float = 0.25,
     ) -> FloatArray:
         """Return the share (0 to 1) of each leg inside any emission control area.
 
         Shares are of the length of the geodesic, each crossing of an outline being found to
-        0.25 m. Arguments [deg] broadcast; NaN where a position is no number. About 1 us for a leg
-        that touches no outline, 0.1 ms for one that does (many at once; 2 ms for one alone).
+        ``finest`` [m]. Arguments [deg] broadcast; NaN where a position is no number. About 1 us for
+        a leg that touches no outline, 0.1 ms for one that does (many at once; 2 ms for one alone).
         """
-        return self.zones.eca_share(lat1, lon1, lat2, lon2)
+        return self.zones.eca_share(lat1, lon1, lat2, lon2, finest=finest)
 
     def zone_raster(
         self, south: float, north: float, west: float, east: float, spacing: float

@@ -52,14 +52,16 @@ def shares_inside(
     lon1: FloatArray,
     lat2: FloatArray,
     lon2: FloatArray,
+    *,
+    finest: float = FINEST,
 ) -> FloatArray:
     """Return the share of the length of each geodesic leg [deg] inside the polygons of an index.
 
     ``outlines`` is `outlines_only` of the index.
 
     Legs that touch no outline are told by their middle. The others are cut into sixteenths, and
-    those again that touch an outline, until pieces are shorter than 0.25 m: each crossing is found
-    to that. NaN where a position is no number.
+    those again that touch an outline, until pieces are shorter than ``finest`` [m]: each crossing
+    is found to that. NaN where a position is no number.
     """
     legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
     known = (
@@ -67,7 +69,7 @@ def shares_inside(
     )
     if not known.all():
         share = np.full(len(known), np.nan)
-        share[known] = shares_inside(index, outlines, *(x[known] for x in legs))
+        share[known] = shares_inside(index, outlines, *(x[known] for x in legs), finest=finest)
         return share
     touched = np.empty(len(known), np.bool_)
     outlines_touched(outlines, *legs, touched)
@@ -76,7 +78,7 @@ def shares_inside(
     share[whole] = _middles(index, *(x[whole] for x in legs))
     cut = np.flatnonzero(touched)
     if len(cut):
-        share[cut] = _refined(index, outlines, *(x[cut] for x in legs))
+        share[cut] = _refined(index, outlines, *(x[cut] for x in legs), finest=finest)
     return share
 
 
@@ -87,6 +89,8 @@ def _refined(
     lon1: FloatArray,
     lat2: FloatArray,
     lon2: FloatArray,
+    *,
+    finest: float,
 ) -> FloatArray:
     """Return shares of legs that touch an outline."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
@@ -94,7 +98,7 @@ def _refined(
     leg = np.arange(len(length))
     start, size = np.zeros(len(leg)), np.ones(len(leg))  # as parts of the leg
     while len(leg):
-        done = size * length[leg] <= FINEST
+        done = size * length[leg] <= finest
         done |= np.bincount(leg, minlength=len(length))[leg] > MOST_PIECES
         if done.any():
             middle = (start[done] + 0.5 * size[done]) * length[leg[done]]

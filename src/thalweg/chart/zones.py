@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.chart import geojson
 from thalweg.chart.eca import EcaZone
 from thalweg.chart.index import build_index, empty_index
-from thalweg.chart.shares import outlines_only, points_inside, shares_inside
+from thalweg.chart.shares import FINEST, outlines_only, points_inside, shares_inside
 from thalweg.chart.store import stored
 from thalweg.core.cache import cache_folder
 from thalweg.core.errors import InputError
@@ -180,14 +180,27 @@ class Zones:
         return outlines_only(self.eca_index)
 
     def eca_share(
-        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+        self,
+        lat1: ArrayLike,
+        lon1: ArrayLike,
+        lat2: ArrayLike,
+        lon2: ArrayLike,
+        *,
+        finest: float = FINEST,
     ) -> FloatArray:
-        """Return the share of the length of legs [deg] inside any emission control area."""
+        """Return the share of the length of legs [deg] inside any emission control area.
+
+        Crossings of outlines are found to ``finest`` [m].
+        """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         if not self.eca:
             return np.where(np.isfinite(sum(ends)), 0.0, np.nan)
         legs = [x.flatten() for x in ends]
-        return shares_inside(self.eca_index, self._eca_outlines, *legs).reshape(ends[0].shape)
+        lat1, lon1, lat2, lon2 = legs
+        found = shares_inside(
+            self.eca_index, self._eca_outlines, lat1, lon1, lat2, lon2, finest=finest
+        )
+        return found.reshape(ends[0].shape)
 
     def in_eca(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
         """Return which positions [deg] lie inside any emission control area."""

@@ -147,7 +147,7 @@ def show(plan: Plan) -> None:
     if best.fuel_t is not None:
         parts.append(f"{best.fuel_t:.1f} t fuel")
     if best.cost is not None:
-        parts.append(f"{best.cost:,.0f} {plan.front.unit if plan.front else 'USD'}")
+        parts.append(f"{best.cost:,.0f} {best.currency}")
     if best.co2_t is not None and plan.voyage.objective == "co2":
         parts.append(f"{best.co2_t:.1f} t CO2")
     if best.waiting_h > 0:
@@ -167,8 +167,11 @@ def show(plan: Plan) -> None:
 
 def show_front(console: Any, plan: Plan) -> None:
     """Print the routes of a front, and what they save over the weather-blind route."""
+    import numpy as np
     from rich import box
     from rich.table import Table
+
+    from thalweg.planning.trade import spread
 
     front = plan.front
     assert front is not None  # checked by the caller
@@ -176,7 +179,13 @@ def show_front(console: Any, plan: Plan) -> None:
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for name in ("h", front.criterion, "nm", "wait h", "gap %", "from", "way"):
         table.add_column(name, justify="left" if name in ("from", "way") else "right", no_wrap=True)
-    for row in sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"])):
+    rows = sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"]))
+    shown = spread(
+        np.array([row["time_h"] for row in rows]),
+        np.array([row[front.column] for row in rows]),
+        _MOST_ROWS,
+    )
+    for row in (rows[index] for index in shown):
         gap = "" if row["gap"] is None else f"{100 * row['gap']:.1f}"
         value = f"{row[front.column]:,.2f}"
         table.add_row(
@@ -184,6 +193,8 @@ def show_front(console: Any, plan: Plan) -> None:
             gap, row["stage"], row["way"],
         )  # fmt: skip
     console.print(table)
+    if len(rows) > len(shown):
+        console.print(f"{len(shown)} of {len(rows)} routes; all are in front.csv with --out DIR.")
     for line in _savings(plan):
         console.print(line, soft_wrap=True)
 
@@ -196,11 +207,11 @@ def _savings(plan: Plan) -> list[str]:
     lines = []
     for row in {id(row): row for row in (comparison.rows[0], comparison.rows[-1])}.values():
         saved = []
-        if row["saved"] is not None:
+        if row["saved"] is not None and row["saved"] > 0.0:
             saved.append(
                 f"{row['saved']:,.2f} {plan.front.unit} ({row['saved_percent']:.1f} %) in its time"
             )
-        if row["saved_h"] is not None:
+        if row["saved_h"] is not None and row["saved_h"] > 0.0:
             saved.append(f"{row['saved_h']:.2f} h for what it burns")
         lines.append(
             f"Weather-blind at {row['speed_kn']:.1f} kn: {row['time_h']:.2f} h, "

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from thalweg.ship import PerformanceTable
 
 _PART = 16  # tracks that are worth a thread of their own
+_FINEST = 25.0  # [m] to which legs are cut at borders of control areas
 
 
 @dataclass(frozen=True)
@@ -197,7 +198,7 @@ class Evaluator:
             blocked[:] = chart.legs_blocked(*ends)
         zones: Any = chart.zones
         if prices.inside != prices.outside and len(getattr(zones, "eca", ())):
-            weight = weight + np.asarray(chart.eca_share(*ends)) * (prices.inside - prices.outside)
+            weight = weight + _eca_shares(chart, ends) * (prices.inside - prices.outside)
         if chart.zones.penalty or chart.zones.price:
             factor, price = chart.zone_factor(*ends)
             penalty, weight = np.asarray(factor), weight * np.asarray(price)
@@ -332,6 +333,17 @@ def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
             f"The departure is {format_time(depart)}.",
             "Give a later arrival.",
         )
+
+
+def _eca_shares(chart: Any, ends: tuple[FloatArray, ...]) -> FloatArray:
+    """Return the shares of legs inside emission control areas, as closely as evolution needs."""
+    share = np.empty(len(ends[0]))
+
+    def part(legs: slice) -> None:
+        share[legs] = chart.eca_share(*(end[legs] for end in ends), finest=_FINEST)
+
+    in_threads(part, len(share))
+    return share
 
 
 def in_threads(work, count: int) -> None:  # type: ignore[no-untyped-def]

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 
+_FINEST = 25.0  # [m] to which edges are cut at borders of control areas
+
+
 @dataclass(frozen=True)
 class Weighing:
     """What a way costs.
@@ -60,7 +63,7 @@ class Weighing:
 
         def leg_cost(*ends: FloatArray) -> FloatArray:
             penalty, price = chart.zone_factor(*ends)
-            share = chart.eca_share(*ends)
+            share = chart.eca_share(*ends, finest=_FINEST)
             return np.asarray(leg_lengths(*ends) * penalty * price * (1.0 + (factor - 1.0) * share))
 
         weight = network.length * network.factor * network.price
@@ -113,7 +116,8 @@ def eca_shares(network: Network, chart: Chart) -> FloatArray:
     keys, back = np.unique(key, return_inverse=True)
     a, b = keys // network.n_nodes, keys % network.n_nodes
     lat, lon = network.lat, network.lon
-    share[sailed] = np.asarray(chart.eca_share(lat[a], lon[a], lat[b], lon[b]))[back]
+    found = chart.eca_share(lat[a], lon[a], lat[b], lon[b], finest=_FINEST)
+    share[sailed] = np.asarray(found)[back]
     return share
 
 

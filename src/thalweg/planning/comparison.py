@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from thalweg.planning.passage import Task
 
 
+_MOST_SPEEDS = 6
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """The shortest way, sailed at each constant setting through the same weather.
@@ -44,7 +47,7 @@ class Comparison:
 def blind_tracks(
     task: Task, lat: FloatArray, lon: FloatArray, settings: NDArray[np.int64]
 ) -> list[Track]:
-    """Return the shortest way over the chart from a rough one, once per setting.
+    """Return the shortest way over the chart from a rough one, at up to six settings.
 
     Where the chart tells no depth but the sea does, the sea's depth is kept to.
     """
@@ -64,7 +67,10 @@ def blind_tracks(
         **common,  # type: ignore[arg-type]
     ).track
     legs = len(short.lat) - 1
-    return [short.replaced(setting=np.full(legs, s)) for s in settings]
+    chosen = settings[
+        np.unique(np.linspace(0, len(settings) - 1, _MOST_SPEEDS).round().astype(int))
+    ]
+    return [short.replaced(setting=np.full(legs, s)) for s in chosen]
 
 
 def _still(task: Task) -> Sea:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 #: Tracks that refinement begins with: of the front, and others.
 _MOST_SEEDS, _MOST_DOMINATED = 48, 16
 #: Tracks that are kept, and generations, of the refinement and of an evolution of its own.
-_SIZE, _GENERATIONS = 160, 40
+_SIZE, _GENERATIONS = 140, 26
 _OWN_SIZE, _OWN_GENERATIONS = 100, 300
 _LARGEST_RASTER = 24_000_000  # numbers in the frozen raster
 _ROOM = 0.15  # about the tracks, as a share of their box

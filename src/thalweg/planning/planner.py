@@ -87,7 +87,14 @@ def plan(
             voyage,
             ship=ship,
             sea=sea,
-            plan_one=lambda v, one: plan(v, sea=one, **options),  # type: ignore[arg-type]
+            plan_one=lambda v, one: plan(replace(v, ensemble=None), sea=one, **options),  # type: ignore[arg-type]
+        )
+    if voyage.ensemble is not None:
+        raise InputError(
+            f"A choice over the members of a forecast is asked ({voyage.ensemble}).",
+            "This sea has no members: it is one forecast.",
+            "Open files with an ensemble dimension, or leave the choice out.",
+            field="ensemble",
         )
     sea = with_wind_speed(ship, sea)
     choice = NetworkChoice(network, resolution)

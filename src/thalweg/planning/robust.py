@@ -140,6 +140,7 @@ def _chosen(
     notes = [note, *first.notes, *(n for item in order for n in item.distribution.notes)]
     return dataclasses.replace(
         first,
+        voyage=voyage,
         routes=tuple(item.route for item in order),
         front=_front(order),
         notes=tuple(dict.fromkeys(notes)),

@@ -34,7 +34,7 @@ _MORE = 0.05
 #: A turn [rad] that is none: by it a leg of 100 km is a metre off at its middle at most.
 _STRAIGHT = 2e-5
 #: Into how many bins the time of a front is divided; refinement makes up for what they miss.
-_BINS = 720
+_BINS = 300
 #: What a ship meets in still water; the period of no waves is any.
 _STILL = {
     "wind_speed": 0.0,

@@ -46,8 +46,8 @@ _KIND = (
     "the lower front of the network: all as favourable as at any moment of each time step, "
     "lengths as short as in open water"
 )
-#: Routes of a front that are refereed and published.
-_MOST_ROUTES = 100
+#: Routes of a front that are refereed and published, fewer where one takes many steps to sail.
+_FEWEST_ROUTES, _MOST_ROUTES, _MOST_STEPS = 40, 100, 150_000
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,9 @@ def _candidates(means: Means, explored: list[Explored]) -> list[Candidate]:
             found += evolved(means, one, [c for c in found if c.way == one.way.name])
     kept = not_dominated(*_points(found))
     time, value = _points([found[index] for index in kept])
-    return [found[kept[index]] for index in spread(time, value, _MOST_ROUTES)]
+    steps = max(len(one.fastest.samples["time"]) for one in explored)
+    most = min(max(_MOST_STEPS // max(steps, 1), _FEWEST_ROUTES), _MOST_ROUTES)
+    return [found[kept[index]] for index in spread(time, value, most)]
 
 
 def _exact(one: Explored) -> list[Candidate]:
@@ -177,7 +179,7 @@ def _gathered(
     values = np.array([item.value for item in ordered])
     lower = _lower(explored, certain(means, explored)[1])
     share = _disproved(lower, np.array([route.time_h for route in routes]), values)
-    lower[1] *= share
+    lower *= share[:, None]
     shortest_way = min(explored, key=lambda one: shortest_length(one.way.network)).way.name
     front = FrontOfPlan(
         criterion=criterion.name,
@@ -217,18 +219,20 @@ def _lower(explored: list[Explored], criterion_floor: float) -> np.ndarray:
     return np.array([times[kept], values[kept]]).reshape(2, -1)
 
 
-def _disproved(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> float:
-    """Return the factor by which routes show the lower front to be too high; 1 where none does.
+def _disproved(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the factors (time, value) by which routes show the lower front to be too high.
 
-    Ways between islands may be shorter, by more than the factor of directions, than those of a
-    coarse network.
+    1 where none does. Ways between islands may be shorter, by more than the factor of directions,
+    than those of a coarse network.
     """
-    factor = 1.0
+    if not lower.size:
+        return np.ones(2)
+    factors = np.array([min(1.0, float(time_h.min() / lower[0].min())), 1.0])
     for time, value in zip(time_h, values):
-        bound = lower[1, lower[0] <= time].min(initial=math.inf)
+        bound = lower[1, factors[0] * lower[0] <= time].min(initial=math.inf)
         if value < bound < math.inf:
-            factor = min(factor, float(value / bound))
-    return factor
+            factors[1] = min(factors[1], float(value / bound))
+    return factors
 
 
 def _proof(means: Means, explored: list[Explored], front: FrontOfPlan, *, whole: bool) -> Proof:
@@ -236,7 +240,7 @@ def _proof(means: Means, explored: list[Explored], front: FrontOfPlan, *, whole:
     certain_time, certain_value = certain(means, explored)
     if whole:
         fastest = min(one.first.duration for one in explored) / HOUR
-        lower = front.lower[0].min(initial=fastest) if front.lower.size else certain_time
+        lower = front.lower[0].min() if front.lower.size else certain_time
         return Proof(max(float(lower), certain_time), _KIND, certain_time, fastest)
     solver = min(point.cost for one in explored for point in one.exact.points)
     value = float(front.values[0])
@@ -352,12 +356,13 @@ def _notes(
     return notes
 
 
-def _lowered(share: float) -> list[str]:
-    if share == 1.0:
+def _lowered(share: np.ndarray) -> list[str]:
+    least = float(share.min())
+    if least == 1.0:
         return []
     return [
-        f"Refined routes undercut the lower front of the network by up to {1.0 - share:.1%}, in "
-        "narrow waters mostly; it was lowered by that, and is evidence there, no proof."
+        f"Refined routes undercut the lower front of the network by up to {1.0 - least:.1%}; it "
+        "was lowered by that, and is evidence, no proof."
     ]
 
 

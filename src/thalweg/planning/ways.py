@@ -16,7 +16,7 @@ from thalweg.planning.networks import build_network, lattice_between
 from thalweg.planning.passage import Task
 
 #: Fronts are searched on networks of about this many nodes, unless a resolution is given.
-MOST_NODES = 9_000
+MOST_NODES = 3_000
 #: Ways round longer than this multiple of the shortest are not looked at.
 LONGEST_WAY = 1.8
 _COAST_LEVELS = 2

@@ -16,7 +16,8 @@ from thalweg.core.geodesy import FloatArray
 Slowness = Callable[[int, int, FloatArray, "FloatArray | None"], tuple[FloatArray, FloatArray]]
 
 TIME_TOLERANCE = 1e-5  #: change of any time [s] that ends the iteration
-_ROUNDS = 14  # iterations before a stretch is halved
+_ROUNDS = 14  # iterations before a stretch is cut
+_WINDOW = 64  # pieces that are looked at next behind one that did not settle, at least
 _LAST_ROUNDS = 60  # iterations on a single piece
 # Butcher's matrix of the two-stage Gauss method (Hairer, Norsett & Wanner 1993, table II.7.3)
 _GAUSS = np.array([[0.25, 0.25 - math.sqrt(3.0) / 6.0], [0.25 + math.sqrt(3.0) / 6.0, 0.25]])
@@ -82,7 +83,8 @@ def find_times(
     Solves ``dT/ds = 1 / SOG(s, T)`` by the two-stage Gauss method, of order 4 in the length of
     the pieces where the fields are smooth. All pieces are solved at once: Picard iteration, made
     quick by the slope of slowness in time, which the last two iterates tell at every point.
-    A stretch that does not settle (a field with jumps in time) is halved, at last to single pieces.
+    Of a stretch that does not settle (a field with jumps) the pieces before the first that does not
+    are done, that piece is solved by itself, and the search goes on behind it.
     """
     count = len(step)
     passage = Passage(
@@ -104,16 +106,22 @@ def find_times(
     waiting = [(0, count)]
     while waiting:
         first, last = waiting.pop()
-        if not _settle(passage, look, first, last) and last - first > 1:
-            middle = (first + last) // 2
-            waiting += [(middle, last), (first, middle)]
+        settled = _settle(passage, look, first, last)
+        stuck = first + settled
+        if stuck < last:
+            window = min(stuck + 1 + max(4 * settled, _WINDOW), last)
+            ahead = [(window, last), (stuck + 1, window), (stuck, stuck + 1)]
+            waiting += [(a, b) for a, b in ahead if a < b]
     passage.start += depart
     passage.inside += depart
     return passage
 
 
-def _settle(passage: Passage, look: Slowness, first: int, last: int) -> bool:
-    """Iterate one stretch of pieces from its known start; tell whether it settled."""
+def _settle(passage: Passage, look: Slowness, first: int, last: int) -> int:
+    """Iterate one stretch of pieces from its known start; return how many settled from there on.
+
+    A single piece always counts as settled: it is creeped up on.
+    """
     part = slice(first, last)
     step, wait = passage.step[part], passage.wait[part]
     depart = passage.start[first]
@@ -126,7 +134,8 @@ def _settle(passage: Passage, look: Slowness, first: int, last: int) -> bool:
     )
     for turn in range(_LAST_ROUNDS if last - first == 1 else _ROUNDS):
         found, speed = look(2 * first, 2 * last, inside.reshape(-1), _flat(water))
-        found, water = found.reshape(-1, 2), speed.reshape(-1, 2)
+        found, speed = found.reshape(-1, 2), speed.reshape(-1, 2)
+        water = speed
         bad = ~np.isfinite(found)
         held = np.where(bad, passage.slowness[part], found)
         if seen_at is not None:
@@ -139,14 +148,14 @@ def _settle(passage: Passage, look: Slowness, first: int, last: int) -> bool:
         start, new = _improve(depart, step, wait, held, slope, start)
         change = np.abs(new - inside).max(axis=1)
         inside = new
-        sure = _first(bad) + 1
-        if max(change[:sure], default=0.0) < TIME_TOLERANCE:
+        moving = np.flatnonzero(~(change[: _first(bad) + 1] < TIME_TOLERANCE))
+        if not len(moving):
             break
-    settled = bool(max(change[:sure], default=0.0) < TIME_TOLERANCE)
-    if settled or last - first == 1:
-        passage.start[first : last + 1] = start
-        passage.inside[part], passage.water[part], passage.bad[part] = inside, water, bad
-        passage.slowness[part] = held
+    settled = int(moving[0]) if len(moving) and last - first > 1 else last - first
+    part = slice(first, first + settled)
+    passage.start[first : first + settled + 1] = start[: settled + 1]
+    passage.inside[part], passage.water[part] = inside[:settled], speed[:settled]
+    passage.bad[part], passage.slowness[part] = bad[:settled], held[:settled]
     return settled
 
 

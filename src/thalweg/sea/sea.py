@@ -303,19 +303,20 @@ class Sea(LayeredSea):
         """
         values: dict[str, float] = {}
         told: list[str] = []
-        layers: list[Layer] = list(self.layers)
+        by_wind = policies.get("waves") == "wind"
         for policy, value in policies.items():
-            if policy == "waves" and value == "wind":
-                layers.append(self._wind_sea())
-                told.append(
-                    "where unknown, waves are those that the wind raises (Carter 1982, 500 km of "
-                    "fetch, 24 h)"
-                )
-                continue
-            values.update(policy_values(policy, value))  # type: ignore[arg-type]
-            told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
+            if not (by_wind and policy == "waves"):
+                values.update(policy_values(policy, value))  # type: ignore[arg-type]
+                told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
+        layers: list[Layer] = list(self.layers)
         if values:
             layers.append(formulas.constant_layer(values, "filled"))
+        if by_wind:
+            layers.append(Sea(tuple(layers))._wind_sea())
+            told.append(
+                "where unknown, waves are those that the wind raises (Carter 1982, 500 km of "
+                "fetch, 24 h)"
+            )
         return Sea(tuple(layers), (*self.assumptions, *told))
 
     def _wind_sea(self) -> WindSeaLayer:

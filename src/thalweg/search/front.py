@@ -152,7 +152,7 @@ def front(
       Elsewhere (and with ``wait=False`` everywhere) labels are compared inside a bin only.
     * The lower front is the larger of two bounds. One lets every arrival count for the start of
       its bin and leaves at any moment of the bin, whatever is earliest and cheapest; it closes as
-      the bins narrow. The other is the least cost plus a price of time, for up to 12 prices, which
+      the bins narrow. The other is the least cost plus a price of time, for up to 6 prices, which
       loses nothing to the bins but bounds the lower hull of the front only. Both take an edge at
       the most favourable moment of the bin, less twice the difference to the leg itself met amid
       the two slices around at the lowest and the highest setting; both let a ship wait as long as

@@ -25,7 +25,7 @@ from thalweg.search.front_world import Bounds, Gathered, Request, new_work
 FloatArray = NDArray[np.float64]
 
 _SHRINK = 1.0 - 2e-6  # for sums in single precision
-_LINES = 12
+_LINES = 6
 
 
 class Lower(NamedTuple):

@@ -26,6 +26,7 @@ _COARSEST_BINS = 250
 _MOST_RELAXED = 4e9  # that bins chosen here may allow for; a good third of them come about
 _AMPLE = 1e9  # tables are not made larger than that for the sake of finer slices [bytes]
 _AT_THE_END = 0.05  # of the horizon: longer than edges take
+_WORTH = 0.4  # of the error left by halving steps, at most, if the sea is smooth: a quarter is due
 _SAMPLED = 400  # edges looked at to choose the slices
 _LABEL_BYTES = 20
 _NICE = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 90.0, 120.0, 180.0, 240.0]
@@ -136,10 +137,11 @@ def _slices(
 ) -> tuple[FloatArray, float, int]:
     """Return the coarsest slices that are exact enough, finer ones where they cost little.
 
-    If none that fit the memory and take a bearable time are exact enough, the finest that do.
+    If none that fit the memory and take a bearable time are exact enough, the finest that do, or
+    the sea's own times where finer ones help little: jumps are not known better for them.
     """
     ladder = _ladder(got.world.sea.times - request.depart, clock.latest)
-    most = min(memory_limit, _AMPLE)
+    most, own = min(memory_limit, _AMPLE), len(got.world.sea.times) + 2
     chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
         needed = _memory(got, clock, windows, slices)
@@ -147,8 +149,12 @@ def _slices(
             break
         if error < math.inf and needed > most:
             break
-        chosen, memory = slices, needed
+        before = error
         error, shut = _table_error(got, request, windows, clock, slices)
+        if len(slices) > own and error > _WORTH * before and needed > _CHEAP:
+            error = before
+            break
+        chosen, memory = slices, needed
         fine = error <= _FINE and not shut
     return chosen, error, memory
 

@@ -25,6 +25,8 @@ cost nothing; the composed ship therefore never lets the loss fall while the win
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -211,7 +213,7 @@ def kwon_speed_loss(
     )  # so that the axis of the sectors stays ahead of those of the speeds
     by_sector = np.empty((4, *number.shape))
     for sector in range(4):
-        at = np.minimum(number, _peak(sector, volume, **options)) if hold else number
+        at = np.minimum(number, _peaks(sector, volume, **options)) if hold else number
         direction = kwon_direction_coefficients(at)[sector]
         by_sector[sector] = direction * kwon_form_coefficient(
             at, displacement_volume=volume, **options
@@ -242,25 +244,35 @@ def kwon_notes(
     )
 
 
-def _peak(sector: int, volume: FloatArray, **options: Any) -> FloatArray:
+def _peaks(sector: int, volume: FloatArray, **options: Any) -> FloatArray:
     """Return the Beaufort number at which C_beta C_form of a sector is greatest."""
+    if volume.size and volume.min() == volume.max():
+        only = _peak(sector, float(volume.flat[0]), **options)
+        return np.broadcast_to(np.float64(only), volume.shape)
+    volumes, which = np.unique(volume, return_inverse=True)
+    peaks = np.array([_peak(sector, float(one), **options) for one in volumes])
+    return peaks[which].reshape(volume.shape)
+
+
+@lru_cache(maxsize=4096)
+def _peak(sector: int, volume: float, *, loading: Loading, ship_type: ShipType) -> float:
+    """Return that number for one displaced volume [m3]."""
     if _BEND[sector] == 0.0:
-        return np.full(volume.shape, 12.0)
-    if volume.size > 1 and np.ptp(volume) == 0.0:
-        return np.broadcast_to(_peak(sector, volume.ravel()[:1], **options), volume.shape)
-    low = np.full(volume.shape, _VERTEX[sector])
-    high = np.minimum(low + np.sqrt(_TOP[sector] / _BEND[sector]), 12.0)
+        return 12.0
 
     def product(at: FloatArray) -> FloatArray:
-        direction = kwon_direction_coefficients(at)[sector]
-        return direction * kwon_form_coefficient(at, displacement_volume=volume, **options)
+        form = kwon_form_coefficient(
+            at, displacement_volume=volume, loading=loading, ship_type=ship_type
+        )
+        return kwon_direction_coefficients(at)[sector] * form
 
-    shrink = (np.sqrt(5.0) - 1.0) / 2.0  # golden section; the product has a single top
-    for _ in range(40):
-        left, right = high - shrink * (high - low), low + shrink * (high - low)
-        rising = product(left) < product(right)
-        low, high = np.where(rising, left, low), np.where(rising, high, right)
-    return 0.5 * (low + high)
+    low = float(_VERTEX[sector])
+    high = min(low + math.sqrt(_TOP[sector] / _BEND[sector]), 12.0)
+    for _ in range(6):  # the product has a single top
+        at = np.linspace(low, high, 65)
+        top = int(np.argmax(product(at)))
+        low, high = at[max(top - 1, 0)], at[min(top + 1, 64)]
+    return float(0.5 * (low + high))
 
 
 def _between_sectors(by_sector: FloatArray, angle: FloatArray, *, classes: bool) -> FloatArray:
