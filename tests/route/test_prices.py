@@ -258,3 +258,67 @@ def test_a_canal_survives_files(world, tmp_path, ending, write):
     if ending == "csv":
         header = path.read_text().splitlines()[0].split(",")
         assert {"fuel_t", "co2_t", "cost_usd"} <= set(header)
+
+
+# energy, and the price of speed
+
+
+def test_energy_is_power_and_hotel_load_over_time_and_waiting_the_hotel_load():
+    engine = {"reference_speed_kn": 10.0, "reference_power_kw": 2000.0, "hotel_load_kw": 300.0}
+    cubic = {"hull": {"draught_m": 5.0}, "models": {"calm_water": "cubic"}}
+    ship = Ship.from_dict({"name": "x", "speeds_kn": [5.0, 10.0], "engine": engine, **cubic})
+    track = Track([0, 0, 0], [0, 1, 2], 0.0, [3600.0, 7200.0, 0.0], [0, 1])
+    route = evaluate(track, ship=ship, sea=CALM, chart=OPEN)
+    sailed = route.legs["arrive"] - route.legs["depart"]
+    assert route.legs["energy"] == pytest.approx(np.array([550e3, 2300e3]) * sailed, rel=1e-9)
+    assert route.legs["waiting_energy"] == pytest.approx([300e3 * 3600, 300e3 * 7200])
+    whole = route.legs["energy"].sum() + route.legs["waiting_energy"].sum()
+    assert route.energy_mwh == pytest.approx(whole / 3.6e9)
+    assert route.as_dict()["energy_mwh"] == route.energy_mwh
+    assert route.waypoints()[-1]["energy_mwh"] == pytest.approx(route.energy_mwh)
+    assert set(route.samples["power"]) == {250e3, 2000e3}
+    without = evaluate(track, ship=Ship.simple(speeds_kn=[5.0, 10.0]), sea=CALM, chart=OPEN)
+    assert without.energy_mwh is None and without.as_dict()["energy_mwh"] is None
+
+
+def test_energy_in_a_current_follows_the_time():
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, a, o: np.where(o > 0.5, -4.0 * KNOT, 0.0),
+            "northward_sea_water_velocity": lambda t, a, o: 0.0 * a,
+        }
+    )
+    ship = Ship.load("jbc")
+    calm = Sea.layered(sea, CALM)
+    route = evaluate([(0, 0), (0, 1)], ship=ship, sea=calm, chart=OPEN, depart=0)
+    power = float(route.samples["power"][0])
+    assert route.energy_mwh == pytest.approx(
+        (power + ship.hotel_power) * route.time_h / 1e6, rel=1e-4
+    )
+
+
+def test_canals_take_the_power_and_the_cubed_speed_of_their_setting(world):
+    engine = {"reference_speed_kn": 12.0, "reference_power_kw": 6000.0, "hotel_load_kw": 500.0}
+    costs = {"per_week": 604800.0, "per_second_per_cubed_speed": 0.01}
+    more = {"hull": {"draught_m": 5.0}, "models": {"calm_water": "cubic"}, "costs": costs}
+    ship = Ship.from_dict({"name": "x", "speeds_kn": [6.0, 9.0, 12.0], "engine": engine, **more})
+    places = through(SUEZ, (31.6, 32.3), (29.5, 32.5))
+    route = evaluate(places, ship=ship, sea=CALM, chart=world, depart=0)
+    brake = 6e6 * (9.0 / 12.0) ** 3  # 7.2 kn: 9 kn is the slowest setting that keeps up
+    assert route.legs["energy"][1] == pytest.approx((brake + 5e5) * SUEZ.transit_time)
+    spent = 1.0 + 0.01 * (9.0 * KNOT) ** 3
+    assert route.legs["cost"][1] == pytest.approx(spent * SUEZ.transit_time + SUEZ.fee)
+
+
+def test_the_price_of_speed_counts_while_sailing_and_zones_multiply_it():
+    costs = {"per_week": 604800.0, "per_second_per_cubed_speed": 0.01}
+    ship = Ship.from_dict(
+        {"name": "x", "speeds_kn": [10.0], "hull": {"draught_m": 5}, "costs": costs}
+    )
+    chart = OPEN.with_zones([zone(1, -1, 2, 1, kind="price", factor=2.0)])
+    track = Track([0, 0, 0], [0, 1, 2], 0.0, [3600.0, 7200.0, 0.0])
+    route = evaluate(track, ship=ship, sea=CALM, chart=chart)
+    cube = 0.01 * (10.0 * KNOT) ** 3
+    sailed = route.legs["arrive"] - route.legs["depart"]
+    wanted = np.array([1.0, 2.0]) * cube * sailed + sailed + [3600.0, 7200.0]
+    assert route.legs["cost"] == pytest.approx(wanted, rel=1e-6)

@@ -242,3 +242,63 @@ def test_models_of_others_are_tabulated_over_what_they_read():
     assert table.error.p99 <= 0.002
     expected = 0.4 * (1 + 0.01 * 3.3**2)
     assert float(table.lookup({"wave_height": 3.3}, 1)) == pytest.approx(expected, rel=0.003)
+
+
+# power
+
+
+def test_a_table_of_power_has_the_hotel_load_in_it():
+    ship = _held(engine={**DATA["engine"], "hotel_load_kw": 300})
+    table, c = ship.tabulate_power(), _draws(1500, 11)
+    assert ship.hotel_power == 300e3 and _held().hotel_power == 0.0
+    true = np.stack([ship.power(c, k) + 300e3 for k in range(3)], axis=-1)
+    found = np.stack([table.lookup(c, k) for k in range(3)], axis=-1)
+    error = np.abs(found - true) / np.maximum(true, 0.25 * true.max(axis=0))
+    assert np.quantile(error, 0.99) < 0.01
+    assert (true.max(axis=0) > 1.3 * true.min(axis=0)).all()
+
+
+def test_power_that_is_ordered_or_known_is_a_constant_besides_the_hotel_load():
+    engine = {**DATA["engine"], "hotel_load_kw": 200}
+    ordered = Ship.from_dict({**DATA, "powers_kw": [3600, 7650], "engine": engine})
+    known = Ship.from_dict(
+        {
+            "name": "known",
+            "hull": {"draught_m": 5.0},
+            "table": {"speed_kn": [6, 12], "power_kw": [500, 4000]},
+            "engine": {"hotel_load_kw": 200},
+            "models": {"calm_water": "table"},
+        }
+    )
+    for ship, brake in ((ordered, (3600, 7650)), (known, (500, 4000))):
+        table = ship.tabulate_power()
+        assert table.axes == frozenset()
+        for setting, kw in enumerate(brake):
+            assert float(table.lookup({}, setting)) == pytest.approx(1e3 * (kw + 200), rel=1e-6)
+
+
+def test_power_and_fuel_are_what_each_is_alone():
+    c = _draws(20, 5)
+    for ship in (_held(), Ship.load("handysize-bulker")):
+        power, fuel = ship.power_and_fuel(c, 1)
+        assert np.array_equal(power, ship.power(c, 1), equal_nan=True)
+        assert np.array_equal(fuel, ship.fuel_rate(c, 1), equal_nan=True)
+
+
+def test_ships_of_unknown_power_say_so():
+    for ship in (
+        Ship.simple(speed_kn=8.0),
+        Ship.from_speed_function(lambda c: 6.0 - c.wave_height),
+    ):
+        with pytest.raises(InputError, match="brake power is unknown") as told:
+            ship.tabulate_power()
+        assert "reference_power_kw" in told.value.possible
+
+
+def test_a_plug_in_of_known_power_is_tabulated_over_what_it_reads():
+    class Powered(PluginModel):
+        def power(self, conditions, setting):
+            return 1e6 * (1.0 + 0.1 * conditions["wave_height"]) + 0.0 * np.asarray(setting)
+
+    table = Ship("plug-in", Powered(), Loading(5.0, 5.0)).tabulate_power()
+    assert float(table.lookup({"wave_height": 3.0}, 0)) == pytest.approx(1.3e6, rel=1e-3)

@@ -86,3 +86,15 @@ def test_one_currency():
     assert fuel_terms(euros).with_prices(600.0).currency == "USD"
     with pytest.raises(InputError, match="prices in EUR"):
         fuel_terms(euros).with_prices(time_usd_per_day=100.0)
+
+
+def test_the_price_of_speed_stands_for_fuel_only_where_fuel_has_no_price():
+    costs = {"per_week": 604800.0, "per_second_per_cubed_speed": 0.008, "currency": "EUR"}
+    terms = fuel_terms({"costs": costs})
+    assert terms.by_speed and terms.speed_price == 0.008
+    assert not fuel_terms({"costs": {"per_week": 604800.0}}).by_speed
+    assert not fuel_terms({"costs": costs, "fuel": {"price_per_t": 500.0}}).by_speed
+    with pytest.raises(InputError, match="prices in EUR"):
+        terms.with_prices(time_usd_per_day=100.0)
+    dollars = terms.with_prices(600.0, time_usd_per_day=100.0)
+    assert not dollars.by_speed and dollars.currency == "USD"

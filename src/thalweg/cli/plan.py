@@ -33,8 +33,10 @@ def add_command(commands: Any) -> None:
     parser.add_argument(
         "--objective",
         default="time",
-        metavar="time|distance|fuel|cost|co2|front",
-        help="what to make least; front: the whole trade of time against fuel or cost",
+        metavar="time|distance|fuel|energy|cost|co2|front",
+        help="what to make least; energy: propulsion and hotel load; cost: fuel, time and dues, or "
+        "time and cubed speed by the ship file's costs where fuel has no price; front: the whole "
+        "trade of time against fuel or cost",
     )
     parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed through water")
     parser.add_argument(
@@ -148,6 +150,8 @@ def show(plan: Plan) -> None:
         parts.append(f"{best.fuel_t:.1f} t fuel")
     if best.cost is not None:
         parts.append(f"{best.cost:,.0f} {best.currency}")
+    if best.energy_mwh is not None and plan.voyage.objective == "energy":
+        parts.append(f"{best.energy_mwh:.2f} MWh")
     if best.co2_t is not None and plan.voyage.objective == "co2":
         parts.append(f"{best.co2_t:.1f} t CO2")
     if best.waiting_h > 0:

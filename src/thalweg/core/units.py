@@ -9,5 +9,6 @@ NAUTICAL_MILE: Final = 1852.0  #: metres
 HOUR: Final = 3600.0  #: seconds
 DAY: Final = 86400.0  #: seconds
 TONNE: Final = 1000.0  #: kilograms
+MEGAWATT_HOUR: Final = 3.6e9  #: joules
 GRAVITY: Final = 9.80665  #: standard gravity [m/s2]
 SEA_WATER_DENSITY: Final = 1025.0  #: [kg/m3]

@@ -9,8 +9,6 @@ import numpy as np
 
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.route import Route
-from thalweg.ship import Ship
-from thalweg.ship.conditions import Conditions
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,31 +107,13 @@ class Cycle:
         return self.out, self.back
 
 
-def leg_energy(route: Route, ship: Ship) -> float:
+def leg_energy(route: Route) -> float:
     """Return the brake energy of a route [J]: power at the referee's samples over their time.
 
     NaN if the ship's power is unknown anywhere.
     """
-    samples = route.samples
-    sampled = {name: values for name, values in samples.items() if name not in _OWN}
-    here = Conditions.from_sea(
-        sampled,
-        heading=samples["heading"],
-        time=samples["time"],
-        lat=samples["lat"],
-        lon=samples["lon"],
-        depth=samples["depth"],
-    )
-    leg = samples["leg"].astype(np.int64)
-    power = np.broadcast_to(ship.power(here, route.track.setting[leg]), leg.shape)
+    power, time = route.samples["power"], route.samples["time"]
     if np.isnan(power).any():
         return math.nan
-    same = np.diff(leg) == 0
-    step = np.diff(samples["time"])
-    return float(np.sum(0.5 * (power[1:] + power[:-1]) * step, where=same))
-
-
-_OWN = frozenset(
-    {"time", "leg", "lat", "lon", "distance", "course", "heading", "speed_through_water"}
-    | {"speed_over_ground", "depth", "under_keel_clearance", "fuel_rate"}
-)
+    same = np.diff(route.samples["leg"]) == 0
+    return float(np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(time), where=same))

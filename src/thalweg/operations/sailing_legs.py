@@ -89,7 +89,7 @@ class LegSailor:
             passage = None
         if best is None or not math.isfinite(best.arrive):
             return None
-        return Leg(best, leg_energy(best, loaded.ship))
+        return Leg(best, leg_energy(best))
 
     def _judged(self, passage: Passage, loaded: Loaded) -> Route:
         """Score a passage by its corners; by all its nodes where these just leave the data."""

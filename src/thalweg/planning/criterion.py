@@ -1,4 +1,4 @@
-"""What a plan that trades time for something makes least: fuel, cost or carbon dioxide."""
+"""What a plan that trades time for something makes least: fuel, energy, cost or CO2."""
 
 from __future__ import annotations
 
@@ -10,12 +10,45 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
-from thalweg.core.units import DAY, HOUR, TONNE
+from thalweg.core.units import DAY, HOUR, MEGAWATT_HOUR, TONNE
 from thalweg.network import Network, eca_shares
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
-from thalweg.ship import Ship
+from thalweg.ship import Conditions, PerformanceTable, Ship, TableError
 from thalweg.ship.fuel_terms import FuelTerms
+from thalweg.ship.tabulate import constant_part
+
+#: What a ship meets in still water; the period of no waves is any.
+_STILL = {
+    "wind_speed": 0.0,
+    "wind_angle": 0.0,
+    "wave_height": 0.0,
+    "wave_angle": 0.0,
+    "wave_period": 8.0,
+    "depth": 1e4,
+    "heading": 0.0,
+    "current_east": 0.0,
+    "current_north": 0.0,
+}
+
+
+@dataclass(frozen=True)
+class Rate:
+    """What a ship spends in a second, by which a criterion counts.
+
+    Attributes
+    ----------
+    table : PerformanceTable
+        Fuel [kg/s], power of brake and hotel load [W], or the cubed ordered speed [m3/s3].
+    waiting : float
+        The same while lying still.
+    still : ndarray
+        Of every setting in still, deep water.
+    """
+
+    table: PerformanceTable
+    waiting: float
+    still: FloatArray
 
 
 @dataclass(frozen=True)
@@ -24,11 +57,12 @@ class Criterion:
 
     Attributes
     ----------
-    name : {"fuel", "cost", "co2"}
+    name : {"fuel", "energy", "cost", "co2"}
     unit : str
-        Unit it is told in: t, or the currency of the prices.
+        Unit it is told in: t, MWh, or the currency of the prices.
     inside, outside : float
-        What a kilogram of fuel counts inside and outside emission control areas [unit].
+        What a kilogram of fuel (a joule, a cubed speed for a second; see `rate_of`) counts inside
+        and outside emission control areas [unit].
     time_price : float
         What a second counts besides [unit].
     terms : FuelTerms
@@ -44,11 +78,36 @@ class Criterion:
 
     def of(self, route: Route) -> float:
         """Return what a refereed route counts [unit]; infinite where it is not known."""
-        value = {"fuel": route.fuel_t, "cost": route.cost, "co2": route.co2_t}[self.name]
+        value = {
+            "fuel": route.fuel_t,
+            "energy": route.energy_mwh,
+            "cost": route.cost,
+            "co2": route.co2_t,
+        }[self.name]
         return math.inf if value is None or not math.isfinite(value) else float(value)
 
+    def rate_of(self, ship: Ship) -> Rate:
+        """Return what the ship spends in a second, as far as this counts it.
+
+        Raises
+        ------
+        InputError
+            If the ship's fuel, or its power, is not known.
+        """
+        if self.name == "cost" and self.terms.by_speed:
+            cubed = np.asarray(ship.speeds, float) ** 3
+            exact, parts = TableError(0.0, 0.0, 0.0, 0), (constant_part(cubed),)
+            return Rate(PerformanceTable(parts, ship.speeds, "", exact), 0.0, cubed)
+        energy = self.name == "energy"
+        table = ship.tabulate_power() if energy else ship.tabulate_fuel()
+        conditions = Conditions({name: v for name, v in _STILL.items() if name in ship.reads})
+        power, fuel = ship.power_and_fuel(conditions, np.arange(len(ship.speeds)))
+        if energy:
+            return Rate(table, ship.hotel_power, np.asarray(power, float) + ship.hotel_power)
+        return Rate(table, ship.waiting_fuel_rate, np.asarray(fuel, float))
+
     def weights(self, network: Network, chart: Chart) -> FloatArray:
-        """Return what a kilogram of fuel counts on every edge of a network [unit]."""
+        """Return what `inside` and `outside` tell, on every edge of a network [unit]."""
         price = np.asarray(network.price, float) if self.name == "cost" else 1.0
         weight = np.full(network.n_edges, self.outside)
         if self.inside != self.outside:
@@ -74,6 +133,12 @@ def find_criterion(voyage: Voyage, ship: Ship) -> Criterion:
     if name == "front":
         asked = (voyage.fuel_price_usd, voyage.eca_price_factor, voyage.time_price_usd_per_h)
         name = "fuel" if all(value is None for value in asked) else "cost"
+    if name == "energy":
+        joule = 1.0 / MEGAWATT_HOUR
+        return Criterion(name, "MWh", joule, joule, 0.0, terms)
+    if name == "cost" and terms.by_speed:
+        price, currency = terms.speed_price, terms.currency or "USD"
+        return Criterion(name, currency, price, price, terms.time_price, terms)
     inside, outside = (terms.per_kg(name, inside=inside) for inside in (True, False))
     if not (math.isfinite(inside) and math.isfinite(outside)):
         raise _unknown(name, ship)
@@ -86,7 +151,8 @@ def _unknown(name: str, ship: Ship) -> InputError:
     if name == "cost":
         return InputError(
             f"The cost of a voyage of {ship.name!r} is asked, but no price of fuel is known.",
-            "Prices come from --fuel-price USD, or fuel.price_per_t in the ship file.",
+            "Prices come from --fuel-price USD, or fuel.price_per_t in the ship file, or "
+            "costs.per_second_per_cubed_speed stands for them.",
             "Give one.",
             field="fuel_price_usd",
         )

@@ -88,7 +88,7 @@ def _evaluator(means: Means, explored: Explored, seeds: list[Track]) -> Evaluato
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
     return make_evaluator(
         table=task.table,
-        fuel=means.fuel,
+        fuel=means.rate.table,
         fields=_raster(means, seeds, depart, until),
         limits=means.limits,
         depart=depart,
@@ -97,7 +97,7 @@ def _evaluator(means: Means, explored: Explored, seeds: list[Track]) -> Evaluato
         weight_inside=criterion.inside,
         weight_outside=criterion.outside,
         time_price=criterion.time_price,
-        waiting_fuel=task.ship.waiting_fuel_rate,
+        waiting_fuel=means.rate.waiting,
         fees=criterion.name == "cost",
         total=float(np.median([_rough_length(track) for track in seeds])),
     )

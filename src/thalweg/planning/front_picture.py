@@ -12,18 +12,18 @@ from thalweg.planning.fronts import knee
 if TYPE_CHECKING:
     from thalweg.planning.plan import Plan
 
-_WORDS = {"fuel": "fuel", "cost": "cost", "co2": "CO2"}
+_WORDS = {"fuel": "fuel", "energy": "energy", "cost": "cost", "co2": "CO2"}
 _COLOURS = ("#c2185b", "#1565c0", "#2e7d32", "#ef6c00", "#6a1b9a", "#00838f")
 _INK = "#22303c"
 
 
 def draw_front(plan: Plan, path: str | Path | None = None) -> Any:
-    """Draw the front of a plan that trades time for fuel, cost or CO2.
+    """Draw the front of a plan that trades time for fuel, energy, cost or CO2.
 
     Parameters
     ----------
     plan : Plan
-        With a front (its objective is ``"front"``, ``"fuel"``, ``"cost"`` or ``"co2"``).
+        With a front (its objective is neither ``"time"`` nor ``"distance"``).
     path : path, optional
         Where to save the picture (PNG).
 

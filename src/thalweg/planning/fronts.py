@@ -23,10 +23,10 @@ class FrontOfPlan:
 
     Attributes
     ----------
-    criterion : {"fuel", "cost", "co2"}
+    criterion : {"fuel", "energy", "cost", "co2"}
         What is traded for time.
     unit : str
-        Its unit: t, or a currency.
+        Its unit: t, MWh, or a currency.
     values : ndarray (n,)
         Of the plan's routes, in their order.
     stages : tuple of str (n,)
@@ -71,6 +71,7 @@ class FrontOfPlan:
                 "arrive": format_time(route.arrive),
                 self.column: float(self.values[number]),
                 "fuel_t": route.fuel_t,
+                "energy_mwh": route.energy_mwh,
                 "distance_nm": route.distance_nm,
                 "waiting_h": route.waiting_h,
                 "gap": gap,

@@ -16,6 +16,9 @@ from thalweg.planning.fronts import FrontOfPlan
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 
+#: Objectives told in the unit of the front's criterion.
+_COUNTED = ("fuel", "energy", "cost", "co2")
+
 
 @dataclass(frozen=True)
 class Proof:
@@ -73,7 +76,7 @@ class Plan:
     surroundings : Surroundings
         For drawing; not part of the JSON.
     front : FrontOfPlan, optional
-        The trade of time for fuel, cost or CO2, where one was asked; its routes are all of
+        The trade of time for fuel, energy, cost or CO2, where one was asked; its routes are all of
         `routes` when the whole front was asked, ordered by time.
     ensemble : tuple of mappings
         With a forecast of several members: how each of the routes fares over them.
@@ -101,15 +104,15 @@ class Plan:
         With the objective ``"front"`` the hours of the fastest route; the other points are in
         `front`.
         """
-        if self.voyage.objective in ("fuel", "cost", "co2"):
+        if self.voyage.objective in _COUNTED:
             assert self.front is not None  # such plans have one
             return float(self.front.values[0])
         return self.best.distance_nm if self.voyage.objective == "distance" else self.best.time_h
 
     @property
     def unit(self) -> str:
-        """The unit of the objective: ``"h"``, ``"nm"``, ``"t"`` or the currency."""
-        if self.voyage.objective in ("fuel", "cost", "co2") and self.front is not None:
+        """The unit of the objective: ``"h"``, ``"nm"``, ``"t"``, ``"MWh"`` or the currency."""
+        if self.voyage.objective in _COUNTED and self.front is not None:
             return self.front.unit
         return "nm" if self.voyage.objective == "distance" else "h"
 
@@ -197,6 +200,7 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
         "time_h": _number(route.time_h),
         "distance_nm": _number(route.distance_nm),
         "fuel_t": _number(route.fuel_t),
+        "energy_mwh": _number(route.energy_mwh),
         "co2_t": _number(route.co2_t),
         route.cost_name: _number(route.cost),
         "fuel_eca_t": _number(route.fuel_eca_t),

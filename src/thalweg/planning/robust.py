@@ -23,7 +23,14 @@ from thalweg.ship import Ship
 MOST_PLANNED = 3
 #: Routes of a front that are sailed in all members.
 MOST_SAILED = 10
-_QUANTITY = {"time": "time_h", "front": "time_h", "fuel": "fuel_t", "cost": "cost", "co2": "co2_t"}
+_QUANTITY = {
+    "time": "time_h",
+    "front": "time_h",
+    "fuel": "fuel_t",
+    "energy": "energy_mwh",
+    "cost": "cost",
+    "co2": "co2_t",
+}
 
 
 @dataclass(frozen=True)

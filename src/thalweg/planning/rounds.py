@@ -49,7 +49,8 @@ def round_candidates(means: Means) -> list[Candidate]:
 
 def _weighings(means: Means, network: Network) -> list[Weighing]:
     """Return lengths, and lengths with what control areas and zones of price cost."""
-    ratio = means.criterion.inside / means.criterion.outside
+    inside, outside = means.criterion.inside, means.criterion.outside
+    ratio = inside / outside if inside != outside else 1.0
     if ratio == 1.0 and not means.task.chart.zones.price:
         return [Weighing()]
     return [Weighing(), Weighing.priced(network, means.task.chart, ratio)]

@@ -15,7 +15,7 @@ from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.network import Network, shortest
 from thalweg.planning import warming
-from thalweg.planning.criterion import Criterion
+from thalweg.planning.criterion import Criterion, Rate
 from thalweg.planning.ends import End
 from thalweg.planning.passage import Frozen, Task, freeze, isochrones, refined, track_of
 from thalweg.planning.refusal import no_route
@@ -24,7 +24,6 @@ from thalweg.planning.ways import Way
 from thalweg.route import Route, Track
 from thalweg.sea import StationFields
 from thalweg.search import Front, SearchResult, direction_factor, earliest_arrival, front
-from thalweg.ship import Conditions, PerformanceTable, Ship
 
 #: How much longer than in still water the slowest ship worth looking at may take.
 _PATIENCE = 1.25
@@ -35,18 +34,6 @@ _MORE = 0.05
 _STRAIGHT = 2e-5
 #: Into how many bins the time of a front is divided; refinement makes up for what they miss.
 _BINS = 300
-#: What a ship meets in still water; the period of no waves is any.
-_STILL = {
-    "wind_speed": 0.0,
-    "wind_angle": 0.0,
-    "wave_height": 0.0,
-    "wave_angle": 0.0,
-    "wave_period": 8.0,
-    "depth": 1e4,
-    "heading": 0.0,
-    "current_east": 0.0,
-    "current_north": 0.0,
-}
 
 
 @dataclass(frozen=True)
@@ -84,7 +71,7 @@ class Means:
 
     task: Task
     criterion: Criterion
-    fuel: PerformanceTable
+    rate: Rate
     ends: tuple[End, ...]
     settings: np.ndarray
     limits: np.ndarray
@@ -164,7 +151,7 @@ def network_front(
         replace(network, fee=dues),
         frozen.stations,
         task.table,
-        means.fuel,
+        means.rate.table,
         start=network.meta.start,
         goal=network.meta.goal,
         depart=depart,
@@ -173,7 +160,7 @@ def network_front(
         settings=means.settings,
         weight=means.criterion.weights(network, task.chart),
         time_price=means.criterion.time_price,
-        waiting_fuel=task.ship.waiting_fuel_rate,
+        waiting_fuel=means.rate.waiting,
         waiting_weight=means.criterion.outside,
         wait=task.voyage.wait,
         bin_s=(latest - depart) / _BINS,
@@ -244,18 +231,11 @@ def shortest_length(network: Network) -> float:
 def economical(means: Means) -> int:
     """Return the setting that makes a mile cheapest in still water."""
     ship = means.task.ship
-    rate = still_rates(ship)[means.settings]
+    rate = means.rate.still[means.settings]
     speeds = np.asarray(ship.speeds)[means.settings]
     cost = (means.criterion.outside * rate + means.criterion.time_price) / speeds
     known = np.where(np.isfinite(cost), cost, np.inf)
     return int(means.settings[np.argmin(known)])
-
-
-def still_rates(ship: Ship) -> FloatArray:
-    """Return the fuel rate of every setting in still, deep water [kg/s]."""
-    conditions = Conditions({name: value for name, value in _STILL.items() if name in ship.reads})
-    settings = np.arange(len(ship.speeds))
-    return np.asarray(ship.fuel_rate(conditions, settings), float)
 
 
 def track_of_point(network: Network, point: Any) -> Track:

@@ -60,20 +60,20 @@ class Scored:
 
 
 def trade(task: Task, ends: list[End]) -> Plan:
-    """Plan a voyage whose objective trades time for fuel, cost or CO2.
+    """Plan a voyage whose objective trades time for fuel, energy, cost or CO2.
 
     Raises
     ------
     InputError
-        If the ship's fuel or its price is not known.
+        If the ship's fuel, its price or its power is not known.
     NoRouteError
         If no route exists within the limits and in time.
     """
     criterion = find_criterion(task.voyage, task.ship)
-    fuel = task.ship.tabulate_fuel()
+    rate = criterion.rate_of(task.ship)
     single = task.voyage.speed_kn is not None
     settings = np.array([task.setting]) if single else np.arange(len(task.ship.speeds))
-    means = Means(task, criterion, fuel, tuple(ends), settings, task.needs.limits)
+    means = Means(task, criterion, rate, tuple(ends), settings, task.needs.limits)
     ways = find_ways(task, ends)
     for depth, fraction in _MARGINS:
         limits = task.needs.limits * (1.0 - fraction)
@@ -323,7 +323,7 @@ def certain(means: Means, explored: list[Explored]) -> tuple[float, float]:
     """Return what no route at all undercuts: a time [h] and a value of the criterion.
 
     The geodesic at the greatest speed over ground that the data allow, for the value with the
-    least fuel rate of the best setting and the least weight of fuel.
+    least rate of the best setting and the least weight of it.
     """
     task, criterion = means.task, means.criterion
     start, goal = means.ends[0], means.ends[-1]
@@ -332,7 +332,7 @@ def certain(means: Means, explored: list[Explored]) -> tuple[float, float]:
     least = min(criterion.inside, criterion.outside)
     if criterion.name == "cost":
         least *= min(float(one.way.network.price.min()) for one in explored)
-    rates = np.maximum(extreme(means.fuel.kernel_arrays(), np.fmin), 0.0)
+    rates = np.maximum(extreme(means.rate.table.kernel_arrays(), np.fmin), 0.0)
     fastest, value = 0.0, math.inf
     for setting in means.settings:
         over_ground = float(task.ship.top_speed(int(setting)) or math.inf) + current

@@ -15,11 +15,11 @@ from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import TimeLike, format_time, parse_time
 
 Place: TypeAlias = "Position | str"
-Objective: TypeAlias = Literal["time", "distance", "fuel", "cost", "co2", "front"]
+Objective: TypeAlias = Literal["time", "distance", "fuel", "energy", "cost", "co2", "front"]
 
-OBJECTIVES: tuple[Objective, ...] = ("time", "distance", "fuel", "cost", "co2", "front")
+OBJECTIVES: tuple[Objective, ...] = ("time", "distance", "fuel", "energy", "cost", "co2", "front")
 #: Objectives for which the ship's speed is chosen leg by leg.
-TRADES: tuple[Objective, ...] = ("fuel", "cost", "co2", "front")
+TRADES: tuple[Objective, ...] = ("fuel", "energy", "cost", "co2", "front")
 METHODS = ("default", "exact", "nsga2", "spea2", "mpaes")
 RISKS = ("mean", "cvar")
 _LARGEST_FILE = 1_000_000
@@ -39,8 +39,10 @@ class Voyage:
     depart_window : pair of times, optional
         Earliest and latest departure; the one with the shortest passage is chosen (with via points
         the shortest passage to the first of them).
-    objective : {"time", "distance", "fuel", "cost", "co2", "front"}
-        What to make least; ``"front"`` asks for the whole trade of time against fuel, or against
+    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "front"}
+        What to make least; energy is that of propulsion and the hotel load, at rest too; the cost
+        is fuel, time and dues, or of time and cubed speed (``costs`` of the ship file) where fuel
+        has no price. ``"front"`` asks for the whole trade of time against fuel, or against
         cost where a price is given. For all but the first two the speed is chosen leg by leg.
     via : sequence of places
         Places to pass, in this order.

@@ -71,10 +71,16 @@ class CanalLegs:
         fee = self._filled(lambda canal: canal.fee)
         return np.where(np.isnan(fee), 0.0, fee)
 
-    def fuel_rate(self, ship: Ship) -> FloatArray:
-        """Fuel rate of each leg [kg/s], as `canal_fuel_rate`; NaN at sea."""
-        rates = {k: canal_fuel_rate(ship, self.canals[k]) for k in set(self.number.tolist()) - {-1}}
-        return np.array([rates.get(k, math.nan) for k in self.number.tolist()])
+    def rates(self, ship: Ship) -> tuple[FloatArray, FloatArray]:
+        """Brake power [W] and fuel rate [kg/s] of each leg, as `canal_rates`; NaN at sea."""
+        rates = {k: canal_rates(ship, self.canals[k]) for k in set(self.number.tolist()) - {-1}}
+        rows = [rates.get(k, (math.nan, math.nan)) for k in self.number.tolist()]
+        power, fuel = np.array(rows, float).T
+        return power, fuel
+
+    def ordered_speed(self, ship: Ship) -> FloatArray:
+        """Calm-water speed [m/s] of the setting each leg is passed at; NaN at sea."""
+        return self._filled(lambda canal: ship.speeds[canal_setting(ship, canal)])
 
     def places(self, leg: int, along: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (lat, lon [deg], course [rad]) at distances [m] from where a leg begins."""
@@ -125,19 +131,24 @@ def canal_ends(track: Track, chart: Chart | None) -> NDArray[np.bool_]:
     return np.append(canal, False) | np.append(False, canal)
 
 
-def canal_fuel_rate(ship: Ship, canal: Canal) -> float:
-    """Return the fuel rate [kg/s] of a ship in a canal; NaN if it has no fuel model.
-
-    That of calm, deep water at the slowest setting that reaches the canal's mean speed; at the
-    highest if none does. Ships whose speed is a field take their only setting.
-    """
+def canal_setting(ship: Ship, canal: Canal) -> int:
+    """Return the slowest setting that reaches a canal's mean speed; the highest if none does."""
     speeds = np.asarray(ship.speeds, float)
     fast = np.flatnonzero(speeds >= canal.length / canal.transit_time)
-    setting = int(fast[0]) if len(fast) else len(speeds) - 1
+    return int(fast[0]) if len(fast) else len(speeds) - 1
+
+
+def canal_rates(ship: Ship, canal: Canal) -> tuple[float, float]:
+    """Return (brake power [W], fuel rate [kg/s]) of a ship in a canal; NaN where not known.
+
+    Those of calm, deep water at the canal's setting. Ships whose speed is a field take their only
+    one.
+    """
     calm = {name: np.zeros(1) for name in ship.needs}
     calm |= {n: np.full(1, v) for n, v in ((WAVE_NORTH, 1.0), (WAVE_PERIOD, _PERIOD)) if n in calm}
     lat, lon = canal.path[0]
     conditions = Conditions.from_sea(
         calm, heading=np.zeros(1), time=np.zeros(1), lat=lat, lon=lon, depth=_DEEP
     )
-    return float(np.asarray(ship.fuel_rate(conditions, setting)).reshape(-1)[0])
+    power, fuel = ship.power_and_fuel(conditions, canal_setting(ship, canal))
+    return float(np.asarray(power).reshape(-1)[0]), float(np.asarray(fuel).reshape(-1)[0])

@@ -14,7 +14,7 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.kernels import fitness as columns
 from thalweg.kernels.fitness import FitnessWorld, sail_population
 from thalweg.kernels.tables import TableArrays
-from thalweg.route.canal_legs import canal_fuel_rate, canal_legs
+from thalweg.route.canal_legs import canal_legs, canal_rates
 from thalweg.route.quick import Bundle, IntArray, Sailor, make_sailor
 
 if TYPE_CHECKING:
@@ -311,7 +311,7 @@ def make_purse(
     world = FitnessWorld(sailor.raster, channels, sailor.table, rates, sailor.limits, terms)
     passed = canal_legs(track, chart)  # none: canals need not be looked for again and again
     canals = [
-        (c.transit_time, canal_fuel_rate(ship, c) * c.transit_time, c.fee * weights.priced)
+        (c.transit_time, canal_rates(ship, c)[1] * c.transit_time, c.fee * weights.priced)
         for c in (passed.canals if passed.any else ())
     ]
     return Purse(sailor, world, weights, 0.0, np.array(canals, float).reshape(-1, 3))

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 ALPHA: Final = 0.9
-QUANTITIES: Final = ("time_h", "fuel_t", "cost", "co2_t")
+QUANTITIES: Final = ("time_h", "fuel_t", "cost", "co2_t", "energy_mwh")
 MEASURES: Final = ("mean", "p10", "p90", "cvar")
 _NEVER: Final = 1e-12  # shares of a member below this are rounding
 
@@ -146,7 +146,7 @@ class Distribution:
         return self.spread("co2_t")
 
     def spread(self, quantity: str) -> Spread | None:
-        """Return how one of time_h, fuel_t, cost and co2_t varies over the feasible members.
+        """Return how one of `QUANTITIES` varies over the feasible members.
 
         What is infeasible has no number of its own to take part; `infeasible` and `notes` tell it
         and `risk` counts it.
@@ -170,7 +170,7 @@ class Distribution:
 
         Parameters
         ----------
-        quantity : {"time_h", "fuel_t", "cost", "co2_t"}
+        quantity : {"time_h", "fuel_t", "cost", "co2_t", "energy_mwh"}
         measure : {"mean", "p10", "p90", "cvar"}
 
         Returns

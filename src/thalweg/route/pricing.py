@@ -1,4 +1,4 @@
-"""What a sailed track burns, emits and costs: per piece of a leg, by the zone it lies in."""
+"""What a sailed track takes, burns, emits and costs: per piece of a leg, by the zone it is in."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class Bill:
     ----------
     legs : dict of str to float64 array (legs,)
         ``fuel`` (of sailing) and ``waiting_fuel`` (lying still before it) [kg], ``fuel_in_eca``
-        (of both) [kg], ``co2`` [kg], ``cost`` [currency]; NaN where unknown.
+        (of both) [kg], ``co2`` [kg], ``cost`` [currency], ``energy`` (of sailing) and
+        ``waiting_energy`` [J]; NaN where unknown.
     zones : dict of str to float
         Fuel [kg] by emission control area, and ``outside`` them.
     notes : tuple of str
@@ -38,6 +39,22 @@ class Bill:
     legs: dict[str, FloatArray]
     zones: dict[str, float]
     notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Rates:
+    """What a ship spends at the Gauss points of its track; NaN where unknown.
+
+    Attributes
+    ----------
+    fuel : float64 array
+        [kg/s], of the fuel burnt outside control areas.
+    power : float64 array
+        Of the brake, without hotel load [W].
+    """
+
+    fuel: FloatArray
+    power: FloatArray
 
 
 @dataclass(frozen=True)
@@ -51,53 +68,74 @@ class _Burnt:
     zone: NDArray[np.int64]
 
 
-def bill(sailed: Sailed, rate: FloatArray, terms: FuelTerms) -> Bill:
-    """Add up what a track burns and costs.
+def bill(sailed: Sailed, rates: Rates, terms: FuelTerms) -> Bill:
+    """Add up what a track takes, burns and costs.
 
     Parameters
     ----------
     sailed : Sailed
-    rate : ndarray
-        Fuel rate [kg/s] at its Gauss points, of the fuel burnt outside control areas.
+    rates : Rates
     terms : FuelTerms
 
     Notes
     -----
     Of every piece (at most half a nautical mile by default) the exact share inside the control
     areas burns at the terms inside; price zones multiply its cost. Cost is fuel, canal dues and the
-    price of time, waits included. What is unknown makes the sum unknown, never zero.
+    price of time, waits included. Where fuel has no price but speed has, the time of sailing counts
+    by the cubed ordered speed instead (van Halem 2019). Energy is that of the brake and the hotel
+    load. What is unknown makes the sum unknown, never zero.
     """
-    pieces, passage = sailed.pieces, sailed.passage
-    count = len(pieces.length)
-    parts = _parts(sailed, rate)
-    waits = parts.leg[len(pieces) :]
+    count = len(sailed.pieces.length)
+    parts = _parts(sailed, rates.fuel)
+    sailing = np.arange(len(parts.leg)) < len(sailed.pieces)
 
     def total(values: FloatArray) -> FloatArray:
         return np.bincount(parts.leg, weights=values, minlength=count).astype(np.float64)
 
     mass, kept = _weighted(parts, terms, "fuel")
-    sailing = np.arange(len(parts.leg)) < len(pieces)
+    time = np.concatenate([_integral(sailed, 1.0), _waits(sailed)])
+    energy = np.concatenate([_integral(sailed, rates.power), np.zeros(count)])
+    energy += sailed.world.ship.hotel_power * time
     legs = {
         "fuel": total(np.where(sailing, mass, 0.0)),
         "waiting_fuel": total(np.where(sailing, 0.0, mass)),
         "fuel_in_eca": total(kept),
         "co2": total(_weighted(parts, terms, "co2")[0]),
+        "energy": total(np.where(sailing, energy, 0.0)),
+        "waiting_energy": total(np.where(sailing, 0.0, energy)),
     }
-    cost = total(parts.price * _weighted(parts, terms, "cost")[0])
-    time = total(
-        np.concatenate([pieces.step * passage.slowness.mean(axis=1), _waits(sailed)[waits]])
-    )
+    if terms.by_speed:
+        spent = np.where(sailing, terms.speed_price * _ordered(sailed)[parts.leg] ** 3 * time, 0.0)
+    else:
+        spent = _weighted(parts, terms, "cost")[0]
+    cost = total(parts.price * spent)
     fee, notes = _dues(sailed, terms, cost)
-    legs["cost"] = cost + terms.time_price * time + fee
+    legs["cost"] = cost + terms.time_price * total(time) + fee
     return Bill(legs, _by_zone(sailed, parts, mass, kept), notes)
+
+
+def _integral(sailed: Sailed, rate: FloatArray | float) -> FloatArray:
+    """Return a rate at the Gauss points, summed over the time of every piece; NaN if not sailed."""
+    pieces, passage = sailed.pieces, sailed.passage
+    rates = np.broadcast_to(rate, 2 * len(pieces)).reshape(-1, 2)
+    found = 0.5 * pieces.step * (rates * passage.slowness).sum(axis=1)
+    if passage.first_bad < len(pieces):
+        found[passage.first_bad :] = math.nan
+    return np.asarray(found)
+
+
+def _ordered(sailed: Sailed) -> FloatArray:
+    """Return the calm-water speed that every leg is ordered to [m/s]."""
+    ship, pieces = sailed.world.ship, sailed.pieces
+    speeds = np.asarray(ship.speeds, float)[pieces.track.setting]
+    in_canals = pieces.canals.ordered_speed(ship)
+    return np.where(np.isnan(in_canals), speeds, in_canals)
 
 
 def _parts(sailed: Sailed, rate: FloatArray) -> _Burnt:
     """Return what is burnt on every piece, and then in the wait before every leg."""
-    pieces, passage, world = sailed.pieces, sailed.passage, sailed.world
-    burnt = 0.5 * pieces.step * (rate.reshape(-1, 2) * passage.slowness).sum(axis=1)
-    if passage.first_bad < len(pieces):
-        burnt[passage.first_bad :] = math.nan
+    pieces, world = sailed.pieces, sailed.world
+    burnt = _integral(sailed, rate)
     legs = np.arange(len(pieces.length))
     lying = _waits(sailed) * world.ship.waiting_fuel_rate
     low = pieces.points(pieces.leg, pieces.start)

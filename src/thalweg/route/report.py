@@ -9,7 +9,7 @@ import numpy as np
 
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import format_time, to_datetime64
-from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE, TONNE
+from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.route import Route, none_if_nan
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ def waypoint_rows(route: Route) -> list[dict[str, Any]]:
 
     ``time`` is the arrival at the waypoint; a ship leaves it ``waiting_h`` later. Courses, headings
     and conditions are those on leaving (at the last waypoint: on arriving); speeds are means over
-    the time of the leg that begins there, ``ukc_m`` the least clearance on it. Distance, fuel, CO2
-    and cost are sums up to the waypoint; those of each leg are in ``route.legs``.
+    the time of the leg that begins there, ``ukc_m`` the least clearance on it. Distance, fuel,
+    energy, CO2 and cost are sums up to the waypoint; those of each leg are in ``route.legs``.
     """
     columns = waypoint_columns(route)
     times = columns.pop("time")
@@ -68,6 +68,7 @@ def waypoint_columns(route: Route) -> dict[str, FloatArray]:
         "speed_through_water_kn": np.append(_mean_over_time(route), math.nan) / KNOT,
         "speed_over_ground_kn": np.append(over_ground, math.nan) / KNOT,
         "fuel_t": _so_far(fuel) / TONNE,
+        "energy_mwh": _so_far(legs["energy"] + legs["waiting_energy"]) / MEGAWATT_HOUR,
         "co2_t": _so_far(legs["co2"]) / TONNE,
         route.cost_name: _so_far(legs["cost"]),
         **_conditions(route, at),

@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.geodesy import FloatArray, format_position
 from thalweg.core.time import format_time
-from thalweg.core.units import HOUR, NAUTICAL_MILE, TONNE
+from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -71,12 +71,14 @@ class Route:
         Per leg: ``length`` [m], ``course`` (at its start) [rad], ``depart``, ``arrive`` [s since
         1970], ``under_keel_clearance`` (least) [m], ``ordered_speed`` (in calm water, through it)
         [m/s]; NaN if unknown: ``fuel`` of sailing it and
-        ``waiting_fuel`` of lying still before it [kg], and of both ``fuel_in_eca`` [kg], ``co2``
-        [kg] and ``cost`` [``currency``] (with canal dues and the price of time).
+        ``waiting_fuel`` of lying still before it [kg], likewise ``energy`` and ``waiting_energy``
+        of brake and hotel load [J], and of both ``fuel_in_eca`` [kg], ``co2`` [kg] and ``cost``
+        [``currency``] (with canal dues and the price of time).
     samples : mapping of str to ndarray
         The fine samples along the route, in order: ``time, leg, lat, lon, distance, course,
-        heading, speed_through_water, speed_over_ground, depth, under_keel_clearance, fuel_rate``
-        and every sampled variable of the sea by its name; SI, NaN where unknown or not asked for.
+        heading, speed_through_water, speed_over_ground, depth, under_keel_clearance, power,
+        fuel_rate`` and every sampled variable of the sea by its name; SI, NaN where unknown or not
+        asked for. Power is that of the brake; the fuel rate has the hotel load in it.
     violations : tuple of Violation
         Where limits are broken; empty for a route that can be sailed.
     tolerance_s : float
@@ -152,6 +154,12 @@ class Route:
         return None if total is None else total / TONNE
 
     @property
+    def energy_mwh(self) -> float | None:
+        """Energy of the brake and the hotel load, waits included [MWh]; None where unknown."""
+        sailing, waiting = self._sum("energy"), self._sum("waiting_energy")
+        return None if sailing is None or waiting is None else (sailing + waiting) / MEGAWATT_HOUR
+
+    @property
     def cost(self) -> float | None:
         """Fuel, canal dues and time [``currency``]; None where fuel or a price is unknown."""
         return self._sum("cost")
@@ -210,6 +218,7 @@ class Route:
             "fuel_eca_t": self.fuel_eca_t,
             "fuel_by_zone_t": self.fuel_by_zone_t,
             "co2_t": self.co2_t,
+            "energy_mwh": self.energy_mwh,
             self.cost_name: self.cost,
             "waiting_h": self.waiting_h,
             "min_ukc_m": self.min_ukc_m,

@@ -18,7 +18,7 @@ from thalweg.route.limits import (
 )
 from thalweg.route.physics import Motion, World, conditions_at, look
 from thalweg.route.pieces import IntArray, Pieces, Points
-from thalweg.route.pricing import bill
+from thalweg.route.pricing import Rates, bill
 from thalweg.route.route import Route, Violation
 from thalweg.route.sailing import Sailed, move_along, spacings
 from thalweg.route.track import Track
@@ -46,7 +46,7 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelT
     points, time, order = _all_points(sailed)
     looked_at = np.where(np.isfinite(time), time, pieces.track.depart)
     motion = move_along(world, pieces.canals, points, looked_at)
-    rate = _fuel_rate(world, pieces, points, time=looked_at, motion=motion)
+    power, rate = _rates(world, pieces, points, time=looked_at, motion=motion)
     near, moments = _looks(sailed, points, time)
     violations, least = _judged(sailed, near, moments, min_ukc)
     violations += stops(world, points, time, motion)
@@ -61,10 +61,10 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelT
         "under_keel_clearance": least,
         "ordered_speed": np.asarray(world.ship.speeds, float)[pieces.track.setting],
     }
-    spent = bill(sailed, rate[order], terms)
+    spent = bill(sailed, Rates(rate[order], power[order]), terms)
     if np.any(pieces.track.wait) and world.has_depth:
         tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
-    samples = _samples(sailed, points, time, motion=motion, rate=rate)
+    samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
     told = (*world.assumptions, *spent.notes)
     return Route(
         pieces.track,
@@ -94,7 +94,12 @@ def _judged(
 
 
 def _samples(
-    sailed: Sailed, points: Points, time: FloatArray, *, motion: Motion, rate: FloatArray
+    sailed: Sailed,
+    points: Points,
+    time: FloatArray,
+    *,
+    motion: Motion,
+    rates: tuple[FloatArray, FloatArray],
 ) -> dict[str, FloatArray]:
     """Return the columns of the fine samples; NaN where the ship does not get."""
     start = np.concatenate([[0.0], np.cumsum(sailed.pieces.length)])
@@ -106,7 +111,8 @@ def _samples(
         "speed_over_ground": motion.over_ground,
         "depth": _finite(motion.depth),
         "under_keel_clearance": _finite(motion.depth - sailed.world.ship.draught),
-        "fuel_rate": rate,
+        "power": rates[0],
+        "fuel_rate": rates[1],
     }
     reached = np.isfinite(time)
     return {
@@ -138,10 +144,10 @@ def _all_points(sailed: Sailed) -> tuple[Points, FloatArray, IntArray]:
     return both.part(order), time[order], place[: len(sailed.gauss)]
 
 
-def _fuel_rate(
+def _rates(
     world: World, pieces: Pieces, points: Points, *, time: FloatArray, motion: Motion
-) -> FloatArray:
-    """Return the fuel rate [kg/s] at points; NaN where the ship has no fuel model."""
+) -> tuple[FloatArray, FloatArray]:
+    """Return the brake power [W] and the fuel rate [kg/s] at points; NaN where not known."""
     here = conditions_at(
         world,
         points,
@@ -150,11 +156,14 @@ def _fuel_rate(
         depth=motion.depth,
         heading=motion.heading,
     )
-    rate = np.broadcast_to(world.ship.fuel_rate(here, points.setting), len(points))
+    found = world.ship.power_and_fuel(here, points.setting)
+    power, fuel = (np.array(np.broadcast_to(rate, len(points)), float) for rate in found)
     if pieces.canals.any:
         fixed = pieces.canals.number[points.leg] >= 0
-        rate = np.where(fixed, pieces.canals.fuel_rate(world.ship)[points.leg], rate)
-    return np.array(rate, dtype=float)
+        in_canals = pieces.canals.rates(world.ship)
+        for rate, there in zip((power, fuel), in_canals):
+            rate[fixed] = there[points.leg[fixed]]
+    return power, fuel
 
 
 def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:

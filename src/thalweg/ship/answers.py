@@ -53,6 +53,16 @@ class Answers:
         """Fuel rate [kg/s]; NaN where unknown. Parameters as in `speed_through_water`."""
         return self.model.fuel_rate(self._loaded(conditions), setting)
 
+    def power_and_fuel(
+        self, conditions: Conditions, setting: ArrayLike = 0
+    ) -> tuple[FloatArray, FloatArray]:
+        """Brake power [W] and fuel rate [kg/s] at once, for models that find them together."""
+        both = getattr(self.model, "power_and_fuel", None)
+        if both is None:
+            return self.power(conditions, setting), self.fuel_rate(conditions, setting)
+        power, fuel = both(self._loaded(conditions), setting)
+        return power, fuel
+
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
         """Brake power [W] that holds speeds through water [m/s], whatever the engines can give.
 

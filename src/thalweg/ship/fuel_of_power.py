@@ -15,11 +15,15 @@ Data = Mapping[str, Any]
 HOTEL_SFOC: Final = 195.0  #: of auxiliary engines, when the ship file does not tell [g/kWh]
 
 
+def hotel_power(data: Data) -> float:
+    """The hotel load [W]; 0 when the ship file states none."""
+    return 1000.0 * float(data.get("engine", {}).get("hotel_load_kw", 0.0))
+
+
 def hotel_fuel(data: Data) -> float:
     """Fuel rate of the hotel load [kg/s]; 0 when the ship file states none."""
     engine = data.get("engine", {})
-    power_kw = float(engine.get("hotel_load_kw", 0.0))
-    return power_kw * float(engine.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC)) / 3.6e6
+    return hotel_power(data) * float(engine.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC)) / 3.6e9
 
 
 def fuel_of_power(data: Data) -> Callable[[FloatArray], FloatArray] | None:

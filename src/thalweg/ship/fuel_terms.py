@@ -32,6 +32,9 @@ class FuelTerms:
     currency : str
     time_price : float
         Price of time (hire) [currency/s].
+    speed_price : float
+        Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
+        van Halem (2019); NaN when unknown. It stands for fuel where fuel has no price.
     """
 
     outside: Fuel | None
@@ -42,6 +45,12 @@ class FuelTerms:
     own_carbon: float | None = None
     currency: str = ""
     time_price: float = 0.0
+    speed_price: float = math.nan
+
+    @property
+    def by_speed(self) -> bool:
+        """Whether sailing costs by its cubed speed, since fuel has no price."""
+        return math.isnan(self.price_outside) and not math.isnan(self.speed_price)
 
     @property
     def carbon_outside(self) -> float:
@@ -148,7 +157,8 @@ class FuelTerms:
 
     def _same_currency(self, usd_per_t: float | None, time_usd_per_day: float | None) -> None:
         """Refuse dollars beside what stays in another currency."""
-        stays = (usd_per_t is None and not math.isnan(self.price_outside)) or (
+        sailing = not math.isnan(self.price_outside) or self.by_speed
+        stays = (usd_per_t is None and sailing) or (
             time_usd_per_day is None and self.time_price > 0.0
         )
         given = usd_per_t is not None or time_usd_per_day is not None
@@ -166,7 +176,8 @@ def fuel_terms(data: Mapping[str, Any]) -> FuelTerms:
 
     Without ``eca_type`` the ship burns the same fuel inside; the price inside is
     ``eca_price_per_t``, or ``price_per_t`` times ``eca_price_factor``. The price of time is
-    ``costs.hire_per_day`` or ``costs.per_week``.
+    ``costs.hire_per_day`` or ``costs.per_week``; ``costs.per_second_per_cubed_speed`` stands for
+    the price of fuel where there is none.
 
     Raises
     ------
@@ -195,6 +206,7 @@ def fuel_terms(data: Mapping[str, Any]) -> FuelTerms:
         own_carbon=None if own is None else float(own),
         currency=_currency(given, costs),
         time_price=_time_price(costs),
+        speed_price=float(costs.get("per_second_per_cubed_speed", math.nan)),
     )
 
 

@@ -87,6 +87,12 @@ class KwonOnResistance:
         """Fuel rate [kg/s], hotel load included: that of the setting in calm water."""
         return self.base.fuel_rate(conditions, setting)
 
+    def power_and_fuel(
+        self, conditions: Conditions, setting: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Brake power [W] and fuel rate [kg/s]: those of the setting in calm water."""
+        return self.base.power_and_fuel(conditions, setting)
+
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
         """Brake power [W] of speeds through water [m/s]: that of the calm speed they are left of.
 
@@ -138,6 +144,10 @@ class KwonOnResistance:
     def tabulate_fuel(self, load_factor: float, tolerance: float) -> Tabulated:
         """As in calm water; where the engines are at full power the depth alone decides."""
         return self.base.tabulate_fuel(load_factor, tolerance)
+
+    def tabulate_power(self, load_factor: float, tolerance: float) -> Tabulated:
+        """As in calm water, like the fuel."""
+        return self.base.tabulate_power(load_factor, tolerance)
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where methods are used outside their ranges."""

@@ -83,7 +83,8 @@ class ShipModel(Protocol):
         """Parts whose sum is, or leads to, the speed through water [m/s]; their measured error.
 
         Third comes what follows the sum, if anything does. A model whose fuel does not follow from
-        its setting alone may offer ``tabulate_fuel`` in the same form.
+        its setting alone may offer ``tabulate_fuel`` in the same form, and ``tabulate_power`` for
+        its brake power; one that finds both together may offer ``power_and_fuel``.
         """
         ...
 

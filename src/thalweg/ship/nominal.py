@@ -193,6 +193,12 @@ class NominalModel:
         """One constant: the setting's own fuel rate, whatever the weather."""
         return (constant_part(self.fuel_rates),), TableError(0.0, 0.0, 0.0, 0)
 
+    def tabulate_power(
+        self, load_factor: float, tolerance: float
+    ) -> tuple[tuple[TablePart, ...], TableError]:
+        """One constant: the setting's own power, whatever the weather."""
+        return (constant_part(self.powers),), TableError(0.0, 0.0, 0.0, 0)
+
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
         """Where the speed loss is used outside its range."""
         return [] if self.loss is None else self.loss.notes(conditions)

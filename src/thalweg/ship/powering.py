@@ -223,7 +223,14 @@ class ResistanceModel:
 
     def fuel_rate(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Fuel rate [kg/s], hotel load included."""
-        return self.plant.fuel(self.power(conditions, setting))
+        return self.power_and_fuel(conditions, setting)[1]
+
+    def power_and_fuel(
+        self, conditions: Conditions, setting: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Brake power [W], without hotel load, and fuel rate [kg/s], with it."""
+        power = self.power(conditions, setting)
+        return power, self.plant.fuel(power)
 
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
         """Brake power [W] at speeds through water [m/s], whatever the engine can."""
@@ -265,6 +272,13 @@ class ResistanceModel:
         from thalweg.ship.tabulate_fuel import tabulate_fuel_of_balance
 
         table, _ = self._stored("fuel", load_factor, tolerance, tabulate_fuel_of_balance)
+        return table.parts, table.error, table.finish
+
+    def tabulate_power(self, load_factor: float, tolerance: float) -> Tabulated:
+        """Tabulate the brake power [W]; see `thalweg.ship.tabulate_fuel`."""
+        from thalweg.ship.tabulate_fuel import tabulate_power_of_balance
+
+        table, _ = self._stored("power", load_factor, tolerance, tabulate_power_of_balance)
         return table.parts, table.error, table.finish
 
     def _table(self, load_factor: float, tolerance: float) -> Kept:

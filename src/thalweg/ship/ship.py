@@ -25,7 +25,7 @@ from thalweg.ship.build import (
     simple_data,
     with_safety,
 )
-from thalweg.ship.fuel_of_power import hotel_fuel
+from thalweg.ship.fuel_of_power import hotel_fuel, hotel_power
 from thalweg.ship.fuel_terms import FuelTerms, fuel_terms
 from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.hull import complete_hull
@@ -348,6 +348,23 @@ class Ship(Answers):
         from thalweg.ship.tabulate_fuel import fuel_table
 
         return fuel_table(self, tolerance)
+
+    def tabulate_power(self, *, tolerance: float = 0.01) -> PerformanceTable:
+        """Tabulate the brake power with the hotel load [W]; parameters as in `tabulate_fuel`.
+
+        Raises
+        ------
+        InputError
+            If the ship's brake power is unknown, or its speed is a field.
+        """
+        from thalweg.ship.tabulate_fuel import power_table
+
+        return power_table(self, tolerance)
+
+    @property
+    def hotel_power(self) -> float:
+        """Power besides propulsion, under way and lying still [W]; 0 if the ship states none."""
+        return hotel_power(self.data)
 
     @property
     def waiting_fuel_rate(self) -> float:

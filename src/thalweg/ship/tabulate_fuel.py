@@ -1,9 +1,10 @@
-"""Tables of the fuel rate: what a setting burns in the weather the ship meets [kg/s]."""
+"""Tables of the fuel rate [kg/s] and the power [W] of a setting in the weather the ship meets."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.finish import Finish
+from thalweg.ship.fuel_of_power import hotel_power
 from thalweg.ship.model import ShipModel
 from thalweg.ship.powering import Balance, ResistanceModel
 from thalweg.ship.table import PerformanceTable, TableError, TablePart
@@ -33,7 +35,9 @@ if TYPE_CHECKING:
     from thalweg.ship.ship import Ship
 
 FloatArray = NDArray[np.float64]
-_NODES: Final = 1025  #: of the curves of fuel
+_NODES: Final = 1025  #: of the curves of fuel and power
+OfPower = Callable[[FloatArray], FloatArray]
+Rate = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
 
 def fuel_table(ship: Ship, tolerance: float) -> PerformanceTable:
@@ -46,15 +50,41 @@ def fuel_table(ship: Ship, tolerance: float) -> PerformanceTable:
     """
     if ship.speed_field is not None:
         raise _no_fuel(ship, "its speed is a field of place and time")
-    make = getattr(ship.model, "tabulate_fuel", None)
-    if make is None:
-        make = partial(tabulate_fuel_of_model, ship.model)
-    parts, error, *more = make(ship.loading.load_factor, tolerance)
-    finish = more[0] if more else None
-    table = PerformanceTable(parts, ship.speeds, ship.fingerprint(), error, finish)
-    if not all(math.isfinite(table.largest(k)) for k in range(len(ship.speeds))):
+    table = _table_of(ship, tolerance, "tabulate_fuel", ship.model.fuel_rate)
+    if not _known(table):
         raise _no_fuel(ship, "its fuel rate is unknown")
     return table
+
+
+def power_table(ship: Ship, tolerance: float) -> PerformanceTable:
+    """Tabulate a ship's brake power and hotel load; see `Ship.tabulate_power`.
+
+    Raises
+    ------
+    InputError
+        If the power is unknown, or the speed is a field.
+    """
+    if ship.speed_field is not None:
+        raise _no_power(ship, "its speed is a field of place and time")
+    table = _table_of(ship, tolerance, "tabulate_power", ship.model.power)
+    if not _known(table):
+        raise _no_power(ship, "its brake power is unknown")
+    hotel = hotel_power(ship.data)
+    if table.finish is not None:
+        return replace(table, finish=replace(table.finish, points=table.finish.points + hotel))
+    return replace(table, parts=(*table.parts, constant_part(np.full(len(ship.speeds), hotel))))
+
+
+def _table_of(ship: Ship, tolerance: float, name: str, rate: Rate) -> PerformanceTable:
+    """Tabulate a rate by the model's own way of that name, or over all that the model reads."""
+    make = getattr(ship.model, name, None) or partial(tabulate_rate, ship.model, rate)
+    parts, error, *more = make(ship.loading.load_factor, tolerance)
+    finish = more[0] if more else None
+    return PerformanceTable(parts, ship.speeds, ship.fingerprint(), error, finish)
+
+
+def _known(table: PerformanceTable) -> bool:
+    return all(math.isfinite(table.largest(k)) for k in range(len(table.settings)))
 
 
 def _no_fuel(ship: Ship, why: str) -> InputError:
@@ -67,12 +97,34 @@ def _no_fuel(ship: Ship, why: str) -> InputError:
     )
 
 
-def tabulate_fuel_of_balance(model: ResistanceModel, load_factor: float, tolerance: float) -> Kept:
-    """Tabulate the fuel rate of every setting of a resistance-based ship.
+def _no_power(ship: Ship, why: str) -> InputError:
+    return InputError(
+        f"The power of {ship.name!r} cannot be tabulated: {why}.",
+        "Power comes from a resistance (models.calm_water such as holtrop_1984), a table with "
+        "power_kw, or the cubic law with engine.reference_power_kw.",
+        "Add one to the ship file, or ask for the least fuel or time.",
+        ship=ship.name,
+    )
 
-    A setting of power burns the same in all weather: one constant. A setting of speed burns what
-    holding it takes, up to all that the engines give: what wind, waves and depth ask for at that
-    speed adds up, and a curve over the sum is the fuel.
+
+def tabulate_fuel_of_balance(model: ResistanceModel, load_factor: float, tolerance: float) -> Kept:
+    """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_of_balance`."""
+    return _of_balance(model, load_factor, tolerance, model.plant.fuel)
+
+
+def tabulate_power_of_balance(model: ResistanceModel, load_factor: float, tolerance: float) -> Kept:
+    """Tabulate the brake power [W] of a resistance-based ship; see `_of_balance`."""
+    return _of_balance(model, load_factor, tolerance, np.asarray)
+
+
+def _of_balance(
+    model: ResistanceModel, load_factor: float, tolerance: float, of_power: OfPower
+) -> Kept:
+    """Tabulate what follows from the power of every setting of a resistance-based ship.
+
+    A setting of power takes the same in all weather: one constant. A setting of speed takes what
+    holding it asks for, up to all that the engines give: what wind, waves and depth ask for at that
+    speed adds up, and a curve over the sum is the power, or the fuel.
 
     Parameters
     ----------
@@ -80,13 +132,15 @@ def tabulate_fuel_of_balance(model: ResistanceModel, load_factor: float, toleran
     load_factor : float
     tolerance : float
         See `thalweg.ship.tabulate.table_error`.
+    of_power : callable
+        The rate of a brake power [W].
 
     Returns
     -------
     table : PerformanceTable
         Its error is against the methods themselves, at random conditions.
     top : ndarray
-        Greatest fuel rate of every setting [kg/s].
+        Greatest rate of every setting.
     """
     balance, speeds = model.balance(load_factor), model.speeds(load_factor)
     terms = terms_of(balance, model.limits)
@@ -94,18 +148,19 @@ def tabulate_fuel_of_balance(model: ResistanceModel, load_factor: float, toleran
     def rates(where: Mapping[str, FloatArray]) -> FloatArray:
         at, which, shape = flattened(where, len(speeds))
         power = model.power_of(balance, at, which, load_factor)
-        return model.plant.fuel(power).reshape(shape)
+        return of_power(power).reshape(shape)
 
     if model.orders.kind == "power" or not terms:
         steady = rates({"depth": np.asarray(np.inf)})
         if model.orders.kind == "power":
-            steady = model.plant.fuel(np.array(model.orders.values))
+            steady = of_power(np.array(model.orders.values))
         error = TableError(0.0, 0.0, 0.0, 0)
         if terms:
             true = rates(conditions_of(terms, CHECKS, 7))
             error = table_error(np.where(np.isnan(true), np.nan, steady), true)
         return PerformanceTable((constant_part(steady),), speeds, "", error), steady
-    finish = _fuel_curve(model, balance, speeds, [term.part(speeds) for term in terms])
+    parts = [term.part(speeds) for term in terms]
+    finish = _curve(model, balance, speeds, parts=parts, of_power=of_power)
     scale = calm_resistance(balance, speeds)[:, 0]
     table = refined_table(
         terms, speeds, finish, speeds, truth=rates, tolerance=tolerance, scale=scale
@@ -113,10 +168,15 @@ def tabulate_fuel_of_balance(model: ResistanceModel, load_factor: float, toleran
     return table, np.array([table.largest(k) for k in range(len(speeds))])
 
 
-def _fuel_curve(
-    model: ResistanceModel, balance: Balance, speeds: FloatArray, parts: list[TablePart]
+def _curve(
+    model: ResistanceModel,
+    balance: Balance,
+    speeds: FloatArray,
+    *,
+    parts: list[TablePart],
+    of_power: OfPower,
 ) -> Finish:
-    """Fuel [kg/s] over the resistance [N] that conditions add, at each held speed."""
+    """The rate over the resistance [N] that conditions add, at each held speed."""
     still = calm_resistance(balance, speeds)[:, 0]
     limit = np.array([model.plant.largest_power])
     most = np.sum([part.greatest() for part in parts], axis=0)
@@ -125,21 +185,21 @@ def _fuel_curve(
     v, resistance = np.repeat(speeds, _NODES), (still[:, None] + extra).ravel()
     power = np.minimum(balance.propulsion.brake_power(v, resistance), limit)
     start, step = extra[:, 0], extra[:, 1] - extra[:, 0]
-    points = model.plant.fuel(power).reshape(extra.shape)
+    points = of_power(power).reshape(extra.shape)
     nothing = np.zeros(len(speeds))
     return Finish("curve", start, step, points, nothing, nothing.astype(np.int64))
 
 
-def tabulate_fuel_of_model(
-    model: ShipModel, load_factor: float, tolerance: float
+def tabulate_rate(
+    model: ShipModel, rate: Rate, load_factor: float, tolerance: float
 ) -> tuple[tuple[TablePart, ...], TableError]:
-    """Tabulate the fuel rate of any model over all conditions it reads, in one part."""
+    """Tabulate a rate of any model over all conditions it reads, in one part."""
     names = sorted(model.reads & AXIS_OF.keys(), key=AXIS_OF.__getitem__)
     settings = np.arange(len(model.speeds(load_factor)))
 
     def rates(where: Mapping[str, FloatArray]) -> FloatArray:
         columns = {name: np.asarray(values)[..., None] for name, values in where.items()}
-        return model.fuel_rate(Conditions(columns, load_factor=load_factor), settings)
+        return rate(Conditions(columns, load_factor=load_factor), settings)
 
     if not names:
         return (constant_part(rates({})),), TableError(0.0, 0.0, 0.0, 0)
