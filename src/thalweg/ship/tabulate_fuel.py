@@ -36,6 +36,11 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 _NODES: Final = 1025  #: of the curves of fuel and power
+#: Rates that models may tabulate themselves: by which method, and what they are called.
+_RATES: Final = {
+    "fuel_rate": ("tabulate_fuel", "fuel rate"),
+    "power": ("tabulate_power", "brake power"),
+}
 OfPower = Callable[[FloatArray], FloatArray]
 Rate = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
@@ -48,12 +53,7 @@ def fuel_table(ship: Ship, tolerance: float) -> PerformanceTable:
     InputError
         If the fuel is unknown, or the speed is a field.
     """
-    if ship.speed_field is not None:
-        raise _no_fuel(ship, "its speed is a field of place and time")
-    table = _table_of(ship, tolerance, "tabulate_fuel", ship.model.fuel_rate)
-    if not _known(table):
-        raise _no_fuel(ship, "its fuel rate is unknown")
-    return table
+    return _table_of(ship, tolerance, "fuel_rate", _no_fuel)
 
 
 def power_table(ship: Ship, tolerance: float) -> PerformanceTable:
@@ -64,27 +64,28 @@ def power_table(ship: Ship, tolerance: float) -> PerformanceTable:
     InputError
         If the power is unknown, or the speed is a field.
     """
-    if ship.speed_field is not None:
-        raise _no_power(ship, "its speed is a field of place and time")
-    table = _table_of(ship, tolerance, "tabulate_power", ship.model.power)
-    if not _known(table):
-        raise _no_power(ship, "its brake power is unknown")
+    table = _table_of(ship, tolerance, "power", _no_power)
     hotel = hotel_power(ship.data)
     if table.finish is not None:
         return replace(table, finish=replace(table.finish, points=table.finish.points + hotel))
     return replace(table, parts=(*table.parts, constant_part(np.full(len(ship.speeds), hotel))))
 
 
-def _table_of(ship: Ship, tolerance: float, name: str, rate: Rate) -> PerformanceTable:
-    """Tabulate a rate by the model's own way of that name, or over all that the model reads."""
-    make = getattr(ship.model, name, None) or partial(tabulate_rate, ship.model, rate)
+def _table_of(
+    ship: Ship, tolerance: float, name: str, refused: Callable[[Ship, str], InputError]
+) -> PerformanceTable:
+    """Tabulate a rate by the model's own way, or over all that the model reads."""
+    if ship.speed_field is not None:
+        raise refused(ship, "its speed is a field of place and time")
+    own, words = _RATES[name]
+    rate = getattr(ship.model, name)
+    make = getattr(ship.model, own, None) or partial(tabulate_rate, ship.model, rate)
     parts, error, *more = make(ship.loading.load_factor, tolerance)
     finish = more[0] if more else None
-    return PerformanceTable(parts, ship.speeds, ship.fingerprint(), error, finish)
-
-
-def _known(table: PerformanceTable) -> bool:
-    return all(math.isfinite(table.largest(k)) for k in range(len(table.settings)))
+    table = PerformanceTable(parts, ship.speeds, ship.fingerprint(), error, finish)
+    if not all(math.isfinite(table.largest(k)) for k in range(len(ship.speeds))):
+        raise refused(ship, f"its {words} is unknown")
+    return table
 
 
 def _no_fuel(ship: Ship, why: str) -> InputError:
