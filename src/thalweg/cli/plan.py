@@ -98,8 +98,12 @@ def run(arguments: argparse.Namespace) -> int:
         print(found.to_json())
     else:
         show(found)
+        each = [path for path in files if path.parent.name == "routes"]
         for path in files:
-            print(f"wrote {path}")
+            if path not in each:
+                print(f"wrote {path}")
+        if each:
+            print(f"wrote {each[0].parent} ({len(each)} files)")
     return DONE if found.best.feasible else NO_ROUTE
 
 

@@ -47,6 +47,8 @@ def evolved(means: Means, explored: Explored, found: list[Candidate]) -> list[Ca
             generations=_OWN_GENERATIONS,
             seed=seed,
         )
+    if result.cancelled:
+        means.notes.append("Stopped before refinement had settled: the best so far is kept.")
     return _candidates(result, explored, task.voyage.earliest_departure)
 
 

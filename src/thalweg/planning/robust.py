@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
-from thalweg.planning.criterion import find_criterion
+from thalweg.planning.criterion import Criterion, find_criterion
+from thalweg.planning.fronts import FrontOfPlan
 from thalweg.planning.plan import Plan
 from thalweg.planning.trade import not_dominated, spread
 from thalweg.planning.voyage import TRADES, Voyage
@@ -37,6 +38,7 @@ _QUANTITY = {
 class Sailed:
     """A route with the plan it comes from and its place there, sailed in all members."""
 
+    member: int
     plan: Plan
     index: int
     route: Route
@@ -77,21 +79,29 @@ def plan_robust(
     """
     measure = voyage.ensemble or "mean"
     planned = np.unique(np.linspace(0, sea.members - 1, min(MOST_PLANNED, sea.members)).astype(int))
-    plans, refusal = [], None
-    for member in planned:
+    plans: dict[int, Plan] = {}
+    refusal = None
+    for member in planned.tolist():
         try:
-            plans.append(plan_one(voyage, sea.member(int(member))))
+            plans[member] = plan_one(voyage, sea.member(member))
         except NoRouteError as error:
             refusal = error
     if not plans:
         assert refusal is not None  # some member was planned
         raise refusal
-    sailed = [item for plan in plans for item in _sailed(voyage, plan, ship, sea, measure)]
+    sailed = [
+        item
+        for member, plan in plans.items()
+        for item in _sailed(voyage, member, plan, ship, sea, measure)
+    ]
     usable = [item for item in sailed if math.isfinite(item.value)] or sailed
-    return _chosen(voyage, usable, planned.tolist(), sea.members, measure)
+    criterion = find_criterion(voyage, ship) if voyage.objective in TRADES else None
+    return _chosen(voyage, criterion, usable, planned.tolist(), measure)
 
 
-def _sailed(voyage: Voyage, plan: Plan, ship: Ship, sea: Sea, measure: str) -> list[Sailed]:
+def _sailed(
+    voyage: Voyage, member: int, plan: Plan, ship: Ship, sea: Sea, measure: str
+) -> list[Sailed]:
     """Sail the routes of a plan in all members."""
     terms = find_criterion(voyage, ship).terms if voyage.objective in TRADES else None
     found = []
@@ -107,7 +117,9 @@ def _sailed(voyage: Voyage, plan: Plan, ship: Ship, sea: Sea, measure: str) -> l
         )
         time = distribution.risk("time_h", measure)
         found.append(
-            Sailed(plan, index, route, distribution, time, _value(plan, distribution, measure))
+            Sailed(
+                member, plan, index, route, distribution, time, _value(plan, distribution, measure)
+            )
         )
     return found
 
@@ -130,40 +142,50 @@ def _value(plan: Plan, distribution: Distribution, measure: str) -> float:
 
 
 def _chosen(
-    voyage: Voyage, sailed: list[Sailed], planned: list[int], members: int, measure: str
-) -> Plan:
+    voyage: Voyage, criterion: Criterion | None, sailed: list[Sailed], planned: list[int],
+    measure: str,
+) -> Plan:  # fmt: skip
+    """Return the plan of the member that the best route comes from, with what is best over all.
+
+    All routes are told as they are sailed in that one member, so that they can be compared; what
+    they are over the members is in ``ensemble``.
+    """
     time = np.array([item.time for item in sailed])
     value = np.array([item.value for item in sailed])
     if voyage.objective == "front":
         order = [sailed[index] for index in not_dominated(time, value)]
     else:
         order = [sailed[int(np.argmin(value))]]
-    first = order[0].plan
+    first, shown = order[0].plan, order[0].member
+    routes = tuple(item.distribution.routes[shown] for item in order)
+    members = len(order[0].distribution.routes)
     word = "mean" if measure == "mean" else "mean of the worst tenth"
     note = (
         f"Planned in members {', '.join(map(str, planned))} of {members} and sailed in all; "
-        f"chosen by the {word} over the members."
+        f"chosen by the {word} over the members, told as sailed in member {shown}."
     )
     notes = [note, *first.notes, *(n for item in order for n in item.distribution.notes)]
     return dataclasses.replace(
         first,
         voyage=voyage,
-        routes=tuple(item.route for item in order),
-        front=_front(order),
+        routes=routes,
+        front=_front(order, routes, criterion),
         notes=tuple(dict.fromkeys(notes)),
         ensemble=tuple(_row(item) for item in order),
     )
 
 
-def _front(order: list[Sailed]) -> Any:
+def _front(
+    order: list[Sailed], routes: tuple[Route, ...], criterion: Criterion | None
+) -> FrontOfPlan | None:
     """Return the front of the chosen routes, which may come from several plans."""
     first = order[0].plan.front
-    if first is None:
+    if first is None or criterion is None:
         return None
     fronts = [(item.plan.front, item.index) for item in order]
     return dataclasses.replace(
         first,
-        values=np.array([front.values[i] for front, i in fronts if front is not None]),
+        values=np.array([criterion.of(route) for route in routes]),
         stages=tuple(front.stages[i] for front, i in fronts if front is not None),
         ways=tuple(front.ways[i] for front, i in fronts if front is not None),
     )

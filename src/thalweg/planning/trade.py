@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -75,6 +75,7 @@ class Means:
     ends: tuple[End, ...]
     settings: np.ndarray
     limits: np.ndarray
+    notes: list[str] = field(default_factory=list)  # for the plan, as they come up
 
     @property
     def via(self) -> tuple[End, ...]:

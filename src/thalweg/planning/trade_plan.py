@@ -195,7 +195,9 @@ def _gathered(
         routes=routes,
         proof=_proof(means, explored, front, whole=whole),
         rejections=_rejections(explored),
-        notes=tuple(dict.fromkeys([*_notes(means, ends, explored, ordered), *_lowered(share)])),
+        notes=tuple(
+            dict.fromkeys([*_notes(means, ends, explored, ordered), *means.notes, *_lowered(share)])
+        ),
         provenance=provenance(task, ends, _networks(explored), _speeds_kn(means)),
         surroundings=_surroundings(task, explored),
         front=front,
