@@ -160,7 +160,7 @@ class Population:
 
     def with_room(self, room: int) -> Population:
         """Return the population with room for exactly so many points (or as many as it needs)."""
-        room = max(room, int(self.count.max()))
+        room = max(room, int(self.count.max(initial=0)))
         genes = np.zeros((len(self), room, columns.COLUMNS))
         genes[:, :, columns.FIXED_TIME] = np.nan
         both = min(room, self.room)

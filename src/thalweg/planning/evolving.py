@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.geodesy import wrap_longitude
 from thalweg.evolution import Evaluator, Evolution, Genome, evolve, make_evaluator
@@ -125,9 +127,31 @@ def _raster(means: Means, seeds: list[Track], start: float, end: float) -> GridF
     native = [row.spacing_deg for row in sea.coverage() if row.spacing_deg]
     spacing = max(min([extent / _FINEST * 2.0, *native]), least, extent / _FINEST)
     spacing = min(spacing, extent / _COARSEST)
-    return sea.freeze_grid(
+    frozen = sea.freeze_grid(
         south, north, west, west + width, start, end, channels, spacing_deg=spacing
     )
+    return replace(frozen, values=_reached_out(frozen.values))
+
+
+def _reached_out(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return a raster with cells beside known ones as the mean of those, where they are unknown.
+
+    Between a known cell and an unknown one a raster knows nothing, where the data may reach on. The
+    referee looks at the data themselves, so what is not known there ends no route of a plan.
+    """
+    unknown = np.isnan(values)
+    if not unknown.any():
+        return values
+    known, total = np.zeros(values.shape, np.int8), np.zeros_like(values)
+    padded = np.pad(values, ((0, 0), (1, 1), (1, 1), (0, 0)), constant_values=np.nan)
+    rows, columns = values.shape[1:3]
+    for i, j in ((0, 1), (1, 0), (1, 2), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)):
+        beside = padded[:, i : i + rows, j : j + columns]
+        here = unknown & ~np.isnan(beside)
+        known += here
+        total[here] += beside[here]
+    reached = np.where(known > 0, total / np.maximum(known, 1), np.nan)
+    return np.where(unknown, reached, values).astype(np.float32)
 
 
 def _box(seeds: list[Track]) -> tuple[FloatArray, FloatArray]:

@@ -77,7 +77,9 @@ def _draw_points(axes: Any, plan: Plan) -> None:
     chosen = {int(order[0]): "fastest", int(order[-1]): "least"}
     chosen.setdefault(int(order[knee(time[order], front.values[order])]), "knee")
     for index, word in chosen.items():
-        text = f"{word}: {time[index]:.1f} h, {front.values[index]:,.4g} {front.unit}"
+        value = front.values[index]
+        digits = 0 if value >= 1000.0 else 1 if value >= 100.0 else 2
+        text = f"{word}: {time[index]:.1f} h, {value:,.{digits}f} {front.unit}"
         axes.annotate(
             text,
             (time[index], front.values[index]),

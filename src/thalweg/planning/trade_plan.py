@@ -258,7 +258,12 @@ def _blind(means: Means, explored: list[Explored]) -> list[Route]:
     _, path = shortest(network, network.meta.start, network.meta.goal)
     means.task.tell("sailing the weather-blind route")
     tracks = blind_tracks(means.task, network.lat[path], network.lon[path], means.settings)
-    return sail_blind(means.task, means.criterion, tracks)
+    sailed = sail_blind(means.task, means.criterion, tracks)
+    if not sailed:
+        means.notes.append(
+            "The weather-blind route cannot be sailed to its end in these data: nothing to compare."
+        )
+    return sailed
 
 
 def _with_blind(means: Means, scored: list[Scored], blind: list[Route]) -> list[Scored]:
