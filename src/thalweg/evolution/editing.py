@@ -53,6 +53,7 @@ def change_speeds(lines: Lines, *, rounds: int = 3) -> Lines:
     return lines
 
 
+@np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
 def speed_values(lines: Lines, delays: Delays, row: IntArray, place: IntArray) -> FloatArray:
     """Return the value (L, settings) of every leg at every setting; +inf where it cannot sail."""
     time, cost = speed_probes(lines, row, place)
@@ -106,6 +107,7 @@ def feel(lines: Lines, *, radius: float) -> Lines:
     return lines.chosen(joined(*trials), np.concatenate(rows)) if trials else lines
 
 
+@np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
 def _moved_values(
     lines: Lines, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
@@ -126,6 +128,7 @@ def _moved_values(
     return total, base
 
 
+@np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
 def drop(lines: Lines, *, allowance: float) -> Lines:
     """Return tracks without points that bring less than a share of the value each."""
     row, place = np.nonzero(lines.free)

@@ -23,7 +23,7 @@ from thalweg.planning.trade import (
 _MOST = 5  # ways round
 _STRETCH = 0.2  # at most so much longer, or dearer, than the best
 _PIECES = 60  # of a way, between which the speed may change
-_POINTS = 16  # of the front of each way
+_POINTS = 24  # of the front of each way
 
 
 def round_candidates(means: Means) -> list[Candidate]:
