@@ -1,6 +1,6 @@
 """Fronts in real storms and currents: better than the weather-blind route in the same weather.
 
-A constant speed on the shortest way may itself be a point of the front; then nothing is saved there.
+A constant speed on the shortest way may itself be a point of the front: nothing is saved there.
 """
 
 import numpy as np

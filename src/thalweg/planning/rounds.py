@@ -7,6 +7,8 @@ only their speeds and waits are searched, in the weather. Refinement goes on fro
 
 from __future__ import annotations
 
+import math
+
 from thalweg.network import Network, Weighing, line, ways_round
 from thalweg.network.way import Way as TautWay
 from thalweg.planning.networks import lattice_between
@@ -48,12 +50,13 @@ def round_candidates(means: Means) -> list[Candidate]:
 
 
 def _weighings(means: Means, network: Network) -> list[Weighing]:
-    """Return lengths, and lengths with what control areas and zones of price cost."""
+    """Return lengths, and lengths with what control areas and zones cost, in full and by half."""
     inside, outside = means.criterion.inside, means.criterion.outside
     ratio = inside / outside if inside != outside else 1.0
     if ratio == 1.0 and not means.task.chart.zones.price:
         return [Weighing()]
-    return [Weighing(), Weighing.priced(network, means.task.chart, ratio)]
+    factors = sorted({math.sqrt(ratio), ratio})
+    return [Weighing(), *(Weighing.priced(network, means.task.chart, f) for f in factors)]
 
 
 def _sped(means: Means, way: TautWay) -> list[Candidate]:
