@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.network.endpoints import join_pairs
@@ -71,6 +70,8 @@ def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near:
     near : float
         Spacing of the grid at coasts [m].
     """
+    from scipy.spatial import cKDTree
+
     own = np.arange(first, last)
     lat, lon = stations.lat[:last], stations.lon[:last]
     vectors = unit_vectors(lat, lon)
@@ -141,6 +142,8 @@ def _middles(shores: Edges, land: IntArray, widest: float) -> FloatArray:
 
 def _opposite(places: FloatArray, land: IntArray, within: float) -> tuple[FloatArray, FloatArray]:
     """Return how far other land is from places [m], inf if not near, and the middles."""
+    from scipy.spatial import cKDTree
+
     count = min(_FELLOWS, len(places))
     away, found = cKDTree(places).query(
         places, k=np.arange(1, count + 1), distance_upper_bound=within / MEAN_RADIUS
