@@ -6,6 +6,7 @@ import argparse
 from typing import Any
 
 from thalweg.cli import common, plan
+from thalweg.kernels import warming
 
 
 def add_command(commands: Any) -> None:
@@ -22,16 +23,15 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan the demonstration voyage, and say what the storm costs a ship that ignores it."""
+    warming.begin("thalweg.planning.warming")
     from thalweg.chart import Chart
     from thalweg.planning import plan as make_plan
-    from thalweg.planning import warming
     from thalweg.planning.demo import demo_voyage, weather_blind
     from thalweg.planning.output import check_folder
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
     folder = check_folder(arguments.out)
-    warming.begin()
     ship, sea, chart = Ship.load("handysize-bulker"), Sea.storm(), Chart.gshhg("i")
     progress = common.progress_for(arguments)
     found = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=progress)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import common
 from thalweg.cli.exits import DONE, NO_ROUTE
+from thalweg.kernels import warming
 
 if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
@@ -77,10 +78,10 @@ def _add_trade_options(group: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan, print and write."""
-    from thalweg.planning import plan, warming
+    warming.begin("thalweg.planning.warming")
+    from thalweg.planning import plan
     from thalweg.planning.output import check_folder
 
-    warming.begin()
     if arguments.out:
         check_folder(arguments.out)
     ship, sea = common.open_ship(arguments), common.open_sea(arguments)

@@ -12,9 +12,8 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import along, distance
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
-from thalweg.kernels import codes
+from thalweg.kernels import codes, warming
 from thalweg.network import Network
-from thalweg.planning import warming
 from thalweg.planning.ends import End
 from thalweg.planning.needs import Needs, least_clearance
 from thalweg.planning.networks import NetworkChoice, build_network

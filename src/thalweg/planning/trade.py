@@ -12,9 +12,8 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import FloatArray, inverse
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
-from thalweg.kernels import codes
+from thalweg.kernels import codes, warming
 from thalweg.network import Network, shortest
-from thalweg.planning import warming
 from thalweg.planning.criterion import Criterion, Rate
 from thalweg.planning.ends import End
 from thalweg.planning.passage import Frozen, Task, freeze, isochrones, refined, track_of

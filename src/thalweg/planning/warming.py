@@ -1,48 +1,12 @@
-"""The first run ever compiles the kernels; two processes halve the wait.
-
-The child compiles what the search and the refinement need, on two nodes in open water, and leaves
-it in the cache on disk, while the parent reads the coast and builds its network.
-"""
+"""What a first run compiles in a second process (`thalweg.kernels.warming`)."""
 
 from __future__ import annotations
-
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 
 from thalweg.core.geodesy import inverse
 from thalweg.kernels import codes
-from thalweg.kernels.jit import COMPILED
 from thalweg.network import Network, NetworkMeta
-
-_DONE, _BUSY = Path(COMPILED) / "warm", Path(COMPILED) / "warming"
-_PATIENCE = 120.0  # seconds the parent waits for the child at most
-_children: list[subprocess.Popen[bytes]] = []
-
-
-def begin() -> None:
-    """Start the child, unless everything is compiled or another process is at it."""
-    if _DONE.exists() or not sys.executable or getattr(sys, "frozen", False):
-        return
-    try:
-        _BUSY.touch(exist_ok=False)
-        command = [sys.executable, "-c", f"from {__name__} import main; main()"]
-        quiet = subprocess.DEVNULL
-        _children.append(subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet))
-    except OSError:
-        return
-
-
-def finish() -> None:
-    """Wait for the child, if there is one."""
-    while _children:
-        child = _children.pop()
-        try:
-            child.wait(timeout=_PATIENCE)
-        except subprocess.TimeoutExpired:
-            child.kill()
 
 
 def compile_search() -> None:
@@ -90,12 +54,3 @@ def _two_nodes() -> Network:
         can_wait=np.ones(2, np.bool_),
         meta=NetworkMeta("two nodes", 11_000.0, 2, np.pi / 8),
     )
-
-
-def main() -> None:
-    """Do the child's work."""
-    try:
-        compile_search()
-        _DONE.touch()
-    finally:
-        _BUSY.unlink(missing_ok=True)

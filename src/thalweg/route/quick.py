@@ -262,7 +262,8 @@ def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
 
 def _flat(values: ArrayLike, kind: type) -> NDArray[Any]:
-    return np.ascontiguousarray(values, dtype=kind).reshape(-1)
+    """Return a copy: kernels are compiled anew for arrays that cannot be written to."""
+    return np.array(values, dtype=kind).reshape(-1)
 
 
 def _padded(values: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any]:

@@ -1,0 +1,50 @@
+"""Where compiled kernels are kept: a folder in the user's cache for each state of the kernels.
+
+numba itself notices only changes of the file a function stands in, not of what it calls.
+"""
+
+import hashlib
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+_KEPT = 4  # folders of compiled code, the newest ones
+
+
+def _stamp() -> str:
+    """Return a hash that changes with any kernel file."""
+    files = sorted(Path(__file__).parent.glob("*.py"))
+    facts = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in files]
+    return hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
+
+
+def _base() -> Path:
+    override = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("THALWEG_CACHE")
+    if override:
+        return Path(override)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "thalweg"
+
+
+def _make_folder() -> Path:
+    base = _base() / "kernels"
+    folder = base / _stamp()
+    try:
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _forget_old(base)
+        if os.access(folder, os.W_OK):
+            return folder
+    except OSError:
+        pass
+    return Path(tempfile.mkdtemp(prefix="thalweg-kernels-"))
+
+
+def _forget_old(base: Path) -> None:
+    folders = sorted(base.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
+    for folder in folders[_KEPT:]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+#: Where the compiled code of these kernels is kept.
+COMPILED = _make_folder()

@@ -1,0 +1,60 @@
+"""A child compiles once, and leaves no trace of itself when it fails."""
+
+import gc
+import os
+
+import pytest
+
+from thalweg.kernels import warming
+
+WRITES = "from pathlib import Path\n\n\ndef compile_search():\n    Path({!r}).write_text('done')\n"
+
+
+@pytest.fixture
+def marks(tmp_path, monkeypatch):
+    monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setattr(warming, "_DONE", tmp_path / "warm")
+    monkeypatch.setattr(warming, "_BUSY", tmp_path / "warming")
+    before = gc.get_threshold()
+    yield tmp_path
+    gc.set_threshold(*before)
+
+
+def _module(folder, name, text):
+    (folder / f"{name}.py").write_text(text)
+    return name
+
+
+def test_a_child_does_the_work_and_is_waited_for(marks):
+    warming.begin(_module(marks, "does_it", WRITES.format(str(marks / "proof"))))
+    warming.finish()
+    assert (marks / "proof").read_text() == "done"
+
+
+def test_nothing_is_started_when_all_is_compiled_or_another_is_at_it(marks):
+    name = _module(marks, "is_late", WRITES.format(str(marks / "proof")))
+    for mark in ("warm", "warming"):
+        (marks / mark).touch()
+        warming.begin(name)
+        assert not warming._children
+        (marks / mark).unlink()
+
+
+def test_a_child_that_fails_says_nothing_and_is_not_done(marks, monkeypatch):
+    with pytest.raises(RuntimeError, match="no compiler"):
+        warming.work(_here(marks, monkeypatch, "raise RuntimeError('no compiler')"))
+    assert not (marks / "warm").exists()
+    assert not (marks / "warming").exists()
+
+
+def test_work_marks_what_is_compiled(marks, monkeypatch):
+    warming.work(_here(marks, monkeypatch, "pass"))
+    assert (marks / "warm").exists()
+
+
+def _here(folder, monkeypatch, body):
+    monkeypatch.syspath_prepend(str(folder))
+    name = f"works_{abs(hash(body))}"
+    return _module(folder, name, f"def compile_search():\n    {body}\n")
