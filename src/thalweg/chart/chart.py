@@ -395,7 +395,7 @@ class Chart:
 
     @property
     def ports(self) -> Ports:
-        """The ports of the World Port Index."""
+        """The ports of the World Port Index, and others that it leaves out."""
         return PORTS
 
     def port(self, name: str) -> Port:

@@ -1,4 +1,8 @@
-"""Ports of the World Port Index (NGA Pub. 150, public domain), by name or UN/LOCODE."""
+"""Ports by name or UN/LOCODE: the World Port Index (NGA Pub. 150), and others that it leaves out.
+
+The others (Sydney, Oslo, Singapore and some 290 more) are from searoute 1.6.0 (Apache-2.0), those
+with water near them; entries that plainly lie elsewhere were left out. They are good to some miles.
+"""
 
 from __future__ import annotations
 
@@ -13,20 +17,19 @@ from typing import Final
 
 from thalweg.core.errors import InputError, near_matches
 
-# Usual English names of ports that the index has under another name.
+# Usual names of ports that the indexes have under another name.
 ENGLISH: Final = {
     "alexandria egypt": "EGALY",
     "antwerp": "BEANR",
     "flushing": "NLVLI",
     "genoa": "ITGOA",
     "ghent": "BEGNE",
-    "gothenburg": "SEGOT",
+    "goteborg": "SEGOT",
     "hull": "GBHUL",
     "leghorn": "ITLIV",
     "lisbon": "PTLIS",
     "naples": "ITNAP",
     "piraeus": "GRPIR",
-    "singapore": "SGKEP",
     "suez": "EGSUZ",
     "venice": "ITVCE",
 }
@@ -55,16 +58,14 @@ class Ports:
         """Every port of the index, in the order of the file."""
         packed = resources.files("thalweg.chart").joinpath("data/world_port_index.csv.gz")
         text = gzip.decompress(packed.read_bytes()).decode("utf-8")
-        return tuple(
-            Port(
-                row["name"],
-                row["country_code"],
-                row["unlocode"].replace(" ", "").upper(),
-                float(row["lat"]),
-                float(row["lon"]),
-            )
-            for row in csv.DictReader(io.StringIO(text))
-        )
+        return tuple(_port(row) for row in csv.DictReader(io.StringIO(text)))
+
+    @cached_property
+    def others(self) -> tuple[Port, ...]:
+        """Ports that the index leaves out."""
+        table = resources.files("thalweg.chart").joinpath("data/more_ports.csv")
+        text = table.read_text(encoding="utf-8")
+        return tuple(_port(row) for row in csv.DictReader(io.StringIO(text)))
 
     def lookup(self, text: str) -> Port:
         """Return the port of a name ('Rotterdam', 'Rotterdam, NL') or UN/LOCODE ('NLRTM').
@@ -77,7 +78,8 @@ class Ports:
             If there is no such port (with near matches), or several (with their LOCODEs).
         """
         wanted = folded(text)
-        found = [port for port in self.all if port.locode and folded(port.locode) == wanted]
+        known = (*self.all, *self.others)
+        found = [port for port in known if port.locode and folded(port.locode) == wanted]
         found = found[:1] or self._named(text)
         if len(found) == 1:
             return found[0]
@@ -96,22 +98,27 @@ class Ports:
         name, _, country = text.rpartition(",") if "," in text else (text, "", "")
         code = country.strip().upper()
         wanted = folded(name)
-        pool = [port for port in self.all if not code or port.country_code == code]
+        pool, others = (
+            [port for port in ports if not code or port.country_code == code]
+            for ports in (self.all, self.others)
+        )
         found = [port for port in pool if folded(port.name) == wanted]
         if not found and wanted in ENGLISH:
-            found = [port for port in pool if port.locode == ENGLISH[wanted]][:1]
+            found = [port for port in (*pool, *others) if port.locode == ENGLISH[wanted]][:1]
+        if not found:
+            found = [port for port in others if folded(port.name) == wanted]
         if not found and len(wanted) >= 4:
             found = [port for port in pool if f" {wanted} " in f" {folded(port.name)} "]
         return found
 
     def _unknown(self, text: str) -> InputError:
         wanted = folded(text.split(",")[0])
-        by_name = {folded(port.name): port for port in self.all}
+        by_name = {folded(port.name): port for port in (*self.others, *self.all)}
         within = [n for n in by_name if len(wanted) >= 3 and wanted in n.split()]
         near = list(dict.fromkeys([*near_matches(wanted, by_name, 4), *within]))[:5]
         listed = "; ".join(str(by_name[name]) for name in near)
         return InputError(
-            f"There is no port named {text!r} in the World Port Index.",
+            f"There is no port named {text!r} in the index of ports.",
             f"Nearest in spelling: {listed}." if near else "",
             "Give one of these, its UN/LOCODE, or a position such as 52.0N 4.1E.",
             value=text,
@@ -119,11 +126,21 @@ class Ports:
         )
 
 
+#: Letters that are no letter with an accent.
+_LETTERS: Final = str.maketrans({"ø": "o", "æ": "ae", "œ": "oe", "ł": "l", "đ": "d", "ð": "d"})
+
+
 def folded(text: str) -> str:
     """Return text without case, accents, punctuation and double spaces, for comparing."""
-    plain = unicodedata.normalize("NFKD", text.casefold())
+    plain = unicodedata.normalize("NFKD", text.casefold().translate(_LETTERS))
     kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
     return " ".join("".join(kept).split())
+
+
+def _port(row: dict[str, str]) -> Port:
+    locode = row["unlocode"].replace(" ", "").upper()
+    country = row.get("country_code") or locode[:2]
+    return Port(row["name"], country, locode, float(row["lat"]), float(row["lon"]))
 
 
 def _with_country(port: Port) -> str:
