@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
 from thalweg.ship.methods.holtrop_form import hull_form
 from thalweg.ship.methods.propeller_b_series import (
@@ -119,6 +120,78 @@ def test_1984_and_twin_screw_factors_have_the_usual_size():
     )
 
 
+FULL = hull_form(
+    length_waterline=200.0,
+    breadth=40.0,
+    draught=9.0,
+    displacement=56_000.0,
+    midship_coefficient=0.99,
+    waterplane_coefficient=0.88,
+    lcb_percent=2.0,
+)
+
+
+def _wake_of(hull, **more):
+    options = {"draught_aft": 9.0, "propeller_diameter": 6.0, "wetted_surface_area": 9000.0}
+    return wake_fraction_single(hull, **{**options, **more}, viscous=0.0022)
+
+
+def test_wake_of_a_full_hull_written_out():
+    """C_P above 0.7 (c19), T_A/D below and above 2 (c11), B/T_A above 5 (c8), c8 above 28 (c9)."""
+    prismatic = 56_000.0 / (200.0 * 40.0 * 9.0) / 0.99
+    slim = 1.0 - (1.45 * prismatic - 0.315 - 0.0225 * 2.0)
+    c19 = 0.18567 / (1.3571 - 0.99) - 0.71276 + 0.38648 * prismatic
+    root = 0.27915 * np.sqrt(40.0 / (200.0 * slim)) + c19
+
+    def flow(c9, c11, aft, viscous=0.0022):
+        return c9 * viscous * 200.0 / aft * (0.050776 + 0.93405 * c11 * viscous / slim)
+
+    c8 = 40.0 * 9000.0 / (200.0 * 6.0 * 9.0)  # 33.3
+    c9 = 32.0 - 16.0 / (c8 - 24.0)
+    assert _wake_of(FULL, year=1984) == pytest.approx(flow(c9, 1.5, 9.0) + root, rel=1e-12)
+    c11 = 0.0833333 * 2.25**3 + 1.33333  # T_A / D = 2.25
+    c8 = 40.0 * 6000.0 / (200.0 * 4.0 * 9.0)
+    c9 = 32.0 - 16.0 / (c8 - 24.0)
+    got = _wake_of(FULL, year=1984, propeller_diameter=4.0, wetted_surface_area=6000.0)
+    assert got == pytest.approx(flow(c9, c11, 9.0) + root, rel=1e-12)
+    c9 = 4000.0 * (7.0 * 40.0 / 6.0 - 25.0) / (200.0 * 6.0 * (40.0 / 6.0 - 3.0))  # 19.7
+    got = _wake_of(FULL, year=1984, draught_aft=6.0, wetted_surface_area=4000.0)
+    assert got == pytest.approx(flow(c9, 1.0, 6.0) + root, rel=1e-12)
+    stern = _wake_of(FULL, year=1984, stern_shape=10.0)
+    assert stern == pytest.approx(1.15 * _wake_of(FULL, year=1984), rel=1e-12)
+
+
+def test_wake_of_a_fine_hull_written_out():
+    """C_P below 0.7: the other c19 of 1984, on the ship of the worked example."""
+    prismatic, block = 0.58331259, 0.57164634
+    slim = 1.0 - (1.45 * prismatic - 0.315 + 0.0225 * 0.75)
+    c8 = 32.0 * 7431.45 / (205.0 * 8.0 * 10.0)  # 14.5
+    wake = c8 * 0.002 * 20.5 * (0.050776 + 0.93405 * 1.25 * 0.002 / slim)
+    wake += 0.27915 * np.sqrt(32.0 / (205.0 * slim))
+    wake += 0.12997 / (0.95 - block) - 0.11056 / (0.95 - prismatic)
+    got = wake_fraction_single(
+        SHIP,
+        draught_aft=10.0,
+        propeller_diameter=8.0,
+        wetted_surface_area=7431.45,
+        viscous=0.002,
+        year=1984,
+    )
+    assert got == pytest.approx(wake, rel=1e-6)
+
+
+def test_thrust_deduction_written_out():
+    prismatic = 56_000.0 / (200.0 * 40.0 * 9.0) / 0.99
+    late = 0.25014 * 0.2**0.28956 * (np.sqrt(360.0) / 6.0) ** 0.2624
+    late /= (1.0 - prismatic + 0.0225 * 2.0) ** 0.01762
+    got = thrust_deduction_single(FULL, propeller_diameter=6.0, stern_shape=-10.0, year=1984)
+    assert got == pytest.approx(late - 0.015, rel=1e-12)
+    slim = 1.0 - (1.45 * prismatic - 0.315 - 0.0225 * 2.0)
+    c10 = 0.25 - 0.003328402 / (0.2 - 0.134615385)  # L/B = 5, below 5.2
+    early = 0.001979 * 5.0 / slim + 1.0585 * c10 - 0.00524 - 0.1418 * 36.0 / 360.0
+    assert thrust_deduction_single(FULL, propeller_diameter=6.0) == pytest.approx(early, rel=1e-12)
+
+
 B_SERIES_4_70 = Propeller(5.0, 1.0, 0.70, 4)
 
 
@@ -141,6 +214,16 @@ def test_polynomials_in_the_advance_are_cubics():
     assert kq == pytest.approx(torque @ powers)
     assert efficiency == pytest.approx(0.6 * kt / (2.0 * np.pi * kq))
     assert b_series(largest_advance(B_SERIES_4_70), B_SERIES_4_70)[0] == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "propeller",
+    [Propeller(5.0, 1.9, 0.8, 6), Propeller(5.0, 1.8, 0.6, 7), Propeller(5.0, 0.1, 1.2, 2)],
+)
+def test_a_propeller_the_series_cannot_describe_is_refused(propeller):
+    with pytest.raises(InputError, match=r"no propeller of P/D .* blades") as caught:
+        operating_point(1e5, 5.0, propeller)
+    assert "pitch ratio" in str(caught.value)
 
 
 def test_operating_point_gives_the_thrust_asked_for():

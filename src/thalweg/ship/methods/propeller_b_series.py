@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.errors import InputError
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.methods.b_series_coefficients import (
     THRUST,
@@ -142,10 +143,41 @@ def b_series(
 
 
 def largest_advance(propeller: Propeller, *, reynolds: float | None = None) -> float:
-    """Return the advance coefficient at which the thrust vanishes."""
+    """Return the advance coefficient at which the thrust vanishes.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        See `Propeller`.
+    reynolds : float, optional
+        See `b_series_polynomials`.
+
+    Returns
+    -------
+    float
+        The lowest J above zero at which K_T is zero.
+
+    Raises
+    ------
+    InputError
+        For a propeller so far outside the series that its polynomial has no such J, or no thrust
+        at the bollard.
+    """
     thrust, _ = b_series_polynomials(propeller, reynolds=reynolds)
     roots = np.roots(thrust[::-1])
     real = roots[(np.abs(roots.imag) < 1e-9) & (roots.real > 0.0)].real
+    if real.size == 0 or thrust[0] <= 0.0:
+        outside = "; ".join(str(note) for note in b_series_validity(propeller))
+        raise InputError(
+            f"The B-series has no propeller of P/D {propeller.pitch_ratio:g}, A_E/A_0 "
+            f"{propeller.area_ratio:g} and {propeller.blades} blades: its polynomials give no "
+            "thrust that falls to zero.",
+            outside or "The series has Z 2 to 7, A_E/A_0 0.30 to 1.05 and P/D 0.5 to 1.4.",
+            "Correct the propeller, or use constant efficiencies.",
+            pitch_ratio=propeller.pitch_ratio,
+            area_ratio=propeller.area_ratio,
+            blades=propeller.blades,
+        )
     return float(real.min())
 
 
