@@ -186,6 +186,9 @@ def test_bad_histories():
     generator = np.random.default_rng(0)
     with pytest.raises(InputError, match="evenly"):
         series.wave_components([0.1, 0.2, 0.4], [1.0, 1.0, 1.0], generator=generator)
+    for uneven in ([0.3, 0.2, 0.1], [0.2, 0.2, 0.2], [0.15, 0.25, 0.35], [np.nan, 0.1, 0.2]):
+        with pytest.raises(InputError, match="multiples"):
+            series.wave_components(uneven, [1.0, 1.0, 1.0], generator=generator)
     with pytest.raises(InputError, match="unknown"):
         series.wave_components([0.1, 0.2, 0.3], [1.0, np.nan, 1.0], generator=generator)
     with pytest.raises(InputError, match="random"):

@@ -1,5 +1,7 @@
 """Zeng et al. (2019), Karpov as printed by Schless (2023), and Lackenby (1963)."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -110,6 +112,12 @@ def test_lackenby_limits():
     losses = lackenby_1963_speed_loss(8.0, depth=[100.0, 50.0, 25.0, 15.0], midship_area=300.0)
     assert np.all(np.diff(losses) > 0.0)
     assert np.isnan(lackenby_1963_speed_loss(8.0, depth=np.nan, midship_area=300.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        dry = {"depth": [0.0, -5.0]}
+        assert np.isnan(lackenby_1963_speed_loss(8.0, midship_area=300.0, **dry)).all()
+        assert np.isnan(karpov_speed(8.0, draught=5.0, **dry)).all()
+        assert karpov_validity(8.0, **dry) == []
     assert lackenby_1963_validity(8.0, depth=20.0, midship_area=300.0) == []
     assert lackenby_1963_validity(8.0, depth=8.0, midship_area=300.0)[0].high == 0.30
 

@@ -101,6 +101,15 @@ def test_a_channel_sinks_the_ship_deeper():
     assert canal / open_water == pytest.approx((1670.0 / 670.0) ** (2.0 / 3.0))
 
 
+def test_a_narrower_channel_never_lets_the_ship_go_faster():
+    widths = np.linspace(20.5, 400.0, 500)
+    speeds = squat.critical_speed(5.0, 9.0, draught=6.5, breadth=20.0, channel_width=widths)
+    assert np.all(np.diff(speeds) >= -1e-12)
+    open_water = 5.0 * np.sqrt(np.tanh(9.80665 * 9.0 / 25.0))
+    assert speeds[0] == pytest.approx(0.390 * open_water, rel=1e-3)  # the cubic at its least
+    assert speeds[-1] > 0.8 * open_water
+
+
 def test_a_filled_channel_is_blocked():
     assert squat.blockage_ratio(6.0, 6.5, breadth=20.0, channel_width=20.0) == np.inf
     assert limit(6.4, channel_width=20.0) == 0.0

@@ -1,7 +1,7 @@
 """Shallow water: friction after Zeng, wave speed after Karpov, speed loss after Lackenby.
 
 Depth is the depth of the water at the ship, level included. A ship whose draught reaches the depth
-has no value (NaN); an infinite depth is deep water.
+has no value (NaN) where the method knows the draught; an infinite depth is deep water.
 """
 
 from __future__ import annotations
@@ -47,6 +47,12 @@ _FAST: Final = np.array(
     ]
 )
 _START: Final = np.array([0.4] * 10 + [0.6] * 2)
+
+
+def _positive(depth: ArrayLike) -> FloatArray:
+    """Return depths [m], NaN where there is no water."""
+    water = np.asarray(depth, dtype=float)
+    return np.where(water > 0.0, water, np.nan)
 
 
 def bottom_speed_ratio(depth_to_draught: ArrayLike) -> FloatArray:
@@ -179,8 +185,13 @@ def karpov_speed(
         See `karpov`.
     gravity : float
         [m/s2].
+
+    Returns
+    -------
+    ndarray
+        NaN where the depth does not exceed the draught.
     """
-    water = np.asarray(depth, dtype=float)
+    water = _positive(depth)
     froude = froude_number(speed, length=water, gravity=gravity)
     alpha = karpov(froude, water / np.asarray(draught), raw_bands=raw_bands)
     return np.asarray(np.asarray(speed, dtype=float) / alpha)
@@ -190,7 +201,7 @@ def karpov_validity(
     speed: ArrayLike, *, depth: ArrayLike, gravity: float = GRAVITY
 ) -> list[RangeNote]:
     """Say which depth Froude numbers lie beyond 1.0, where the fit of the curves ends."""
-    froude = froude_number(speed, length=depth, gravity=gravity)
+    froude = froude_number(speed, length=_positive(depth), gravity=gravity)
     return range_notes("karpov", {"depth Froude number": (froude, 0.0, FASTEST_KARPOV)})
 
 
@@ -220,10 +231,11 @@ def lackenby_1963_speed_loss(
     Returns
     -------
     ndarray
-        A part of the speed, not below zero. The procedure applies the formula from
-        A_M / h^2 = 0.05; below that the first term is taken as zero, so that it fades out.
+        A part of the speed, not below zero; NaN where the depth is not positive. The procedure
+        applies the formula from A_M / h^2 = 0.05; below that the first term is taken as zero, so
+        that it fades out. The draught is not known here: the caller tells where the ship touches.
     """
-    velocity, water = np.asarray(speed, dtype=float), np.asarray(depth, dtype=float)
+    velocity, water = np.asarray(speed, dtype=float), _positive(depth)
     blocked = np.maximum(np.asarray(midship_area) / water**2 - 0.05, 0.0)
     squared = np.where(velocity == 0.0, 1e-12, velocity**2)
     loss = 0.1242 * blocked + 1.0 - np.sqrt(np.tanh(gravity * water / squared))

@@ -15,16 +15,13 @@ from thalweg.ship.methods.notes import RangeNote, range_notes
 OPEN_WATER_BREADTHS: Final = 9.0
 
 _DEEP: Final = 1e5  # stands for infinite depth [m]
+_LANDWEBER: Final = (1.002, 0.005, -0.1159, 0.0191)
+#: Where Landweber's cubic is least: 0 = c1 + 2 c2 q + 3 c3 q^2. Beyond, it would rise again.
+_NARROWEST: Final = float(np.polynomial.Polynomial(_LANDWEBER).deriv().roots().max())
 
-#: Published ranges: method -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "barrass_squat": {"block_coefficient": (0.5, 0.9), "depth_to_draught": (1.1, 1.5)},
-    "barrass_2004_squat": {
-        "block_coefficient": (0.5, 0.9),
-        "depth_to_draught": (1.1, 1.4),
-        "blockage": (0.100, 0.265),
-    },
-}
+#: Published ranges of both of Barrass's forms; deeper water is no fault, squat fades there.
+_BLOCKS: Final = (0.5, 0.9)
+_SHALLOWEST: Final = 1.1  # depth over draught
 
 
 def _width(breadth: ArrayLike, channel_width: ArrayLike | None) -> Floats:
@@ -121,7 +118,8 @@ def barrass_2004_squat(
     """Return the largest squat by Barrass's later form: C_B K^0.81 V_kn^2.08 / 20.
 
     K = B T / (b h) is the blockage factor; without a channel width b is Barrass's width of
-    influence 7.04 B / C_B^0.85 (that constant is from memory, see the validity list).
+    influence 7.04 B / C_B^0.85 (that constant is from memory). Published for C_B 0.5 to 0.9,
+    depth/draught 1.1 to 1.4 and K 0.100 to 0.265.
 
     Parameters
     ----------
@@ -259,7 +257,9 @@ def critical_speed(
 
     Notes
     -----
-    The polynomial exceeds one by up to 0.2 % for very small q; it is cut at one.
+    The polynomial exceeds one by up to 0.2 % for very small q; it is cut at one. It has its least
+    value, 0.39, at q = 4.02, where the ship nearly fills a channel; beyond, it is held there (as
+    it stands it would rise again, and a narrower channel would let the ship go faster).
 
     References
     ----------
@@ -275,7 +275,8 @@ def critical_speed(
         schlichting = np.where(v > 0.0, np.sqrt(np.tanh(gravity * h / v**2)), 1.0 + 0.0 * h)
         radius = free / (width + 2.0 * h + 2.0 * floats(draught) + b)
         q = np.sqrt(section) / np.where(open_water, radius, np.nan)
-        landweber = np.clip(1.002 + q * (0.005 + q * (-0.1159 + q * 0.0191)), 0.0, 1.0)
+        q = np.minimum(q, _NARROWEST)
+        landweber = np.minimum(np.polynomial.polynomial.polyval(q, _LANDWEBER), 1.0)
     blocked = np.where(np.isnan(free * v), np.nan, 0.0)
     return np.where(open_water, v * schlichting * landweber, blocked)
 
@@ -365,7 +366,7 @@ def clearance_under_way(depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLik
 def squat_validity(
     depth: ArrayLike, *, draught: ArrayLike, block_coefficient: ArrayLike
 ) -> list[RangeNote]:
-    """Say where `barrass_squat` is used outside its published range.
+    """Say where `barrass_squat` or `barrass_2004_squat` is used outside its published range.
 
     Deep water is no fault: squat tends to zero there.
 
@@ -381,12 +382,11 @@ def squat_validity(
     list of RangeNote
         Empty when all lies inside.
     """
-    ranges = VALIDITY["barrass_squat"]
     ratio = floats(depth) / floats(draught)
     return range_notes(
         "Barrass squat",
         {
-            "block coefficient": (block_coefficient, *ranges["block_coefficient"]),
-            "depth over draught": (ratio, ranges["depth_to_draught"][0], np.inf),
+            "block coefficient": (block_coefficient, *_BLOCKS),
+            "depth over draught": (ratio, _SHALLOWEST, np.inf),
         },
     )

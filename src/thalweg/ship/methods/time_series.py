@@ -82,7 +82,8 @@ def wave_components(
     Raises
     ------
     InputError
-        For an unknown scheme, uneven frequencies, or a spectrum that is negative or unknown.
+        For an unknown scheme, frequencies that are not rising multiples of one spacing, or a
+        spectrum that is negative or unknown.
 
     Notes
     -----
@@ -97,25 +98,36 @@ def wave_components(
     if scheme not in SCHEMES:
         raise unknown_name("scheme", scheme, SCHEMES)
     w, s = floats(frequency), floats(spectrum)
-    step = np.diff(w)
-    if w.ndim != 1 or w.shape != s.shape or w.size < 2 or not np.allclose(step, step[0], rtol=1e-6):
+    if not _multiples(w) or w.shape != s.shape:
         raise InputError(
-            "The frequencies of a wave history must be evenly spaced, with one density each.",
+            "The frequencies of a wave history must be evenly spaced multiples of their spacing, "
+            "rising, with one density each.",
             f"Frequencies have shape {w.shape}, densities {s.shape}.",
             "Use, for example, 0.01, 0.02, ... 3.0 rad/s.",
         )
+    step = w[1] - w[0]
     if not np.all(s >= 0.0):
         raise InputError(
             "The spectrum of a wave history is negative or unknown somewhere.",
             "Densities must be zero or more at every frequency.",
             "Check height and period of the sea state.",
         )
-    root = np.sqrt(s * step[0])
+    root = np.sqrt(s * step)
     if scheme == "deterministic":
         phase = generator.uniform(0.0, 2.0 * np.pi, w.size)
         return WaveComponents(w, np.sqrt(2.0) * root * np.exp(1j * phase))
     draws = generator.standard_normal((2, w.size))
     return WaveComponents(w, root * (draws[0] - 1j * draws[1]))
+
+
+def _multiples(frequency: Floats) -> bool:
+    """Whether frequencies are rising multiples of one spacing, so that the history repeats."""
+    if frequency.ndim != 1 or frequency.size < 2:
+        return False
+    step = np.diff(frequency)
+    if not (step[0] > 0.0 and np.allclose(step, step[0], rtol=1e-6) and frequency[0] >= 0.0):
+        return False
+    return bool(abs(frequency[0] / step[0] - np.round(frequency[0] / step[0])) < 1e-3)
 
 
 def wave_history(components: WaveComponents, time: ArrayLike) -> WaveHistory:

@@ -212,7 +212,7 @@ class SnnmTable:
         thrown = b0 * self.bow.at(cell, 0) + b1 * self.bow.at(cell, 1)
         least = _least_depth(self.hull)
         place = (deep / self.hull[2] - least) / (1.0 - least) * (_DEPTHS - 1)
-        place = np.clip(np.nan_to_num(place), 0.0, _DEPTHS - 1.001)
+        place = np.clip(np.where(np.isnan(place), 0.0, place), 0.0, _DEPTHS - 1.001)
         row = place.astype(np.intp)
         for power, factor in ((0, s0), (1, s1)):
             shallow = self.stern.at(cell, 2 * row + power)
