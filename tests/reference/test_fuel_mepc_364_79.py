@@ -50,6 +50,16 @@ def test_carbon_factor_is_carbon_content_times_44_over_12():
         assert fuel.FUELS[name].carbon_factor == pytest.approx(factor, abs=4e-3)
 
 
+@pytest.mark.parametrize(
+    ("name", "carbon", "hydrogen", "oxygen"),
+    [("ethane", 2, 6, 0), ("methanol", 1, 4, 1), ("ethanol", 2, 6, 1), ("lng", 1, 4, 0)],
+)
+def test_pure_fuels_burn_to_the_carbon_of_their_molecule(name, carbon, hydrogen, oxygen):
+    """The table's carbon contents are rounded: 0.12 % for the alcohols, 0.25 % for methane."""
+    molecule = carbon * 12.011 + hydrogen * 1.008 + oxygen * 15.999
+    assert fuel.FUELS[name].carbon_factor == pytest.approx(carbon * 44.009 / molecule, rel=2.6e-3)
+
+
 def test_co2_of_the_example():
     """27.593 t of heavy fuel oil: 85.925 t CO2."""
     assert fuel.co2_mass(27.593, carbon_factor=3.114) == pytest.approx(85.925, abs=5e-4)

@@ -48,6 +48,30 @@ def test_the_full_rows_form_one_family_with_a_plus(block, plus, printed):
     assert float(kwon_speed_coefficient(**at, sign="printed")) == pytest.approx(printed, abs=5e-4)
 
 
+def _first(zero_of, fn):
+    """Lowest Froude number at which values on a fine axis change their sign."""
+    return float(fn[np.flatnonzero(zero_of <= 0.0)[0]])
+
+
+@pytest.mark.parametrize("loading", ["loaded", "ballast"])
+@pytest.mark.parametrize("block", [0.75, 0.80, 0.85])
+def test_with_a_plus_all_six_full_rows_meet_one_and_zero_at_the_same_speeds(block, loading):
+    """As the row 0.85, printed with a plus: one near Fn 0.15, none near Fn 0.31.
+
+    With a minus the rows 0.75 and 0.80 are one near Fn 0.11 and weather costs nothing from
+    Fn 0.153 to 0.193 on, speeds at which full ships sail.
+    """
+    fn = np.linspace(0.0, 0.4, 40_001)
+    at = {"block_coefficient": block, "loading": loading}
+    plus = kwon_speed_coefficient(fn, **at)
+    assert 0.142 < _first(plus - 1.0, fn) < 0.155
+    assert 0.295 < _first(plus, fn) < 0.319
+    if block < 0.85:
+        minus = kwon_speed_coefficient(fn, **at, sign="printed")
+        assert 0.107 < _first(minus - 1.0, fn) < 0.120
+        assert 0.153 < _first(minus, fn) < 0.194
+
+
 def test_speed_coefficient_of_seurens_own_ship():
     froude = 15.2 * KNOT / np.sqrt(9.81 * 152.9)
     assert froude == pytest.approx(0.2019, abs=5e-5)

@@ -50,7 +50,10 @@ _684 = (
     "MEPC.1/Circ.684 appendix, read as published text (3.206000, 3.151040, 3.114400, 3.000000, "
     "3.030000, 2.750000); MEPC.364(79) 2.2.1 as transcribed by two independent open calculators"
 )
-_364 = "MEPC.364(79) 2.2.1 as transcribed by an open calculator, and from memory, both the same"
+_364 = (
+    "MEPC.364(79) 2.2.1 as transcribed alike by at least four open projects, and the carbon of the "
+    "molecule within 0.2 %; the resolution itself was not seen"
+)
 
 #: Short name -> fuel.
 FUELS: Final[Mapping[str, Fuel]] = MappingProxyType(
