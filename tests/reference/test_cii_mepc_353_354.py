@@ -59,8 +59,8 @@ def test_worked_example_of_the_guidelines():
 
 
 def test_reductions():
-    assert [cii.reduction_factor(y) for y in range(2023, 2031)] == [
-        5.0, 7.0, 9.0, 11.0, 13.625, 16.25, 18.875, 21.5,
+    assert [cii.reduction_factor(y) for y in range(2019, 2031)] == [
+        0.0, 1.0, 2.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.625, 16.25, 18.875, 21.5,
     ]  # fmt: skip
     with pytest.raises(InputError, match="2031"):
         cii.reduction_factor(2031)
@@ -77,6 +77,24 @@ def test_capped_and_split_lines():
     cars = cii.reference_cii("vehicle_carrier", capacity=[70_000.0, 57_700.0, 30_000.0, 29_999.0])
     assert cars[0] == cars[1]
     assert cars[2:] == pytest.approx([3627.0 * 3e4**-0.59, 330.0 * 29_999.0**-0.329])
+
+
+@pytest.mark.parametrize(
+    ("kind", "a", "c"),
+    [
+        ("tanker", 5247.0, 0.610),
+        ("container_ship", 1984.0, 0.489),
+        ("refrigerated_cargo_carrier", 4600.0, 0.557),
+        ("combination_carrier", 5119.0, 0.622),
+        ("ro_ro_cargo_ship", 1967.0, 0.485),
+        ("ro_ro_passenger_ship", 2023.0, 0.460),
+        ("high_speed_ro_ro_passenger_craft", 4196.0, 0.460),
+        ("cruise_passenger_ship", 930.0, 0.383),
+    ],
+)
+def test_plain_lines_as_printed(kind, a, c):
+    sizes = np.array([5_000.0, 60_000.0, 250_000.0])
+    assert cii.reference_cii(kind, capacity=sizes) == pytest.approx(a / sizes**c, rel=1e-12)
 
 
 def test_lng_lines_and_their_doubt():

@@ -40,6 +40,42 @@ def test_base_values_and_their_honesty():
     assert "memory" in record.source
 
 
+@pytest.mark.parametrize(
+    ("machine", "kind", "by_year"),
+    [
+        ("slow_speed_diesel", "residual", (205, 185, 175)),
+        ("slow_speed_diesel", "distillate", (190, 175, 165)),
+        ("medium_speed_diesel", "residual", (215, 195, 185)),
+        ("medium_speed_diesel", "distillate", (200, 185, 175)),
+        ("high_speed_diesel", "residual", (225, 205, 195)),
+        ("high_speed_diesel", "distillate", (210, 190, 185)),
+        ("auxiliary", "residual", (225, 205, 195)),
+        ("auxiliary", "distillate", (210, 190, 185)),
+        ("gas_turbine", "residual", (305, 305, 305)),
+        ("gas_turbine", "distillate", (300, 300, 300)),
+        ("steam_turbine", "residual", (340, 340, 340)),
+        ("steam_turbine", "distillate", (320, 320, 320)),
+        ("steam_turbine", "lng", (285, 285, 285)),
+    ],
+)
+def test_base_values_by_year_of_build(machine, kind, by_year):
+    found = [engine.base_sfoc(machine, kind, built=year)[0] for year in (1983, 2000, 2001)]
+    assert found == list(by_year)
+
+
+def test_base_values_of_gas_and_methanol():
+    young = {
+        ("lng_otto_slow_speed", "lng"): 148.0,
+        ("lng_otto_medium_speed", "lng"): 156.0,
+        ("auxiliary", "lng"): 156.0,
+        ("slow_speed_diesel", "methanol"): 350.0,
+        ("medium_speed_diesel", "methanol"): 370.0,
+    }
+    assert {pair: engine.base_sfoc(*pair)[0] for pair in young} == young
+    assert engine.base_sfoc("lng_otto_medium_speed", "lng", built=1990)[0] == 173.0
+    assert engine.base_sfoc("lng_otto_slow_speed", "lng")[1].pilot == 0.8
+
+
 def test_no_number_is_an_error_not_a_guess():
     with pytest.raises(InputError, match="lng_diesel"):
         engine.base_sfoc("lng_diesel", "lng", built=1980)

@@ -144,6 +144,63 @@ def test_1984_example_against_an_independent_calculation():
     )
 
 
+def _wave_by_hand(length, breadth, draught, volume, midship, fn, entrance, year):
+    """R_W up to Fn 0.4 with plain numbers, without bulb and transom."""
+    prismatic = volume / (length * breadth * draught * midship)
+    slim, ratio = breadth / length, length / breadth
+    if slim < 0.11:
+        c7 = 0.229577 * slim ** (1.0 / 3.0)
+    else:
+        c7 = slim if slim <= 0.25 else 0.5 - 0.0625 * ratio
+    c1 = 2223105.0 * c7**3.78613 * (draught / breadth) ** 1.07961
+    c1 *= (90.0 - entrance) ** -1.37565
+    c16 = 1.73014 - 0.7067 * prismatic
+    if prismatic < 0.8:
+        c16 = 8.07981 * prismatic - 13.8673 * prismatic**2 + 6.984388 * prismatic**3
+    m1 = 0.0140407 * length / draught - 1.75254 * volume ** (1.0 / 3.0) / length
+    m1 += -4.79323 * slim - c16
+    slender = length**3 / volume
+    c15 = -1.69385 if slender < 512.0 else -1.69385 + (slender ** (1.0 / 3.0) - 8.0) / 2.36
+    c15 = 0.0 if slender > 1726.91 else c15
+    m4 = c15 * prismatic**2 * np.exp(-0.1 / fn**2)
+    if year == 1984:
+        m4 = 0.4 * c15 * np.exp(-0.034 * fn**-3.29)
+    lam = 1.446 * prismatic - (0.03 * ratio if ratio < 12.0 else 0.36)
+    exponent = m1 * fn**-0.9 + m4 * np.cos(lam / fn**2)
+    return c1 * volume * 1025.0 * 9.81 * np.exp(exponent)
+
+
+@pytest.mark.parametrize("year", [1982, 1984])
+@pytest.mark.parametrize(
+    ("length", "breadth", "draught", "volume"),
+    [
+        (200.0, 32.0, 10.0, 0.78 * 64_000.0),  # C_P below 0.8
+        (200.0, 32.0, 10.0, 0.84 * 64_000.0),  # C_P above 0.8
+        (60.0, 16.0, 5.0, 0.60 * 4_800.0),  # B/L above 0.25
+        (130.0, 13.0, 4.5, 0.50 * 7_605.0),  # L3/V between 512 and 1727, B/L below 0.11
+        (150.0, 11.5, 3.5, 0.45 * 6_037.5),  # L/B above 12
+    ],
+)
+def test_every_branch_of_the_wave_formula(length, breadth, draught, volume, year):
+    hull = hull_form(
+        length_waterline=length,
+        breadth=breadth,
+        draught=draught,
+        displacement=volume,
+        midship_coefficient=0.98,
+        waterplane_coefficient=0.85,
+        lcb_percent=0.0,
+    )
+    fn = np.array([0.15, 0.22, 0.30, 0.38])
+    got = wave_resistance(
+        fn * np.sqrt(9.81 * length), hull, entrance_angle_deg=20.0, year=year, gravity=9.81
+    )
+    expected = [
+        _wave_by_hand(length, breadth, draught, volume, 0.98, one, 20.0, year) for one in fn
+    ]
+    np.testing.assert_allclose(got, expected, rtol=1e-12)
+
+
 def test_1984_wave_resistance_is_a_straight_line_between_fn_040_and_055():
     length = float(FAST.length)
     fn = np.array([0.40, 0.45, 0.50, 0.55])

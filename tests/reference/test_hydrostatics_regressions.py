@@ -64,6 +64,19 @@ def test_lcb_of_kvlcc2_and_kcs():
     assert reg.lcb_from_prismatic(0.651 / 0.985) == pytest.approx(-1.48, abs=1.5)
 
 
+def test_regressions_written_out():
+    """Numbers worked by hand from the printed formulas."""
+    assert reg.block_from_froude(0.25) == pytest.approx(0.633125, abs=1e-9)
+    assert reg.midship_from_block(0.6) == pytest.approx(1.0 / (1.0 + 0.4**3.5))
+    assert reg.midship_kerlen(0.6) == pytest.approx(1.006 - 0.0056 / 0.6**3.56)
+    assert reg.waterplane_from_block(0.7) == pytest.approx(0.8)
+    assert reg.waterplane_kristensen(0.7) == pytest.approx(0.865)
+    assert reg.lcb_from_prismatic(0.7) == pytest.approx(0.08)
+    assert reg.lcb_from_froude(0.2) == pytest.approx(1.02)
+    block = loading.block_at_draught(10.0, design_draught=8.0, design_block=0.7)
+    assert block == pytest.approx(1.0 - 0.3 * 0.8 ** (1.0 / 3.0))
+
+
 def test_block_from_froude():
     """KCS at Fn .26 has .651; KVLCC2 at .142 lies outside."""
     assert reg.block_from_froude(0.26) == pytest.approx(0.651, abs=0.05)

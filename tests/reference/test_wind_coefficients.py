@@ -56,6 +56,33 @@ def test_blendermann_tanker_against_an_independent_calculation():
     np.testing.assert_allclose(got, -np.array(forward), atol=1e-8)
 
 
+@pytest.mark.parametrize(
+    ("kind", "transverse", "bow", "stern", "cross_force"),
+    [
+        ("car_carrier", 0.95, 0.55, 0.60, 0.80),
+        ("cargo_loaded", 0.85, 0.65, 0.55, 0.40),
+        ("container_loaded", 0.90, 0.55, 0.55, 0.40),
+        ("ferry", 0.90, 0.45, 0.50, 0.80),
+        ("lng_tanker", 0.70, 0.60, 0.65, 0.50),
+        ("offshore_supply", 0.90, 0.55, 0.80, 0.55),
+        ("cruise", 0.90, 0.40, 0.40, 0.80),
+        ("research", 0.85, 0.55, 0.65, 0.60),
+        ("tanker_loaded", 0.70, 0.90, 0.55, 0.40),
+        ("tanker_ballast", 0.70, 0.75, 0.55, 0.40),
+    ],
+)
+def test_blendermann_types_as_printed(kind, transverse, bow, stern, cross_force):
+    """From ahead and astern the longitudinal drag; at 45 degrees delta and CD_t act in full."""
+    got = blendermann_1994(
+        np.radians([0.0, 45.0, 180.0]),
+        frontal_area=800.0,
+        lateral_area=2000.0,
+        ship_type=BLENDERMANN[kind],
+    )
+    oblique = bow * np.sqrt(0.5) / (1.0 - 0.5 * cross_force * (1.0 - 0.4 * bow / transverse))
+    np.testing.assert_allclose(got, [bow, oblique, -stern], rtol=1e-12)
+
+
 def test_ittc_tanker_curve_against_a_polynomial_fitted_by_others():
     coefficients = [
         *(1.17123499947647e-12, -5.2511115870235e-10, 7.82952986643856e-08),

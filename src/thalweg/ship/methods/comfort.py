@@ -16,13 +16,6 @@ MIXED_ADULTS: Final = 1.0 / 3.0
 #: Mean absolute over root mean square of a Gaussian motion.
 MEAN_ABSOLUTE: Final = float(np.sqrt(2.0 / np.pi))
 
-#: Published ranges: function -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "sick_percent_iso": {"duration_h": (1.0 / 3.0, 6.0), "percent": (0.0, 70.0)},
-    "sick_percent_mccauley": {"frequency_hz": (0.05, 0.7), "duration_min": (5.0, 120.0)},
-    "sick_percent_ohanlon": {"frequency_hz": (0.083, 0.7)},
-}
-
 # corner frequencies [Hz] and resonant quality factors of the weighting Wf
 _F1, _F2, _F4, _Q4, _F5, _Q5, _F6, _Q6 = 0.08, 0.63, 0.25, 0.86, 0.0625, 0.80, 0.10, 0.80
 
@@ -179,7 +172,7 @@ def sick_percent_mccauley(
     Returns
     -------
     ndarray
-        Percent; 0 without motion or exposure.
+        Percent; 0 without motion or exposure. Tried with 0.05 to 0.7 Hz for 5 minutes to 2 hours.
 
     References
     ----------
@@ -216,7 +209,7 @@ def sick_percent_ohanlon(
     Returns
     -------
     ndarray
-        Percent; 0 without motion.
+        Percent; 0 without motion. Tried with 0.083 to 0.7 Hz.
 
     Notes
     -----

@@ -17,11 +17,6 @@ LUEBKE_ANGLES_DEG: Final = (0.0, 10.0, 20.0, 30.0, 35.0)
 LUEBKE_DRAG: Final = (0.0, 0.09, 0.23, 0.45, 0.57)
 LARGEST_RUDDER_ANGLE: Final = float(np.radians(35.0))  #: end of the nodes [rad]
 
-#: Published ranges: function -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "rudder_drag_coefficient": {"angle_deg": (-35.0, 35.0)},
-}
-
 
 @dataclass(frozen=True)
 class CurrentTriangle:

@@ -17,11 +17,6 @@ from thalweg.ship.methods.arrays import Floats, floats
 #: kg/(W s) in one g/kWh.
 G_KWH: Final = 1e-3 / 3.6e6
 
-#: Published ranges: function -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "sfoc_load_factor": {"load": (0.2, 1.0)}
-}
-
 _GHG4 = "Fourth IMO GHG Study 2020"
 
 
@@ -139,7 +134,7 @@ def sfoc_load_factor(load: ArrayLike) -> Floats:
     Parameters
     ----------
     load : array_like
-        Power over maximum continuous rating [-].
+        Power over maximum continuous rating [-], 0.2 to 1; evaluated beyond as it stands.
 
     Returns
     -------

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.ship.methods.arrays import Floats, floats
-
-#: Published ranges: function -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "block_at_draught": {"draught_ratio": (0.4, 1.1)},
-}
 
 
 def between_empty_and_full(load_factor: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
@@ -110,7 +103,7 @@ def block_at_draught(
     Parameters
     ----------
     draught, design_draught : array_like
-        Mean draughts [m].
+        Mean draughts [m]; the first 0.4 to 1.1 of the second (our judgement).
     design_block : array_like
         Block coefficient at the design draught [-].
 

@@ -11,15 +11,6 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import unknown_name
 from thalweg.ship.methods.arrays import Floats, floats
 
-#: Published ranges: function -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "block_from_froude": {"froude": (0.15, 0.32)},
-    "lcb_from_froude": {"froude": (0.10, 0.25)},
-    "lcb_from_prismatic": {"prismatic_coefficient": (0.55, 0.85)},
-    "midship_from_block": {"block_coefficient": (0.45, 0.90)},
-    "waterplane_from_block": {"block_coefficient": (0.45, 0.90)},
-}
-
 _WATERLINE: Final = {"tanker": 1.02, "container": 1.01, "ro_ro": 1.035}
 _PROPELLER: Final = {"tanker": (0.395, 1.30), "container": (0.623, -0.16), "ro_ro": (0.713, -0.08)}
 _WETTED: Final = {"tanker": (0.99, 2.0), "container": (0.995, 2.4)}
@@ -123,7 +114,7 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
     Parameters
     ----------
     prismatic_coefficient : array_like
-        C_P = C_B / C_M [-].
+        C_P = C_B / C_M [-], about 0.55 to 0.85.
 
     Returns
     -------
@@ -143,7 +134,7 @@ def lcb_from_froude(froude: ArrayLike) -> Floats:
     Parameters
     ----------
     froude : array_like
-        Froude number at design speed [-].
+        Froude number at design speed [-], about 0.10 to 0.25.
 
     Returns
     -------

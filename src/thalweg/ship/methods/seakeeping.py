@@ -22,10 +22,9 @@ from thalweg.ship.methods.wave_spectra import (
 #: How wave pressure fades with depth in `jensen_motions`.
 DECAYS: Final = ("published", "strip")
 
-#: Published ranges: function -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "jensen_motions": {"froude": (0.0, 0.35), "length_to_breadth": (4.0, 10.0)},
-}
+#: Ships `jensen_motions` was tried on, our judgement: Froude number, and length over breadth.
+_FROUDE: Final = (0.0, 0.35)
+_SLENDER: Final = (4.0, 10.0)
 
 
 @dataclass(frozen=True)
@@ -339,12 +338,11 @@ def motions_validity(
     list of RangeNote
         Empty when all lies inside. The ranges are our judgement of the ships in the paper.
     """
-    ranges = VALIDITY["jensen_motions"]
     froude = floats(speed) / np.sqrt(gravity * hull.length)
     return range_notes(
         "Jensen-Mansour-Olsen motions",
         {
-            "Froude number": (froude, *ranges["froude"]),
-            "length over breadth": (hull.length / hull.breadth, *ranges["length_to_breadth"]),
+            "Froude number": (froude, *_FROUDE),
+            "length over breadth": (hull.length / hull.breadth, *_SLENDER),
         },
     )

@@ -14,11 +14,6 @@ from thalweg.ship.methods.arrays import Floats, floats
 PANELS: Final = (0.35, 0.75, 1.0, 1.3, 2.0, 4.0, 8.0)
 POINTS: Final = 8
 
-#: Published ranges: function -> quantity -> (low, high).
-VALIDITY: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "jonswap": {"peak_period_over_root_height": (3.6, 5.0)},
-}
-
 
 def _panel_rule() -> tuple[Floats, Floats]:
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
@@ -94,7 +89,8 @@ def jonswap(
         Wave frequency [rad/s]; the last axis runs over frequency.
     height, period : array_like
         Significant height [m] and peak period [s]; broadcast against the leading axes of
-        ``frequency`` (a scalar sea state takes a vector of frequencies).
+        ``frequency`` (a scalar sea state takes a vector of frequencies). The spectrum is meant
+        for 3.6 < Tp / sqrt(Hs) < 5.
     peak_factor : array_like, optional
         gamma [-]; without it `dnv_peak_factor`.
 
