@@ -19,6 +19,8 @@ from thalweg.ship.methods.calm_water_hollenbach import (
     hollenbach_validity,
     hollenbach_wetted_surface,
     maximum_factor,
+    residuary_coefficient,
+    standard_residuary,
 )
 
 YU_KNOT = 0.5144
@@ -116,6 +118,29 @@ def test_wetted_surface_regressions():
         variant="twin_bulb",
     )
     assert twin == pytest.approx(4273.56971961, rel=1e-9)
+
+
+def test_a_hull_worked_by_an_open_ship_library():
+    """L_PP 145 m: factors, wetted surface and C_A in its tests of the method after Birk (2019)."""
+    hull = {
+        "length_between_perpendiculars": 145.0,
+        "length_waterline": 147.7,
+        "length_over_surface": 151.0,
+        "breadth": 24.0,
+        "draught_fore": 8.2,
+        "draught_aft": 8.2,
+        "block_coefficient": 18_872.0 / (145.0 * 24.0 * 8.2),
+        "propeller_diameter": 4.9,
+    }
+    assert froude_length(145.0, length_over_surface=151.0) == pytest.approx(149.0)
+    assert hollenbach_wetted_surface(**hull) == pytest.approx(4448.453, abs=5e-4)
+    assert correlation_allowance(145.0) == pytest.approx(0.06e-3)
+    factors = 0.9778 * 1.4379 * 0.2335 * 0.8753 * 0.9364 * 0.9925  # k_L, k_BT, k_LB ... k_PR
+    fn = 0.2
+    standard = standard_residuary(fn, block_coefficient=hull["block_coefficient"])
+    growth = froude_factor(fn, block_coefficient=hull["block_coefficient"])
+    found = residuary_coefficient(fn, **hull)
+    assert found == pytest.approx(0.1 * factors * standard * growth, rel=5e-4)
 
 
 def test_wetted_surface_is_near_denny_mumford():
