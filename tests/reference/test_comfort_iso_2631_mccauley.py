@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,10 @@ def test_mccauley(a, f, minutes, percent):
 def test_ohanlon():
     got = comfort.sick_percent_ohanlon(0.981, encounter_frequency=2.0 * np.pi * 0.17, gravity=9.81)
     assert got == pytest.approx(24.1, abs=0.05)
+    middle = -0.819 + 2.32 * np.log10(2.5) ** 2
+    level = (np.log10(np.sqrt(2.0 / np.pi) * 0.2) - middle) / 0.4
+    fast = comfort.sick_percent_ohanlon(0.2 * 9.81, encounter_frequency=2.5, gravity=9.81)
+    assert fast == pytest.approx(50.0 * (1.0 + math.erf(level / math.sqrt(2.0))), rel=1e-9)
 
 
 def test_no_motion_nobody_sick_and_unknown_stays_unknown():

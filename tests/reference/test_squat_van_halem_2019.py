@@ -115,6 +115,19 @@ def test_a_filled_channel_is_blocked():
     assert limit(6.4, channel_width=20.0) == 0.0
 
 
+def test_later_barrass_form_by_hand():
+    """K = B T / (b h) with b = 7.04 B / C_B^0.85, or the width of the channel."""
+    at = {"draught": 10.0, "breadth": 30.0, "block_coefficient": 0.8}
+    knots = 5.0 / KNOT
+    open_water = 0.8 * (10.0 / (7.04 / 0.8**0.85 * 12.0)) ** 0.81 * knots**2.08 / 20.0
+    assert squat.barrass_2004_squat(5.0, 12.0, **at) == pytest.approx(open_water, rel=1e-12)
+    canal = 0.8 * (300.0 / (150.0 * 12.0)) ** 0.81 * knots**2.08 / 20.0
+    got = squat.barrass_2004_squat(5.0, 12.0, channel_width=150.0, **at)
+    assert got == pytest.approx(canal, rel=1e-12)
+    speeds = squat.barrass_2004_speed(canal, 12.0, channel_width=150.0, **at)
+    assert speeds == pytest.approx(5.0, rel=1e-12)
+
+
 def test_later_barrass_form_agrees_within_its_scatter():
     """The 1979 and 2004 forms describe the same thing: within a factor of 1.5 in open water."""
     kwargs = {"draught": 10.0, "breadth": 30.0, "block_coefficient": 0.8}
@@ -130,5 +143,7 @@ def test_clearance_under_way():
 def test_validity():
     inside = squat.squat_validity([8.0, 100.0], draught=6.5, block_coefficient=0.8)
     assert inside == []
+    assert squat.squat_validity(1.101, draught=1.0, block_coefficient=[0.501, 0.899]) == []
+    assert len(squat.squat_validity(1.099, draught=1.0, block_coefficient=[0.499, 0.901])) == 3
     notes = squat.squat_validity(6.6, draught=6.5, block_coefficient=0.95)
     assert [note.quantity for note in notes] == ["block coefficient", "depth over draught"]

@@ -68,6 +68,30 @@ def test_successive_high_waves():
     assert not check(speed=17.0 * KNOT, **base).successive_high_waves
 
 
+def test_margins_written_out():
+    """At the limits of the circular the margins are zero, and they are the distances told."""
+    at = {"length": 100.0, "wave_period": 8.0, "wave_height": 5.0}
+    got = check(speed=12.0 * KNOT, **at)  # T_E = 2 T_W: 0.2 inside 1.8, wave length 99.84 m
+    assert got.margins.high_waves == pytest.approx(max(1 - 99.84 / 80.0, 1 - 5.0 / 4.0, -0.2))
+    lower = check(speed=12.0 * KNOT, **{**at, "wave_height": 4.4})
+    assert lower.margins.high_waves == pytest.approx(-0.1)
+    shorter = check(speed=12.0 * KNOT, **{**at, "length": 115.0})
+    assert shorter.margins.high_waves == pytest.approx(1.0 - 99.84 / 92.0)
+    slow, fast = 3.0 * 8.0 * (1.0 - 1.0 / np.array([1.8, 3.0]))  # knots where T_E / T_W is that
+    edges = check(speed=np.array([slow, fast]) * KNOT, **at)
+    assert edges.margins.high_waves == pytest.approx([0.0, 0.0], abs=1e-9)
+    roll = check(wave_angle=np.pi / 2, wave_period=[16.8, 8.4, 8.0], roll_period=16.0)
+    assert roll.margins.synchronous_roll == pytest.approx([-0.05, 0.375, 0.4])
+    assert roll.margins.parametric_roll == pytest.approx([-0.05, -0.05, -0.1])
+
+
+def test_the_sector_is_45_degrees_to_each_side_and_surging_begins_at_1_4():
+    edge = checks.surf_riding_speed(np.radians([134.9, 135.1, 224.9, 225.1]), length=100.0)
+    assert np.isfinite(edge).tolist() == [False, True, True, False]
+    surge = check(speed=np.array([13.9, 14.1]) * KNOT, length=100.0)
+    assert surge.marginal_surging.tolist() == [False, True]
+
+
 def test_roll_period_of_the_is_code():
     got = checks.roll_period(32.0, 11.0, length_waterline=200.0, metacentric_height=1.5)
     assert got == pytest.approx(18.49, abs=5.1e-3)
