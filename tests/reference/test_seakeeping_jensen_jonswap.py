@@ -39,6 +39,14 @@ def test_significant_height_with_the_printed_constant(hs, tp, gamma, printed, co
     assert PRINTED_CONSTANT * 4.0 * np.sqrt(summed) == pytest.approx(coarse, abs=1.1e-4)
 
 
+def test_peak_factor_of_dnv_and_its_ends():
+    """5 up to Tp/sqrt(Hs) 3.6, one from 5 on, exp(5.75 - 1.15 x) between."""
+    ratio = np.array([3.0, 3.59, 4.2, 4.8, 5.01, 5.1, 8.0])
+    between = np.exp(5.75 - 1.15 * np.array([4.2, 4.8]))
+    got = spectra.dnv_peak_factor(4.0, 2.0 * ratio)
+    assert got == pytest.approx([5.0, 5.0, *between, 1.0, 1.0, 1.0], rel=1e-12)
+
+
 @pytest.mark.parametrize(("hs", "tp"), [(2.0, 8.0), (6.0, 11.0), (3.0, 6.0), (2.0, 4.0)])
 def test_fixed_quadrature_keeps_the_height(hs, tp):
     w, weights = spectra.quadrature(tp)
