@@ -254,6 +254,48 @@ def test_transom_runs_dry_at_transom_froude_number_five():
     assert dry == pytest.approx(0.0, abs=1e-6)
 
 
+def test_correlation_of_a_hull_of_small_draught():
+    """T_F / L below 0.04, where the last term of C_A acts; both worked examples lie above."""
+    hull = hull_form(
+        length_waterline=200.0,
+        breadth=32.0,
+        draught=6.0,
+        displacement=0.75 * 200.0 * 32.0 * 6.0,
+        midship_coefficient=0.98,
+        waterplane_coefficient=0.85,
+        lcb_percent=0.0,
+    )
+    slim = 0.006 * 300.0**-0.16 - 0.00205
+    more = 0.003 * np.sqrt(200.0 / 7.5) * 0.75**4 * 0.8 * (0.04 - 0.03)
+    got = correlation_coefficient(hull, draught_fore=6.0, bulb_factor=0.8)
+    assert got == pytest.approx(slim + more, rel=1e-12)
+    deeper = correlation_coefficient(hull, draught_fore=9.0, bulb_factor=0.8)
+    assert deeper == pytest.approx(slim, rel=1e-12)
+
+
+def test_usual_ranges_end_where_the_notes_say():
+    def quantities(length, breadth, draught, prismatic):
+        hull = hull_form(
+            length_waterline=length,
+            breadth=breadth,
+            draught=draught,
+            displacement=prismatic * 0.98 * length * breadth * draught,
+            midship_coefficient=0.98,
+            waterplane_coefficient=0.85,
+            lcb_percent=0.0,
+        )
+        return [note.quantity for note in holtrop_validity(3.0, hull)]
+
+    assert quantities(100.0, 25.0, 6.3, 0.56) == []  # L/B 4.0, B/T 3.97
+    assert quantities(100.0, 6.8, 3.2, 0.84) == []  # L/B 14.7, B/T 2.13
+    assert quantities(100.0, 26.0, 12.6, 0.54) == [
+        *("prismatic coefficient", "length to breadth", "breadth to draught"),
+    ]
+    assert quantities(100.0, 6.5, 1.6, 0.86) == [
+        *("prismatic coefficient", "length to breadth", "breadth to draught"),
+    ]
+
+
 def test_validity_names_what_is_outside():
     assert holtrop_validity(10.0, SHIP) == []
     notes = holtrop_validity([1.0, 30.0], SHIP)

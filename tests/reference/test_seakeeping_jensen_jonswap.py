@@ -140,6 +140,13 @@ def test_response_by_brute_force():
     assert got.motion.m2 == pytest.approx(np.trapezoid(met**2 * bow**2 * waves, w), rel=5e-3)
 
 
+def test_significant_amplitude_is_twice_the_root():
+    response = sea.SeaResponse(np.array([0.25, 4.0]), np.array([1.0, 1.0]))
+    assert response.significant_amplitude.tolist() == [1.0, 4.0]
+    default = response.most_probable_maximum()
+    assert default == pytest.approx(response.most_probable_maximum(10_800.0), rel=1e-15)
+
+
 def test_impossible_hull():
     with pytest.raises(InputError, match="block_coefficient"):
         sea.MotionHull(100.0, 20.0, 5.0, 1.2)
