@@ -112,3 +112,33 @@ def test_validity():
     assert notes == {"length between perpendiculars", "length to breadth", "Froude number"}
     (note,) = stawave1_validity([1.0, 3.0], length_between_perpendiculars=100.0)
     assert (note.value, note.high) == (3.0, 2.25)
+
+
+def test_every_range_of_stawave2_ends_where_the_procedure_says():
+    inside = [  # L_PP, B, T, C_B, Fn just inside the lower and the upper ends
+        {"length": 76.0, "wide": 18.9, "deep": 8.5, "block": 0.40, "froude": 0.101},
+        {"length": 349.0, "wide": 38.9, "deep": 4.34, "block": 0.89, "froude": 0.299},
+    ]
+    outside = [
+        {"length": 74.0, "wide": 18.6, "deep": 8.5, "block": 0.38, "froude": 0.099},
+        {"length": 351.0, "wide": 38.9, "deep": 4.3, "block": 0.91, "froude": 0.301},
+    ]
+
+    def quantities(length, wide, deep, block, froude):
+        speed = froude * np.sqrt(9.81 * length)
+        notes = stawave2_validity(
+            speed,
+            length_between_perpendiculars=length,
+            breadth=wide,
+            draught=deep,
+            block_coefficient=block,
+            gravity=9.81,
+        )
+        return {note.quantity for note in notes}
+
+    assert [quantities(**at) for at in inside] == [set(), set()]
+    five = {
+        *("length between perpendiculars", "length to breadth", "breadth to draught"),
+        *("block coefficient", "Froude number"),
+    }
+    assert [quantities(**at) for at in outside] == [five, five]

@@ -1,5 +1,7 @@
 """Wind coefficients of Fujiwara (2006), Blendermann (1994) and the ITTC data set."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,14 @@ def test_fujiwara_against_an_independent_calculation():
     got = fujiwara_2006(np.radians([0, 30, 60, 90, 120, 150, 180]), SHIP)
     expected = [0.744, 0.760, 0.497, 0.093, -0.165, -0.726, -0.745]
     np.testing.assert_allclose(got, expected, atol=5.1e-4)
+
+
+def test_fujiwara_feels_where_the_side_area_stands():
+    """C_MC lowers the head wind's coefficient by 1.162 C_MC / L_OA, and the stern's not at all."""
+    forward = replace(SHIP, area_centre_forward=0.1 * SHIP.length_overall)
+    angles = np.radians([0.0, 180.0])
+    change = fujiwara_2006(angles, forward) - fujiwara_2006(angles, SHIP)
+    np.testing.assert_allclose(change, [-0.1162, 0.0], atol=1e-12)
 
 
 def test_fujiwara_at_beam_is_the_mean_of_both_sides():
@@ -118,6 +128,19 @@ def test_ittc_tanker_curve_against_a_polynomial_fitted_by_others():
 )
 def test_iso_curves_against_a_second_reading_of_the_charts(curve, degrees, digitised):
     np.testing.assert_allclose(ittc_curve(np.radians(degrees), curve=curve), digitised, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("curve", "values"),
+    [
+        ("tanker_ballast", [0.87, 0.46, 0.16, 0.03, -0.23, -0.47, -0.52]),
+        ("container_laden", [0.68, 0.67, 0.26, 0.27, -0.35, -0.88, -0.65]),
+    ],
+)
+def test_iso_curves_of_one_reading(curve, values):
+    """Every 30 degrees, as read off the printed charts once; no second reading was found."""
+    degrees = np.arange(0.0, 181.0, 30.0)
+    np.testing.assert_allclose(ittc_curve(np.radians(degrees), curve=curve), values, atol=1e-12)
 
 
 def test_relative_wind_of_head_and_following_winds():
