@@ -103,7 +103,7 @@ ESTIMATORS: Final[Mapping[str, tuple[Estimator, ...]]] = MappingProxyType(
                 _SB,
                 1.5,
             ),
-            Estimator(lcb_from_froude, ("design_froude",), f"{_SB}, tankers and bulkers", 1.5),
+            Estimator(lcb_from_froude, ("design_froude",), f"{_SB}, by design speed", 1.5),
         ),
         "wetted_surface_m2": (
             Estimator(

@@ -123,13 +123,14 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
 
     References
     ----------
-    Schneekluth and Bertram (1998), section 1.5, the line for cargo ships in general.
+    Schneekluth and Bertram (1998), section 1.5, from memory. It has two such lines, this one and
+    `lcb_from_froude`; which of them was drawn for tankers and bulkers is not certain.
     """
     return 19.4 * floats(prismatic_coefficient) - 13.5
 
 
 def lcb_from_froude(froude: ArrayLike) -> Floats:
-    """Return a usual centre of buoyancy of tankers and bulkers: 8.80 - 38.9 Fn [% forward].
+    """Return a usual centre of buoyancy, percent of length forward of midship: 8.80 - 38.9 Fn.
 
     Parameters
     ----------
@@ -143,7 +144,7 @@ def lcb_from_froude(froude: ArrayLike) -> Floats:
 
     References
     ----------
-    Schneekluth and Bertram (1998), section 1.5.
+    Schneekluth and Bertram (1998), section 1.5, from memory; see `lcb_from_prismatic`.
     """
     return 8.80 - 38.9 * floats(froude)
 
