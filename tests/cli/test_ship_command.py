@@ -3,10 +3,14 @@
 import argparse
 import json
 import math
+import subprocess
+import sys
 
 import pytest
+from matplotlib.figure import Figure
 
 from thalweg.cli.ship import add_ship_command, gathered_notes, parse_speeds
+from thalweg.cli.ship_pictures import _resistance
 from thalweg.core.errors import InputError, ModelRangeError
 
 KEYS = {
@@ -54,7 +58,8 @@ def test_speeds_are_read(text, speeds):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "x", "8:", "0:4", "-3", "9:8", "1:9999:0.001", "nan", "8:9,1"]
+    "text",
+    ["", "x", "8:", "0:4", "-3", "9:8", "1:9999:0.001", "8:16:1e-320", "nan", "8:9,1"],
 )
 def test_speeds_that_are_none_are_refused(text):
     with pytest.raises(InputError, match="are not speeds"):
@@ -210,7 +215,7 @@ def test_the_library_is_listed(capsys):
 @pytest.mark.parametrize("option", ["--hs", "--tp", "--wind", "--water-depth"])
 @pytest.mark.parametrize("value", [-1.0, math.nan])
 def test_impossible_weather_is_refused(capsys, ship_file, option, value):
-    with pytest.raises(InputError, match="at least 0"):
+    with pytest.raises(InputError, match=f"Correct {option}"):
         _run(capsys, ship_file, f"{option}={value}")
 
 
@@ -277,3 +282,56 @@ def test_rudder_drag_needs_the_option_and_a_crab_angle(capsys, ship_file):
     assert drag("--crab", 8) == drag("--crab", -8) > 0.0
     with pytest.raises(InputError, match="crab angle"):
         drag("--crab", 60)
+
+
+def test_the_list_of_ships_is_json_when_asked(capsys):
+    assert "kvlcc2" in json.loads(_run(capsys, "--list", "--json"))["ships"]
+
+
+def test_names_that_look_like_markup_or_formulas_are_shown_as_they_are(capsys, tmp_path):
+    path = tmp_path / "ship.yaml"
+    name = "MV [/] x$^$ [red]y"
+    path.write_text(FILE.replace("Test bulker", f'"{name}"') + 'sources: ["[Smith] 2010 [/b]"]\n')
+    text = _run(capsys, path, "--speed", "14,10,12", "--wind", 5, "--out", tmp_path / "out")
+    assert name in text and "[Smith] 2010 [/b]" in text
+    assert (tmp_path / "out" / "speed_loss.png").stat().st_size > 1000
+
+
+def test_water_too_shallow_is_said_and_draws_no_resistance(capsys, tmp_path):
+    path = tmp_path / "ship.yaml"
+    path.write_text(FILE.replace("models: {", "models: {shallow_water: karpov, "))
+    options = ("--speed", "8:10", "--water-depth", 9, "--out", tmp_path / "out", "--json")
+    sheet = json.loads(_run(capsys, path, *options))
+    assert sheet["warnings"] == ["the water is 9 m deep, the draught 10 m: aground"]
+    assert sheet["missing"] == [] and sheet["conditions"][0]["resistance_n"]["total"] is None
+    assert [file.name for file in (tmp_path / "out").iterdir()] == ["ship.json"]
+
+
+def test_speeds_the_resistance_does_not_know_are_not_drawn_as_none():
+    row = dict.fromkeys(KEYS, 0.0) | {"total": 5.0, "friction": 5.0}
+    blank = dict.fromkeys(KEYS)
+    sheet = {
+        "name": "x",
+        "conditions": [
+            {"speed_kn": 8.0, "resistance_n": blank},
+            {"speed_kn": 10.0, "resistance_n": row},
+            {"speed_kn": 12.0, "resistance_n": {**row, "total": 9.0, "friction": 9.0}},
+        ],
+    }
+    axes = Figure().add_subplot()
+    assert _resistance(axes, sheet)
+    (line,) = axes.lines
+    assert line.get_xdata().tolist() == [10.0, 12.0]
+
+
+def test_a_name_longer_than_files_may_have_is_refused(capsys):
+    with pytest.raises(InputError, match="no ship named"):
+        _run(capsys, "a" * 300)
+
+
+def test_a_reader_that_leaves_early_is_no_fault():
+    command = [sys.executable, "-m", "thalweg", "ship", "kvlcc2", "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 0

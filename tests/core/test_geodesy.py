@@ -88,6 +88,17 @@ def test_swapped_latitude_gets_a_hint():
         geodesy.check_position(151.2, -33.9)
 
 
+@pytest.mark.parametrize("text", ["52 75 N 4 06 E", "52 30 N 4 60 E", "52 30 61 N 4 06 E"])
+def test_sixty_minutes_are_refused(text):
+    with pytest.raises(InputError, match="60 or more minutes"):
+        geodesy.parse_position(text)
+
+
+def test_longitude_just_beyond_the_antimeridian_stays_in_its_range():
+    for value in (-180.00000000000003, 180.0, 540.0, -180.0):
+        assert float(geodesy.wrap_longitude(value)) == -180.0
+
+
 @given(lon)
 def test_wrapping_leaves_longitudes_alone(value):
     assert float(geodesy.wrap_longitude(value)) == value

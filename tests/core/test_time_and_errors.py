@@ -1,10 +1,19 @@
 """Time at the boundary, and errors that say what to do."""
 
+import ast
+import json
+import math
+import tempfile
+from collections import Counter
 from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import thalweg
+from thalweg.cli.exits import report
+from thalweg.core.cache import cache_folder
 from thalweg.core.errors import InputError, NoRouteError, near_matches, unknown_name
 from thalweg.core.time import format_time, parse_time, to_datetime64
 
@@ -26,7 +35,9 @@ def test_one_moment_many_spellings(value):
     assert parse_time(value) == 1767247200.0
 
 
-@pytest.mark.parametrize("value", ["tomorrow", "2026-13-01", float("nan"), np.datetime64("NaT")])
+@pytest.mark.parametrize(
+    "value", ["tomorrow", "2026-13-01", float("nan"), np.datetime64("NaT"), 1767247200e3, True]
+)
 def test_what_is_not_a_time(value):
     with pytest.raises(InputError):
         parse_time(value)
@@ -35,6 +46,9 @@ def test_what_is_not_a_time(value):
 def test_times_go_out_as_they_came_in():
     assert format_time(parse_time("2026-02-28T23:59:59Z")) == "2026-02-28T23:59:59Z"
     assert to_datetime64(parse_time("2026-01-01T00:00Z")) == np.datetime64("2026-01-01T00:00")
+    assert format_time(-1.0) == "1969-12-31T23:59:59Z"
+    assert format_time(253402300799.0) == "9999-12-31T23:59:59Z"
+    assert format_time(float("nan")) == "unknown"
 
 
 def test_near_matches_ignore_case():
@@ -46,3 +60,56 @@ def test_an_error_keeps_its_three_parts_and_details():
     error = NoRouteError("No way.", "Nothing.", "Wait.", reasons={"land": 3}, nearest=(1.0, 2.0))
     assert str(error) == "No way. Nothing. Wait."
     assert error.as_dict()["details"] == {"reasons": {"land": 3}, "nearest": [1.0, 2.0]}
+
+
+def test_details_of_errors_are_standard_json(capsys):
+    error = InputError(
+        "A", value=math.nan, limits=(0.0, math.inf), count=np.int64(3), row=np.array([1.5, np.nan])
+    )
+    details = {"value": None, "limits": [0.0, None], "count": 3, "row": [1.5, None]}
+    assert error.as_dict()["details"] == details
+    assert report(error, as_json=True) == 2
+    assert json.loads(capsys.readouterr().out, parse_constant=pytest.fail)["details"] == details
+
+
+#: texts that no program reads but our own: hashed, or between two processes of ours
+_OWN_TEXTS = {("ship/ship.py", 1), ("ship/table_store.py", 1), ("sea/ensemble.py", 1)} | {
+    ("sea/layered.py", 1),
+    ("sea/tidal_run.py", 1),
+    ("sea/grib_worker.py", 1),
+}
+
+
+def test_json_is_never_written_with_nan_or_infinity():
+    root = Path(thalweg.__file__).parent
+    lax: Counter[str] = Counter()
+    for path in sorted(root.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+                continue
+            named = ast.unparse(node.func) in ("json.dumps", "json.dump")
+            strict = any(
+                k.arg == "allow_nan" and ast.unparse(k.value) == "False" for k in node.keywords
+            )
+            if named and not strict:
+                lax[path.relative_to(root).as_posix()] += 1
+    assert set(lax.items()) == _OWN_TEXTS
+
+
+def test_without_a_home_data_are_kept_in_the_temporary_folder(monkeypatch, tmp_path):
+    def nowhere():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.delenv("THALWEG_CACHE", raising=False)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(Path, "home", nowhere)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    folder = cache_folder("tables")
+    assert folder.is_dir() and tmp_path in folder.parents
+
+
+def test_a_cache_that_cannot_be_written_is_replaced_once(monkeypatch, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv("THALWEG_CACHE", str(tmp_path / "file"))
+    assert cache_folder("tables").is_dir()
+    assert cache_folder("tables") == cache_folder("tables") != cache_folder("coast")

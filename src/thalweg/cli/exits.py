@@ -22,7 +22,7 @@ def exit_code(error: ThalwegError) -> int:
 def report(error: ThalwegError, *, as_json: bool) -> int:
     """Print an error for a person on stderr, or for a program on stdout; return its exit code."""
     if as_json:
-        print(json.dumps(error.as_dict(), indent=2))
+        print(json.dumps(error.as_dict(), indent=2, allow_nan=False))
         return exit_code(error)
     lines = [f"error: {error.asked}"]
     lines += [text for text in (error.possible, error.remedy) if text]

@@ -1,8 +1,9 @@
-"""The command line: ``thalweg plan | evaluate | inspect | ship | tides | demo``."""
+"""The command line ``thalweg`` with its commands."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 import warnings
@@ -76,10 +77,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         warnings.filterwarnings("default", category=ThalwegWarning)
         warnings.showwarning = _show_warning
         try:
-            return int(arguments.run(arguments))
+            code = int(arguments.run(arguments))
+            sys.stdout.flush()
+            return code
         except ThalwegError as error:
-            return report(error, as_json=as_json)
+            return report(error, as_json=as_json or getattr(arguments, "json", False))
         except BrokenPipeError:
+            # nobody reads on: what is still to be flushed must not complain at the exit
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
         except KeyboardInterrupt:
             print("stopped", file=sys.stderr)

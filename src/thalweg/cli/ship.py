@@ -6,7 +6,7 @@ import argparse
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from thalweg.core.errors import InputError
 
@@ -40,19 +40,21 @@ def run_ship(arguments: argparse.Namespace) -> int:
     from thalweg.ship import Ship, library_names, plugin_names
     from thalweg.ship.sheet import performance_sheet
 
+    names = [*library_names(), *plugin_names()]
     if arguments.list:
-        print("\n".join([*library_names(), *plugin_names()]))
+        as_json = json.dumps({"ships": names}, indent=2, allow_nan=False)
+        print(as_json if arguments.json else "\n".join(names))
         return 0
     if arguments.ship is None:
         raise InputError(
             "No ship is named.",
-            f"Ships with a name: {', '.join([*library_names(), *plugin_names()])}.",
+            f"Ships with a name: {', '.join(names)}.",
             "Give a name or a ship file.",
         )
     ship = Ship.load(arguments.ship)
     if arguments.load_factor is not None:
         ship = ship.with_load_factor(arguments.load_factor)
-    speeds = parse_speeds(arguments.speed) if arguments.speed else []
+    speeds = [] if arguments.speed is None else parse_speeds(arguments.speed)
     weather = _weather(arguments)
     sheet = performance_sheet(ship, weather, speeds_kn=speeds)
     _refuse(sheet, arguments.strict)
@@ -69,6 +71,9 @@ def run_ship(arguments: argparse.Namespace) -> int:
 add_command, run = add_ship_command, run_ship
 
 
+_MOST_SPEEDS: Final = 1000
+
+
 def parse_speeds(text: str) -> list[float]:
     """Read ``8:16``, ``8:16:0.5`` or ``10,12,14`` as speeds [kn].
 
@@ -78,7 +83,8 @@ def parse_speeds(text: str) -> list[float]:
     """
     wrong = InputError(
         f"{text!r} are not speeds.",
-        "Speeds are knots: a list 10,12,14, a range 8:16, or a range with a step 8:16:0.5.",
+        "Speeds are knots: a list 10,12,14, a range 8:16, or a range with a step 8:16:0.5; "
+        f"{_MOST_SPEEDS} at most.",
         "Write them that way.",
         value=text,
     )
@@ -88,15 +94,24 @@ def parse_speeds(text: str) -> list[float]:
         raise wrong from None
     if not all(math.isfinite(n) and n > 0 for n in numbers):
         raise wrong
-    if ":" not in text:
+    if ":" not in text and len(numbers) <= _MOST_SPEEDS:
         return numbers
     if len(numbers) not in (2, 3) or "," in text or numbers[1] < numbers[0]:
         raise wrong
     step = numbers[2] if len(numbers) == 3 else 1.0
-    count = math.floor((numbers[1] - numbers[0]) / step + 1e-9) + 1
-    if count > 1000:
+    steps = (numbers[1] - numbers[0]) / step + 1e-9
+    if steps >= _MOST_SPEEDS:
         raise wrong
-    return [numbers[0] + k * step for k in range(count)]
+    return [numbers[0] + k * step for k in range(math.floor(steps) + 1)]
+
+
+#: option, greatest value, and whether it must be above 0
+_RANGES: Final = {
+    "wave_height": ("--hs", 40.0, False),
+    "wave_period": ("--tp", 60.0, True),
+    "wind_speed": ("--wind", 150.0, False),
+    "depth": ("--water-depth", 12_000.0, True),
+}
 
 
 def _weather(arguments: argparse.Namespace) -> dict[str, float]:
@@ -108,16 +123,22 @@ def _weather(arguments: argparse.Namespace) -> dict[str, float]:
     }
     found = {name: value for name, value in given.items() if value is not None}
     for name, value in found.items():
-        if not (math.isfinite(value) and value >= 0.0):
-            raise InputError(f"{name} is {value:g}.", "It is at least 0.", "Correct it.")
-    for name, option in (("wave_period", "--tp"), ("depth", "--water-depth")):
-        if found.get(name) == 0.0:
+        option, most, above = _RANGES[name]
+        if not (0.0 <= value <= most) or (above and value == 0.0):
             words = name.replace("_", " ")
-            raise InputError(f"The {words} is 0.", "It is above 0.", f"Correct {option}.")
-    for name, degrees in (("wave_angle", arguments.wave_from), ("wind_angle", arguments.wind_from)):
+            least = "above 0" if above else "at least 0"
+            raise InputError(
+                f"The {words} is {value:g}.",
+                f"It is {least} and at most {most:g}.",
+                f"Correct {option}.",
+                option=option,
+            )
+    angles = {"wave_angle": ("--wave-from", arguments.wave_from)}
+    angles["wind_angle"] = ("--wind-from", arguments.wind_from)
+    for name, (option, degrees) in angles.items():
         if degrees is not None:
             if not math.isfinite(degrees):
-                raise InputError(f"{name} is {degrees:g}.", "It is in degrees.", "Correct it.")
+                raise InputError(f"{option} is {degrees:g}.", "It is in degrees.", "Correct it.")
             found[name] = math.radians(abs((degrees + 180.0) % 360.0 - 180.0))
     if arguments.crab is not None:
         if not abs(arguments.crab) <= 35.0:
@@ -148,10 +169,11 @@ def show_sheet(sheet: dict[str, Any]) -> None:
     """Print the sheet for a person."""
     from rich import box
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
     console = Console()
-    console.print(f"[bold]{sheet['name']}[/bold], draught {sheet['draught_m']:.2f} m")
+    console.print(f"[bold]{escape(sheet['name'])}[/bold], draught {sheet['draught_m']:.2f} m")
     table = Table(box=box.SIMPLE, pad_edge=False, padding=(0, 1, 0, 0))
     composed = any(row["resistance_n"]["total"] is not None for row in sheet["conditions"])
     heads = ["speed\nkn"]
@@ -179,21 +201,26 @@ def show_sheet(sheet: dict[str, Any]) -> None:
 
 
 def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
+    from rich.markup import escape
+
+    def show(head: str, text: str) -> None:
+        console.print(head + escape(text), highlight=False)
+
     for note in sheet["warnings"]:
-        console.print(f"[yellow]warning:[/yellow] {note}", highlight=False)
+        show("[yellow]warning:[/yellow] ", note)
     for note in sheet["assumed"]:
-        console.print(f"Assumed: {note}", highlight=False)
+        show("Assumed: ", note)
     for where, note in gathered_notes(sheet["conditions"]):
-        console.print(f"[yellow]warning[/yellow] at {where} kn: {note}", highlight=False)
+        show(f"[yellow]warning[/yellow] at {where} kn: ", note)
     for note in sheet["missing"]:
-        console.print(f"Not known: {note}", highlight=False)
+        show("Not known: ", note)
     if sheet["estimated"]:
         console.print("Estimated, not given:")
         for one in sheet["estimated"]:
             value = one["value"] if isinstance(one["value"], str) else f"{one['value']:.5g}"
-            console.print(f"  {one['key']} = {value}  ({one['method']})", highlight=False)
+            show("  ", f"{one['key']} = {value}  ({one['method']})")
     for source in sheet["sources"]:
-        console.print(f"Source: {source}", highlight=False)
+        show("Source: ", source)
 
 
 def gathered_notes(rows: list[dict[str, Any]]) -> list[tuple[str, str]]:

@@ -47,6 +47,8 @@ def draw_ship(
     folder : Path
         Exists.
     """
+    rows = sorted(sheet["conditions"], key=lambda row: row["speed_kn"] or 0.0)
+    sheet = {**sheet, "conditions": rows}
     drawings: list[tuple[str, Callable[[Any], bool]]] = [
         ("resistance.png", lambda axes: _resistance(axes, sheet)),
         ("power.png", lambda axes: _power(axes, sheet)),
@@ -55,7 +57,8 @@ def draw_ship(
     ]
     written = [folder / name for name, draw in drawings if _save(folder / name, draw)]
     polar = folder / "speed_loss.png"
-    if _save(polar, lambda axes: _polar(axes, ship, weather), projection="polar"):
+    name = _title(sheet)
+    if _save(polar, lambda axes: _polar(axes, ship, weather, name), projection="polar"):
         written.append(polar)
     return written
 
@@ -78,17 +81,17 @@ def _column(sheet: Mapping[str, Any], name: str) -> np.ndarray:
 
 
 def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
-    rows = sheet["conditions"]
-    if rows[0]["resistance_n"]["total"] is None:
+    rows = [row for row in sheet["conditions"] if row["resistance_n"]["total"] is not None]
+    if not rows:
         return False
-    speed = _column(sheet, "speed_kn")
+    speed = np.array([row["speed_kn"] for row in rows])
     parts = {
-        name: np.array([row["resistance_n"][name] or 0.0 for row in rows]) / 1000.0
+        name: np.array([row["resistance_n"][name] for row in rows], float) / 1000.0
         for name in _PARTS
     }
     shown = [name for name in _PARTS if np.abs(parts[name]).max() > 0.0]
     if len(rows) == 1:
-        return _bars(axes, sheet, {name: float(parts[name][0]) for name in shown})
+        return _bars(axes, _title(sheet), {n: float(parts[n][0]) for n in shown}, float(speed[0]))
     up = [np.maximum(parts[name], 0.0) for name in shown]
     down = [np.minimum(parts[name], 0.0) for name in shown]
     colours = [_PARTS[name][1] for name in shown]
@@ -99,19 +102,23 @@ def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
     axes.plot(speed, total, color="black", linewidth=1.5, label="total")
     handles, labels = axes.get_legend_handles_labels()
     axes.legend(handles[::-1], labels[::-1], loc="upper left", frameon=False, fontsize=8)
-    axes.set(xlabel="speed through water [kn]", ylabel="resistance [kN]", title=sheet["name"])
+    axes.set(xlabel="speed through water [kn]", ylabel="resistance [kN]", title=_title(sheet))
     axes.margins(x=0)
     return True
 
 
-def _bars(axes: Any, sheet: Mapping[str, Any], parts: Mapping[str, float]) -> bool:
+def _title(sheet: Mapping[str, Any]) -> str:
+    """The ship's name; a dollar in it begins no formula."""
+    return str(sheet["name"]).replace("$", r"\$")
+
+
+def _bars(axes: Any, name: str, parts: Mapping[str, float], speed: float) -> bool:
     """The components at a single speed, the largest on top."""
     names = sorted(parts, key=lambda name: parts[name])
     values = [parts[name] for name in names]
     places = axes.barh([_PARTS[n][0] for n in names], values, color=[_PARTS[n][1] for n in names])
     axes.bar_label(places, fmt="%.4g", padding=3, fontsize=8)
-    (row,) = sheet["conditions"]
-    title = f"{sheet['name']}: {sum(values):.4g} kN at {row['speed_kn']:g} kn"
+    title = f"{name}: {sum(values):.4g} kN at {speed:g} kn"
     axes.set(xlabel="resistance [kN]", title=title)
     axes.margins(x=0.12)
     return True
@@ -126,7 +133,7 @@ def _power(axes: Any, sheet: Mapping[str, Any]) -> bool:
     if not np.isnan(effective).all():
         axes.plot(speed, effective, color="#7fb2d6", label="effective power")
     axes.legend(frameon=False)
-    axes.set(xlabel="speed through water [kn]", ylabel="power [kW]", title=sheet["name"])
+    axes.set(xlabel="speed through water [kn]", ylabel="power [kW]", title=_title(sheet))
     axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
     return True
@@ -137,7 +144,7 @@ def _fuel(axes: Any, sheet: Mapping[str, Any]) -> bool:
     if len(speed) < 2 or np.isnan(fuel).all():
         return False
     axes.plot(speed, fuel, color="#b5482a", marker="o", markersize=3)
-    axes.set(xlabel="speed through water [kn]", ylabel="fuel [kg/nm]", title=sheet["name"])
+    axes.set(xlabel="speed through water [kn]", ylabel="fuel [kg/nm]", title=_title(sheet))
     axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
     return True
@@ -161,29 +168,31 @@ def _cii(axes: Any, sheet: Mapping[str, Any]) -> bool:
     axes.set(
         xlabel="speed through water [kn]",
         ylabel="CII if always sailed so [g CO2/(t nm)]",
-        title=f"{sheet['name']}: ratings of 2026" if limits else sheet["name"],
+        title=f"{_title(sheet)}: ratings of 2026" if limits else _title(sheet),
     )
     axes.set_ylim(0.0, top)
     return True
 
 
-def _polar(axes: Any, ship: Ship, weather: Mapping[str, float]) -> bool:
+def _polar(axes: Any, ship: Ship, weather: Mapping[str, float], name: str) -> bool:
     """Speed attained over the direction of wind and waves, in three strengths."""
     if ship.speed_field is not None or not ship.reads & {"wind_angle", "wave_angle"}:
         return False
     angle = np.linspace(0.0, np.pi, 181)
-    both, top = np.concatenate([angle, -angle[::-1]]), 0.0
+    both, top = np.concatenate([angle, -angle[::-1]]), np.nan
     for label, wind, waves, colour in _strengths(weather):
         at = {"depth": np.inf, "wave_period": assumed_period(waves), **weather}
         at |= {"wind_speed": wind, "wave_height": waves}
         conditions = Conditions({**at, "wind_angle": angle, "wave_angle": angle})
         speed = ship.speed_through_water(conditions, len(ship.speeds) - 1) / KNOT
         axes.plot(both, np.concatenate([speed, speed[::-1]]), color=colour, label=label)
-        top = max(top, float(np.nanmax(speed, initial=0.0)))
+        top = np.fmax(top, np.fmax.reduce(speed))
+    if np.isnan(top):
+        return False
     axes.set_theta_zero_location("N")
     axes.set_theta_direction(-1)
     axes.set_ylim(0.0, 1.05 * top if top > 0.0 else 1.0)
-    axes.set_title(f"{ship.name}\nspeed [kn] by where wind and waves come from (0 = ahead)", size=9)
+    axes.set_title(f"{name}\nspeed [kn] by where wind and waves come from (0 = ahead)", size=9)
     axes.legend(loc="lower left", bbox_to_anchor=(-0.35, -0.05), frameon=False, fontsize=8)
     return True
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
+from functools import cache
 from pathlib import Path
 
 
@@ -18,6 +19,14 @@ def cache_folder(name: str = "") -> Path:
             continue
         if os.access(folder, os.W_OK):
             return folder
+    folder = _own_folder() / name
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+@cache
+def _own_folder() -> Path:
+    """A folder for this process alone, when none lasts."""
     return Path(tempfile.mkdtemp(prefix="thalweg-"))
 
 
@@ -25,11 +34,17 @@ def _candidates() -> list[Path]:
     override = os.environ.get("THALWEG_CACHE")
     if override:
         return [Path(override)]
-    if sys.platform == "win32":
-        home = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        home = Path.home() / "Library" / "Caches"
-    else:
-        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     user = os.getuid() if hasattr(os, "getuid") else 0
-    return [home / "thalweg", Path(tempfile.gettempdir()) / f"thalweg-{user}"]
+    temporary = Path(tempfile.gettempdir()) / f"thalweg-{user}"
+    try:
+        return [_home_cache() / "thalweg", temporary]
+    except RuntimeError:  # a user without a home, as in some containers
+        return [temporary]
+
+
+def _home_cache() -> Path:
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
+
+import numpy as np
 
 
 class ThalwegWarning(UserWarning):
@@ -32,7 +35,7 @@ class ThalwegError(Exception):
         super().__init__(" ".join(part for part in (asked, possible, remedy) if part))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the error as plain data for a JSON answer."""
+        """Return the error as plain data for a JSON answer; numbers that are none are None."""
         return {
             "error": type(self).__name__,
             "asked": self.asked,
@@ -119,8 +122,12 @@ def unknown_name(kind: str, word: str, known: Iterable[str]) -> InputError:
 def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, (list, tuple, set)):
+    if isinstance(value, (list, tuple, set, frozenset)):
         return [_plain(v) for v in value]
-    if isinstance(value, (str, int, float, bool)) or value is None:
+    if isinstance(value, (np.ndarray, np.generic)) and value.dtype.kind in "biuf":
+        return _plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, (str, int, bool)) or value is None:
         return value
     return str(value)

@@ -29,7 +29,8 @@ def wrap_longitude(lon: ArrayLike) -> FloatArray:
     """Return longitude in [-180, 180) degrees; values already there stay the same to the bit."""
     lon = np.asarray(lon, float)
     inside = (lon >= -180.0) & (lon < 180.0)
-    return np.where(inside, lon, (lon + 180.0) % 360.0 - 180.0)
+    turned = (lon + 180.0) % 360.0 - 180.0
+    return np.where(inside, lon, np.where(turned == 180.0, -180.0, turned))
 
 
 def inverse(
@@ -152,6 +153,13 @@ def parse_position(text: str) -> Position | None:
     if not match:
         return None
     d1, m1, s1, ns, d2, m2, s2, ew = match.groups()
+    if any(float(part or 0.0) >= 60.0 for part in (m1, s1, m2, s2)):
+        raise InputError(
+            f"The position {text!r} has 60 or more minutes or seconds.",
+            "A degree has 60 minutes, a minute 60 seconds.",
+            "Write it as 52 30 N 4 06 E, or in degrees as 52.5N 4.1E.",
+            value=text,
+        )
     lat = float(d1) + float(m1 or 0) / 60 + float(s1 or 0) / 3600
     lon = float(d2) + float(m2 or 0) / 60 + float(s2 or 0) / 3600
     return check_position(-lat if ns in "Ss" else lat, -lon if ew in "Ww" else lon)

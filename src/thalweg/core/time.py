@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from datetime import UTC, date, datetime
-from typing import TypeAlias
+from datetime import UTC, date, datetime, timedelta
+from typing import Final, TypeAlias
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 
 TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_FIRST, _LAST = -62_135_596_800.0, 253_402_300_799.0  # years 1 to 9999
 
 
 def parse_time(value: TimeLike) -> float:
@@ -30,7 +32,7 @@ def parse_time(value: TimeLike) -> float:
     Raises
     ------
     InputError
-        If the text is not a time, or the number is not finite.
+        If the text is not a time, or the number is not finite or outside the years 1 to 9999.
     """
     if isinstance(value, np.datetime64):
         if np.isnat(value):
@@ -52,6 +54,12 @@ def parse_time(value: TimeLike) -> float:
         seconds = float(value)
         if not math.isfinite(seconds):
             raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
+        if not _FIRST <= seconds <= _LAST:
+            raise InputError(
+                f"{value!r} seconds since 1970 is no time of a calendar.",
+                "Times lie in the years 1 to 9999; a number counts seconds, not milliseconds.",
+                "Give an ISO 8601 time such as 2026-01-01T06:30Z.",
+            )
         return seconds
     if moment.tzinfo is None:
         moment = moment.replace(tzinfo=UTC)
@@ -74,7 +82,8 @@ def format_time(seconds: float) -> str:
     """Return ISO 8601 text in UTC with a Z, rounded to the second; 'unknown' for NaN."""
     if not math.isfinite(seconds):
         return "unknown"
-    return datetime.fromtimestamp(round(seconds), UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    moment = _EPOCH + timedelta(seconds=round(seconds))
+    return moment.replace(tzinfo=None).isoformat() + "Z"
 
 
 def to_datetime64(seconds: float | np.ndarray) -> np.ndarray:

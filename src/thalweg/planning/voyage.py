@@ -241,7 +241,8 @@ class Voyage:
 
         path = Path(path)
         data = self.to_dict()
-        text = json.dumps(data, indent=2) if path.suffix == ".json" else yaml.safe_dump(data)
+        as_json = path.suffix == ".json"
+        text = json.dumps(data, indent=2, allow_nan=False) if as_json else yaml.safe_dump(data)
         path.write_text(text, encoding="utf-8")
 
 

@@ -63,7 +63,8 @@ def read_constituents(path: str | Path, *, station: str | None = None) -> Consti
 
 def write_constituents(constituents: Constituents, path: str | Path) -> None:
     """Write constituents as JSON; `read_constituents` gives them back."""
-    Path(path).write_text(json.dumps(as_dict(constituents), indent=1), encoding="utf-8")
+    text = json.dumps(as_dict(constituents), indent=1, allow_nan=False)
+    Path(path).write_text(text, encoding="utf-8")
 
 
 def as_dict(constituents: Constituents) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
 from thalweg.ship.fuel_of_power import fuel_estimates, fuel_of_power
 from thalweg.ship.fuel_terms import fuel_terms
 from thalweg.ship.hull import Hull, require
+from thalweg.ship.hull_checks import check_depth
 from thalweg.ship.laws import LAWS, calm_speeds, check_table, law_of, with_settings
 from thalweg.ship.limits import ShipLimits
 from thalweg.ship.loading_state import Loading
@@ -80,17 +81,27 @@ def build_loading(data: Data, hull: Hull) -> Loading:
     full = given.get("draught_full_m", hull.number("draught_m"))
     if full is None:
         raise _no_draught(data, hull)
+    check_depth(hull, full, "loading.draught_full_m")
+    displaced = _volume(given, "full", _own_volume(hull, full))
     return Loading(
         draught_full=full,
         draught_empty=given.get("draught_empty_m", full),
-        displacement_full=_volume(given, "full", hull.number("displacement_m3")),
-        displacement_empty=_volume(
-            given, "empty", None, _volume(given, "full", hull.number("displacement_m3"))
-        ),
+        displacement_full=displaced,
+        displacement_empty=_volume(given, "empty", None, displaced),
         load_factor=given.get("load_factor", 1.0),
         condition=given.get("condition", "loaded"),
         capacity=given.get("capacity_m3", math.nan),
     )
+
+
+def _own_volume(hull: Hull, draught: float) -> float | None:
+    """Displaced volume [m3] of the hull at the full draught [m], which may not be the hull's."""
+    volume, own = hull.number("displacement_m3"), hull.number("draught_m")
+    if volume is None or own is None or abs(own - draught) < 1e-9:
+        return volume
+    from thalweg.ship.hull_estimates import wall_sided_volume  # reads many regressions
+
+    return wall_sided_volume(hull, draught)
 
 
 def _no_draught(data: Data, hull: Hull) -> InputError:

@@ -21,7 +21,12 @@ from thalweg.ship.methods.calm_water_hollenbach import (
 )
 from thalweg.ship.methods.calm_water_holtrop import Extremities, holtrop, holtrop_validity
 from thalweg.ship.methods.friction import SEA_WATER_VISCOSITY, reynolds_number
-from thalweg.ship.methods.holtrop_form import HullForm, hull_form, wetted_surface
+from thalweg.ship.methods.holtrop_form import (
+    HullForm,
+    half_angle_of_entrance,
+    hull_form,
+    wetted_surface,
+)
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.methods.shallow_water import (
     karpov_speed,
@@ -185,6 +190,17 @@ def stern_shape(hull: Hull) -> float:
     return STERN_SHAPES[given] if isinstance(given, str) else float(given)
 
 
+def _with_shape(hull: Hull, form: HullForm) -> Hull:
+    """The hull with what Holtrop takes for shapes that a ship file does not tell."""
+    angle = float(half_angle_of_entrance(form))
+    taken = [Estimate("half_entrance_angle_deg", angle, "Holtrop and Mennen (1982)")]
+    if "stern_shape" not in hull.values:
+        taken.append(Estimate("stern_shape", "normal", "taken as normal"))
+    if hull.number("appendage_area_m2"):
+        taken.append(Estimate("appendage_factor", 1.5, "taken as that of a rudder behind a skeg"))
+    return hull.with_estimates(*taken)
+
+
 def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> CalmWater:
     name = "holtrop_mennen_1982" if year == 1982 else "holtrop_1984"
     hull = estimated_or_error(hull, (*_FORM_KEYS, *_END_KEYS), name, instead="another method")
@@ -192,12 +208,13 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
     if hull.number("wetted_surface_m2") is None:
         own = float(wetted_surface(form, bulb_area=float(hull.values["bulb_area_m2"])))
         hull = hull.with_estimates(Estimate("wetted_surface_m2", own, "Holtrop and Mennen (1982)"))
+    hull = _with_shape(hull, form)
     ends = Extremities(
         bulb_area=float(hull.values["bulb_area_m2"]),
         bulb_centre_height=float(hull.values["bulb_centre_height_m"]),
         transom_area=float(hull.values["transom_area_m2"]),
         appendage_area=float(hull.values["appendage_area_m2"]),
-        appendage_factor=float(hull.values.get("appendage_factor", 1.5)),
+        appendage_factor=hull.number("appendage_factor") or 1.5,
         stern_shape=stern_shape(hull),
     )
     fore = float(hull.values["draught_fore_m"])
@@ -257,7 +274,9 @@ def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWater:
         "block_coefficient": float(hull.values["block_coefficient"]),
         "propeller_diameter": float(hull.values["propeller_diameter_m"]),
     }
-    counts = {key: hull.number(key) or (1.0 if key == "rudders" else 0.0) for key in _COUNTS}
+    if propulsion.get("propellers", 1) >= 2:  # a single screw's lines do not ask for it
+        hull = hull.with_estimates(Estimate("rudders", 1.0, "taken as one"))
+    counts = {key: hull.number(key) or 0.0 for key in _COUNTS}
     if hull.number("wetted_surface_m2") is None:
         few = {key: counts[key] for key in _COUNTS if key != "thrusters"}
         area = float(hollenbach_wetted_surface(**sizes, **few, variant=surface_of))

@@ -7,13 +7,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
-from thalweg.core.units import KNOT
+from thalweg.core.units import GRAVITY, KNOT
 from thalweg.ship.build import FORCES, build_limits, build_loss
 from thalweg.ship.calm_parts import CALM_WATER, build_calm_water
 from thalweg.ship.hull import Hull, require
-from thalweg.ship.hull_estimates import estimate, hull_at
+from thalweg.ship.hull_estimates import estimate, hull_at, wall_sided_volume
 from thalweg.ship.kwon_on_resistance import KwonOnResistance
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate
@@ -82,41 +83,78 @@ def _resistance_model(
         )
     if models.get("rudder", "none") not in RUDDER:
         raise unknown_name("rudder method", models["rudder"], RUDDER)
+    _check_afloat(loading)
     full = estimate(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
     if full.number("draught_m") is None:
         deep = loading.draught_full
         ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
         full = Hull({**full.values, **ends}, full.estimated)
     full = _displaced(full, loading)
+    ends = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
 
     def balance_at(load_factor: float) -> Balance:
         floated = full
-        if loading.draught_full != loading.draught_empty:
-            wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
-            floated = hull_at(estimate(full, wanted), loading, load_factor)
-        return _balance(data, floated)
+        with np.errstate(all="ignore"):
+            if len(ends) > 1:
+                wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
+                floated = hull_at(estimate(full, wanted), loading, load_factor)
+            balance = _balance(data, floated)
+        _check_answers(balance, _usual_speed(balance), load_factor)
+        return balance
 
     plant = build_plant(data)
     orders, guessed = _orders(data, balance_at(1.0), plant)
+    guessed = (*guessed, *_lightship(data, full, loading))
     plant = replace(plant, estimated=(*plant.estimated, *guessed))
     facts = {name: data[name] for name in _FACTS if name in data}
     model = ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
-    _check_answers(model)
+    with np.errstate(all="ignore"):
+        speeds = model.speeds(1.0)
+    _check_answers(model.balance(1.0), speeds, 1.0)
     if orders.kind == "speed":
         model.with_speeds(model.speeds(1.0), 1.0)  # refuses speeds beyond the engines
     return model if loss is None else KwonOnResistance(model, loss)
 
 
-def _check_answers(model: ResistanceModel) -> None:
-    """Refuse a hull for which the chosen methods have no number.
+def _check_afloat(loading: Loading) -> None:
+    """Refuse a hull that lies on the water.
 
     Raises
     ------
     InputError
     """
-    balance = model.balance(1.0)
-    with np.errstate(all="ignore"):
-        speeds = model.speeds(1.0)
+    if loading.draught_empty <= 0.0:
+        raise InputError(
+            "The draught is 0 m.",
+            "A resistance needs a hull that lies in the water, full and empty.",
+            "Correct hull.draught_m, or loading.draught_empty_m.",
+            key="hull.draught_m" if loading.draught_full <= 0.0 else "loading.draught_empty_m",
+        )
+
+
+def _lightship(data: Mapping[str, Any], full: Hull, loading: Loading) -> tuple[Estimate, ...]:
+    """The displacement of the empty ship, when it follows from the waterplane alone."""
+    if loading.draught_full == loading.draught_empty:
+        return ()
+    if {"displacement_empty_m3", "weight_empty_t"} & data.get("loading", {}).keys():
+        return ()
+    volume = wall_sided_volume(full, loading.draught_empty)
+    return (Estimate("displacement_empty_m3", volume, "wall-sided from the waterplane"),)
+
+
+def _usual_speed(balance: Balance) -> NDArray[np.float64]:
+    """A speed [m/s] that every method has a number for: a Froude number of 0.18."""
+    length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
+    return np.array([0.18 * np.sqrt(GRAVITY * length)])
+
+
+def _check_answers(balance: Balance, speeds: NDArray[np.float64], load_factor: float) -> None:
+    """Refuse a hull for which the chosen methods have no number in calm water.
+
+    Raises
+    ------
+    InputError
+    """
     calm = {
         "depth": np.full(speeds.shape, np.inf),
         **{name: np.zeros(speeds.shape) for name in ("wind_speed", "wind_angle")},
@@ -127,8 +165,9 @@ def _check_answers(model: ResistanceModel) -> None:
     if (np.isfinite(speeds) & (speeds > 0.0) & np.isfinite(power) & (power > 0.0)).all():
         return
     outside = [str(note) for note in balance.calm.notes(np.array([5.0]), np.array([np.inf]))]
+    loaded = "" if load_factor == 1.0 else f" at load factor {load_factor:g}"
     raise InputError(
-        f"{balance.calm.method} has no resistance for this hull.",
+        f"{balance.calm.method} has no resistance for this hull{loaded}.",
         "; ".join(outside) or "Its particulars lie beyond what the method was made for.",
         "Check the particulars, or choose another calm_water method.",
     )
@@ -139,7 +178,10 @@ def _displaced(hull: Hull, loading: Loading) -> Hull:
     volume = loading.displacement_full
     if hull.number("displacement_m3") is not None or not np.isfinite(volume):
         return estimate(hull, ("displacement_m3", "block_coefficient"))
+    deeper = loading.draught_full - float(hull.values["draught_m"])
     values = {**hull.values, "displacement_m3": volume}
+    for key in ("draught_m", "draught_fore_m", "draught_aft_m"):
+        values[key] = float(hull.values[key]) + deeper
     return estimate(Hull(values, hull.estimated), ("block_coefficient",))
 
 
@@ -173,26 +215,36 @@ def _orders(
         _check_powers(powers, plant)
         return Orders("power", tuple(sorted(p * 1000.0 for p in powers))), ()
     if speeds is not None:
+        _check_once(speeds, "speeds_kn", "speed")
         return Orders("speed", tuple(sorted(s * KNOT for s in speeds))), ()
     if np.isfinite(plant.largest_power):
-        powers = tuple(share * plant.largest_power for share in (0.25, 0.4, 0.55, 0.7, 0.85))
-        guess = Estimate("powers_kw", powers[-1] / 1e3, "25 to 85 % of the engine's rating")
-        return Orders("power", powers), (guess,)
-    length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
-    usual = 0.18 * np.sqrt(9.80665 * length)
-    return Orders("speed", (float(usual),)), (
-        Estimate("speeds_kn", float(usual / KNOT), "Froude number 0.18"),
-    )
+        least = plant.loads[0] * plant.rating / plant.largest_power
+        shares = [share for share in (0.25, 0.4, 0.55, 0.7, 0.85) if share >= least] or [1.0]
+        powers = tuple(share * plant.largest_power for share in shares)
+        words = f"{100 * shares[0]:g} to {100 * shares[-1]:g} % of what the engines give"
+        return Orders("power", powers), (Estimate("powers_kw", powers[-1] / 1e3, words),)
+    usual = float(_usual_speed(balance)[0])
+    return Orders("speed", (usual,)), (Estimate("speeds_kn", usual / KNOT, "Froude number 0.18"),)
+
+
+def _check_once(values: tuple[float, ...], key: str, words: str) -> None:
+    """Refuse settings that are the same.
+
+    Raises
+    ------
+    InputError
+    """
+    if len(set(values)) != len(values):
+        raise InputError(
+            f"{key} has a {words} twice.",
+            f"Each {words} is one setting.",
+            "Remove one of them.",
+            key=key,
+        )
 
 
 def _check_powers(powers: tuple[float, ...], plant: Plant) -> None:
-    if len(set(powers)) != len(powers):
-        raise InputError(
-            "powers_kw has a power twice.",
-            "Each power is one setting.",
-            "Remove one of them.",
-            key="powers_kw",
-        )
+    _check_once(powers, "powers_kw", "power")
     least = plant.loads[0] * plant.rating
     if np.isfinite(least) and min(powers) * 1000.0 < least * (1 - 1e-9):
         raise InputError(

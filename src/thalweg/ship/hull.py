@@ -7,7 +7,12 @@ from dataclasses import dataclass, field
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import SEA_WATER_DENSITY, TONNE
-from thalweg.ship.hull_checks import check_ends_and_surface, check_lengths
+from thalweg.ship.hull_checks import (
+    check_depth,
+    check_ends_and_surface,
+    check_lengths,
+    check_prismatic,
+)
 from thalweg.ship.model import Estimate
 
 #: how keys of a hull end; a regression from anything else cannot be fed by a ship file
@@ -57,8 +62,7 @@ def complete_hull(given: Mapping[str, float | str]) -> Hull:
     """
     values = dict(given)
     _draughts(values)
-    if "displacement_m3" not in values and "displacement_t" in values:
-        values["displacement_m3"] = float(values["displacement_t"]) / _DENSITY
+    _volume(values)
     hull = _length(Hull(values))
     hull = _fullness(hull)
     _check_possible(hull)
@@ -66,15 +70,15 @@ def complete_hull(given: Mapping[str, float | str]) -> Hull:
 
 
 def _draughts(values: dict[str, float | str]) -> None:
-    """Mean, fore and aft draught from each other."""
-    if "draught_m" in values:
-        values.setdefault("draught_fore_m", values["draught_m"])
-        values.setdefault("draught_aft_m", values["draught_m"])
+    """Mean, fore and aft draught from each other: two of them give the third."""
+    if "draught_m" in values and not {"draught_fore_m", "draught_aft_m"} & values.keys():
+        values["draught_fore_m"] = values["draught_m"]
     one = values.get("draught_fore_m", values.get("draught_aft_m"))
     if one is None:
         return
-    values.setdefault("draught_fore_m", one)
-    values.setdefault("draught_aft_m", one)
+    other = max(2.0 * float(values.get("draught_m", one)) - float(one), 0.0)
+    values.setdefault("draught_fore_m", other)
+    values.setdefault("draught_aft_m", other)
     mean = 0.5 * (float(values["draught_fore_m"]) + float(values["draught_aft_m"]))
     if "draught_m" not in values:
         values["draught_m"] = mean
@@ -84,6 +88,22 @@ def _draughts(values: dict[str, float | str]) -> None:
             "The mean draught is half the sum of draught_fore_m and draught_aft_m.",
             "Leave draught_m out, or correct it.",
             key="hull.draught_m",
+        )
+
+
+def _volume(values: dict[str, float | str]) -> None:
+    """Displaced volume from the weight in sea water; both must agree within the water's density."""
+    if "displacement_t" not in values:
+        return
+    weight = float(values["displacement_t"])
+    volume = weight / _DENSITY
+    given = float(values.setdefault("displacement_m3", volume))
+    if not 0.95 < given / volume < 1.05:
+        raise InputError(
+            f"displacement_m3 {given:g} and displacement_t {weight:g} do not fit.",
+            f"A tonne of sea water is {1.0 / _DENSITY:.4f} m3.",
+            "Correct or leave out one of them.",
+            key="hull.displacement_t",
         )
 
 
@@ -100,10 +120,14 @@ def _length(hull: Hull) -> Hull:
 
 
 def _fullness(hull: Hull) -> Hull:
-    """Block coefficient from displacement, displacement from block coefficient."""
+    """Block coefficient from displacement or C_P C_M, displacement from block coefficient."""
     keys = ("length_between_perpendiculars_m", "breadth_m", "draught_m")
     box = [hull.number(key) for key in keys]
     block, volume = hull.number("block_coefficient"), hull.number("displacement_m3")
+    prismatic, midship = hull.number("prismatic_coefficient"), hull.number("midship_coefficient")
+    if block is None and volume is None and prismatic is not None and midship is not None:
+        block = prismatic * midship
+        hull = hull.with_estimates(Estimate("block_coefficient", block, "C_P C_M"))
     if any(side is None for side in box):
         return hull
     length, breadth, draught = (float(side or 0.0) for side in box)
@@ -134,14 +158,8 @@ def _check_block(block: float) -> None:
 def _check_possible(hull: Hull) -> None:
     check_lengths(hull)
     _check_box(hull)
-    depth, draught = hull.number("depth_m"), hull.number("draught_m")
-    if depth is not None and draught is not None and draught > depth:
-        raise InputError(
-            f"The draught of {draught:g} m is more than the depth of the hull, {depth:g} m.",
-            "A ship floats with part of its side above the water.",
-            "Correct draught_m or depth_m.",
-            key="hull.draught_m",
-        )
+    for key in ("draught_m", "draught_fore_m", "draught_aft_m"):
+        check_depth(hull, hull.number(key), f"hull.{key}")
     _check_coefficients(hull)
     check_ends_and_surface(hull)
 
@@ -177,6 +195,7 @@ def _check_coefficients(hull: Hull) -> None:
                 "Correct one of them.",
                 key=f"hull.{name}_coefficient",
             )
+    check_prismatic(hull)
 
 
 def require(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> list[float]:

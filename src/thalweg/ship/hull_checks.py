@@ -21,13 +21,20 @@ class _Numbers(Protocol):
 
 
 def check_lengths(hull: _Numbers) -> None:
-    """Refuse lengths that differ by more than a third from that between perpendiculars.
+    """Refuse lengths that differ by a third from that between perpendiculars, or less than broad.
 
     Raises
     ------
     InputError
     """
-    lpp = hull.number("length_between_perpendiculars_m")
+    lpp, breadth = hull.number("length_between_perpendiculars_m"), hull.number("breadth_m")
+    if lpp is not None and breadth is not None and breadth > lpp:
+        raise InputError(
+            f"The breadth of {breadth:g} m is more than the length of {lpp:g} m.",
+            "A ship is longer than broad.",
+            "Correct them: are they swapped?",
+            key="hull.breadth_m",
+        )
     for key, words in _LENGTHS.items():
         other = hull.number(key)
         if lpp is None or other is None or _FEW_PER_CENT[0] < other / lpp < _FEW_PER_CENT[1]:
@@ -38,6 +45,49 @@ def check_lengths(hull: _Numbers) -> None:
             "Correct one of them.",
             key=f"hull.{key}",
         )
+
+
+def check_depth(hull: _Numbers, draught: float | None, key: str) -> None:
+    """Refuse a draught [m] that is more than the depth of the hull.
+
+    Raises
+    ------
+    InputError
+    """
+    depth = hull.number("depth_m")
+    if depth is not None and draught is not None and draught > depth:
+        raise InputError(
+            f"The draught of {draught:g} m is more than the depth of the hull, {depth:g} m.",
+            "A ship floats with part of its side above the water.",
+            f"Correct {key} or hull.depth_m.",
+            key=key,
+        )
+
+
+def check_prismatic(hull: _Numbers) -> None:
+    """Refuse a prismatic coefficient that is not C_B / C_M within a few per cent.
+
+    It is often told on the length of the waterline, and the block coefficient on that between
+    perpendiculars: a tenth between them is no contradiction.
+
+    Raises
+    ------
+    InputError
+    """
+    prismatic, block = hull.number("prismatic_coefficient"), hull.number("block_coefficient")
+    midship = hull.number("midship_coefficient")
+    if prismatic is None or block is None:
+        return
+    ratio = block / (prismatic * (midship or 1.0))
+    if ratio < 1.1 and (midship is None or ratio > 0.9):
+        return
+    raise InputError(
+        f"prismatic_coefficient {prismatic:g} does not fit block_coefficient {block:.4g}"
+        + (f" and midship_coefficient {midship:g}." if midship else "."),
+        "C_P is C_B / C_M: no less than C_B.",
+        "Correct or leave out one of them.",
+        key="hull.prismatic_coefficient",
+    )
 
 
 def check_ends_and_surface(hull: _Numbers) -> None:

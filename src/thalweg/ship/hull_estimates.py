@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.methods.hydrostatics import ESTIMATORS
+from thalweg.ship.methods.hydrostatics import ESTIMATORS, ESTIMATORS_IF_FITTED, Estimator
 from thalweg.ship.methods.loading import displacement_at_draught
 from thalweg.ship.model import Estimate
 
+_OWN_MIDSHIP: Final = Estimator(
+    lambda block, prismatic: np.minimum(block / prismatic, 1.0),
+    ("block_coefficient", "prismatic_coefficient"),
+    "C_B over C_P",
+    0.01,
+)
+#: who names the one has the other
+_FITTED: Final = {
+    "bulb_area_m2": "bulb_centre_height_m",
+    "bulb_centre_height_m": "bulb_area_m2",
+}
 #: what a calm-water method without a regression of its own may take as zero, and says so
-_ABSENT = {
+_ABSENT: Final = {
     "bulb_area_m2": "taken as no bulb",
     "bulb_centre_height_m": "no bulb",
     "transom_area_m2": "taken as no immersed transom",
@@ -44,9 +56,10 @@ def estimate(hull: Hull, keys: tuple[str, ...]) -> Hull:
 def _estimate_one(hull: Hull, key: str, above: tuple[str, ...]) -> Hull:
     if hull.number(key) is not None or key in above:
         return hull
-    if key in _ABSENT:
+    fitted = bool(hull.number(_FITTED.get(key, "")))
+    if key in _ABSENT and not fitted:
         return hull.with_estimates(Estimate(key, 0.0, _ABSENT[key]))
-    for estimator in ESTIMATORS.get(key, ()):
+    for estimator in _estimators(key):
         filled = hull
         for name in estimator.inputs:
             filled = _estimate_one(filled, name, (*above, key))
@@ -56,6 +69,12 @@ def _estimate_one(hull: Hull, key: str, above: tuple[str, ...]) -> Hull:
             if np.isfinite(value):
                 return filled.with_estimates(Estimate(key, value, estimator.source))
     return hull
+
+
+def _estimators(key: str) -> tuple[Estimator, ...]:
+    """The regressions for a particular, best first."""
+    own = (_OWN_MIDSHIP,) if key == "midship_coefficient" else ()
+    return (*own, *ESTIMATORS.get(key, ()), *ESTIMATORS_IF_FITTED.get(key, ()))
 
 
 def estimated_or_error(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> Hull:
@@ -106,8 +125,9 @@ def hull_at(hull: Hull, loading: Loading, load_factor: float) -> Hull:
     if lpp and breadth:
         values["block_coefficient"] = volume / (lpp * breadth * draught)
     midship, surface = hull.number("midship_coefficient"), hull.number("wetted_surface_m2")
-    if midship is not None:
-        values["midship_coefficient"] = min(1.0, 1.0 - (1.0 - midship) * full / draught)
+    if midship is not None:  # the same bilge; a section is no finer than the hull
+        block = float(values.get("block_coefficient", 0.0))
+        values["midship_coefficient"] = min(1.0, max(block, 1.0 - (1.0 - midship) * full / draught))
     if surface is not None and length:
         change = 1.7 * length * (draught - full) + volume / draught
         values["wetted_surface_m2"] = (
@@ -121,10 +141,20 @@ def _volume_at(hull: Hull, loading: Loading, load_factor: float, draught: float)
     full, empty = loading.displacement_full, loading.displacement_empty
     if np.isfinite(known) and (full != empty or loading.draught_full == loading.draught_empty):
         return known
+    return wall_sided_volume(hull, draught)
+
+
+def wall_sided_volume(hull: Hull, draught: float) -> float:
+    """Return the displaced volume [m3] at another draught [m], wall-sided from the waterplane.
+
+    Raises
+    ------
+    InputError
+        If particulars are missing that cannot be estimated, or nothing would be displaced.
+    """
     keys = ("length_waterline_m", "breadth_m", "waterplane_coefficient", "displacement_m3")
-    length, breadth, waterplane, volume = require(
-        hull, keys, "another draught", instead="one draught"
-    )
+    hull = estimated_or_error(hull, keys, "another draught", instead="one draught")
+    length, breadth, waterplane, volume = (float(hull.values[key]) for key in keys)
     found = float(
         displacement_at_draught(
             draught,

@@ -59,7 +59,8 @@ def calm_speeds(data: Data, law: str) -> tuple[FloatArray, FloatArray]:
         found = f"gives speeds under {' and '.join(given)}" if given else "gives no speeds"
         raise InputError(
             f"The ship file {found}.",
-            "Speeds come from speeds_kn, from a table, or from loading.speeds_full_kn.",
+            "Speeds come from speeds_kn, from a table, or from loading.speeds_full_kn; a hull with "
+            "models.calm_water such as holtrop_1984 finds its own.",
             "Keep one of them." if given else "Add 'speeds_kn: [...]'.",
             missing=[] if given else ["speeds_kn"],
         )

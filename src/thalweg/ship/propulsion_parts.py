@@ -65,6 +65,14 @@ class Propulsion:
 
 
 def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
+    idle = set_aside(given)
+    known = {key: value for key, value in given.items() if key not in idle}
+    if "propulsive_efficiency" in known:
+        known |= {"relative_rotative_efficiency": 1.0, "hull_efficiency": 1.0}
+        known["open_water_efficiency"] = known["propulsive_efficiency"]
+    if "wake_fraction" in known:
+        own = (1.0 - known["thrust_deduction"]) / (1.0 - known["wake_fraction"])
+        known["hull_efficiency"] = own
     usual = Efficiencies()
     names = {
         "open_water_efficiency": usual.open_water,
@@ -73,28 +81,38 @@ def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
         "shaft_efficiency": usual.transmission,
         "gear_efficiency": usual.gear,
     }
-    if "propulsive_efficiency" in given:
-        names = {key: 1.0 for key in names} | {
-            "open_water_efficiency": given["propulsive_efficiency"],
-            "shaft_efficiency": names["shaft_efficiency"],
-            "gear_efficiency": names["gear_efficiency"],
-        }
-        given = {"open_water_efficiency": given["propulsive_efficiency"], **given}
-    if "wake_fraction" in given and "thrust_deduction" in given:
-        own = (1.0 - given["thrust_deduction"]) / (1.0 - given["wake_fraction"])
-        given = {"hull_efficiency": own, **given}
-    values = {key: float(given.get(key, usual_value)) for key, usual_value in names.items()}
+    values = {key: float(known.get(key, usual_value)) for key, usual_value in names.items()}
     chain = Efficiencies(*values.values())
     guessed = tuple(
-        Estimate(key, values[key], "usual value, Schless (2023)")
-        for key in names
-        if key not in given and not ("propulsive_efficiency" in given and values[key] == 1.0)
+        Estimate(key, value, "usual value, Schless (2023)")
+        for key, value in values.items()
+        if key not in known
     )
 
     def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
         return constant_efficiency_power(speed, resistance, efficiencies=chain)
 
     return Propulsion("efficiencies", power, guessed)
+
+
+_INTERACTION: Final = ("wake_fraction", "thrust_deduction")
+_PARTS: Final = ("open_water_efficiency", "relative_rotative_efficiency", "hull_efficiency")
+
+
+def set_aside(given: Mapping[str, Any], method: str = "efficiencies") -> tuple[str, ...]:
+    """Return the efficiencies under 'propulsion' that others make needless.
+
+    All in one (``propulsive_efficiency``) goes before its parts, a hull efficiency before wake and
+    thrust deduction, which make one only together; a propeller of the B-series makes its own.
+    """
+    idle: tuple[str, ...] = ()
+    if method == "wageningen_b":
+        idle = ("open_water_efficiency", "hull_efficiency", "propulsive_efficiency")
+    elif "propulsive_efficiency" in given:
+        idle = (*_PARTS, *_INTERACTION)
+    elif "hull_efficiency" in given or not given.keys() >= {*_INTERACTION}:
+        idle = _INTERACTION
+    return tuple(key for key in idle if key in given)
 
 
 def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
@@ -316,15 +334,18 @@ class Plant:
         )[0]
 
     def notes(self, power: FloatArray) -> list[RangeNote]:
-        """Loads above the largest, below the least, or below a fifth of one engine's."""
+        """Loads above the largest, below the least, or where the consumption is not known."""
         if np.isinf(self.rating):
             return []
         least, largest = self.loads
         one = power / self.rating
+        known = {"load of one engine": (one, 0.2, np.inf)}
+        if self.curve[0]:
+            known = {"load": (one / self.count, self.curve[0][0], self.curve[0][-1] + 1e-6)}
         return [
             *range_notes("engine", {"load": (one / self.count, 0.0, largest + 1e-6)}),
             *range_notes("engine", {"load of one engine": (one, least, np.inf)}),
-            *range_notes("sfoc", {"load of one engine": (power / self.rating, 0.2, np.inf)}),
+            *range_notes("sfoc", known),
         ]
 
 
@@ -352,6 +373,14 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
             "Add engine.power_kw.",
             missing=["engine.power_kw"],
         )
+    least, largest = given.get("least_load", 0.0), given.get("largest_load", 1.0)
+    if least >= largest:
+        raise InputError(
+            f"The least load of an engine is {least:g}, the largest {largest:g}.",
+            "Loads are shares of engine.power_kw; the largest is 1 when not given.",
+            "Correct engine.least_load or engine.largest_load.",
+            key="engine.least_load",
+        )
     sfoc, guessed = _sfoc(data)
     if not curve and "turbine" in given.get("type", "").casefold():
         loads, curve = (0.0, 1.0), (sfoc, sfoc)  # the study lets theirs vary with nothing
@@ -363,7 +392,7 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
         hotel_power=given.get("hotel_load_kw", 0.0) * 1000.0,
         hotel_sfoc=given.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC),
         estimated=guessed,
-        loads=(given.get("least_load", 0.0), given.get("largest_load", 1.0)),
+        loads=(least, largest),
     )
 
 

@@ -6,6 +6,7 @@ import math
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -321,7 +322,7 @@ def _check_value(where: str, value: Any, key: Key) -> Any:
 
 
 def _number(where: str, value: Any, key: Key) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+    if isinstance(value, bool) or not isinstance(value, (Real, str)):
         raise _wrong(where, value, "a number")
     try:
         number = float(value)

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.units import HOUR, KNOT
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.methods.fuel import fuel_named
 from thalweg.ship.methods.indicators import (
     attained_cii,
     cii_rating,
@@ -20,6 +19,7 @@ from thalweg.ship.methods.indicators import (
     required_cii,
 )
 from thalweg.ship.methods.wave_spectra import pierson_moskowitz_period
+from thalweg.ship.propulsion_parts import set_aside
 from thalweg.ship.sheet_seaway import Seaway
 from thalweg.ship.ship import Ship
 
@@ -161,12 +161,16 @@ def _unfelt(ship: Ship, weather: Mapping[str, float]) -> list[str]:
 
 
 def _beyond(ship: Ship, weather: Mapping[str, float]) -> list[str]:
-    """Warn of weather beyond the ship's limits, into which no plan takes it."""
+    """Warn of what no plan takes the ship into: weather beyond its limits, water too shallow."""
     limits = {
         "wave_height": ("waves of", "m", ship.limits.wave_height),
         "wind_speed": ("wind of", "m/s", ship.limits.wind_speed),
     }
-    return [
+    found = []
+    if weather.get("depth", np.inf) <= ship.draught:
+        depth = weather["depth"]
+        found.append(f"the water is {depth:g} m deep, the draught {ship.draught:g} m: aground")
+    return found + [
         f"{word} {weather[name]:g} {unit} are beyond the ship's limit of {limit:.4g} {unit}"
         for name, (word, unit, limit) in limits.items()
         if weather.get(name, 0.0) > limit
@@ -245,7 +249,7 @@ def _nominal_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> lis
 
 
 def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
-    co2 = fuel * _carbon_factor(ship)
+    co2 = fuel * ship.fuel_terms.carbon_outside
     return {
         "speed_kn": _number(round(speed / KNOT, 9)),
         "fuel_kg_per_h": _number(fuel * HOUR),
@@ -253,13 +257,6 @@ def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
         "co2_kg_per_h": _number(co2 * HOUR),
         "cii": _cii(ship, speed, co2),
     }
-
-
-def _carbon_factor(ship: Ship) -> float:
-    fuel = ship.data.get("fuel", {})
-    if "carbon_factor" in fuel:
-        return float(fuel["carbon_factor"])
-    return fuel_named(fuel["type"]).carbon_factor if "type" in fuel else float("nan")
 
 
 def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
@@ -301,7 +298,10 @@ def _left_aside(ship: Ship) -> list[str]:
     given["reference point"] = "reference_power_kw" in data.get(
         "engine", {}
     ) or "reference_t_per_day" in data.get("fuel", {})
-    return [f"calm_water: {method} leaves the {w} aside" for w, there in given.items() if there]
+    found = [f"calm_water: {method} leaves the {w} aside" for w, there in given.items() if there]
+    chain = data.get("models", {}).get("propulsion", "efficiencies")
+    idle = set_aside(data.get("propulsion", {}), chain)
+    return [*found, *(f"propulsion.{key} is left aside" for key in idle)]
 
 
 def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -312,7 +312,9 @@ def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
     if ship.speed_field is not None or not ship.data:
         return []
-    found = []
+    found: list[str] = []
+    if hasattr(ship.model, "power_at_speed") and not known("brake_power_kw"):
+        return found  # it is the water or the weather that leaves no number
     if not known("brake_power_kw"):
         found.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")
     if not known("fuel_kg_per_h"):

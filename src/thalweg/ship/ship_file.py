@@ -36,7 +36,7 @@ def read_ship(name_or_path: str | Path) -> tuple[Any, str]:
     if text in library_names():
         found = resources.files("thalweg.ship").joinpath("library", f"{text}.yaml")
         return parse_ship(found.read_text(encoding="utf-8"), text), f"library ship {text!r}"
-    if path.is_file():
+    if _is_file(path):
         return _read_file(path)
     names = [*library_names(), *plugin_names()]
     near = near_matches(text, names)
@@ -49,13 +49,20 @@ def read_ship(name_or_path: str | Path) -> tuple[Any, str]:
     )
 
 
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # too long, or no name of a file
+        return False
+
+
 def _read_file(path: Path) -> tuple[Any, str]:
     try:
         with path.open("rb") as stream:
             raw = stream.read(LARGEST_FILE + 1)
-    except OSError as problem:
+    except (OSError, ValueError) as problem:
         raise InputError(
-            f"The ship file {path} cannot be read: {problem.strerror or problem}.",
+            f"The ship file {path} cannot be read: {getattr(problem, 'strerror', problem)}.",
             f"Library: {', '.join(library_names())}.",
             "Give the path of a YAML file, or a name of the library.",
             file=str(path),

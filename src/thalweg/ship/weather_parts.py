@@ -41,6 +41,7 @@ from thalweg.ship.model import Estimate
 FloatArray = NDArray[np.float64]
 #: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
 _ENTRANCE: Final = 0.85
+_GYRATION: Final = Estimate("pitch_gyration", 0.25, "usual value, ITTC")
 SHORTEST_PERIOD, LONGEST_PERIOD = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
 
 
@@ -128,7 +129,8 @@ def _stawave_2(hull: Hull) -> Waves:
         "draught": draught,
         "block_coefficient": block,
     }
-    gyration = hull.number("pitch_gyration") or 0.25
+    hull = hull.with_estimates(_GYRATION)
+    gyration = float(hull.values["pitch_gyration"])
 
     def force(
         speed: FloatArray, height: FloatArray, period: FloatArray, angle: FloatArray
@@ -150,7 +152,7 @@ def _snnm(hull: Hull) -> Waves:
     keys = (*_WAVE_KEYS, *form_keys)
     hull = estimated_or_error(hull, keys, "snnm", instead="stawave_1")
     length, breadth, _, block = (float(hull.values[key]) for key in _WAVE_KEYS)
-    hull = _with_ends(hull)
+    hull = _with_ends(hull).with_estimates(_GYRATION)
     vessel = SnnmHull(
         length=length,
         breadth=breadth,
@@ -159,7 +161,7 @@ def _snnm(hull: Hull) -> Waves:
         block_coefficient=block,
         entrance_length=float(hull.values["length_entrance_m"]),
         run_length=float(hull.values["length_run_m"]),
-        pitch_gyration=hull.number("pitch_gyration") or 0.25,
+        pitch_gyration=float(hull.values["pitch_gyration"]),
     )
 
     table = SnnmTable.of(vessel, shortest=SHORTEST_PERIOD, longest=LONGEST_PERIOD)

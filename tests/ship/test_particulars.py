@@ -1,0 +1,197 @@
+"""Particulars of a ship file: each counts, two of three give the third, and contradictions are
+refused."""
+
+import numpy as np
+import pytest
+
+from thalweg.core.errors import InputError
+from thalweg.ship import Conditions, Ship
+from thalweg.ship.hull import complete_hull
+from thalweg.ship.sheet import performance_sheet
+
+HULL = {
+    "length_between_perpendiculars_m": 120.0,
+    "breadth_m": 18.0,
+    "draught_m": 7.0,
+    "block_coefficient": 0.72,
+}
+CALM = {
+    **{"wind_speed": 0.0, "wind_angle": 0.0, "wave_height": 0.0, "wave_angle": 0.0},
+    **{"wave_period": 9.0, "depth": np.inf},
+}
+
+
+def _data(hull=None, method="holtrop_1984", **sections):
+    kept = {key: value for key, value in {**HULL, **(hull or {})}.items() if value is not None}
+    return {"name": "x", "hull": kept, "models": {"calm_water": method}, **sections}
+
+
+def _ship(hull=None, method="holtrop_1984", **sections):
+    return Ship.from_dict(_data(hull, method, **sections))
+
+
+def _estimates(ship):
+    return {one.key: (one.value, one.method) for one in ship.estimated}
+
+
+def _drag(ship, part="total"):
+    return float(ship.resistance(Conditions(CALM), 6.0)[part])
+
+
+@pytest.mark.parametrize(
+    ("given", "ends"),
+    [
+        ({"draught_m": 7.0}, (7.0, 7.0)),
+        ({"draught_m": 7.0, "draught_fore_m": 6.0}, (6.0, 8.0)),
+        ({"draught_m": 7.0, "draught_aft_m": 7.5}, (6.5, 7.5)),
+        ({"draught_fore_m": 6.0}, (6.0, 6.0)),
+        ({"draught_fore_m": 6.0, "draught_aft_m": 8.0}, (6.0, 8.0)),
+    ],
+)
+def test_two_of_three_draughts_give_the_third(given, ends):
+    values = complete_hull(given).values
+    assert (values["draught_fore_m"], values["draught_aft_m"]) == ends
+    assert values["draught_m"] == pytest.approx(sum(ends) / 2)
+
+
+@pytest.mark.parametrize(
+    ("hull", "sections", "words"),
+    [
+        ({"draught_fore_m": 5.0, "draught_aft_m": 9.0, "depth_m": 8.0}, {}, "draught of 9 m"),
+        ({"depth_m": 8.0}, {"loading": {"draught_full_m": 9.0}}, "loading.draught_full_m"),
+        ({"draught_m": 7.0, "draught_fore_m": 16.0}, {}, "not the mean of fore and aft"),
+        ({"displacement_t": 20000.0, "displacement_m3": 11000.0}, {}, "do not fit"),
+        ({"prismatic_coefficient": 0.5}, {}, "C_P is C_B / C_M"),
+        ({"prismatic_coefficient": 0.9, "midship_coefficient": 0.95}, {}, "C_P is C_B / C_M"),
+        ({"breadth_m": 80.0, "length_between_perpendiculars_m": 18.0}, {}, "swapped"),
+        ({"draught_m": 0.0}, {}, "draught is 0 m"),
+        ({}, {"loading": {"draught_full_m": 7.0, "draught_empty_m": 0.0}}, "draught is 0 m"),
+        ({}, {"speeds_kn": [10, 10.0]}, "a speed twice"),
+        ({}, {"engine": {"power_kw": 5000, "least_load": 0.9, "largest_load": 0.5}}, "least load"),
+    ],
+)
+def test_what_contradicts_itself_is_refused(hull, sections, words):
+    with pytest.raises(InputError, match=words):
+        _ship(hull, **sections)
+
+
+def test_the_prismatic_coefficient_stands_for_midship_or_block():
+    told = _estimates(_ship({"prismatic_coefficient": 0.75}))
+    assert told["midship_coefficient"] == (pytest.approx(0.96), "C_B over C_P")
+    told = _estimates(
+        _ship(
+            {"block_coefficient": None, "prismatic_coefficient": 0.75, "midship_coefficient": 0.96}
+        )
+    )
+    assert told["block_coefficient"] == (pytest.approx(0.72), "C_P C_M")
+    same = {"midship_coefficient": 0.96}
+    assert _drag(_ship({"prismatic_coefficient": 0.75})) == pytest.approx(_drag(_ship(same)))
+
+
+def test_who_names_the_bulbs_section_has_its_height():
+    told = _estimates(_ship({"bulb_area_m2": 12.0}))
+    assert told["bulb_centre_height_m"] == (pytest.approx(2.8), "Rakke (2016)")
+    assert _estimates(_ship())["bulb_area_m2"] == (0.0, "taken as no bulb")
+
+
+def test_shapes_that_are_not_told_are_listed():
+    told = _estimates(_ship({"appendage_area_m2": 20.0}))
+    assert told["stern_shape"][0] == "normal" and told["appendage_factor"][0] == 1.5
+    angle = told["half_entrance_angle_deg"][0]
+    assert 5.0 < angle < 60.0
+    stated = {"half_entrance_angle_deg": angle, "stern_shape": 0, "appendage_factor": 1.5}
+    again = _ship({"appendage_area_m2": 20.0, **stated})
+    assert not {"stern_shape", "appendage_factor", "half_entrance_angle_deg"} & {*_estimates(again)}
+    assert _drag(again) == pytest.approx(_drag(_ship({"appendage_area_m2": 20.0})), rel=1e-12)
+
+
+def test_a_full_draught_other_than_the_hulls_is_the_draught_of_the_resistance():
+    shallow = _ship(loading={"draught_full_m": 5.0})
+    emptied = _ship(loading={"draught_full_m": 7.0, "draught_empty_m": 5.0}).with_load_factor(0.0)
+    assert shallow.draught == emptied.draught == 5.0
+    assert _drag(shallow) == pytest.approx(_drag(emptied), rel=1e-12)
+    assert _drag(shallow) < 0.9 * _drag(_ship())
+    hull = emptied.model.balance(0.0).calm.hull
+    assert shallow.loading.displacement == pytest.approx(hull.values["displacement_m3"])
+    assert _estimates(emptied)["displacement_empty_m3"][0] == pytest.approx(
+        hull.values["displacement_m3"]
+    )
+
+
+def test_a_weight_belongs_to_the_draught_of_the_loading():
+    loading = {"draught_full_m": 6.0, "weight_full_t": 9000.0}
+    hull = _ship({"block_coefficient": None}, loading=loading).model.balance(1.0).calm.hull
+    assert hull.values["draught_m"] == 6.0
+    assert hull.values["block_coefficient"] == pytest.approx(9000 / 1.025 / (120 * 18 * 6))
+
+
+def test_a_hull_that_cannot_be_emptied_says_so_when_it_is_asked():
+    light = {"draught_full_m": 7.0, "draught_empty_m": 2.0}
+    ship = _ship({"block_coefficient": 0.6, "midship_coefficient": 0.75}, loading=light)
+    with pytest.raises(InputError, match="no resistance for this hull at load factor 0"):
+        ship.with_load_factor(0.0).resistance(Conditions(CALM), 6.0)
+
+
+def test_no_rudder_is_none():
+    twin = {"propellers": 2, "propeller_diameter_m": 4.0}
+    area = {"wetted_surface_m2": 3000.0}
+
+    def residuary(**rudders):
+        return _drag(
+            _ship({**area, **rudders}, "hollenbach_1998_mean", propulsion=twin), "residuary"
+        )
+
+    assert residuary(rudders=0) / residuary(rudders=1) == pytest.approx(2.0**0.1258)
+    assert residuary() == residuary(rudders=1)
+    assert "rudders" in _estimates(_ship(area, "hollenbach_1998_mean", propulsion=twin))
+
+
+@pytest.mark.parametrize(
+    "others",
+    [
+        {},
+        {"open_water_efficiency": 0.6, "hull_efficiency": 1.1},
+        {"wake_fraction": 0.3, "thrust_deduction": 0.2},
+    ],
+)
+def test_the_efficiency_of_all_goes_before_its_parts(others):
+    data = _data(propulsion={"propulsive_efficiency": 0.7, **others}, speeds_kn=[12])
+    ship = Ship.from_dict(data)
+    power = float(ship.power_at_speed(Conditions(CALM), 6.0))
+    assert power == pytest.approx(_drag(ship) * 6.0 / (0.7 * 0.98 * 0.96))
+    told = performance_sheet(ship)["assumed"]
+    assert told == [f"propulsion.{key} is left aside" for key in sorted(others, key=told_order)]
+
+
+def told_order(key):
+    order = ("open_water_efficiency", "hull_efficiency", "wake_fraction", "thrust_deduction")
+    return order.index(key)
+
+
+def test_wake_alone_is_no_hull_efficiency_and_is_said():
+    assert performance_sheet(_ship(propulsion={"wake_fraction": 0.3}))["assumed"] == [
+        "propulsion.wake_fraction is left aside"
+    ]
+    both = {"wake_fraction": 0.3, "thrust_deduction": 0.2}
+    ship = _ship(propulsion=both)
+    assert performance_sheet(ship)["assumed"] == []
+    power = float(ship.power_at_speed(Conditions(CALM), 6.0))
+    eta = 0.6 * 0.98 * (0.8 / 0.7) * 0.98 * 0.96
+    assert power == pytest.approx(_drag(ship) * 6.0 / eta)
+
+
+def test_loads_beyond_an_engines_curve_are_said():
+    curve = {"sfoc_load": [0.5, 1.0], "sfoc_curve_g_per_kwh": [190, 180]}
+    ship = _ship(engine={"power_kw": 20000, **curve})
+    notes = performance_sheet(ship, speeds_kn=[12])["conditions"][0]["warnings"]
+    assert len(notes) == 1 and notes[0].endswith("outside 0.5 to 1")
+
+
+def test_settings_that_were_not_given_are_loads_the_engine_has():
+    ship = _ship(engine={"power_kw": 4000, "count": 2, "least_load": 0.6})
+    assert ship.model.orders.values == pytest.approx([3.2e6, 4.4e6, 5.6e6, 6.8e6])
+
+
+def test_numbers_may_be_numpys():
+    ship = _ship({"breadth_m": np.int64(18)}, speeds_kn=list(np.arange(10, 13)))
+    assert len(ship.speeds) == 3
