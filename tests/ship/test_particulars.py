@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
+from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
 from thalweg.ship.hull import complete_hull
 from thalweg.ship.sheet import performance_sheet
@@ -66,6 +67,8 @@ def test_two_of_three_draughts_give_the_third(given, ends):
         ({"breadth_m": 80.0, "length_between_perpendiculars_m": 18.0}, {}, "swapped"),
         ({"draught_m": 0.0}, {}, "draught is 0 m"),
         ({}, {"loading": {"draught_full_m": 7.0, "draught_empty_m": 0.0}}, "draught is 0 m"),
+        ({}, {"loading": {"draught_full_m": 7.0, "weight_full_t": 9000.0}}, "by 'loading' and"),
+        ({}, {"loading": {"draught_empty_m": 0.1}}, "displace nothing"),
         ({}, {"speeds_kn": [10, 10.0]}, "a speed twice"),
         ({}, {"engine": {"power_kw": 5000, "least_load": 0.9, "largest_load": 0.5}}, "least load"),
     ],
@@ -113,9 +116,26 @@ def test_a_full_draught_other_than_the_hulls_is_the_draught_of_the_resistance():
     assert _drag(shallow) < 0.9 * _drag(_ship())
     hull = emptied.model.balance(0.0).calm.hull
     assert shallow.loading.displacement == pytest.approx(hull.values["displacement_m3"])
-    assert _estimates(emptied)["displacement_empty_m3"][0] == pytest.approx(
+    block = 1.0 - 0.28 * (7.0 / 5.0) ** (1.0 / 3.0)
+    assert hull.values["displacement_m3"] == pytest.approx(block * 120 * 18 * 5)
+    assert _estimates(emptied)["loading.displacement_empty_m3"][0] == pytest.approx(
         hull.values["displacement_m3"]
     )
+
+
+def test_an_empty_ship_with_known_speeds_is_no_fuller_than_its_box():
+    data = {"name": "x", "hull": HULL, "speeds_kn": [12.0], "loading": {"draught_empty_m": 3.0}}
+    ship = Ship.from_dict(data).with_load_factor(0.0)
+    block = 1.0 - 0.28 * (7.0 / 3.0) ** (1.0 / 3.0)
+    assert ship.loading.displacement == pytest.approx(block * 120 * 18 * 3)
+    row = performance_sheet(ship, {"depth": 9.0})["conditions"][0]
+    speed = 12.0
+    section = 18 * 3 / (9 * 18 * 9.0 - 18 * 3)
+    squat = block * section ** (2.0 / 3.0) * speed**2.08 / 30.0
+    assert row["squat"]["squat_m"] == pytest.approx(squat, rel=1e-6)
+    assert "loading.displacement_empty_m3" in _estimates(ship)
+    bare = {**data, "hull": {"draught_m": 7.0, "displacement_m3": 7000.0}}
+    assert Ship.from_dict(bare).with_load_factor(0.0).loading.displacement == pytest.approx(3000.0)
 
 
 def test_a_weight_belongs_to_the_draught_of_the_loading():
@@ -195,3 +215,64 @@ def test_settings_that_were_not_given_are_loads_the_engine_has():
 def test_numbers_may_be_numpys():
     ship = _ship({"breadth_m": np.int64(18)}, speeds_kn=list(np.arange(10, 13)))
     assert len(ship.speeds) == 3
+
+
+def test_motions_are_those_of_the_draught_the_ship_lies_at():
+    emptied = {"draught_full_m": 7.0, "draught_empty_m": 4.0, "displacement_empty_m3": 5000.0}
+    data = {"name": "x", "hull": HULL, "speeds_kn": [12.0], "loading": emptied}
+    weather = {"wave_height": 3.0, "wave_angle": 0.3}
+    light = Ship.from_dict(data).with_load_factor(0.0)
+    block = 5000.0 / (120 * 18 * 4)
+    same = {**HULL, "draught_m": 4.0, "block_coefficient": block}
+    drawn = Ship.from_dict({"name": "x", "hull": same, "speeds_kn": [12.0]})
+    found, wanted = (
+        performance_sheet(ship, weather)["conditions"][0]["motions"] for ship in (light, drawn)
+    )
+    assert found == pytest.approx(wanted)
+    full = performance_sheet(Ship.from_dict(data), weather)["conditions"][0]["motions"]
+    assert found["significant_heave_m"] != pytest.approx(full["significant_heave_m"], rel=0.01)
+
+
+def test_settings_keep_the_empty_speeds_they_were_given_with():
+    loading = {"draught_full_m": 6.0, "draught_empty_m": 3.0}
+    loading |= {"speeds_full_kn": [10.0, 12.0], "speeds_empty_kn": [12.0, 13.0]}
+    ship = Ship.from_dict({"name": "x", "loading": loading})
+    same = ship.with_speeds(ship.speeds)
+    assert same.with_load_factor(0.0).speeds == pytest.approx(ship.with_load_factor(0.0).speeds)
+    slower = ship.with_speeds(0.5 * ship.speeds)
+    assert slower.with_load_factor(0.0).speeds / KNOT == pytest.approx([6.0, 7.2])
+
+
+def test_a_ragged_table_is_refused_by_every_law():
+    table = {"speed_kn": [8, 12, 16], "power_kw": [100, 800]}
+    data = {"name": "x", "hull": {"draught_m": 5}, "speeds_kn": [8], "table": table}
+    with pytest.raises(InputError, match="power_kw has another length"):
+        Ship.from_dict({**data, "models": {"calm_water": "cubic"}})
+
+
+@pytest.mark.parametrize("word", ["bulk carrier", "Bulk Carrier", "bulk-carrier"])
+def test_the_type_of_ship_is_read_as_it_is_written(word):
+    data = {
+        "name": "x",
+        "hull": {"draught_m": 9.0, "type": word, "deadweight_t": 30000},
+        "table": {"speed_kn": [12], "fuel_t_per_day": [20]},
+        "fuel": {"type": "HFO"},
+    }
+    cii = performance_sheet(Ship.from_dict(data))["conditions"][0]["cii"]
+    attained = 20e6 / 24 * 3.114 / (30000 * 12)
+    assert cii["attained_g_per_t_nm"] == pytest.approx(attained)
+    assert cii["required_2026"] == pytest.approx(0.89 * 4745 * 30000**-0.622)
+
+
+def test_a_field_of_speeds_has_no_sheet():
+    with pytest.raises(InputError, match="field of place and time"):
+        performance_sheet(Ship.from_speed_function(lambda at: 5.0 + 0.0 * at.lat))
+
+
+def test_a_ballast_line_that_is_not_there_is_told():
+    twin = {"propellers": 2, "propeller_diameter_m": 4.0}
+    ballast = {"condition": "ballast"}
+    told = _estimates(_ship({}, "hollenbach_1998_mean", propulsion=twin, loading=ballast))
+    assert told["loading.condition"][0] == "twin_design"
+    single = _ship({}, "hollenbach_1998_mean", loading=ballast)
+    assert "loading.condition" not in _estimates(single)

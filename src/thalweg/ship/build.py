@@ -14,7 +14,7 @@ from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
 from thalweg.ship.fuel_of_power import fuel_estimates, fuel_of_power
 from thalweg.ship.fuel_terms import fuel_terms
-from thalweg.ship.hull import Hull, require
+from thalweg.ship.hull import Hull, require, volume_at
 from thalweg.ship.hull_checks import check_depth
 from thalweg.ship.laws import LAWS, calm_speeds, check_table, law_of, with_settings
 from thalweg.ship.limits import ShipLimits
@@ -82,26 +82,38 @@ def build_loading(data: Data, hull: Hull) -> Loading:
     if full is None:
         raise _no_draught(data, hull)
     check_depth(hull, full, "loading.draught_full_m")
-    displaced = _volume(given, "full", _own_volume(hull, full))
+    empty, own = given.get("draught_empty_m", full), hull.number("draught_m") or full
+    volume = hull.number("displacement_m3")
+    if volume is not None and own != full:
+        volume = volume_at(hull, volume, at=own, draught=full)
+    displaced = _volume(given, "full", volume)
+    if volume is not None and not 0.9 < displaced / volume < 1.1:
+        raise InputError(
+            f"The full ship displaces {displaced:.6g} m3 by 'loading' and {volume:.6g} by 'hull'.",
+            "They are the same at loading.draught_full_m.",
+            "Correct or leave out one of them.",
+            key="loading.displacement_full_m3",
+        )
+    light = None if empty == full else volume_at(hull, displaced, at=full, draught=empty)
     return Loading(
         draught_full=full,
-        draught_empty=given.get("draught_empty_m", full),
+        draught_empty=empty,
         displacement_full=displaced,
-        displacement_empty=_volume(given, "empty", None, displaced),
+        displacement_empty=_volume(given, "empty", light, displaced),
         load_factor=given.get("load_factor", 1.0),
         condition=given.get("condition", "loaded"),
         capacity=given.get("capacity_m3", math.nan),
     )
 
 
-def _own_volume(hull: Hull, draught: float) -> float | None:
-    """Displaced volume [m3] of the hull at the full draught [m], which may not be the hull's."""
-    volume, own = hull.number("displacement_m3"), hull.number("draught_m")
-    if volume is None or own is None or abs(own - draught) < 1e-9:
-        return volume
-    from thalweg.ship.hull_estimates import wall_sided_volume  # reads many regressions
-
-    return wall_sided_volume(hull, draught)
+def lightship(data: Data, volume: float) -> tuple[Estimate, ...]:
+    """Tell the displacement of the empty ship [m3] where the ship file does not."""
+    given = data.get("loading", {})
+    told = {"displacement_empty_m3", "weight_empty_t"} & given.keys()
+    if told or "draught_empty_m" not in given or not math.isfinite(volume):
+        return ()
+    how = "by the block coefficient at that draught, Jalkanen et al. (2012)"
+    return (Estimate("loading.displacement_empty_m3", volume, how),)
 
 
 def _no_draught(data: Data, hull: Hull) -> InputError:
@@ -233,7 +245,8 @@ def estimates_of_known_speeds(data: Data, hull: Hull, loading: Loading) -> tuple
     """What was estimated of a ship that gives its speeds."""
     if data.get("models", {}).get("speed_loss", "none") != "none":
         hull = _hull_for_kwon(hull, loading)
-    return (*hull.estimated, *fuel_estimates(data))
+    light = lightship(data, loading.displacement_empty)
+    return (*hull.estimated, *light, *fuel_estimates(data))
 
 
 #: models that act on a resistance

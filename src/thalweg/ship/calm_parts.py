@@ -264,6 +264,9 @@ def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWater:
         hull = Hull({**hull.values, "propeller_diameter_m": diameter}, hull.estimated)
     hull = estimated_or_error(hull, _HOLLENBACH_KEYS, name, instead="another method")
     variant, surface_of = _hollenbach_variant(hull, data, line_of)
+    if data.get("loading", {}).get("condition") == "ballast" and variant != "single_ballast":
+        why = "Hollenbach has a ballast line for the mean of single screws alone"
+        hull = hull.with_estimates(Estimate("loading.condition", variant, why))
     sizes = {
         "length_between_perpendiculars": float(hull.values["length_between_perpendiculars_m"]),
         "length_waterline": float(hull.values["length_waterline_m"]),

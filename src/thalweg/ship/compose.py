@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import GRAVITY, KNOT
-from thalweg.ship.build import FORCES, build_limits, build_loss
+from thalweg.ship.build import FORCES, build_limits, build_loss, lightship
 from thalweg.ship.calm_parts import CALM_WATER, build_calm_water
 from thalweg.ship.hull import Hull, require
-from thalweg.ship.hull_estimates import estimate, hull_at, wall_sided_volume
+from thalweg.ship.hull_estimates import estimate, hull_at
 from thalweg.ship.kwon_on_resistance import KwonOnResistance
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate
@@ -90,12 +90,12 @@ def _resistance_model(
         ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
         full = Hull({**full.values, **ends}, full.estimated)
     full = _displaced(full, loading)
-    ends = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
+    draughts = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
 
     def balance_at(load_factor: float) -> Balance:
         floated = full
         with np.errstate(all="ignore"):
-            if len(ends) > 1:
+            if len(draughts) > 1:
                 wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
                 floated = hull_at(estimate(full, wanted), loading, load_factor)
             balance = _balance(data, floated)
@@ -104,7 +104,8 @@ def _resistance_model(
 
     plant = build_plant(data)
     orders, guessed = _orders(data, balance_at(1.0), plant)
-    guessed = (*guessed, *_lightship(data, full, loading))
+    light = hull_at(full, loading, 0.0).number("displacement_m3")
+    guessed = (*guessed, *lightship(data, light or np.nan))
     plant = replace(plant, estimated=(*plant.estimated, *guessed))
     facts = {name: data[name] for name in _FACTS if name in data}
     model = ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
@@ -130,16 +131,6 @@ def _check_afloat(loading: Loading) -> None:
             "Correct hull.draught_m, or loading.draught_empty_m.",
             key="hull.draught_m" if loading.draught_full <= 0.0 else "loading.draught_empty_m",
         )
-
-
-def _lightship(data: Mapping[str, Any], full: Hull, loading: Loading) -> tuple[Estimate, ...]:
-    """The displacement of the empty ship, when it follows from the waterplane alone."""
-    if loading.draught_full == loading.draught_empty:
-        return ()
-    if {"displacement_empty_m3", "weight_empty_t"} & data.get("loading", {}).keys():
-        return ()
-    volume = wall_sided_volume(full, loading.draught_empty)
-    return (Estimate("displacement_empty_m3", volume, "wall-sided from the waterplane"),)
 
 
 def _usual_speed(balance: Balance) -> NDArray[np.float64]:

@@ -100,7 +100,7 @@ def _settings_ascend(model: ShipModel, conditions: Conditions, load_factor: floa
 def _values_are_sound(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
     faults = []
     for setting in range(len(model.speeds(load_factor))):
-        speed = model.speed_through_water(conditions, setting)
+        speed = np.asarray(model.speed_through_water(conditions, setting))
         if speed.shape != conditions.shape:
             return [f"speed has shape {speed.shape} for conditions of shape {conditions.shape}"]
         if not (np.isfinite(speed) & (speed >= 0)).all():

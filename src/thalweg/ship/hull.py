@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from thalweg.core.errors import InputError
 from thalweg.core.units import SEA_WATER_DENSITY, TONNE
 from thalweg.ship.hull_checks import (
@@ -13,6 +15,7 @@ from thalweg.ship.hull_checks import (
     check_lengths,
     check_prismatic,
 )
+from thalweg.ship.methods.loading import block_at_draught
 from thalweg.ship.model import Estimate
 
 #: how keys of a hull end; a regression from anything else cannot be fed by a ship file
@@ -196,6 +199,39 @@ def _check_coefficients(hull: Hull) -> None:
                 key=f"hull.{name}_coefficient",
             )
     check_prismatic(hull)
+
+
+def volume_at(hull: Hull, volume: float, *, at: float, draught: float) -> float:
+    """Return the displaced volume [m3] at another draught, by the block coefficient there.
+
+    Parameters
+    ----------
+    hull : Hull
+        With length and breadth; without them its block coefficient is taken to stay the same.
+    volume : float
+        Displaced volume [m3] at the draught ``at`` [m].
+    at, draught : float
+        [m], greater than 0.
+
+    Raises
+    ------
+    InputError
+        If nothing would be displaced.
+    """
+    length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
+    area = (length or 0.0) * (hull.number("breadth_m") or 0.0)
+    if not (area and at and draught and np.isfinite(volume)):
+        return volume * draught / at if at else volume
+    block = volume / (area * at)
+    found = float(block_at_draught(draught, design_draught=at, design_block=block))
+    if not found > 0.0:
+        raise InputError(
+            f"At a draught of {draught:g} m the hull would displace nothing.",
+            f"It displaces {volume:g} m3 at {at:g} m.",
+            "Give loading.displacement_empty_m3, or a deeper loading.draught_empty_m.",
+            key="loading.draught_empty_m",
+        )
+    return found * area * draught
 
 
 def require(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> list[float]:

@@ -7,11 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.errors import InputError
-from thalweg.ship.hull import Hull, require
+from thalweg.ship.hull import Hull, require, volume_at
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.hydrostatics import ESTIMATORS, ESTIMATORS_IF_FITTED, Estimator
-from thalweg.ship.methods.loading import displacement_at_draught
 from thalweg.ship.model import Estimate
 
 _OWN_MIDSHIP: Final = Estimator(
@@ -104,7 +102,7 @@ def hull_at(hull: Hull, loading: Loading, load_factor: float) -> Hull:
     Returns
     -------
     Hull
-        Trim kept; displaced volume from the loading, or wall-sided from the waterplane; midship
+        Trim kept; displaced volume from the loading, or by the block coefficient there; midship
         coefficient from the same bilge; wetted surface with the draught by Denny and Mumford.
 
     Raises
@@ -138,35 +136,7 @@ def hull_at(hull: Hull, loading: Loading, load_factor: float) -> Hull:
 
 def _volume_at(hull: Hull, loading: Loading, load_factor: float, draught: float) -> float:
     known = float(loading.displacement_at(load_factor))
-    full, empty = loading.displacement_full, loading.displacement_empty
-    if np.isfinite(known) and (full != empty or loading.draught_full == loading.draught_empty):
+    if np.isfinite(known):
         return known
-    return wall_sided_volume(hull, draught)
-
-
-def wall_sided_volume(hull: Hull, draught: float) -> float:
-    """Return the displaced volume [m3] at another draught [m], wall-sided from the waterplane.
-
-    Raises
-    ------
-    InputError
-        If particulars are missing that cannot be estimated, or nothing would be displaced.
-    """
-    keys = ("length_waterline_m", "breadth_m", "waterplane_coefficient", "displacement_m3")
-    hull = estimated_or_error(hull, keys, "another draught", instead="one draught")
-    length, breadth, waterplane, volume = (float(hull.values[key]) for key in keys)
-    found = float(
-        displacement_at_draught(
-            draught,
-            design_draught=float(hull.values["draught_m"]),
-            design_displacement=volume,
-            waterplane_area=waterplane * length * breadth,
-        )
-    )
-    if not found > 0.0:
-        raise InputError(
-            f"At a draught of {draught:g} m the hull would displace nothing.",
-            f"It displaces {volume:g} m3 at {hull.values['draught_m']:g} m.",
-            "Give displacement_empty_m3 under 'loading', or a deeper draught_empty_m.",
-        )
-    return found
+    (volume,) = require(hull, ("displacement_m3",), "another draught", instead="one draught")
+    return volume_at(hull, volume, at=float(hull.values["draught_m"]), draught=draught)

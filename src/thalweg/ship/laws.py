@@ -114,6 +114,7 @@ def _reference(data: Data) -> tuple[Data, Data]:
     engine, fuel, table = (data.get(name, {}) for name in ("engine", "fuel", "table"))
     if _has_reference(data) or "speed_kn" not in table:
         return engine, fuel
+    check_table(data)
     last = int(np.argmax(table["speed_kn"]))
     engine = {**engine, "reference_speed_kn": table["speed_kn"][last]}
     if "power_kw" in table:

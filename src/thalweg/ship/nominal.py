@@ -222,11 +222,10 @@ class NominalModel:
         possible = np.isfinite(speeds) & (speeds > 0)
         if not (possible & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
             raise _speed_out_of_range(speeds, low, high)
-        ratio = float(np.mean(rows[1] / rows[0]))
-        full = speeds / between(ratio, 1.0, load_factor)
-        empty = full * ratio
-        if name == "table":
-            full, empty = (np.interp(speeds, own, column) for column in rows[:2])
+        full, empty = (np.interp(speeds, own, column) for column in rows[:2])
+        if name != "table":  # beyond the settings both grow as the speed does
+            beyond = speeds / np.clip(speeds, own[0], own[-1])
+            full, empty = full * beyond, empty * beyond
         fuel, power = (_follow(name, rows[0], column, full) for column in rows[2:])
         return replace(
             self,

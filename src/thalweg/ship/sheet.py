@@ -61,8 +61,15 @@ def performance_sheet(
     Raises
     ------
     InputError
-        When the ship cannot be asked for any of the speeds.
+        When the ship cannot be asked for any of the speeds, or its speed is a field.
     """
+    if ship.speed_field is not None:
+        raise InputError(
+            f"The speed of {ship.name!r} is a field of place and time.",
+            "A sheet shows ships whose speed depends on what they meet alone.",
+            "Ask for a ship with settings, or evaluate a route with this one.",
+            ship=ship.name,
+        )
     conditions = _conditions(ship, weather or {})
     composed = hasattr(ship.model, "power_at_speed")
     speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _usual_speeds(ship)
@@ -262,7 +269,7 @@ def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
 def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
     """Carbon intensity of sailing at this speed all the time, and its rating in 2026."""
     hull = ship.data.get("hull", {})
-    kind = str(hull.get("type", "")).replace(" ", "_")
+    kind = str(hull.get("type", "")).casefold().replace(" ", "_").replace("-", "_")
     try:
         by_tonnage = cii_ship_type(kind).capacity == "gt"
         known = True
@@ -310,7 +317,7 @@ def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     def known(name: str) -> bool:
         return any(row[name] is not None for row in rows)
 
-    if ship.speed_field is not None or not ship.data:
+    if not ship.data:
         return []
     found: list[str] = []
     if hasattr(ship.model, "power_at_speed") and not known("brake_power_kw"):
@@ -330,8 +337,6 @@ def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _settings(ship: Ship, conditions: Conditions) -> list[dict[str, Any]]:
-    if ship.speed_field is not None:
-        return []
     rows = []
     for k, calm in enumerate(ship.speeds):
         rows.append(

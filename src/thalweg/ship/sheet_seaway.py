@@ -48,11 +48,15 @@ class Seaway:
 
     @classmethod
     def of(cls, ship: Ship, conditions: Conditions) -> Seaway:
-        """Take the hull's particulars as the ship's model has them."""
+        """Take the hull's particulars as the ship's model has them, at the ship's draught."""
         balance = getattr(ship.model, "balance", None)
         if balance is not None:
             return cls(ship, balance(ship.loading.load_factor).calm.hull, conditions)
-        return cls(ship, complete_hull(ship.data.get("hull", {})), conditions)
+        hull = complete_hull(ship.data.get("hull", {}))
+        afloat, sunk = {"draught_m": ship.draught}, squat_of(ship.data, hull, ship.loading)
+        if sunk is not None and ship.draught > 0.0:
+            afloat["block_coefficient"] = sunk.block_coefficient
+        return cls(ship, Hull({**hull.values, **afloat}), conditions)
 
     def squat(self, speed: float) -> tuple[dict[str, Any] | None, list[str]]:
         """Squat and clearance [m] at a speed [m/s] where the depth is known, and warnings."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import threading
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -94,7 +95,7 @@ def _write(path: Path, kept: Kept) -> None:
         arrays |= {f"grid{p}_{k}": grid for k, grid in enumerate(part.grids)}
     if finish is not None:
         arrays |= {f"finish_{name}": getattr(finish, name) for name in FIELDS}
-    draft = path.with_suffix(f".{os.getpid()}.tmp")
+    draft = path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.tmp")
     try:
         with draft.open("wb") as file:
             np.savez(file, **arrays)
