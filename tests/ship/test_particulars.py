@@ -205,6 +205,8 @@ def test_loads_beyond_an_engines_curve_are_said():
     ship = _ship(engine={"power_kw": 20000, **curve})
     notes = performance_sheet(ship, speeds_kn=[12])["conditions"][0]["warnings"]
     assert len(notes) == 1 and notes[0].endswith("outside 0.5 to 1")
+    over = performance_sheet(ship, speeds_kn=[24])["conditions"][0]["warnings"]
+    assert not [note for note in over if note.startswith("sfoc")]
 
 
 def test_settings_that_were_not_given_are_loads_the_engine_has():
@@ -276,3 +278,11 @@ def test_a_ballast_line_that_is_not_there_is_told():
     assert told["loading.condition"][0] == "twin_design"
     single = _ship({}, "hollenbach_1998_mean", loading=ballast)
     assert "loading.condition" not in _estimates(single)
+
+
+def test_a_load_factor_that_changes_nothing_is_said():
+    empty = performance_sheet(_ship().with_load_factor(0.5))["assumed"]
+    assert empty == ["load factor 0.5 changes nothing: the ship file tells no empty ship"]
+    assert performance_sheet(_ship())["assumed"] == []
+    told = _ship(loading={"draught_empty_m": 5.0})
+    assert performance_sheet(told.with_load_factor(0.5))["assumed"] == []

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.units import GRAVITY, KNOT
+from thalweg.ship.balance import Balance
 from thalweg.ship.build import FORCES, build_limits, build_loss, lightship
 from thalweg.ship.calm_parts import CALM_WATER, build_calm_water
 from thalweg.ship.hull import Hull, require
@@ -18,8 +19,9 @@ from thalweg.ship.hull_estimates import estimate, hull_at
 from thalweg.ship.kwon_on_resistance import KwonOnResistance
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model import Estimate
-from thalweg.ship.powering import Balance, Orders, ResistanceModel
-from thalweg.ship.propulsion_parts import Plant, build_plant, build_propulsion
+from thalweg.ship.plant import Plant, build_plant
+from thalweg.ship.powering import Orders, ResistanceModel
+from thalweg.ship.propulsion_parts import build_propulsion
 from thalweg.ship.squat_part import build_squat
 from thalweg.ship.weather_parts import build_waves, build_wind
 

@@ -48,7 +48,7 @@ def fuel_of_power(data: Data) -> Callable[[FloatArray], FloatArray] | None:
         sfoc, hotel = float(engine["sfoc_g_per_kwh"]), hotel_fuel(data)
         return lambda power: np.asarray(power * sfoc / 3.6e9 + hotel)
     if _follows_load(engine):
-        from thalweg.ship.propulsion_parts import build_plant  # reads the methods of engines
+        from thalweg.ship.plant import build_plant  # reads the methods of engines
 
         return build_plant(data).fuel
     return None
@@ -58,7 +58,7 @@ def fuel_estimates(data: Data) -> tuple[Estimate, ...]:
     """What `fuel_of_power` estimated."""
     if fuel_of_power(data) is None or "sfoc_g_per_kwh" in data["engine"]:
         return ()
-    from thalweg.ship.propulsion_parts import build_plant
+    from thalweg.ship.plant import build_plant
 
     return build_plant(data).estimated
 

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.units import GRAVITY
+from thalweg.ship.balance import Balance
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import Estimate
 from thalweg.ship.nominal import KwonLoss, angle_axis
-from thalweg.ship.powering import Balance, ResistanceModel, Tabulated
-from thalweg.ship.propulsion_parts import Plant
+from thalweg.ship.plant import Plant
+from thalweg.ship.powering import ResistanceModel, Tabulated
 from thalweg.ship.table import TableError, TablePart
 from thalweg.ship.tabulate import DEFAULT_AXES, Axis, tabulate_dense
 from thalweg.ship.tabulate_sum import axes_of

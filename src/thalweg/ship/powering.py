@@ -1,4 +1,4 @@
-"""Ships from their resistance: power at a speed, and speed at a power."""
+"""Ships from their resistance: the settings they can be ordered to, and what follows in weather."""
 
 from __future__ import annotations
 
@@ -10,118 +10,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.ship.calm_parts import CalmWater
+from thalweg.ship.balance import CALM, Balance, Flat, flat_calm
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.finish import Finish
 from thalweg.ship.limits import ShipLimits
-from thalweg.ship.methods.current_rudder import LARGEST_RUDDER_ANGLE, rudder_drag
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.model import Estimate, setting_index
-from thalweg.ship.propulsion_parts import Plant, Propulsion
-from thalweg.ship.solve import bracketed_root
+from thalweg.ship.plant import Plant
 from thalweg.ship.table import TableError, TablePart
 from thalweg.ship.table_store import Kept, kept_table
-from thalweg.ship.weather_parts import Waves, Wind
 
 FloatArray = NDArray[np.float64]
-Flat = Mapping[str, FloatArray]
 #: parts, their error, and what follows their sum
 Tabulated: TypeAlias = tuple[tuple[TablePart, ...], TableError, Finish | None]
 FASTEST: Final = 1.25  #: weather never takes a ship beyond this many times its calm-water speed
-_STOPPED: Final = 0.01  #: below this the weather may stop the ship altogether [m/s]
-_CALM: Final = {
-    "wind_speed": 0.0,
-    "wind_angle": 0.0,
-    "wave_height": 0.0,
-    "wave_angle": 0.0,
-    "wave_period": 10.0,
-    "depth": np.inf,
-}
-
-
-@dataclass(frozen=True, eq=False)
-class Balance:
-    """Forces on a ship at one draught, and the power that overcomes them.
-
-    Attributes
-    ----------
-    calm : CalmWater
-    propulsion : Propulsion
-    waves : Waves, optional
-    wind : Wind, optional
-    rudder_area : float
-        For the optional rudder drag [m2]; 0 without. It needs the angle between heading and course
-        (``crab_angle``), which depends on the current and on the speed itself: it counts where that
-        is known, on performance sheets and for the referee, and is not in tables, so that no route
-        is chosen by it.
-    """
-
-    calm: CalmWater
-    propulsion: Propulsion
-    waves: Waves | None = None
-    wind: Wind | None = None
-    rudder_area: float = 0.0
-
-    @property
-    def reads(self) -> frozenset[str]:
-        """Conditions that matter."""
-        depth = {"depth"} if self.calm.reads_depth else set()
-        blown = {"wind_speed", "wind_angle"} if self.wind else set()
-        return frozenset(depth | blown) | (self.waves.reads if self.waves else frozenset())
-
-    def resistance(self, at: Flat, speed: FloatArray) -> FloatArray:
-        """Total resistance [N] at speeds through water [m/s]."""
-        total = self.calm.total(speed, at["depth"])
-        if self.waves is not None:
-            total = total + self.waves.force(speed, *_sea(at))
-        if self.wind is not None:
-            total = total + self.wind.force(speed, at["wind_speed"], at["wind_angle"])
-        return total + self._rudder(at, speed)
-
-    def components(self, at: Flat, speed: FloatArray) -> dict[str, FloatArray]:
-        """Resistance by component [N]; ``total`` is their sum."""
-        zero = np.zeros(speed.shape)
-        parts = self.calm.components(speed, at["depth"])
-        parts["waves"] = zero if self.waves is None else self.waves.force(speed, *_sea(at))
-        parts["wind"] = zero
-        if self.wind is not None:
-            parts["wind"] = self.wind.force(speed, at["wind_speed"], at["wind_angle"])
-        parts["rudder"] = zero + self._rudder(at, speed)
-        return {"total": np.sum(np.broadcast_arrays(*parts.values()), axis=0), **parts}
-
-    def brake_power(self, at: Flat, speed: FloatArray) -> FloatArray:
-        """Brake power [W] at speeds through water [m/s]."""
-        return self.propulsion.brake_power(speed, self.resistance(at, speed))
-
-    def speed_at_power(self, at: Flat, power: FloatArray, highest: FloatArray) -> FloatArray:
-        """Speed through water [m/s] at brake powers [W], at most ``highest``; 1-D arrays."""
-        target = np.cbrt(power)
-
-        def excess(speed: FloatArray, index: NDArray[np.intp]) -> FloatArray:
-            here = {name: values[index] for name, values in at.items()}
-            return np.cbrt(self.brake_power(here, speed)) - target[index]
-
-        low = np.zeros(power.shape)
-        # at rest only a propeller at the bollard takes power: less than ordered, unless stopped
-        root = bracketed_root(excess, low, highest, at_low=-target, tolerance=1e-4)
-        slow = np.flatnonzero(root < _STOPPED)
-        root[slow] = np.where(excess(low[slow], slow) >= 0.0, 0.0, root[slow])
-        return root
-
-    def notes(self, at: Flat, speed: FloatArray) -> list[RangeNote]:
-        """Where methods are outside their ranges."""
-        found = [*self.calm.notes(speed, at["depth"]), *self.propulsion.notes]
-        rough = at["wave_height"] > 0.0
-        if self.waves is not None and rough.any():
-            height, angle = at["wave_height"][rough], at["wave_angle"][rough]
-            found += self.waves.notes_of(speed[rough], height, angle)
-        return found
-
-    def _rudder(self, at: Flat, speed: FloatArray) -> FloatArray | float:
-        if self.rudder_area <= 0.0 or "crab_angle" not in at:
-            return 0.0
-        turned = np.minimum(np.abs(at["crab_angle"]), LARGEST_RUDDER_ANGLE)
-        return rudder_drag(speed, turned, rudder_area=self.rudder_area)
 
 
 @dataclass(frozen=True)
@@ -242,7 +144,7 @@ class ResistanceModel:
 
     def resistance(self, conditions: Conditions, speed: ArrayLike) -> dict[str, FloatArray]:
         """Resistance by component [N] at speeds through water [m/s]; see `Balance.components`."""
-        names = list(self.balance(1.0).components(_flat_calm(1), np.ones(1)))
+        names = list(self.balance(1.0).components(flat_calm(1), np.ones(1)))
         columns = []
         for name in names:
 
@@ -325,7 +227,7 @@ class ResistanceModel:
         InputError
             If the engine cannot reach a speed in calm water, or it is not positive.
         """
-        flat = _flat_calm(len(speeds))
+        flat = flat_calm(len(speeds))
         balance = self.balance(load_factor)
         possible = np.isfinite(speeds) & (speeds > 0.0)
         power = balance.brake_power(flat, np.where(possible, speeds, 1.0))
@@ -337,7 +239,7 @@ class ResistanceModel:
         return replace(self, orders=orders, _kept={})
 
     def _calm_speeds(self, load_factor: float, powers: FloatArray) -> FloatArray:
-        balance, flat = self.balance(load_factor), _flat_calm(len(powers))
+        balance, flat = self.balance(load_factor), flat_calm(len(powers))
         length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
         highest = np.full(len(powers), 0.6 * np.sqrt(9.80665 * length))
         return balance.speed_at_power(flat, powers, highest)
@@ -376,7 +278,7 @@ class ResistanceModel:
         """Apply a function of flat conditions, once for every load factor there is."""
         shape = np.broadcast_shapes(conditions.shape, which.shape)
         names = [n for n in (*self.reads, "crab_angle") if n in self.reads or n in conditions]
-        at = {name: np.full(int(np.prod(shape)), value) for name, value in _CALM.items()}
+        at = {name: np.full(int(np.prod(shape)), value) for name, value in CALM.items()}
         at |= {name: np.broadcast_to(conditions[name], shape).ravel() for name in names}
         chosen = np.broadcast_to(which, shape).ravel().astype(float)
         load = np.broadcast_to(conditions.load_factor, shape).ravel()
@@ -387,14 +289,6 @@ class ResistanceModel:
             balance = self.balance(float(factor))
             result[here] = function(balance, part, chosen[here], float(factor))
         return result.reshape(shape)
-
-
-def _sea(at: Flat) -> tuple[FloatArray, FloatArray, FloatArray]:
-    return at["wave_height"], at["wave_period"], at["wave_angle"]
-
-
-def _flat_calm(count: int) -> dict[str, FloatArray]:
-    return {name: np.full(count, value) for name, value in _CALM.items()}
 
 
 def _unreachable(speeds: FloatArray, power: FloatArray, limit: float) -> InputError:

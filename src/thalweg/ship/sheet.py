@@ -50,7 +50,8 @@ def performance_sheet(
     dict
         Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component, which
         add up to its ``total``; what Hollenbach's method has besides friction, all of it pressure,
-        stands under ``wave_making``;
+        stands under ``wave_making``; with Kwon's speed loss the resistance is that of calm water at
+        the speed, the power that of the calm speed behind it;
         ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
         ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``assumed[]`` (period
         and directions of weather that were not given), ``warnings[]`` (speeds
@@ -89,7 +90,7 @@ def performance_sheet(
         "draught_m": ship.draught,
         "load_factor": ship.loading.load_factor,
         "weather": {name: _number(value) for name, value in (weather or {}).items()},
-        "assumed": [*_assumed(weather or {}), *_left_aside(ship)],
+        "assumed": [*_assumed(weather or {}), *_left_aside(ship), *_unloaded(ship)],
         "conditions": rows,
         "warnings": [*left_out, *_unfelt(ship, weather or {}), *_beyond(ship, weather or {})],
         "missing": _missing(ship, rows),
@@ -121,6 +122,10 @@ def _assumed(weather: Mapping[str, float]) -> list[str]:
     for size, angle, words in _SIZED:
         if weather.get(size, 0.0) > 0.0 and angle not in weather:
             found.append(f"{words} from ahead")
+        if size not in weather and angle in weather:
+            found.append(f"no {words}, since only a direction is told")
+    if "wave_height" not in weather and "wave_period" in weather:
+        found.append("no waves, since only a period is told")
     return found
 
 
@@ -309,6 +314,15 @@ def _left_aside(ship: Ship) -> list[str]:
     chain = data.get("models", {}).get("propulsion", "efficiencies")
     idle = set_aside(data.get("propulsion", {}), chain)
     return [*found, *(f"propulsion.{key} is left aside" for key in idle)]
+
+
+def _unloaded(ship: Ship) -> list[str]:
+    """Say that a ship with one draught is the same at every load factor."""
+    own, given = ship.loading, ship.data.get("loading", {})
+    differs = {"draught_empty_m", "speeds_empty_kn", "displacement_empty_m3", "weight_empty_t"}
+    if not ship.data or own.load_factor == 1.0 or differs & given.keys():
+        return []
+    return [f"load factor {own.load_factor:g} changes nothing: the ship file tells no empty ship"]
 
 
 def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:

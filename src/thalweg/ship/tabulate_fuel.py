@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.ship.balance import Balance
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.finish import Finish
 from thalweg.ship.fuel_of_power import hotel_power
 from thalweg.ship.model import ShipModel
-from thalweg.ship.powering import Balance, ResistanceModel
+from thalweg.ship.powering import ResistanceModel
 from thalweg.ship.table import PerformanceTable, TableError, TablePart
 from thalweg.ship.table_store import Kept
 from thalweg.ship.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense

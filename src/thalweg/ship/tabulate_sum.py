@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from thalweg.core.errors import ModelRangeError
 from thalweg.kernels import codes
 from thalweg.kernels.tables import FINER
+from thalweg.ship.balance import Balance
 from thalweg.ship.finish import Finish
 from thalweg.ship.limits import ShipLimits
-from thalweg.ship.powering import FASTEST, Balance, ResistanceModel
+from thalweg.ship.powering import FASTEST, ResistanceModel
 from thalweg.ship.solve import bracketed_root
 from thalweg.ship.table import PerformanceTable, TableError, TablePart
 from thalweg.ship.table_store import Kept
