@@ -116,6 +116,8 @@ def test_inspect(capsys, currents):
         (["--ship", "handysize-bulker", "--sea", "CURRENTS"], 3, "eastward_wind"),
         (["--ship", "SHIP", "--sea", "nowhere.nc"], 2, "nowhere.nc"),
         (["--ship", "SHIP", "--calm", "--fill", "tea=2"], 2, "currents=0"),
+        (["--ship", "SHIP", "--calm", "--fill", "wind=0"], 2, "Both --calm and --fill"),
+        (["--ship", "SHIP", "--sea", "CURRENTS", "--fill", "waves=-1"], 2, "not below 0"),
     ],
 )
 def test_mistakes_have_exit_codes_and_no_traceback(capsys, ship, currents, extra, code, words):

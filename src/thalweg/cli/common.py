@@ -101,8 +101,13 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     from thalweg.sea import Sea
 
     policies = dict(_policy(text) for text in arguments.fill)
-    if arguments.calm and arguments.sea:
-        raise InputError("Both --calm and --sea are given.", "", "Choose one.")
+    for option, given in (("--sea", arguments.sea), ("--fill", arguments.fill)):
+        if arguments.calm and given:
+            raise InputError(
+                f"Both --calm and {option} are given.",
+                "A calm sea has no wind, waves or currents anywhere.",
+                "Choose one.",
+            )
     if not arguments.calm and not arguments.sea:
         raise InputError(
             "No sea is given.",

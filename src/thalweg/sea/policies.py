@@ -34,10 +34,13 @@ def policy_values(policy: str, value: float | tuple[float, float]) -> dict[str, 
     names = FILLABLE[policy]
     numbers = np.atleast_1d(np.asarray(value, float))
     is_pair = numbers.size == 2 and len(names) == 2
-    if not np.isfinite(numbers).all() or not (is_pair or numbers.size == 1):
+    least = 0.0 if policy in ("waves", "ice") else -np.inf
+    sound = np.isfinite(numbers).all() and (numbers >= least).all()
+    if not sound or not (is_pair or numbers.size == 1):
         raise InputError(
             f"{policy} cannot be filled with {value!r}.",
-            "Give one finite number, or (east, north) for currents and wind.",
+            "Give one finite number (waves and ice not below 0), or (east, north) for currents "
+            "and wind.",
             f"For example filled({policy}=0.0).",
         )
     if is_pair:
