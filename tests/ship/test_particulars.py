@@ -286,3 +286,28 @@ def test_a_load_factor_that_changes_nothing_is_said():
     assert performance_sheet(_ship())["assumed"] == []
     told = _ship(loading={"draught_empty_m": 5.0})
     assert performance_sheet(told.with_load_factor(0.5))["assumed"] == []
+
+
+def test_an_emptier_hull_keeps_its_trim_and_loses_wetted_surface():
+    hull = {"draught_fore_m": 6.0, "draught_aft_m": 8.0, "wetted_surface_m2": 3000.0}
+    hull |= {"length_waterline_m": 122.0}
+    loading = {"draught_full_m": 7.0, "draught_empty_m": 5.0, "displacement_empty_m3": 7200.0}
+    afloat = _ship(hull, loading=loading).model.balance(0.0).calm.hull.values
+    assert (afloat["draught_fore_m"], afloat["draught_aft_m"]) == (4.0, 6.0)
+    full = 0.72 * 120 * 18 * 7  # S of Denny and Mumford is 1.7 L T + volume / T
+    change = 1.7 * 122.0 * (5.0 - 7.0) + 7200.0 / 5.0 - full / 7.0
+    assert afloat["wetted_surface_m2"] == pytest.approx(3000.0 + change)
+
+
+def test_the_wake_is_that_of_the_draught_at_the_propeller():
+    screw = {"propeller_diameter_m": 4.5, "propeller_pitch_ratio": 0.8}
+    screw |= {"propeller_blades": 4, "propeller_area_ratio": 0.6}
+    models = {"calm_water": "holtrop_1984", "propulsion": "wageningen_b"}
+
+    def wake(**ends):
+        ship = Ship.from_dict({**_data(ends, propulsion=screw), "models": models})
+        return _estimates(ship)["wake_fraction"][0]
+
+    even, trimmed = wake(), wake(draught_fore_m=6.2, draught_aft_m=7.8)
+    assert even == wake(draught_fore_m=7.0, draught_aft_m=7.0)
+    assert abs(trimmed / even - 1.0) > 0.01

@@ -89,7 +89,8 @@ def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
         name: np.array([row["resistance_n"][name] for row in rows], float) / 1000.0
         for name in _PARTS
     }
-    shown = [name for name in _PARTS if np.abs(parts[name]).max() > 0.0]
+    most = max(abs(row["resistance_n"]["total"]) for row in rows) / 1000.0
+    shown = [name for name in _PARTS if np.abs(parts[name]).max() > 1e-9 * most]
     if len(rows) == 1:
         return _bars(axes, _title(sheet), {n: float(parts[n][0]) for n in shown}, float(speed[0]))
     up = [np.maximum(parts[name], 0.0) for name in shown]
