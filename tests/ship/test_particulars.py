@@ -311,3 +311,9 @@ def test_the_wake_is_that_of_the_draught_at_the_propeller():
     even, trimmed = wake(), wake(draught_fore_m=6.2, draught_aft_m=7.8)
     assert even == wake(draught_fore_m=7.0, draught_aft_m=7.0)
     assert abs(trimmed / even - 1.0) > 0.01
+
+
+def test_an_empty_displacement_that_is_given_asks_for_no_other():
+    loading = {"draught_full_m": 7.0, "draught_empty_m": 0.1, "weight_empty_t": 102.5}
+    data = {"name": "x", "hull": HULL, "speeds_kn": [12.0], "loading": loading}
+    assert Ship.from_dict(data).with_load_factor(0.0).loading.displacement == pytest.approx(100.0)

@@ -94,12 +94,14 @@ def build_loading(data: Data, hull: Hull) -> Loading:
             "Correct or leave out one of them.",
             key="loading.displacement_full_m3",
         )
-    light = None if empty == full else volume_at(hull, displaced, at=full, draught=empty)
+    light = displaced
+    if empty != full and not {"displacement_empty_m3", "weight_empty_t"} & given.keys():
+        light = volume_at(hull, displaced, at=full, draught=empty)
     return Loading(
         draught_full=full,
         draught_empty=empty,
         displacement_full=displaced,
-        displacement_empty=_volume(given, "empty", light, displaced),
+        displacement_empty=_volume(given, "empty", light),
         load_factor=given.get("load_factor", 1.0),
         condition=given.get("condition", "loaded"),
         capacity=given.get("capacity_m3", math.nan),
@@ -136,15 +138,13 @@ def _no_draught(data: Data, hull: Hull) -> InputError:
     )
 
 
-def _volume(
-    given: Data, state: str, hull_volume: float | None, otherwise: float = math.nan
-) -> float:
+def _volume(given: Data, state: str, hull_volume: float | None) -> float:
     """Displaced volume [m3] from a volume, or from a weight in sea water."""
     if f"displacement_{state}_m3" in given:
         return float(given[f"displacement_{state}_m3"])
     if f"weight_{state}_t" in given:
         return float(given[f"weight_{state}_t"]) * TONNE / SEA_WATER_DENSITY
-    return otherwise if hull_volume is None else hull_volume
+    return math.nan if hull_volume is None else hull_volume
 
 
 def build_model(data: Data, hull: Hull, loading: Loading) -> ShipModel:

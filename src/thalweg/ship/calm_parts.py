@@ -164,15 +164,17 @@ def _named(**known: FloatArray) -> dict[str, FloatArray]:
     return {name: known.get(name, zero) for name in COMPONENTS}
 
 
-_FORM_KEYS = (
+#: what a `HullForm` is made from
+FORM_KEYS: Final = (
     *("length_waterline_m", "breadth_m", "draught_m", "displacement_m3"),
     *("midship_coefficient", "waterplane_coefficient", "lcb_percent"),
 )
 _END_KEYS = ("bulb_area_m2", "bulb_centre_height_m", "transom_area_m2", "appendage_area_m2")
 
 
-def _form(hull: Hull) -> HullForm:
-    numbers = {key: float(hull.values[key]) for key in _FORM_KEYS}
+def form_of(hull: Hull) -> HullForm:
+    """The hull as Holtrop's methods take it; all of `FORM_KEYS` must be known."""
+    numbers = {key: float(hull.values[key]) for key in FORM_KEYS}
     return hull_form(
         length_waterline=numbers["length_waterline_m"],
         breadth=numbers["breadth_m"],
@@ -203,8 +205,8 @@ def _with_shape(hull: Hull, form: HullForm) -> Hull:
 
 def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> CalmWater:
     name = "holtrop_mennen_1982" if year == 1982 else "holtrop_1984"
-    hull = estimated_or_error(hull, (*_FORM_KEYS, *_END_KEYS), name, instead="another method")
-    form = _form(hull)
+    hull = estimated_or_error(hull, (*FORM_KEYS, *_END_KEYS), name, instead="another method")
+    form = form_of(hull)
     if hull.number("wetted_surface_m2") is None:
         own = float(wetted_surface(form, bulb_area=float(hull.values["bulb_area_m2"])))
         hull = hull.with_estimates(Estimate("wetted_surface_m2", own, "Holtrop and Mennen (1982)"))

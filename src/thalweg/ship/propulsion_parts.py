@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name
-from thalweg.ship.calm_parts import stern_shape
+from thalweg.ship.calm_parts import FORM_KEYS, form_of, stern_shape
 from thalweg.ship.hull import Hull
 from thalweg.ship.hull_estimates import estimated_or_error
 from thalweg.ship.methods.friction import ittc_1957, reynolds_number
-from thalweg.ship.methods.holtrop_form import HullForm, form_factor_1984, hull_form
+from thalweg.ship.methods.holtrop_form import HullForm, form_factor_1984
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.methods.propeller_b_series import Propeller, b_series_validity
 from thalweg.ship.methods.propulsion import (
@@ -126,7 +126,9 @@ def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
         blades=int(given["propeller_blades"]),
     )
     count = int(given.get("propellers", 1))
-    form, hull = _form(hull)
+    wanted = (*FORM_KEYS, "wetted_surface_m2")
+    hull = estimated_or_error(hull, wanted, "wageningen_b", instead="propulsion: efficiencies")
+    form = form_of(hull)
     factors, guessed = _interaction(hull, form, given, screw, count)
     losses, lost = _losses(given)
 
@@ -154,26 +156,6 @@ def _losses(given: Mapping[str, Any]) -> tuple[dict[str, float], tuple[Estimate,
         Estimate(key, value, "usual value") for key, value in usual.items() if key not in given
     )
     return {key: float(given.get(key, value)) for key, value in usual.items()}, guessed
-
-
-def _form(hull: Hull) -> tuple[HullForm, Hull]:
-    keys = (
-        *("length_waterline_m", "breadth_m", "draught_m", "displacement_m3"),
-        *("midship_coefficient", "waterplane_coefficient", "lcb_percent"),
-    )
-    wanted = (*keys, "wetted_surface_m2")
-    hull = estimated_or_error(hull, wanted, "wageningen_b", instead="propulsion: efficiencies")
-    values = {key: float(hull.values[key]) for key in keys}
-    form = hull_form(
-        length_waterline=values["length_waterline_m"],
-        breadth=values["breadth_m"],
-        draught=values["draught_m"],
-        displacement=values["displacement_m3"],
-        midship_coefficient=values["midship_coefficient"],
-        waterplane_coefficient=values["waterplane_coefficient"],
-        lcb_percent=values["lcb_percent"],
-    )
-    return form, hull
 
 
 def _interaction(

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import unknown_name
+from thalweg.ship.calm_parts import FORM_KEYS, form_of
 from thalweg.ship.hull import Hull, require
 from thalweg.ship.hull_estimates import estimated_or_error
-from thalweg.ship.methods.holtrop_form import hull_form, length_of_run
+from thalweg.ship.methods.holtrop_form import length_of_run
 from thalweg.ship.methods.notes import RangeNote
 from thalweg.ship.methods.waves import (
     head_sector_validity,
@@ -145,11 +146,7 @@ def _stawave_2(hull: Hull) -> Waves:
 
 
 def _snnm(hull: Hull) -> Waves:
-    form_keys = (
-        *("length_waterline_m", "displacement_m3", "midship_coefficient"),
-        *("waterplane_coefficient", "lcb_percent"),
-    )
-    keys = (*_WAVE_KEYS, *form_keys)
+    keys = (*_WAVE_KEYS, *FORM_KEYS)
     hull = estimated_or_error(hull, keys, "snnm", instead="stawave_1")
     length, breadth, _, block = (float(hull.values[key]) for key in _WAVE_KEYS)
     hull = _with_ends(hull).with_estimates(_GYRATION)
@@ -179,12 +176,8 @@ def _snnm(hull: Hull) -> Waves:
 
 def _with_ends(hull: Hull) -> Hull:
     """The hull with lengths of entrance and run [m], estimated when not given."""
-    names = ("length_waterline", "breadth", "draught", "displacement")
-    keys = ("length_waterline_m", "breadth_m", "draught_m", "displacement_m3")
-    more = ("midship_coefficient", "waterplane_coefficient", "lcb_percent")
-    numbers = [float(hull.values[key]) for key in (*keys, *more)]
-    form = hull_form(**dict(zip((*names, *more), numbers)))
-    entrance = _ENTRANCE * (1.0 - float(form.prismatic_coefficient)) * numbers[0]
+    form = form_of(hull)
+    entrance = float(_ENTRANCE * (1.0 - form.prismatic_coefficient) * form.length)
     run = float(length_of_run(form))
     return hull.with_estimates(
         Estimate("length_entrance_m", entrance, f"{_ENTRANCE:g} (1 - C_P) L_WL, ours"),
