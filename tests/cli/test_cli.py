@@ -85,6 +85,22 @@ def test_a_written_route_can_be_evaluated(capsys, tmp_path, ship, currents):
         assert scored["time_h"] == pytest.approx(found["routes"][0]["time_h"], rel=1e-5)
 
 
+def test_the_waits_of_a_route_are_totalled(capsys, tmp_path, ship):
+    path = tmp_path / "waits.csv"
+    path.write_text("lat,lon,time,waiting_h\n52,3,2026-01-01T00:00Z,0.5\n52.1,3,,1.25\n52.2,3,,\n")
+    world = ["evaluate", str(path), "--ship", ship, "--calm", "--coast", "none"]
+    code, scored = run_json(capsys, *world)
+    assert code == 0
+    assert scored["waiting_h"] == 1.75
+    assert [row["waiting_h"] for row in scored["waypoints"]] == [0.5, 1.25, 0.0]
+    assert main(world) == 0
+    told = capsys.readouterr().out
+    assert f"{scored['time_h']:.2f} h with 1.75 h waiting" in told
+    path.write_text("lat,lon,time\n52,3,2026-01-01T00:00Z\n52.2,3,\n")
+    assert main(world) == 0
+    assert "waiting" not in capsys.readouterr().out
+
+
 def test_plan_for_a_person(capsys, ship):
     code = main(
         ["plan", HERE, THERE, "--ship", ship, "--calm", "--coast", "none", "--speed", "8",

@@ -105,6 +105,17 @@ def test_gaps_are_not_seen_and_what_they_cut_is_not_whole():
     assert names[0] == "loading" and "not seen" not in names
 
 
+def test_work_with_a_gap_long_enough_for_a_trip_is_not_whole():
+    """Loading, 11 hours unseen, loading again: nobody knows how long it loaded."""
+    frame = sail((BEACH, 60), (PIT, 900), (BEACH, 60))
+    minute = (frame.time - frame.time.iloc[0]).dt.total_seconds() / 60
+    names, found = kinds(frame[(minute < 400) | (minute > 1060)])
+    assert names[2] == "loading" and found[2].duration > 15 * 3600.0
+    assert not found[2].whole and found[1].whole and found[3].whole
+    names, found = kinds(frame[(minute < 400) | (minute > 425)])  # 25 minutes: no trip is so short
+    assert names[2] == "loading" and found[2].whole
+
+
 def test_the_ends_of_a_track():
     names, found = kinds(sail((MIDDLE, 1), (BEACH, 60), (MIDDLE, 1)))
     assert names == ["sailing full", "unloading", "sailing empty"]

@@ -1,7 +1,9 @@
 """Dredging projects: from a file to cycles, totals and files."""
 
 import csv
+import itertools
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,14 +11,20 @@ import xarray as xr
 import yaml
 
 from tests.conftest import data_file
+from thalweg import Chart, Sea
 from thalweg.cli.main import main
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
+from thalweg.core.geodesy import direct, distance, inverse
 from thalweg.core.time import parse_time
+from thalweg.operations.cycles import Leg
+from thalweg.operations.estuary import bed_depth
 from thalweg.operations.loading_curves import Pumping
 from thalweg.operations.project import Project
 from thalweg.operations.project_files import example_file, open_project, open_things
 from thalweg.operations.project_pictures import draw_routes
+from thalweg.operations.project_result import ROWS, finished_run
 from thalweg.operations.run_project import run_project
+from thalweg.operations.sailing_legs import _corners
 
 WEEK = 604800.0
 
@@ -58,6 +66,36 @@ def test_every_leg_keeps_the_clearance_in_the_referees_fine_steps(result):
                 assert leg.route.feasible
                 assert leg.clearance >= 1.0 - 1e-9
                 assert leg.route.samples["under_keel_clearance"].min() >= 1.0 - 1e-9
+
+
+def test_hours_of_a_duration_never_round_to_a_day():
+    written = {key: how for key, _, how in ROWS}["duration_days"]
+    assert [written(v) for v in (3.999, 0.5, 1.0, 24.98 / 24.0)] == [
+        "4 d 0 h", "0 d 12 h", "1 d 0 h", "1 d 1 h",
+    ]  # fmt: skip
+
+
+def test_the_least_clearance_is_unknown_where_that_of_a_leg_is(result):
+    cycles = list(result.optimised.cycles)
+    known = cycles[1].back.route
+    blind = replace(
+        known,
+        legs={**known.legs, "under_keel_clearance": np.full(len(known.legs["length"]), np.nan)},
+    )
+    cycles[1] = replace(cycles[1], back=Leg(blind, 0.0))
+    run = finished_run("x", cycles, project=result.project, ship=result.world.ship)
+    assert run.totals["least_clearance_m"] is None
+
+
+def test_the_mean_load_factor_is_that_of_the_volumes():
+    """Cycles times mean load is the volume; the last cycle carries what is left."""
+    project = Project.from_dict(example(base_case=None, volume_m3=15_000, load_factors=[0.5, 1.0]))
+    ship, sea, chart = open_things(project)
+    run = run_project(project, ship=ship, sea=sea, chart=chart).optimised
+    last = run.cycles[-1]
+    assert last.volume < last.load_factor * 4000.0
+    moved = run.totals["cycles"] * run.totals["mean_load_factor"] * 4000.0
+    assert moved == pytest.approx(15_000.0)
 
 
 def test_legs_run_between_the_sites_with_the_right_load(result):
@@ -105,6 +143,25 @@ def test_totals_add_up(result):
         assert totals["co2_kg_m3"] == pytest.approx(1000.0 * totals["co2_t"] / 14_000.0)
 
 
+def test_fuel_burnt_in_a_wait_is_counted_once():
+    """Sailing by the referee; hotel load lying still, at work or waiting; pumps at the engine's."""
+    route = example()["base_case"]["route"]
+    asked = example(volume_m3=12_000, base_case={"route": route, "load_factor": 1.0})
+    project = Project.from_dict(asked)
+    ship, sea, chart = open_things(project)
+    result = run_project(project, ship=ship, sea=sea, chart=chart)
+    assert sum(leg.waiting for c in result.base.cycles for leg in c.legs) > 3600.0
+    for run in result.runs:
+        legs = [leg for cycle in run.cycles for leg in cycle.legs]
+        sailing = sum(float(leg.route.legs["fuel"].sum()) for leg in legs)
+        work = sum(cycle.loading + cycle.unloading for cycle in run.cycles)
+        still = work + sum(leg.waiting for leg in legs)
+        pumped = sum(1500e3 * c.loading + 2000e3 * c.unloading for c in run.cycles)
+        hotel = result.world.ship.waiting_fuel_rate * still
+        expected = sailing + hotel + pumped * 200.0 / 3.6e9  # 200 g/kWh
+        assert run.totals["fuel_t"] == pytest.approx(expected / 1000.0, rel=1e-9)
+
+
 def test_cost_is_that_of_van_halem(result):
     """lambda_t t + lambda_f t V^3 (equation 3.5), the second term only under way."""
     run = result.optimised
@@ -114,6 +171,22 @@ def test_cost_is_that_of_van_halem(result):
         for leg, speed in ((cycle.out, full), (cycle.back, 12.0 * 1852.0 / 3600.0)):
             total += 0.008 * (leg.duration - leg.waiting) * speed**3
     assert run.totals["cost"] == pytest.approx(total, rel=1e-9)
+
+
+def test_corners_keep_a_way_along_a_parallel_near_its_nodes():
+    """A geodesic of 60 km between places on a parallel runs 90 m off it; over the date line too."""
+    for west in (3.0, 179.6):
+        lon = (west + np.linspace(0.0, 0.9, 200) + 180.0) % 360.0 - 180.0
+        lat = np.full(200, 52.0)
+        keep = np.flatnonzero(_corners(lat, lon))
+        assert 8 <= len(keep) <= 25
+        for a, b in itertools.pairwise(keep.tolist()):
+            along, _, _ = inverse(lat[a], lon[a], lat[a:b], lon[a:b])
+            course = float(inverse(lat[a], lon[a], lat[b], lon[b])[1])
+            there = direct(lat[a], lon[a], course, along)
+            assert np.max(distance(*there, lat[a:b], lon[a:b])) < 0.51
+        straight = _corners(*direct(52.0, west, 1.0, np.linspace(0.0, 60e3, 100)))
+        assert np.flatnonzero(straight).tolist() == [0, 99]
 
 
 def test_the_load_chosen_produces_most(result):
@@ -203,6 +276,13 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"load": [95.0, 3.0]}, "load"),
         ({"unload": "there"}, "unload is 'there'"),
         ({"rings": 7}, "rings is 7"),
+        ({"rings": True}, "rings is True"),
+        ({"detour": 1.0}, "detour is 1"),
+        ({"spacing_m": 0}, "spacing_m is 0"),
+        ({"margin_m": -1}, "margin_m is -1"),
+        ({"min_ukc_m": 200}, "min_ukc_m is 200"),
+        ({"days": 1e7}, r"days is 1e\+07"),
+        ({"start": 20260501}, "start is the number 20260501"),
         ({"volumes": 1}, "no project entry named 'volumes'"),
         ({"start": None}, "lacks start"),
         ({"base_case": {"route": [[51.7, 3.5]]}}, "no way"),
@@ -265,6 +345,63 @@ def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
         run_project(project, ship=ship, sea=sea, chart=chart)
     assert "The data end 2026-01-01T11:00:00Z." in caught.value.possible
     assert "nothing from 2026-01-01T01:30:00Z to 2026-01-01T10:00:00Z" in caught.value.possible
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"sea": 5}, r"sea is \[5\]"),
+        ({"sea": [1, "a.nc"]}, "sea is"),
+        ({"sea": "a.nc", "map": "crs"}, "map is 'crs'"),
+        ({"sea": "a.nc", "tides": 3}, r"tides is \[3\]"),
+        ({"tides": True}, "tides is given for the synthetic-estuary"),
+        ({"coast": "i"}, "coast is given for the synthetic-estuary"),
+        ({"coast": "x", "sea": "a.nc"}, "There is no file 'a.nc'"),
+    ],
+)
+def test_a_sea_that_cannot_be_is_refused(changes, words):
+    with pytest.raises(InputError, match=words):
+        open_things(Project.from_dict(example(**changes)))
+
+
+def test_a_base_case_that_leaves_the_data_says_where():
+    north = [51.7449, 3.579], [51.72, 3.70], [51.72, 3.74], [51.6596, 3.6514]
+    project = Project.from_dict(example(base_case={"route": [list(place) for place in north]}))
+    ship, sea, _ = open_things(project)
+    chart = Chart.open_water(51.0, 52.0, 3.0, 4.0)  # wider than the sea, which ends at 3.724 E
+    with pytest.raises(NoRouteError, match="base case") as caught:
+        run_project(project, ship=ship, sea=Sea.layered(sea, bed()), chart=chart)
+    assert "not known on its route at 51.72" in caught.value.possible
+    assert caught.value.details["nearest"][1] == pytest.approx(3.724, abs=0.005)
+
+
+def bed():
+    """Return the bed of the estuary as a sea of its own, known as far as 3.724 E."""
+    return Sea.from_functions(
+        {
+            "sea_floor_depth_below_geoid": lambda time, lat, lon: np.where(
+                lon < 3.724, bed_depth(lat, lon), np.nan
+            )
+        }
+    )
+
+
+def test_ways_are_drawn_over_no_water_where_the_chart_has_land(result):
+    west, south, east, north = 3.62, 51.72, 3.66, 51.74
+    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+    land = Chart.from_geojson({"type": "Polygon", "coordinates": [ring]}).with_depth(
+        bed_depth, spacing_deg=0.001
+    )
+    figure = draw_routes(replace(result, world=replace(result.world, chart=land)))
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())
+
+    def colour(lat, lon):
+        x, y = figure.axes[0].transData.transform((lon, lat))
+        return pixels[len(pixels) - 1 - int(y), int(x), :3].tolist()
+
+    assert colour(51.73, 3.64) == [0xD9, 0xD4, 0xC8]
+    assert colour(51.73, 3.47) != [0xD9, 0xD4, 0xC8]
 
 
 def test_no_sea_is_never_assumed():

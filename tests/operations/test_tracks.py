@@ -1,13 +1,16 @@
 """Models against measured tracks, on made tracks whose truth is known."""
 
 import json
+import warnings
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import distance
 from thalweg.core.units import KNOT
 from thalweg.operations.synthetic_tracks import Cycle, synthetic_track
 from thalweg.operations.track_model import calibrate, leg_speeds, over_ground, spread
@@ -208,6 +211,24 @@ def test_over_ground_undoes_through_water(analysis):
     assert np.isnan(over_ground(pieces, 1e-3, 5.0)).any()
     legs = leg_speeds(pieces, pieces.speed)
     assert calibrate(pieces.part(pieces.leg < 2)) is None and len(legs) == 24
+
+
+def test_a_ship_that_lies_dead_still_on_its_way_has_no_course_there():
+    """Eight minutes are no wait, but hold a piece of no length: its leg is still compared."""
+    minutes = np.arange(0.0, 180.0)
+    way = np.interp(minutes, [30, 70, 78, 118], [0.0, 0.5, 0.5, 1.0])
+    table = pd.DataFrame(
+        {"time": 1.77e9 + 60.0 * minutes, "lat": 52.3 - 0.2 * way, "lon": 4.0 + 0.2 * way}
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = analyse_tracks(table, CYCLE.areas, sea=TIDAL)
+    legs = found.leg_frame()
+    assert len(legs) == 1 and (found.pieces.speed > 0.0).all()
+    length = float(distance(52.3, 4.0, 52.1, 4.2))
+    # of the stop three minutes at most are left, in the piece that sails on
+    assert 0.98 * length / (88.0 * 60.0) < legs.speed_kn[0] * KNOT < length / (80.0 * 60.0)
+    assert np.isfinite(legs["currents [kn]"][0])
 
 
 def test_tracks_that_cannot_be_made():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.planning.map_picture import Box, draw_map
 from thalweg.planning.profile_picture import draw_profile
@@ -34,3 +35,30 @@ def test_pictures_across_the_antimeridian(tmp_path):
     profile = draw_profile(found.best, tmp_path / "profile.png")
     assert [a.get_ylabel() for a in profile.axes] == ["speed [kn]", "clearance [m]"]
     assert (tmp_path / "map.png").stat().st_size > 10_000
+
+
+def lines_in_a_map(figure, south, north, west, east):
+    """Return how many points of contour lines lie in a box."""
+    from matplotlib.contour import ContourSet
+
+    points = [
+        np.concatenate([path.vertices for path in found.get_paths()])
+        for found in figure.axes[0].collections
+        if isinstance(found, ContourSet) and not found.filled
+    ]
+    x, y = np.concatenate(points).T
+    return int(((x > west) & (x < east) & (y > south) & (y < north)).sum())
+
+
+def test_isochrones_end_at_the_land_that_a_mesh_leaves_out():
+    """Coronado is a hole in the mesh of San Diego Bay, and there is no coastline."""
+    path = data_file("tide/adh_sandiego_waterlevel_ugrid_30min.nc")
+    sea = Sea.open(path, mapping={"crs": "EPSG:32611"})
+    voyage = Voyage(
+        start=(32.65, -117.25), goal=(32.70, -117.165), depart="2000-01-01T01:00Z", min_ukc_m=0.5
+    )
+    chart = Chart.open_water(32.5, 32.8, -117.4, -117.0)
+    found = plan(voyage, ship=Ship.load("hopper-dredger"), sea=sea, chart=chart, network="mesh")
+    figure = draw_map(found)
+    assert lines_in_a_map(figure, 32.695, 32.705, -117.205, -117.190) == 0
+    assert lines_in_a_map(figure, 32.640, 32.680, -117.235, -117.190) > 10

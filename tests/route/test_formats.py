@@ -135,9 +135,26 @@ def test_geojson_points_and_plain_lines(tmp_path):
     assert read_track(path, depart=0).lon.tolist() == [1.0, 2.0, 3.0]
 
 
+def lines(*coordinates):
+    features = [
+        {"type": "Feature", "geometry": {"type": "LineString", "coordinates": line}}
+        for line in coordinates
+    ]
+    return json.dumps({"type": "FeatureCollection", "features": features})
+
+
+def test_geojson_lines_that_go_on_are_one_route_and_others_are_not(tmp_path):
+    path = tmp_path / "a.geojson"
+    path.write_text(lines([[1, 50], [2, 51]], [[2, 51], [3, 50]], [[1, 50], [3, 49], [3, 50]]))
+    assert read_track(path, depart=0).positions == [(50.0, 1.0), (51.0, 2.0), (50.0, 3.0)]
+    path.write_text(lines([[179, 10], [180, 11]], [[-180, 11], [-179, 12]]))
+    assert read_track(path, depart=0).positions == [(10.0, 179.0), (12.0, -179.0)]
+
+
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
+        ("a.csv", 'lat,lon\n1,"2\n' + "3,4\n" * 40_000, "field larger"),
         ("a.csv", "", "no columns"),
         ("a.csv", "foo,bar\n1,2\n", "no columns"),
         ("a.csv", "lat,lon\n1,2\n", "1 waypoint"),

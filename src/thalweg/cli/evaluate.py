@@ -56,8 +56,9 @@ def _show(route: Any) -> None:
 
     console = Console()
     print_waypoints(console, route.waypoints(), "the route as given")
+    waits = f" with {route.waiting_h:.2f} h waiting" if route.waiting_h > 0.0 else ""
     fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
-    console.print(f"[bold]{route.time_h:.2f} h, {route.distance_nm:.1f} nm{fuel}[/bold]")
+    console.print(f"[bold]{route.time_h:.2f} h{waits}, {route.distance_nm:.1f} nm{fuel}[/bold]")
     for violation in route.violations:
         console.print(f"[red]violation:[/red] {violation}", soft_wrap=True)
     if route.feasible:

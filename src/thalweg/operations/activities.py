@@ -68,7 +68,8 @@ class Activity:
     trip : int
         Number of the trip between areas it belongs to (its sailing and its waits); -1 for none.
     whole : bool
-        Whether the track tells all of it: it is not cut off by the ends of the track or by a gap.
+        Whether the track tells all of it: it is not cut off by the ends of the track or by a gap,
+        and there is no gap in it in which the ship may have left and come back.
     """
 
     kind: str
@@ -116,7 +117,8 @@ def find_activities(
             "Check the areas (longitude first in GeoJSON) and the ship.",
         )
     kinds, trips, whole = _kinds(log, where, rules)
-    return tuple(_activities(log, kinds, trips, whole))
+    away = log.broken & (np.diff(log.time) > rules.short_trip)
+    return tuple(_activities(log, kinds, trips, whole, away))
 
 
 def _runs(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]:
@@ -186,9 +188,16 @@ def _edges(log: TrackLog) -> FloatArray:
 
 
 def _activities(
-    log: TrackLog, kinds: list[str], trips: list[int], whole: list[bool]
+    log: TrackLog,
+    kinds: list[str],
+    trips: list[int],
+    whole: list[bool],
+    away: NDArray[np.bool_],
 ) -> list[Activity]:
-    """Return stretches of one activity; intervals in which the ship was not seen apart."""
+    """Return stretches of one activity; intervals in which the ship was not seen apart.
+
+    What holds an interval of ``away``, a gap long enough for a trip, is not whole.
+    """
     segment = np.concatenate([[0], np.cumsum(_unseen(log, kinds))]).tolist()
     edges = _edges(log)
     found: list[Activity] = []
@@ -204,7 +213,7 @@ def _activities(
         told = (
             inside and segment[first] == segment[first - 1] and segment[last] == segment[last + 1]
         )
-        complete = told and all(whole[first : last + 1])
+        complete = told and all(whole[first : last + 1]) and not away[first:last].any()
         found.append(Activity(kinds[first], start, end, first, last, trips[first], complete))
     return found
 

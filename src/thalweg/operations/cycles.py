@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.core.units import HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route import Route
 
 
@@ -20,7 +20,7 @@ class Leg:
     route : Route
         As the referee sailed it.
     energy : float
-        Brake energy under way [J]; NaN if the ship's power is unknown.
+        Brake energy under way, without hotel load [J]; NaN if the ship's power is unknown.
     """
 
     route: Route
@@ -59,9 +59,15 @@ class Leg:
 
     @property
     def fuel(self) -> float:
-        """Fuel burnt under way [kg]; NaN if unknown."""
+        """Fuel burnt under way, waits and hotel load included [kg]; NaN if unknown."""
         tonnes = self.route.fuel_t
-        return math.nan if tonnes is None else 1000.0 * tonnes
+        return math.nan if tonnes is None else TONNE * tonnes
+
+    @property
+    def co2(self) -> float:
+        """Carbon dioxide of that fuel [kg]; NaN if unknown."""
+        tonnes = self.route.co2_t
+        return math.nan if tonnes is None else TONNE * tonnes
 
 
 @dataclass(frozen=True, eq=False)

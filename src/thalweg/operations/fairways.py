@@ -20,6 +20,7 @@ from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY
 from thalweg.operations.cycles import Leg
 from thalweg.operations.project import Sites
+from thalweg.operations.project_entries import MOST_DAYS
 from thalweg.operations.project_world import World, open_ways, project_network
 from thalweg.operations.sailing_legs import LegSailor
 from thalweg.planning.door import check_kinds
@@ -108,14 +109,19 @@ class Fairways:
         Raises
         ------
         InputError
-            For a period, clearance or number of steps that cannot be.
+            For a period or number of steps that cannot be, or what `Sites` refuses.
         """
         first = parse_time(start)
         voyage = Voyage(start=(0.0, 0.0), goal=(0.0, 1.0), depart=first, min_ukc_m=min_ukc)
         check_kinds(voyage, ship, sea, chart)
-        if not (isinstance(days, (int, float)) and 0.0 < days < 4000.0):
-            raise InputError(f"A period of {days!r} days cannot be.", "More than 0.", "Correct it.")
-        if not (isinstance(load_steps, int) and 1 <= load_steps <= 100):
+        if not (isinstance(days, (int, float)) and 0.0 < days <= MOST_DAYS):
+            raise InputError(
+                f"A period of {days!r} days cannot be.",
+                f"More than 0 and at most {MOST_DAYS:g}.",
+                "Correct it.",
+            )
+        whole = isinstance(load_steps, int) and not isinstance(load_steps, bool)
+        if not (whole and 1 <= load_steps <= 100):
             raise InputError(f"load_steps is {load_steps!r}.", "1 to 100.", "Give 10.")
         nowhere = (math.nan, math.nan)
         sites = Sites(nowhere, nowhere, min_ukc, margin, spacing, rings, detour)

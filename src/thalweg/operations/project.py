@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from thalweg.core.errors import InputError, unknown_name
-from thalweg.core.geodesy import Position, check_position, distance
-from thalweg.core.time import format_time, parse_time
+from thalweg.core.geodesy import Position, distance
+from thalweg.core.time import format_time
 from thalweg.core.units import DAY
 from thalweg.operations.loading_curves import Pumping
+from thalweg.operations.project_entries import (
+    check_clearance,
+    days_of,
+    factors_of,
+    place_of,
+    positive,
+    start_of,
+)
 
 LARGEST_FILE = 1_000_000  #: bytes
-MOST_FACTORS = 201
 BEST = "best"
 _AT_SITE = 250.0  # how far from the sites the route of the base case may start and end [m]
 
@@ -40,6 +44,11 @@ class Sites:
         Neighbours a node is joined to: 1, 2 or 3 rings of triangles.
     detour : float
         Water is looked at where the way over it is at most so many times the direct distance.
+
+    Raises
+    ------
+    InputError
+        For a clearance, margin, spacing, number of rings or detour that cannot be.
     """
 
     load: Position
@@ -49,6 +58,20 @@ class Sites:
     spacing: float | None = None
     rings: int = 3
     detour: float = 3.0
+
+    def __post_init__(self) -> None:
+        check_clearance("min_ukc_m", self.min_ukc)
+        check_clearance("margin_m", self.margin)
+        if self.spacing is not None:
+            positive({"spacing_m": self.spacing}, "spacing_m")
+        if type(self.rings) is not int or self.rings not in (1, 2, 3):
+            raise InputError(
+                f"rings is {self.rings!r}.", "1, 2 or 3.", "Choose one.", field="rings"
+            )
+        if positive({"detour": self.detour}, "detour") < 1.2:
+            raise InputError(
+                f"detour is {self.detour:g}.", "It is at least 1.2.", "Give 3.", field="detour"
+            )
 
 
 @dataclass(frozen=True)
@@ -134,21 +157,21 @@ class Project:
             and load factors that cannot be.
         """
         _check_keys(data)
-        volume, hopper = _positive(data, "volume_m3"), _positive(data, "hopper_m3")
+        volume, hopper = positive(data, "volume_m3"), positive(data, "hopper_m3")
         work = Work(
             volume=volume,
             hopper=hopper,
             loading=Pumping.from_data(data["loading"], hopper, "loading"),
             unloading=Pumping.from_data(data["unloading"], hopper, "unloading"),
-            load_factors=_factors(data.get("load_factors", 11)),
+            load_factors=factors_of(data.get("load_factors", 11)),
         )
         sites = _sites(data)
         return cls(
             name=str(data.get("name", "dredging project")),
             sites=sites,
             work=work,
-            start=parse_time(data["start"]),
-            days=_positive(data, "days", 35.0),
+            start=start_of(data["start"]),
+            days=days_of(data),
             ship=data.get("ship", "hopper-dredger"),
             world={key: data[key] for key in _WORLD if key in data},
             base=_base(data.get("base_case"), sites),
@@ -240,27 +263,21 @@ def _check_keys(data: Mapping[str, Any]) -> None:
 
 
 def _sites(data: Mapping[str, Any]) -> Sites:
-    rings = data.get("rings", 3)
-    if rings not in (1, 2, 3):
-        raise InputError(f"rings is {rings!r}.", "1, 2 or 3.", "Choose one.", field="rings")
-    load, unload = _place(data["load"], "load"), _place(data["unload"], "unload")
+    load, unload = place_of(data["load"], "load"), place_of(data["unload"], "unload")
     if load == unload:
         raise InputError(
             "Loading and unloading site are the same place.",
             "A project sails between two.",
             "Give two places.",
         )
-    detour = _positive(data, "detour", 3.0)
-    if detour < 1.2:
-        raise InputError(f"detour is {detour:g}.", "It is at least 1.2.", "Give 3.", field="detour")
     return Sites(
         load=load,
         unload=unload,
-        min_ukc=_not_negative(data, "min_ukc_m", 0.0),
-        margin=_not_negative(data, "margin_m", 0.01),
-        spacing=_positive(data, "spacing_m") if data.get("spacing_m") is not None else None,
-        rings=int(rings),
-        detour=detour,
+        min_ukc=data.get("min_ukc_m", 0.0),
+        margin=data.get("margin_m", 0.01),
+        spacing=data.get("spacing_m"),
+        rings=data.get("rings", 3),
+        detour=data.get("detour", 3.0),
     )
 
 
@@ -276,7 +293,7 @@ def _base(data: Any, sites: Sites) -> BaseCase | None:
     for key in data:
         if key not in ("route", "load_factor"):
             raise unknown_name("entry of the base case", str(key), ("route", "load_factor"))
-    route = tuple(_place(place, f"base_case.route[{k}]") for k, place in enumerate(data["route"]))
+    route = tuple(place_of(place, f"base_case.route[{k}]") for k, place in enumerate(data["route"]))
     if len(route) < 2:
         raise InputError(
             "The route of the base case is no way.", "Two places or more.", "Add the others."
@@ -306,56 +323,6 @@ def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
                 f"Let it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
                 field="base_case.route",
             )
-
-
-def _factors(value: Any) -> tuple[float, ...]:
-    """Return load factors, ascending: a list, or a number of even steps from 0 to 1."""
-    if isinstance(value, int) and not isinstance(value, bool) and 2 <= value <= MOST_FACTORS:
-        return tuple(round(float(x), 12) for x in np.linspace(0.0, 1.0, value))
-    listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value)
-    if not listed or not all(
-        isinstance(x, (int, float)) and not isinstance(x, bool) and 0.0 <= x <= 1.0 for x in value
-    ):
-        raise InputError(
-            f"load_factors is {value!r}.",
-            f"A list of shares from 0 to 1, or how many even steps (2 to {MOST_FACTORS}).",
-            "Write load_factors: 11.",
-            field="load_factors",
-        )
-    found = tuple(sorted({float(x) for x in value}))
-    if found[-1] <= 0.0 or len(found) > MOST_FACTORS:
-        raise InputError("With no load nothing is moved.", "", "Give a load factor above 0.")
-    return found
-
-
-def _place(value: Any, what: str) -> Position:
-    try:
-        lat, lon = value
-        return check_position(float(lat), float(lon), what)
-    except (TypeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(
-            f"{what} is {value!r}.", "A place is [lat, lon] in degrees.", "", field=what
-        ) from None
-
-
-def _positive(data: Mapping[str, Any], name: str, otherwise: float | None = None) -> float:
-    value = data.get(name, otherwise)
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or value <= 0.0:  # type: ignore[arg-type]
-        raise InputError(
-            f"{name} is {value!r}.", "It is a number above zero.", "Correct it.", field=name
-        )
-    return float(value)  # type: ignore[arg-type]
-
-
-def _not_negative(data: Mapping[str, Any], name: str, otherwise: float) -> float:
-    value = data.get(name, otherwise)
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not 0.0 <= value < 100.0:
-        raise InputError(f"{name} is {value!r}.", "It is 0 to 100 m.", "Correct it.", field=name)
-    return float(value)
 
 
 def _beside(data: dict[str, Any], folder: Path) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import resources
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,34 +46,57 @@ def open_things(project: Project) -> tuple[Ship, Sea, Chart]:
         if isinstance(project.ship, Mapping)
         else Ship.load(project.ship)
     )
-    sea, chart = _sea(project.world), None
-    if sea is None:
-        from thalweg.operations.estuary import synthetic_estuary
+    if project.world.get("sea") != ESTUARY:
+        return ship, _sea(project.world), _chart(project.world, None)
+    from thalweg.operations.estuary import synthetic_estuary
 
-        estuary = synthetic_estuary()
-        sea, chart = estuary.sea, estuary.chart
-    return ship, sea, _chart(project.world, chart)
+    _refuse_beside_estuary(project.world)
+    estuary = synthetic_estuary()
+    return ship, estuary.sea, _chart(project.world, estuary.chart)
 
 
-def _sea(world: Mapping[str, Any]) -> Sea | None:
+def _sea(world: Mapping[str, Any]) -> Sea:
     from thalweg.sea import Sea
 
-    given = world.get("sea")
-    if given == ESTUARY:
-        return None
-    if not given:
+    files, mapping, tides = _listed(world.get("sea")), world.get("map"), world.get("tides")
+    if not files or not all(files):
         raise InputError(
             "The project names no sea.",
             f"sea: is a file, a list of files, or {ESTUARY}.",
             "Add it: weather and tides are never assumed.",
             field="sea",
         )
-    files = [given] if isinstance(given, str) else list(given)
-    sea = Sea.open(*files, mapping=world.get("map"))
-    tides = world.get("tides")
+    _check_names("sea", files, f"It is a file, a list of files, or {ESTUARY}.")
+    if not (mapping is None or isinstance(mapping, Mapping)):
+        raise InputError(
+            f"map is {mapping!r}.",
+            "It says what is what in the files, such as map: {crs: 'EPSG:32611'}.",
+            "Write it that way.",
+            field="map",
+        )
+    named = [] if isinstance(tides, bool) else _listed(tides)
+    _check_names("tides", named, "It is true, or a list of constituents such as [M2, S2].")
+    sea = Sea.open(*files, mapping=mapping)
     if not tides:
         return sea
-    return Sea.from_tides(sea, constituents=None if tides is True else _listed(tides))
+    return Sea.from_tides(sea, constituents=None if tides is True else named)
+
+
+def _check_names(what: str, given: list[Any], possible: str) -> None:
+    if not all(isinstance(name, (str, PathLike)) for name in given):
+        raise InputError(f"{what} is {given!r}.", possible, "Write it that way.", field=what)
+
+
+def _refuse_beside_estuary(world: Mapping[str, Any]) -> None:
+    """Raise `InputError` for entries that a made-up world has no use for."""
+    for what in ("map", "tides", "coast"):
+        if world.get(what) not in (None, False, "none"):
+            raise InputError(
+                f"{what} is given for the {ESTUARY}.",
+                "It has its own tides and rim, and no files.",
+                f"Leave {what} out, or name a sea of your own.",
+                field=what,
+            )
 
 
 def _chart(world: Mapping[str, Any], chart: Chart | None) -> Chart:

@@ -129,13 +129,13 @@ def _loads(result: ProjectResult, axes: Any) -> None:
     from thalweg.operations.project_result import load_factor_counts
 
     factors = np.array(result.project.work.load_factors)
-    width = 0.4 * float(np.diff(factors).min()) if len(factors) > 1 else 0.04
+    width = min(0.08, 0.4 * float(np.diff(factors).min())) if len(factors) > 1 else 0.04
     shift = -0.5 * width * (len(result.runs) - 1)
     for number, run in enumerate(result.runs):
         values, counts = load_factor_counts(run)
         at = np.array(values) + shift + number * width
         axes.bar(at, counts, width=width, color=_COLOURS.get(run.name), label=run.name)
-    axes.set(xlabel="load factor", ylabel="cycles", xlim=(-0.05, 1.08))
+    axes.set(xlabel="load factor", ylabel="cycles", xlim=(-0.1, 1.1))
     axes.legend(fontsize=8, frameon=False)
 
 
@@ -222,7 +222,7 @@ def _bundle(run: Run, axes: Any, colour: str, last: float) -> Any:
 
 
 def _depth(result: ProjectResult, axes: Any) -> Any:
-    """Draw the depth of chart or sea behind the ways."""
+    """Draw the depth of chart or sea behind the ways; nothing where the chart lets no ship."""
     from thalweg.sea import names as nm
 
     (west, east), (south, north) = axes.get_xlim(), axes.get_ylim()
@@ -234,6 +234,7 @@ def _depth(result: ProjectResult, axes: Any) -> Any:
     if nm.BED_DEPTH in sea.variables:
         time = np.full(lat.shape, result.project.start)
         depth = np.fmin(depth, sea.sample([nm.BED_DEPTH], time, lat, lon)[nm.BED_DEPTH])
+    depth = np.where(chart.is_navigable(lat, lon), depth, np.nan)
     if not np.isfinite(depth).any():
         return None
     axes.set_facecolor(_UNKNOWN)

@@ -29,7 +29,7 @@ _PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel, where the ship file tel
 #: Rows of the table: key, words, how to print.
 ROWS = (
     ("production_m3_week", "production [1000 m3/week]", lambda v: f"{v / 1000:.1f}"),
-    ("duration_days", "duration", lambda v: f"{int(v)} d {24 * (v % 1):.0f} h"),
+    ("duration_days", "duration", lambda v: "{} d {} h".format(*divmod(round(24 * v), 24))),
     ("cycles", "cycles", lambda v: f"{v:d}"),
     ("distance_m", "sailed distance [1000 km]", lambda v: f"{v / 1e6:.2f}"),
     ("mean_load_factor", "mean load factor", lambda v: f"{v:.2f}"),
@@ -180,9 +180,9 @@ def finished_run(
         "duration_days": duration / DAY,
         "cycles": len(cycles),
         "distance_m": sum(leg.distance for leg in legs),
-        "mean_load_factor": sum(c.load_factor for c in cycles) / len(cycles),
+        "mean_load_factor": volume / (len(cycles) * project.work.hopper),
         **{key: value / duration for key, value in shares.items()},
-        "least_clearance_m": _known(min(leg.clearance for leg in legs)),
+        "least_clearance_m": _known(float(np.min([leg.clearance for leg in legs]))),
         **_burnt(cycles, project, ship),
     }
     broken = sum(not leg.route.feasible for leg in legs)
@@ -193,21 +193,18 @@ def finished_run(
 
 def _burnt(cycles: list[Cycle], project: Project, ship: Ship) -> dict[str, float | None]:
     """Return energy, fuel, CO2 and cost; None where the ship file does not tell."""
-    duration = cycles[-1].end - cycles[0].start
-    engine, work = ship.data.get("engine", {}), project.work
-    hotel = 1000.0 * float(engine.get("hotel_load_kw", 0.0)) * duration
+    work, engine = project.work, ship.data.get("engine", {})
+    hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
     pumps = sum(c.loading * work.loading.power + c.unloading * work.unloading.power for c in cycles)
     propulsion = sum(leg.energy for c in cycles for leg in c.legs)
-    waiting = sum(leg.waiting for c in cycles for leg in c.legs)
-    still = waiting + sum(c.loading + c.unloading for c in cycles)
     sfoc = float(engine.get("sfoc_g_per_kwh", _PRIME_MOVER_SFOC)) / 3.6e9  # kg/J
-    fuel = sum(leg.fuel for c in cycles for leg in c.legs)
-    fuel += still * ship.waiting_fuel_rate + pumps * sfoc
-    co2 = fuel * ship.fuel_terms.carbon_outside
+    at_work = sum(c.loading + c.unloading for c in cycles) * ship.waiting_fuel_rate + pumps * sfoc
+    fuel = at_work + sum(leg.fuel for c in cycles for leg in c.legs)
+    co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
     volume = sum(c.volume for c in cycles)
     return {
         "energy_gj": _known((propulsion + hotel + pumps) / 1e9),
-        "hotel_gj": _known((propulsion * 0.0 + hotel) / 1e9),
+        "hotel_gj": None if math.isnan(propulsion) else _known(hotel / 1e9),
         "fuel_t": _known(fuel / TONNE),
         "co2_t": _known(co2 / TONNE),
         "co2_kg_m3": _known(co2 / volume),

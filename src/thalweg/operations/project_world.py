@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+LINE = "line"  #: kind of the network of a charted way
 _LINE_SPACING = 300.0  # of the nodes of a charted way [m]
 _BED_SAMPLES = 8  # looks at the bed per spacing of the network
 _SAME_PLACE = 1.0  # [m]
@@ -207,10 +208,11 @@ def _near(
     number[use] = 2 + np.arange(int(use.sum()))
     if use.sum() < 3:
         raise InputError(
-            "The mesh of the sea has no nodes around the sites.",
+            "The mesh of the sea has no nodes around the sites, which are "
+            f"{direct_way:,.0f} m apart.",
             f"It holds {lat.size} nodes between {lat.min():.3f} and {lat.max():.3f} N, "
             f"{lon.min():.3f} and {lon.max():.3f} E.",
-            "Choose sites inside.",
+            "Choose sites inside it, farther apart than its nodes.",
         )
     # a triangle counts where all its nodes do; those at a site itself are taken for that site
     for place, node in ((to_load, 0), (to_unload, 1)):
@@ -256,7 +258,7 @@ def line_network(chart: Chart, route: Sequence[Position]) -> Network:
             "Correct base_case.route.",
         )
     pairs = measure(lat, lon, first, first + np.int32(1))
-    meta = NetworkMeta("line", _LINE_SPACING, 2, 0.0, start=0, goal=len(lat) - 1)
+    meta = NetworkMeta(LINE, _LINE_SPACING, 2, 0.0, start=0, goal=len(lat) - 1)
     stations = Stations(lat, lon, len(lat))
     return assemble(chart, stations, pairs, no_samples(len(first)), meta=meta)
 

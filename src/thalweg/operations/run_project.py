@@ -15,6 +15,7 @@ from thalweg.kernels import codes
 from thalweg.operations.project import BEST, Project
 from thalweg.operations.project_result import ProjectResult, Run, finished_run
 from thalweg.operations.project_world import (
+    LINE,
     Tell,
     Ways,
     World,
@@ -28,6 +29,7 @@ from thalweg.planning.voyage import Voyage
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.network import Network
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
@@ -182,6 +184,14 @@ def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteEr
     open_to = _passable_depth(ways, loaded)
     asked = f"No tide opens a way with load factor {load_factor:g} ({name})."
     if not math.isfinite(open_to):
+        unknown = _first_unknown(ways.network) if ways.network.meta.kind == LINE else None
+        if unknown is not None:
+            return NoRouteError(
+                asked,
+                f"The depth of the water is not known on its route at {format_position(*unknown)}.",
+                "Correct base_case.route, or give data that reach there.",
+                nearest=unknown,
+            )
         return NoRouteError(
             asked, "The sites are not joined by water at all.", "Check the chart and the detour."
         )
@@ -209,6 +219,15 @@ def _passable_depth(ways: Ways, loaded: Any) -> float:
         open_way = ways.passages(loaded, full=True, extra_depth=middle - required).shortest
         low, high = (middle, high) if open_way < math.inf else (low, middle)
     return low
+
+
+def _first_unknown(network: Network) -> Position | None:
+    """Return where the first edge begins whose depth is not known, from the loading site on."""
+    unknown = np.flatnonzero(np.isnan(network.depth))
+    if not len(unknown):
+        return None
+    node = int(np.minimum(network.tails(), network.target)[unknown].min())
+    return float(network.lat[node]), float(network.lon[node])
 
 
 def _bottleneck(ways: Ways, depth: float) -> tuple[Position, float]:

@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.network.frame import unit_vectors
 from thalweg.operations.cycles import Leg, leg_energy
 from thalweg.operations.project_world import Loaded, Ways, World
 from thalweg.route import Route, Track, evaluate
@@ -19,7 +21,6 @@ FloatArray = NDArray[np.float64]
 CAREFUL = (0.0, 0.05, 0.2, 0.5)
 LARGEST_STEP = 600.0  #: twice the referee's coarser step at most [m]
 _ASIDE = 0.5  # nodes so near the line between their neighbours are no waypoints [m]
-_METRES = 111_000.0  # of a degree
 
 
 class LegSailor:
@@ -126,16 +127,14 @@ def track_of_passage(ways: Ways, passage: Passage, setting: int, *, corners: boo
 
 def _corners(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
     """Return which nodes of a way are needed so that it stays within `_ASIDE` of all of them."""
-    scale = math.cos(math.radians(float(lat.mean())))
-    x, y = _METRES * scale * (lon - lon[0]), _METRES * (lat - lat[0])
+    points = unit_vectors(lat, lon)
     keep = np.zeros(len(lat), bool)
     keep[[0, -1]] = True
     first = 0
     for last in range(2, len(lat)):
-        inside = slice(first + 1, last)
-        dx, dy = x[last] - x[first], y[last] - y[first]
-        aside = np.abs(dx * (y[inside] - y[first]) - dy * (x[inside] - x[first]))
-        if aside.max() > _ASIDE * math.hypot(dx, dy):
+        across = np.cross(points[first], points[last])  # of the great circle between them
+        aside = MEAN_RADIUS * np.abs(points[first + 1 : last] @ across)
+        if aside.max() > _ASIDE * float(np.linalg.norm(across)):
             first = last - 1
             keep[first] = True
     return keep

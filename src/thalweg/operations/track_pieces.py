@@ -102,7 +102,8 @@ def cut_pieces(
     Returns
     -------
     Pieces
-        With the chords' velocities. Legs with fewer than two positions have none.
+        With the chords' velocities. Legs with fewer than two positions have none, and a ship that
+        ends a piece where it began it has no course: such pieces are left out.
     """
     speeds = log.speeds()
     rows = [
@@ -114,6 +115,9 @@ def cut_pieces(
     table = np.array(rows, dtype=np.int64).reshape(-1, 4)
     leg, kind, first, last = table.T
     way, course, _ = inverse(log.lat[first], log.lon[first], log.lat[last], log.lon[last])
+    moved = way > 0.0
+    leg, kind, first, last = table[moved].T
+    way, course = way[moved], course[moved]
     took = log.time[last] - log.time[first]
     middle = 0.5 * (log.time[first] + log.time[last])
     lat, lon = _midpoints(log, first, last)

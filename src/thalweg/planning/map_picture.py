@@ -114,8 +114,8 @@ def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box)
         np.linspace(box.west, box.east, 240), np.linspace(box.south, box.north, 180)
     )
     reached = _passage_times(plan, world, box, lat, lon)
-    on_water = np.asarray(world.chart.is_navigable(lat, wrap_longitude(lon)), bool)
     moment = np.where(np.isfinite(reached), reached, plan.best.depart)
+    on_water = _on_water(world, moment, lat, wrap_longitude(lon))
     shown = _shade(world, moment, lat, lon)
     if shown is not None:
         values, label, colours = shown
@@ -125,6 +125,18 @@ def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box)
         bar.ax.tick_params(labelsize=7)
     _draw_arrows(axes, world, moment, lat, lon)
     _draw_isochrones(axes, plan, reached, (lat, lon), on_water)
+
+
+def _on_water(
+    world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+) -> np.ndarray:
+    """Return where there is water: not on the chart's land, nor dry, nor in holes of a mesh."""
+    wet = np.asarray(world.chart.is_navigable(lat, lon), bool)
+    depth = _depth(world, moment, lat, lon)
+    if depth is None:
+        return wet
+    hole = np.isnan(depth) if world.sea.mesh() is not None else False
+    return np.asarray(wet & ~hole & ~(depth <= 0.0))
 
 
 def _passage_times(

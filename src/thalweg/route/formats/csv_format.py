@@ -32,7 +32,12 @@ def parse_csv(text: str) -> ParsedTrack:
     """
     header_line = text.lstrip().partition("\n")[0]
     separator = max(",;\t", key=header_line.count)
-    rows = [row for row in csv.reader(io.StringIO(text.lstrip()), delimiter=separator) if row]
+    try:
+        rows = [row for row in csv.reader(io.StringIO(text.lstrip()), delimiter=separator) if row]
+    except csv.Error as error:
+        raise InputError(
+            f"The CSV cannot be read: {error}.", "", "Check its quotes and that it is a table."
+        ) from None
     header = [_bare(name) for name in rows[0]] if rows else []
     lat, lon = _column(header, "lat"), _column(header, "lon")
     if lat is None or lon is None:

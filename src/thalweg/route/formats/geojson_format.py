@@ -22,7 +22,8 @@ _KINDS = "LineString, MultiLineString or Points"
 def parse_geojson(text: str) -> ParsedTrack:
     """Read the first line of a GeoJSON text, or its points in order.
 
-    Lines cut at the antimeridian are joined again. Where there are both lines and points, the
+    Lines that go on where the one before ends are one, and lines cut at the antimeridian are joined
+    again; other lines are other routes. Where there are both lines and points, the
     points are taken if there are two or more (they are the waypoints, with their ``waiting_h`` and
     ``ordered_speed_kn``), else the lines.
 
@@ -37,23 +38,21 @@ def parse_geojson(text: str) -> ParsedTrack:
         raise InputError(
             f"The GeoJSON cannot be read: {error}.", "", "Check that the file is whole."
         ) from None
-    lines: list[list[Any]] = []
+    lines: list[list[list[Any]]] = []
     points: list[tuple[Any, dict[str, Any]]] = []
     first_time = None
     for geometry, properties in _geometries(data):
         kind, coordinates = geometry.get("type"), geometry.get("coordinates")
         if kind == "LineString":
-            lines.append(_listed(coordinates))
+            lines.append([_listed(coordinates)])
         elif kind == "MultiLineString":
-            lines += [_listed(line) for line in _listed(coordinates)]
+            lines.append([_listed(line) for line in _listed(coordinates)])
         elif kind in ("Point", "MultiPoint"):
             places = [coordinates] if kind == "Point" else _listed(coordinates)
             points += [(place, properties if kind == "Point" else {}) for place in places]
         if first_time is None and properties.get("time", properties.get("depart")):
             first_time = parse_time(str(properties.get("time", properties.get("depart"))))
-    on_line: list[tuple[Any, dict[str, Any]]] = [
-        (position, {}) for line in lines for position in line
-    ]
+    on_line: list[tuple[Any, dict[str, Any]]] = [(position, {}) for position in _first_line(lines)]
     chosen = points if len(points) > 1 else on_line
     if not chosen:
         raise InputError(
@@ -64,6 +63,21 @@ def parse_geojson(text: str) -> ParsedTrack:
         return ParsedTrack(_without_cuts(positions), first_time)
     orders = [order_of(told, i) for i, (_, told) in enumerate(chosen, start=1)]
     return ParsedTrack(positions, first_time, orders)
+
+
+def _first_line(lines: list[list[list[Any]]]) -> list[Any]:
+    """Return the positions of the first line, with the lines that go on where it ends."""
+    found: list[Any] = []
+    for parts in lines:
+        line = [position for part in parts for position in part]
+        if found and line and not _goes_on(_position(found[-1], 1), _position(line[0], 1)):
+            break
+        found += line
+    return found
+
+
+def _goes_on(end: Position, start: Position) -> bool:
+    return end[0] == start[0] and (end[1] - start[1]) % 360.0 == 0.0
 
 
 def write_geojson(route: Route, path: str | Path) -> None:

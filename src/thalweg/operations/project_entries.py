@@ -1,0 +1,89 @@
+"""Entries of a project as they stand in its file: numbers, places and times, checked one by one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position, check_position
+from thalweg.core.time import parse_time
+
+MOST_FACTORS = 201
+MOST_DAYS = 4000.0  #: that can be looked ahead
+
+
+def factors_of(value: Any) -> tuple[float, ...]:
+    """Return load factors, ascending: a list, or a number of even steps from 0 to 1."""
+    if isinstance(value, int) and not isinstance(value, bool) and 2 <= value <= MOST_FACTORS:
+        return tuple(round(float(x), 12) for x in np.linspace(0.0, 1.0, value))
+    listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value)
+    if not listed or not all(
+        isinstance(x, (int, float)) and not isinstance(x, bool) and 0.0 <= x <= 1.0 for x in value
+    ):
+        raise InputError(
+            f"load_factors is {value!r}.",
+            f"A list of shares from 0 to 1, or how many even steps (2 to {MOST_FACTORS}).",
+            "Write load_factors: 11.",
+            field="load_factors",
+        )
+    found = tuple(sorted({float(x) for x in value}))
+    if found[-1] <= 0.0 or len(found) > MOST_FACTORS:
+        raise InputError("With no load nothing is moved.", "", "Give a load factor above 0.")
+    return found
+
+
+def start_of(value: Any) -> float:
+    """Return a start [s]; a bare number is refused: 20260501 would be seconds since 1970."""
+    if isinstance(value, (int, float)):
+        raise InputError(
+            f"start is the number {value!r}.",
+            "Times are ISO 8601 in UTC, such as 2026-01-01T06:30Z.",
+            "Write the time that way.",
+            field="start",
+        )
+    return parse_time(value)
+
+
+def days_of(data: Mapping[str, Any]) -> float:
+    """Return how many days are looked ahead."""
+    days = positive(data, "days", 35.0)
+    if days > MOST_DAYS:
+        raise InputError(
+            f"days is {days:g}.", f"At most {MOST_DAYS:g} are looked ahead.", "Look fewer days."
+        )
+    return days
+
+
+def place_of(value: Any, what: str) -> Position:
+    """Return a (lat, lon) [deg]."""
+    try:
+        lat, lon = value
+        return check_position(float(lat), float(lon), what)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            f"{what} is {value!r}.", "A place is [lat, lon] in degrees.", "", field=what
+        ) from None
+
+
+def positive(data: Mapping[str, Any], name: str, otherwise: float | None = None) -> float:
+    """Return the number above zero under a name."""
+    value = data.get(name, otherwise)
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or not math.isfinite(value) or value <= 0.0:  # type: ignore[arg-type]
+        raise InputError(
+            f"{name} is {value!r}.", "It is a number above zero.", "Correct it.", field=name
+        )
+    return float(value)  # type: ignore[arg-type]
+
+
+def check_clearance(name: str, value: Any) -> None:
+    """Raise `InputError` for a depth that no clearance has [m]."""
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or not 0.0 <= value < 100.0:
+        raise InputError(f"{name} is {value!r}.", "It is 0 to 100 m.", "Correct it.", field=name)
