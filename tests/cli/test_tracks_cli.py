@@ -81,6 +81,14 @@ def test_without_a_sea_there_are_activities_and_speeds(folder, capsys):
     assert "sailing full:" in capsys.readouterr().out
 
 
+def test_names_with_brackets_are_printed_as_they_are(folder, tmp_path, capsys):
+    text = (folder / "ais.csv").read_text()
+    path = tmp_path / "odd.csv"
+    path.write_text(text.replace("244000000", "MV [/red] [kn]"))
+    assert main(["tracks", str(path), *asked(folder)[2:]]) == 0
+    assert "MV [/red] [kn]: 2026-01-01T00:00:00Z" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("more", "told"),
     [
@@ -91,6 +99,7 @@ def test_without_a_sea_there_are_activities_and_speeds(folder, capsys):
         (["--slow", "-1"], "not negative"),
         (["--fastest", "0"], "positive"),
         (["--longest-gap", "nan"], "positive"),
+        (["--time-format", "%Q"], "time format '%Q' cannot be used"),
     ],
 )
 def test_what_cannot_be_is_refused(folder, more, told, capsys):

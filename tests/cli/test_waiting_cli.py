@@ -88,6 +88,9 @@ def test_a_sea_from_a_file_must_last_long_enough(tmp_path, capsys):
         (["--hotel-kw", "-3"], "hotel-kw"),
         (["--calm"], "Choose one"),
         (["--step", "0"], "step"),
+        (["--fill", "wind=3"], "--fill is given with --north-sea"),
+        (["--average-over", "5"], "--average-over is given with --north-sea"),
+        (["--map", "crs=EPSG:4326"], "--map is given with --north-sea"),
     ],
 )
 def test_what_cannot_be_is_refused(wrong, told, capsys):

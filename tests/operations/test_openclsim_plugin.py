@@ -158,6 +158,23 @@ def test_a_given_duration_is_taken_at_its_word(yard):
     assert yard.vessel.legs == []
 
 
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"margin": -5.0}, "margin_m is -5"),
+        ({"spacing": 0}, "spacing_m is 0"),
+        ({"rings": 7}, "rings is 7"),
+        ({"detour": 0.1}, "detour is 0.1"),
+        ({"days": 1e6}, "days cannot be"),
+        ({"load_steps": True}, "load_steps is True"),
+    ],
+)
+def test_fairways_that_cannot_be_are_refused(estuary, fairways, changes, words):
+    asked = {"start": START, "days": 4.0, "min_ukc": 1.0, **changes}
+    with pytest.raises(InputError, match=words):
+        Fairways.open(ship=fairways.ship, sea=estuary.sea, chart=estuary.chart, **asked)
+
+
 def test_what_cannot_be_sailed_is_told(yard, fairways, estuary):
     with pytest.raises(InputError, match="engine order"):
         next(yard.vessel.move(yard.beach, engine_order=0.5))

@@ -364,6 +364,12 @@ def test_a_sea_that_cannot_be_is_refused(changes, words):
         open_things(Project.from_dict(example(**changes)))
 
 
+def test_a_hopper_larger_than_the_ship_is_refused():
+    with pytest.raises(InputError, match="hopper_m3 is 4001") as caught:
+        sail(hopper_m3=4001)
+    assert "holds 4000 m3" in caught.value.possible
+
+
 def test_a_base_case_that_leaves_the_data_says_where():
     north = [51.7449, 3.579], [51.72, 3.70], [51.72, 3.74], [51.6596, 3.6514]
     project = Project.from_dict(example(base_case={"route": [list(place) for place in north]}))
@@ -419,6 +425,9 @@ def test_command_line(tmp_path, capsys):
     assert main(["project", str(path), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["runs"]["optimised"]["totals"]["cycles"] >= 1
+    path.write_text(yaml.safe_dump(example(volume_m3=4000, days=2, name="Area [/2] at $5_$")))
+    assert main(["project", str(path), "--out", str(tmp_path / "odd")]) == 0
+    assert "Area [/2] at $5_$" in capsys.readouterr().out
     path.write_text(yaml.safe_dump(example(volume_m3=-1)))
     assert main(["project", str(path)]) == 2
     assert "volume_m3 is -1" in capsys.readouterr().err

@@ -213,10 +213,11 @@ def test_over_ground_undoes_through_water(analysis):
     assert calibrate(pieces.part(pieces.leg < 2)) is None and len(legs) == 24
 
 
-def test_a_ship_that_lies_dead_still_on_its_way_has_no_course_there():
-    """Eight minutes are no wait, but hold a piece of no length: its leg is still compared."""
+@pytest.mark.parametrize("stops", range(70, 75))  # minute in which it stops
+def test_a_ship_that_lies_dead_still_on_its_way_has_no_course_there(stops):
+    """Nine minutes are no wait, but may hold a piece of no length: its leg is still compared."""
     minutes = np.arange(0.0, 180.0)
-    way = np.interp(minutes, [30, 70, 78, 118], [0.0, 0.5, 0.5, 1.0])
+    way = np.interp(minutes, [30, stops, stops + 9, stops + 49], [0.0, 0.5, 0.5, 1.0])
     table = pd.DataFrame(
         {"time": 1.77e9 + 60.0 * minutes, "lat": 52.3 - 0.2 * way, "lon": 4.0 + 0.2 * way}
     )
@@ -226,8 +227,8 @@ def test_a_ship_that_lies_dead_still_on_its_way_has_no_course_there():
     legs = found.leg_frame()
     assert len(legs) == 1 and (found.pieces.speed > 0.0).all()
     length = float(distance(52.3, 4.0, 52.1, 4.2))
-    # of the stop three minutes at most are left, in the piece that sails on
-    assert 0.98 * length / (88.0 * 60.0) < legs.speed_kn[0] * KNOT < length / (80.0 * 60.0)
+    # of the stop some minutes may be left, in the pieces that sail on
+    assert 0.95 * length / (93.0 * 60.0) < legs.speed_kn[0] * KNOT < length / (80.0 * 60.0)
     assert np.isfinite(legs["currents [kn]"][0])
 
 

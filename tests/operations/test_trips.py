@@ -1,5 +1,7 @@
 """Tables of one trip over all departures."""
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 
@@ -178,6 +180,37 @@ def test_refining_keeps_what_was_sailed_and_is_smooth_between():
     assert np.abs(finer.duration - exact).max() < 1e-4
     with pytest.raises(InputError):
         table.refined(0)
+
+
+def test_what_a_ship_must_not_do_in_waves_closes_a_departure():
+    """Accelerations are limited; the referee objects to what the table leaves out."""
+    data = deepcopy(dict(vox().data))
+    data["limits"] = {"max_vertical_acceleration_m_s2": 0.4}
+    ship = Ship.from_dict(data)
+    height = {
+        "sea_surface_wave_significant_height": lambda t, la, lo: t / 4000.0 + 0.0 * la,
+        "sea_surface_wave_from_direction": lambda t, la, lo: 90.0 + 0.0 * la,
+        "sea_surface_wave_period_at_variance_spectral_density_maximum": lambda t, la, lo: (
+            7.0 + 0.0 * la
+        ),
+    }
+    sea = Sea.from_functions(
+        {
+            **height,
+            DEPTH: lambda t, la, lo: 20.0 + 0.0 * la,
+            EAST: lambda t, la, lo: 0.0 * la,
+            NORTH: lambda t, la, lo: 0.0 * la,
+        }
+    ).filled(wind=0.0)
+    table = trip_table(
+        [WEST_END, EAST_END], ship=ship, sea=sea, start=0.0, end=16_000.0, step=2000.0
+    )
+    allowed = [
+        evaluate([WEST_END, EAST_END], ship=ship, sea=sea, depart=float(t)).feasible
+        for t in table.times
+    ]
+    assert np.isfinite(table.duration).tolist() == allowed
+    assert any(allowed) and not all(allowed)
 
 
 def test_a_limit_that_is_reached_under_way_closes_a_departure():

@@ -53,6 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _show(route: Any) -> None:
     from rich.console import Console
+    from rich.markup import escape
 
     console = Console()
     print_waypoints(console, route.waypoints(), "the route as given")
@@ -60,6 +61,6 @@ def _show(route: Any) -> None:
     fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
     console.print(f"[bold]{route.time_h:.2f} h{waits}, {route.distance_nm:.1f} nm{fuel}[/bold]")
     for violation in route.violations:
-        console.print(f"[red]violation:[/red] {violation}", soft_wrap=True)
+        console.print(f"[red]violation:[/red] {escape(str(violation))}", soft_wrap=True)
     if route.feasible:
         console.print("Every limit is kept.")

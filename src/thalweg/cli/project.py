@@ -54,7 +54,7 @@ def show(result: Any) -> None:
 
     console = Console()
     head, *rows = result.table()
-    table = Table(title=result.project.name, title_justify="left", box=box.SIMPLE_HEAD)
+    table = Table(title=escape(result.project.name), title_justify="left", box=box.SIMPLE_HEAD)
     table.add_column(head[0])
     for name in head[1:]:
         table.add_column(name, justify="right")
@@ -63,4 +63,4 @@ def show(result: Any) -> None:
     console.print(table)
     notes = [note for run in result.runs for note in run.notes]
     for note in dict.fromkeys(notes + list(result.provenance["assumptions"])):
-        console.print(f"[yellow]note:[/yellow] {note}", soft_wrap=True)
+        console.print(f"[yellow]note:[/yellow] {escape(note)}", soft_wrap=True)

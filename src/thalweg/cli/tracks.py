@@ -128,7 +128,7 @@ def _write(analysis: TrackAnalysis, out: str) -> list[str]:
 def _show(analysis: TrackAnalysis) -> None:
     from rich.console import Console
 
-    found, console = analysis.as_dict(), Console()
+    found, console = analysis.as_dict(), Console(markup=False)  # names may have brackets in them
     console.print(
         f"{found['vessel'] or 'ship'}: {found['start']} to {found['end']}, "
         f"{found['positions']} positions, {found['cycles']['count']} whole cycles "

@@ -102,6 +102,13 @@ def _check(arguments: argparse.Namespace) -> None:
             )
     if arguments.north_sea and (arguments.sea or arguments.calm):
         raise InputError("Both --north-sea and --sea or --calm are given.", "", "Choose one.")
+    for name in ("fill", "map", "average_over"):
+        if arguments.north_sea and getattr(arguments, name):
+            raise InputError(
+                f"--{name.replace('_', '-')} is given with --north-sea.",
+                "The analytic tide has no wind and no waves, and is averaged over the draught.",
+                "Leave it out, or give a sea of your own (--sea).",
+            )
 
 
 def _place(text: str) -> Position:

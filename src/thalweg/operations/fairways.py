@@ -149,7 +149,8 @@ class Fairways:
         Returns
         -------
         Leg
-            With its route, waits included, least clearance, energy and fuel.
+            With its route, waits included, least clearance, energy and fuel. Where the referee
+            finds a limit broken between the nodes whatever is tried, ``route.feasible`` is False.
 
         Raises
         ------

@@ -49,7 +49,7 @@ def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
     _first_days(result, figure.add_subplot(grid[1, :]))
     _loads(result, figure.add_subplot(grid[2, 0]))
     _shares(result, figure.add_subplot(grid[2, 1]))
-    figure.suptitle(result.project.name, fontsize=11)
+    figure.suptitle(result.project.name, fontsize=11, parse_math=False)
     if path is not None:
         figure.savefig(path)
     return figure

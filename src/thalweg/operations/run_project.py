@@ -68,7 +68,8 @@ def run_project(
     Raises
     ------
     InputError
-        If a site is dry or on land, or the sea at the network takes too much memory.
+        If a site is dry or on land, the hopper is more than the ship holds, or the sea at the
+        network takes too much memory.
     NoRouteError
         If no load has a way at any tide; it says when the water is highest and what is missing.
     OutsidePeriodError
@@ -85,6 +86,7 @@ def run_project(
     tell: Tell = progress or (lambda text: None)
     voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
     check_kinds(voyage, ship, sea, chart)
+    _check_hopper(project.work.hopper, ship)
     period = (project.start, project.end)
     world = World.open(project.sites, period, ship=ship, sea=sea, chart=chart)
     check_sites(world)
@@ -115,6 +117,17 @@ def _run(
         notes = (f"Load factors above {max(possible):g} have no way at any tide.",)
     cycles = simulator.run()
     return finished_run(name, cycles, project=project, ship=world.ship, notes=notes)
+
+
+def _check_hopper(hopper: float, ship: Ship) -> None:
+    capacity = ship.loading.capacity
+    if hopper > capacity * (1.0 + 1e-9):  # never of a capacity that is not known
+        raise InputError(
+            f"hopper_m3 is {hopper:g}.",
+            f"The ship {ship.name!r} holds {capacity:g} m3 at load factor 1.",
+            "Correct one of them: loading.capacity_m3 of the ship, or hopper_m3.",
+            field="hopper_m3",
+        )
 
 
 def check_sites(world: World) -> None:

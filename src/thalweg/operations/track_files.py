@@ -238,11 +238,24 @@ def _times(
     if time_format is None and 2 * np.isfinite(numbers).sum() > len(numbers):
         return _epoch(numbers, found["time"])
     if time_format is not None:
-        return _seconds(pd.to_datetime(column, format=time_format, utc=True, errors="coerce"))
+        return _by_format(column, time_format)
     parsed = pd.to_datetime(column, format="ISO8601", utc=True, errors="coerce")
     if len(column) == 0 or parsed.notna().mean() >= 0.5:
         return _seconds(parsed)
     return _dates(column, name, notes)
+
+
+def _by_format(column: pd.Series[Any], time_format: str) -> FloatArray:
+    import pandas as pd
+
+    try:
+        return _seconds(pd.to_datetime(column, format=time_format, utc=True, errors="coerce"))
+    except ValueError as error:
+        raise InputError(
+            f"The time format {time_format!r} cannot be used: {error}.",
+            "It is as of strptime.",
+            "Write for example '%d/%m/%Y %H:%M:%S'.",
+        ) from error
 
 
 def _epoch(numbers: FloatArray, header: str) -> FloatArray:

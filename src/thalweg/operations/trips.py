@@ -274,6 +274,14 @@ class _Voyage:
             if math.isfinite(largest):
                 unknown |= np.isnan(conditions[name])
                 passes &= conditions[name] <= largest
+        safety = self.world.ship.limits.safety
+        if safety is not None:
+            passes &= ~safety.forbids(
+                motion.through_water,
+                wave_angle=conditions.wave_angle,
+                wave_height=conditions.wave_height,
+                wave_period=conditions.wave_period,
+            )
         if self.min_ukc is not None:
             unknown |= np.isnan(motion.depth)
             passes &= motion.depth - self.world.ship.draught >= self.min_ukc
