@@ -96,6 +96,8 @@ def test_the_waits_of_a_route_are_totalled(capsys, tmp_path, ship):
     assert main(world) == 0
     told = capsys.readouterr().out
     assert f"{scored['time_h']:.2f} h with 1.75 h waiting" in told
+    no_depth = "No depth in the data: under-keel clearance was not checked."
+    assert no_depth in scored["notes"] and f"note: {no_depth}" in told
     path.write_text("lat,lon,time\n52,3,2026-01-01T00:00Z\n52.2,3,\n")
     assert main(world) == 0
     assert "waiting" not in capsys.readouterr().out

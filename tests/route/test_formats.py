@@ -165,6 +165,7 @@ def test_geojson_lines_that_go_on_are_one_route_and_others_are_not(tmp_path):
         ("a.csv", "lat,lon,time\n1,2,yesterday\n3,4,\n", "not a time"),
         ("a.csv", "lat,lon\n1,2\n3,4\n", "no departure"),
         ("a.csv", "lat,lon,time,waiting_h\n1,2,2026-01-01,-1\n3,4,,\n", "zero or more"),
+        ("a.csv", "lat,lon,time,waiting_h\n1,2,2026-01-01,1e9\n3,4,,\n", "a year at most"),
         ("a.csv", "lat,lon,time,waiting_h\n1,2,2026-01-01,soon\n3,4,,\n", "wait at waypoint 1"),
         ("a.csv", "lat,lon,time,waiting_h\n1,2,2026-01-01,0\n3,4,,1\n", "end before the goal"),
         ("a.csv", "lat,lon,time,ordered_speed_kn\n1,2,2026-01-01,0\n3,4,,\n", "above zero"),

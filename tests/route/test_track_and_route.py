@@ -10,6 +10,7 @@ from tests.route.planar import ship
 from thalweg.core.errors import InputError
 from thalweg.route import Track, Violation, evaluate, join
 from thalweg.sea import Sea
+from thalweg.ship import Ship
 
 
 def test_track_is_checked_and_frozen():
@@ -59,6 +60,20 @@ def test_violation_tells_its_place():
     assert "52.0000N 4.1000E" in text
     assert "(-0.50, limit 1.00)" in text
     assert Violation("land: leg 2", float("nan"), 0.0, 0.0).as_dict()["time"] is None
+
+
+def test_what_is_burnt_between_joined_routes_is_not_taken_as_nothing():
+    boat = Ship.load("vox-olympia")
+    depth = {"sea_floor_depth_below_geoid": lambda t, lat, lon: 20.0 + 0.0 * lat}
+    sea = Sea.from_functions(depth).filled(wind=0.0, waves=0.0, currents=0.0)
+    first = evaluate([(52.0, 3.0), (52.1, 3.0)], ship=boat, sea=sea, depart=0)
+    at_once = evaluate([(52.1, 3.0), (52.2, 3.0)], ship=boat, sea=sea, depart=first.arrive)
+    later = evaluate([(52.1, 3.0), (52.2, 3.0)], ship=boat, sea=sea, depart=first.arrive + 3600)
+    assert join([first, at_once]).fuel_t == pytest.approx(first.fuel_t + at_once.fuel_t)
+    both = join([first, later])
+    assert (both.fuel_t, both.energy_mwh, both.co2_t) == (None, None, None)
+    hour = evaluate(both, ship=boat, sea=sea).fuel_t - first.fuel_t - later.fuel_t
+    assert hour == pytest.approx(3.6 * boat.waiting_fuel_rate, rel=1e-3)
 
 
 def test_joined_routes_add_up():

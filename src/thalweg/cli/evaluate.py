@@ -43,7 +43,8 @@ def run(arguments: argparse.Namespace) -> int:
     )
     files = write_route(route, arguments.out) if arguments.out else []
     if arguments.json:
-        print(json.dumps(route_dict(route, "given"), indent=2, allow_nan=False))
+        found = {**route_dict(route, "given"), "notes": list(route.assumptions)}
+        print(json.dumps(found, indent=2, allow_nan=False))
         return 0
     _show(route)
     for path in files:
@@ -64,3 +65,5 @@ def _show(route: Any) -> None:
         console.print(f"[red]violation:[/red] {escape(str(violation))}", soft_wrap=True)
     if route.feasible:
         console.print("Every limit is kept.")
+    for note in route.assumptions:
+        console.print(f"[yellow]note:[/yellow] {escape(note)}", soft_wrap=True)

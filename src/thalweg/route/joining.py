@@ -12,6 +12,8 @@ from thalweg.route.route import Route
 from thalweg.route.track import Track
 
 _TOUCH = 1e-9  # degrees between the end of a route and the start of the next
+_AT_ONCE = 1e-3  # seconds between them that are no wait
+_OF_WAITS = {"waiting_fuel", "waiting_energy", "fuel_in_eca", "co2", "cost"}
 
 
 def join(routes: Sequence[Route]) -> Route:
@@ -21,7 +23,8 @@ def join(routes: Sequence[Route]) -> Route:
     ----------
     routes : sequence of Route
         Each starts where the one before ends, not before it gets there; time lain in between
-        becomes a wait.
+        becomes a wait. What is burnt in it no route tells, so that fuel, energy, CO2 and cost
+        become unknown: let the referee score the joined track.
 
     Raises
     ------
@@ -41,6 +44,9 @@ def join(routes: Sequence[Route]) -> Route:
     first = np.cumsum([0, *(len(route.legs["length"]) for route in routes)])
     length = np.cumsum([0.0, *(route.legs["length"].sum() for route in routes)])
     legs = {name: np.concatenate([route.legs[name] for route in routes]) for name in routes[0].legs}
+    lain = [after.depart - before.arrive > _AT_ONCE for before, after in itertools.pairwise(routes)]
+    for name in _OF_WAITS & legs.keys():
+        legs[name][first[1:-1][lain]] = np.nan
     names = [name for name in routes[0].samples if all(name in r.samples for r in routes)]
     samples = {name: np.concatenate([route.samples[name] for route in routes]) for name in names}
     sizes = [len(route.samples["leg"]) for route in routes]

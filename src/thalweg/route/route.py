@@ -131,8 +131,8 @@ class Route:
     @property
     def fuel_t(self) -> float | None:
         """Fuel burnt [t]; None if the ship has no fuel model or the route is not sailed out."""
-        total = self._sum("fuel")
-        return None if total is None else (total + float(self.legs["waiting_fuel"].sum())) / TONNE
+        sailing, waiting = self._sum("fuel"), self._sum("waiting_fuel")
+        return None if sailing is None or waiting is None else (sailing + waiting) / TONNE
 
     @property
     def fuel_eca_t(self) -> float | None:

@@ -12,7 +12,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.core.units import HOUR, KNOT
+from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.track import Track
 
 
@@ -45,6 +45,7 @@ class Order(NamedTuple):
 #: What files call the wait at a waypoint and the speed ordered from there on, with units in SI.
 WAITS = {"waiting_h": HOUR, "wait_h": HOUR, "waiting_s": 1.0, "wait_s": 1.0}
 SPEEDS = {"ordered_speed_kn": KNOT}
+LONGEST_WAIT = 366.0 * DAY  #: [s]
 
 
 def order_of(values: Mapping[str, object], number: int) -> Order:
@@ -53,14 +54,15 @@ def order_of(values: Mapping[str, object], number: int) -> Order:
     Raises
     ------
     InputError
-        If a value is not a number, a wait negative or a speed not above zero.
+        If a value is not a number, a wait negative or longer than a year, or a speed not above
+        zero.
     """
     wait = _told(values, WAITS, f"wait at waypoint {number}")
     speed = _told(values, SPEEDS, f"ordered speed at waypoint {number}")
-    if not (wait is None or wait >= 0.0) or not (speed is None or speed > 0.0):
+    if not (wait is None or 0.0 <= wait <= LONGEST_WAIT) or not (speed is None or speed > 0.0):
         raise InputError(
             f"Waypoint {number} has a wait of {wait} s and an ordered speed of {speed} m/s.",
-            "Waits are zero or more, speeds above zero.",
+            "Waits are zero or more and a year at most, speeds above zero.",
             "Correct them, or leave them empty.",
             waypoint=number,
         )
