@@ -154,6 +154,21 @@ def test_waiting_where_the_tide_falls_away_is_a_grounding():
     assert "under-keel clearance (waiting)" in reasons
 
 
+def test_the_least_clearance_is_that_of_a_wait_over_low_water():
+    """The tide falls by 1 m while the ship waits, and has come back when it goes on."""
+    low = 2000.0
+
+    def level(t, a, o):
+        return -np.clip(1.0 - np.abs(t - low) / 1000.0, 0.0, 1.0) + 0.0 * a
+
+    sea = Sea.from_functions({BED: lambda t, a, o: 6.0 + 0 * a, LEVEL: level})
+    track = Track([0, 0, 0], [0, 0.001, 0.002], 0, [0, 4000.0, 0])
+    route = evaluate(track, ship=ship(5.0, 4.0), sea=sea, min_ukc=0.5)
+    assert route.feasible
+    assert route.legs["under_keel_clearance"][0] == pytest.approx(2.0)
+    assert route.min_ukc_m == pytest.approx(1.0, abs=0.15)  # looked at every five minutes
+
+
 def test_a_gap_is_told_with_its_place():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: np.where(o > 0.2, np.nan, 0.5), UN: lambda t, a, o: 0.0 * a}

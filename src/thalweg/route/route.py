@@ -69,11 +69,11 @@ class Route:
         What was sailed; settings are indices from the bottom.
     legs : mapping of str to ndarray
         Per leg: ``length`` [m], ``course`` (at its start) [rad], ``depart``, ``arrive`` [s since
-        1970], ``under_keel_clearance`` (least) [m], ``ordered_speed`` (in calm water, through it)
-        [m/s]; NaN if unknown: ``fuel`` of sailing it and
-        ``waiting_fuel`` of lying still before it [kg], likewise ``energy`` and ``waiting_energy``
-        of brake and hotel load [J], and of both ``fuel_in_eca`` [kg], ``co2`` [kg] and ``cost``
-        [``currency``] (with canal dues and the price of time).
+        1970], ``under_keel_clearance`` (least, in a wait before it too) [m], ``ordered_speed`` (in
+        calm water, through it) [m/s]; NaN if unknown: ``fuel`` of sailing it and ``waiting_fuel``
+        of lying still before it [kg], likewise ``energy`` and ``waiting_energy`` of brake and hotel
+        load [J], and of both ``fuel_in_eca`` [kg], ``co2`` [kg] and ``cost`` [``currency``] (with
+        canal dues and the price of time).
     samples : mapping of str to ndarray
         The fine samples along the route, in order: ``time, leg, lat, lon, distance, course,
         heading, speed_through_water, speed_over_ground, depth, under_keel_clearance, power,

@@ -85,12 +85,16 @@ def _judged(
     world, track = sailed.world, sailed.pieces.track
     sampled, depth = look(world, near, np.where(np.isfinite(moments), moments, track.depart))
     found = broken_limits(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
-    found += _grounded_waits(sailed, min_ukc)
+    waits = _wait_clearances(sailed)
+    found += _grounded_waits(track, waits, min_ukc)
     found += forbidden_waits(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += land_violations(world, track, sailed.leg_times()[0])
     clearance = _finite(depth - world.ship.draught)
-    return found, _leg_least(near.leg, clearance, moments, len(track) - 1)
+    least = _leg_least(near.leg, clearance, moments, len(track) - 1)
+    for index, _, lying in waits:  # a wait belongs to the leg after it
+        least[index] = np.fmin(least[index], np.fmin.reduce(_finite(lying)))
+    return found, least
 
 
 def _samples(
@@ -207,22 +211,31 @@ def _finite(values: FloatArray) -> FloatArray:
     return np.where(np.isfinite(values), values, math.nan)
 
 
-def _grounded_waits(sailed: Sailed, min_ukc: float | None) -> list[Violation]:
-    """Return the waits during which there is too little water."""
+def _wait_clearances(sailed: Sailed) -> list[tuple[int, FloatArray, FloatArray]]:
+    """Return (waypoint, times, clearances [m]) of every wait but that at the berth."""
     world, track = sailed.world, sailed.pieces.track
-    waits = np.flatnonzero(track.wait[1:-1]) + 1
-    if min_ukc is None or not world.has_depth or not len(waits):
+    if not world.has_depth:
         return []
     _, arrive = sailed.leg_times()
     found = []
-    for index in waits:
+    for index in np.flatnonzero(track.wait[1:-1]) + 1:
         if not math.isfinite(arrive[index - 1]):
             continue
         count = 2 + int(track.wait[index] / _WAIT_LOOKS)
         time = arrive[index - 1] + np.linspace(0.0, track.wait[index], count)
-        points = _still(world, track, int(index), count)
-        _, depth = look(world, points, time)
-        clearance = depth - world.ship.draught
+        _, depth = look(world, _still(world, track, int(index), count), time)
+        found.append((int(index), time, depth - world.ship.draught))
+    return found
+
+
+def _grounded_waits(
+    track: Track, waits: list[tuple[int, FloatArray, FloatArray]], min_ukc: float | None
+) -> list[Violation]:
+    """Return the waits during which there is too little water."""
+    found: list[Violation] = []
+    if min_ukc is None:
+        return found
+    for index, time, clearance in waits:
         worst = int(np.argmin(clearance))
         if not clearance[worst] >= min_ukc - 1e-9:
             place = (float(track.lat[index]), float(track.lon[index]))
