@@ -107,7 +107,7 @@ def _run(
     project: Project, world: World, ways: Ways, factors: tuple[float, ...], *, name: str, tell: Tell
 ) -> Run:
     tell(f"{name}: preparing {len(factors)} loads")
-    simulator = Simulator(project, world, ways, factors=factors, tell=tell)
+    simulator = Simulator(project, world, ways, factors=factors, tell=tell, name=name)
     possible = simulator.possible
     if not possible:
         raise no_way(world, ways, min(x for x in factors if x > 0.0), name)

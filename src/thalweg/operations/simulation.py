@@ -70,6 +70,8 @@ class Simulator:
         Loads to choose from; those of the project when not given.
     tell : callable, optional
         Called with a short text now and then.
+    name : str, optional
+        What errors call it.
     """
 
     def __init__(
@@ -80,8 +82,9 @@ class Simulator:
         *,
         factors: Sequence[float] | None = None,
         tell: Tell = lambda text: None,
+        name: str = "",
     ) -> None:
-        self.project, self.tell = project, tell
+        self.project, self.tell, self.name = project, tell, name
         self.sailor = LegSailor(world, ways)
         back = self.sailor.passages(0.0, outward=False)
         chosen = project.work.load_factors if factors is None else factors
@@ -189,10 +192,10 @@ class Simulator:
         )
 
     def _too_short(self, moved: float, time: float) -> OutsidePeriodError:
-        project = self.project
+        project, which = self.project, f" ({self.name})" if self.name else ""
         return OutsidePeriodError(
             f"By {format_time(project.end)} only {moved:,.0f} of {project.work.volume:,.0f} m3 "
-            "can be moved.",
+            f"can be moved{which}.",
             f"The last cycle that is sailed out ends {format_time(time)}."
             + lacking_data(self.sailor.world, (project.start, project.end)),
             "Give more days (and data for them), or a smaller volume.",
