@@ -11,9 +11,9 @@ import xarray as xr
 import yaml
 
 from tests.conftest import data_file
-from thalweg import Chart, Sea
+from thalweg import Chart, Sea, Ship
 from thalweg.cli.main import main
-from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
+from thalweg.core.errors import CoverageError, InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import direct, distance, inverse
 from thalweg.core.time import parse_time
 from thalweg.operations.cycles import Leg
@@ -256,6 +256,8 @@ def test_a_project_survives_its_file(tmp_path):
     project.save(tmp_path / "p.yaml")
     again = Project.load(tmp_path / "p.yaml")
     assert again == project
+    with_paths = Project.from_dict(example(sea=[tmp_path / "a.nc"], zones=tmp_path / "z.geojson"))
+    assert json.loads(json.dumps(with_paths.to_dict()))["sea"] == [str(tmp_path / "a.nc")]
     assert again.work.load_factors == (0.4, 0.8, 1.0)
     assert again.start == parse_time("2026-05-01T00:00Z")
 
@@ -429,6 +431,56 @@ def test_ways_are_drawn_over_no_water_where_the_chart_has_land(result):
 
     assert colour(51.73, 3.64) == [0xD9, 0xD4, 0xC8]
     assert colour(51.73, 3.47) != [0xD9, 0xD4, 0xC8]
+
+
+def deep_sea(path, bed=False, wall=False):
+    """Write a sea with a current and perhaps a bed of 15 m, which a wall without data may part."""
+    lat, lon, axes = np.linspace(51.6, 52.0, 5), np.linspace(3.4, 3.8, 9), ("time", "lat", "lon")
+    flow = np.full((49, 5, 9), 0.3)
+    if wall:
+        flow[:, :, 4] = np.nan
+    data = {
+        "u": (axes, flow, {"standard_name": "eastward_sea_water_velocity", "units": "m s-1"}),
+        "v": (axes, flow, {"standard_name": "northward_sea_water_velocity", "units": "m s-1"}),
+    }
+    if bed:
+        told = {"standard_name": "sea_floor_depth_below_geoid", "units": "m"}
+        data["h"] = (axes[1:], np.full((5, 9), 15.0), told)
+    hours = np.datetime64("2026-01-01", "ns") + np.arange(49) * np.timedelta64(1, "h")
+    xr.Dataset(data, {"time": hours, "lat": lat, "lon": lon}).to_netcdf(path)  # fmt: skip
+    return {"sea": str(path), "coast": "none", "start": "2026-01-01", "days": 1.5,
+            "load": [51.71, 3.45], "unload": [51.77, 3.7], "spacing_m": 2500.0,
+            "ship": "hopper-dredger",
+            "volume_m3": 4000}  # fmt: skip
+
+
+def test_without_a_clearance_a_project_needs_no_depth(tmp_path):
+    asked = deep_sea(tmp_path / "flow.nc")
+    with pytest.raises(CoverageError, match="nothing tells depth"):
+        sail(**asked, min_ukc_m=0.0)
+    result = sail(**asked, min_ukc_m=None)
+    assert any("No depth in the data" in note for note in result.provenance["assumptions"])
+    assert result.optimised.totals["least_clearance_m"] is None
+    assert result.optimised.feasible
+    known = sail(**deep_sea(tmp_path / "bed.nc", bed=True), min_ukc_m=None)
+    assert known.optimised.totals["least_clearance_m"] == pytest.approx(8.5)  # 15 m less 6.5 m
+
+
+def test_the_clearance_that_a_ship_file_asks_is_kept(tmp_path):
+    data = dict(Ship.load("hopper-dredger").data) | {"limits": {"min_under_keel_clearance_m": 9.0}}
+    asked = deep_sea(tmp_path / "bed.nc", bed=True) | {"ship": data, "load_factors": [0.5, 1.0]}
+    result = sail(**asked, min_ukc_m=None)
+    assert {cycle.load_factor for cycle in result.optimised.cycles} == {0.5}  # 15 m less 5 m
+    assert "Load factors above 0.5 have no way at any tide." in result.optimised.notes
+    assert {c.load_factor for c in sail(**asked, min_ukc_m=1.0).optimised.cycles} == {1.0}
+
+
+def test_sites_parted_by_what_no_data_know_are_told(tmp_path):
+    for bed_too in (False, True):
+        asked = deep_sea(tmp_path / f"wall{bed_too}.nc", bed=bed_too, wall=True)
+        with pytest.raises(NoRouteError, match="No tide opens") as caught:
+            sail(**asked, min_ukc_m=None)
+        assert "not joined by water that the data know" in caught.value.possible
 
 
 def test_no_sea_is_never_assumed():

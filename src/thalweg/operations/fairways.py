@@ -84,7 +84,7 @@ class Fairways:
         chart: Chart,
         start: TimeLike,
         days: float,
-        min_ukc: float = 0.0,
+        min_ukc: float | None = None,
         margin: float = 0.01,
         spacing: float | None = None,
         rings: int = 3,

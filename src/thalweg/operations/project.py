@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,8 +35,9 @@ class Sites:
     ----------
     load, unload : (lat, lon)
         [deg].
-    min_ukc : float
-        Least under-keel clearance [m].
+    min_ukc : float or None
+        Least under-keel clearance [m]; None: that of the ship file (0 if it states none), and no
+        clearance is looked at if no data tell any depth.
     margin : float
         Clearance planned beyond it [m], for what the network does not see between its nodes.
     spacing : float or None
@@ -53,14 +55,15 @@ class Sites:
 
     load: Position
     unload: Position
-    min_ukc: float = 0.0
+    min_ukc: float | None = None
     margin: float = 0.01
     spacing: float | None = None
     rings: int = 3
     detour: float = 3.0
 
     def __post_init__(self) -> None:
-        check_clearance("min_ukc_m", self.min_ukc)
+        if self.min_ukc is not None:
+            check_clearance("min_ukc_m", self.min_ukc)
         check_clearance("margin_m", self.margin)
         if self.spacing is not None:
             positive({"spacing_m": self.spacing}, "spacing_m")
@@ -173,7 +176,7 @@ class Project:
             start=start_of(data["start"]),
             days=days_of(data),
             ship=data.get("ship", "hopper-dredger"),
-            world={key: data[key] for key in _WORLD if key in data},
+            world={key: _plain(data[key]) for key in _WORLD if key in data},
             base=_base(data.get("base_case"), sites),
         )
 
@@ -273,7 +276,7 @@ def _sites(data: Mapping[str, Any]) -> Sites:
     return Sites(
         load=load,
         unload=unload,
-        min_ukc=data.get("min_ukc_m", 0.0),
+        min_ukc=data.get("min_ukc_m"),
         margin=data.get("margin_m", 0.01),
         spacing=data.get("spacing_m"),
         rings=data.get("rings", 3),
@@ -323,6 +326,13 @@ def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
                 f"Let it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
                 field="base_case.route",
             )
+
+
+def _plain(value: Any) -> Any:
+    """Return paths as the text that files hold."""
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 def _beside(data: dict[str, Any], folder: Path) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from thalweg.network import Network, NetworkMeta, lattice, mesh
 from thalweg.network.pairs import Stations, assemble, measure, no_samples
 from thalweg.network.sides import sampled_on_sides
 from thalweg.operations.project import Sites
-from thalweg.planning.needs import Needs, check_period, find_needs
+from thalweg.planning.needs import Needs, check_period, find_needs, least_clearance
 from thalweg.planning.passage import MEMORY_LIMIT, table_of
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import names as nm
@@ -75,12 +75,15 @@ class World:
         CoverageError
             If the sea lacks a variable, or does not hold the beginning of the period.
         """
-        voyage = Voyage(
-            start=sites.load, goal=sites.unload, depart=period[0], min_ukc_m=sites.min_ukc
-        )
+        voyage = _voyage(sites, period)
         needs = find_needs(voyage, ship=ship.with_load_factor(1.0), sea=sea, chart=chart)
         check_period(voyage, sea, needs)
         return cls(sites, period, ship, sea, chart, needs)
+
+    @property
+    def min_ukc(self) -> float:
+        """Least under-keel clearance [m]: that of the sites, else the ship file's own."""
+        return least_clearance(_voyage(self.sites, self.period), self.ship)
 
     @property
     def bed_stands_still(self) -> bool:
@@ -93,12 +96,17 @@ class World:
         ship = self.ship.with_load_factor(load_factor)
         limits = self.needs.limits.copy()
         if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]):
-            keel = self.sites.min_ukc + self.sites.margin
+            keel = self.min_ukc + self.sites.margin
             limits[codes.LIMIT_REQUIRED_DEPTH] = ship.draught + keel
         setting = len(ship.speeds) - 1
         top = ship.top_speed(setting)
         speed = float(ship.speeds[setting]) if top is None else top
         return Loaded(ship, table_of(ship), limits, setting, speed)
+
+
+def _voyage(sites: Sites, period: tuple[float, float]) -> Voyage:
+    """Return what is asked of the sea, as a voyage asks it."""
+    return Voyage(start=sites.load, goal=sites.unload, depart=period[0], min_ukc_m=sites.min_ukc)
 
 
 @dataclass(frozen=True, eq=False)

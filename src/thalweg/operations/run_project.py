@@ -194,7 +194,7 @@ def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteEr
     """
     loaded = world.loaded(load_factor)
     required = loaded.required_depth
-    open_to = _passable_depth(ways, loaded)
+    open_to = _passable_depth(ways, loaded) if math.isfinite(required) else -math.inf
     asked = f"No tide opens a way with load factor {load_factor:g} ({name})."
     if not math.isfinite(open_to):
         unknown = _first_unknown(ways.network) if ways.network.meta.kind == LINE else None
@@ -206,7 +206,9 @@ def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteEr
                 nearest=unknown,
             )
         return NoRouteError(
-            asked, "The sites are not joined by water at all.", "Check the chart and the detour."
+            asked,
+            "The sites are not joined by water that the data know.",
+            "Check the chart, the data and the detour.",
         )
     place, when = _bottleneck(ways, open_to)
     return NoRouteError(

@@ -107,7 +107,7 @@ class LegSailor:
             ship=loaded.ship,
             sea=world.sea,
             chart=world.chart,
-            min_ukc=world.sites.min_ukc if math.isfinite(loaded.required_depth) else None,
+            min_ukc=world.min_ukc if math.isfinite(loaded.required_depth) else None,
             step=self.step,
             strict=False,
         )
