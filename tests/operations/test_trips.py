@@ -28,6 +28,20 @@ def sea_of(east=0.0, north=0.0, depth=20.0, **more):
     return Sea.from_functions({**named, **more}).filled(wind=0.0, waves=0.0)
 
 
+def rising_waves(height, *, from_deg, period):
+    """Return a sea without wind and current, 20 m deep, its waves a function of time."""
+    waves = {
+        "sea_surface_wave_significant_height": lambda t, la, lo: height(t) + 0.0 * la,
+        "sea_surface_wave_from_direction": lambda t, la, lo: from_deg + 0.0 * la,
+        "sea_surface_wave_period_at_variance_spectral_density_maximum": lambda t, la, lo: (
+            period + 0.0 * la
+        ),
+    }
+    still = {name: lambda t, la, lo: 0.0 * la for name in (EAST, NORTH)}
+    deep = {DEPTH: lambda t, la, lo: 20.0 + 0.0 * la}
+    return Sea.from_functions({**waves, **still, **deep}).filled(wind=0.0)
+
+
 def vox():
     return Ship.load("vox-olympia")
 
@@ -187,21 +201,7 @@ def test_what_a_ship_must_not_do_in_waves_closes_a_departure():
     data = deepcopy(dict(vox().data))
     data["limits"] = {"max_vertical_acceleration_m_s2": 0.4}
     ship = Ship.from_dict(data)
-    height = {
-        "sea_surface_wave_significant_height": lambda t, la, lo: t / 4000.0 + 0.0 * la,
-        "sea_surface_wave_from_direction": lambda t, la, lo: 90.0 + 0.0 * la,
-        "sea_surface_wave_period_at_variance_spectral_density_maximum": lambda t, la, lo: (
-            7.0 + 0.0 * la
-        ),
-    }
-    sea = Sea.from_functions(
-        {
-            **height,
-            DEPTH: lambda t, la, lo: 20.0 + 0.0 * la,
-            EAST: lambda t, la, lo: 0.0 * la,
-            NORTH: lambda t, la, lo: 0.0 * la,
-        }
-    ).filled(wind=0.0)
+    sea = rising_waves(lambda t: t / 4000.0, from_deg=90.0, period=7.0)
     table = trip_table(
         [WEST_END, EAST_END], ship=ship, sea=sea, start=0.0, end=16_000.0, step=2000.0
     )
@@ -216,23 +216,7 @@ def test_what_a_ship_must_not_do_in_waves_closes_a_departure():
 def test_a_limit_that_is_reached_under_way_closes_a_departure():
     """Waves grow past 4 m at a known time; whoever is not there by then does not arrive."""
     closes = 20_000.0
-    waves = {
-        "sea_surface_wave_significant_height": lambda t, la, lo: (
-            4.0 + (t - closes) / 1e4 + 0.0 * la
-        ),
-        "sea_surface_wave_from_direction": lambda t, la, lo: 270.0 + 0.0 * la,
-        "sea_surface_wave_period_at_variance_spectral_density_maximum": lambda t, la, lo: (
-            8.0 + 0.0 * la
-        ),
-    }
-    sea = Sea.from_functions(
-        {
-            **waves,
-            DEPTH: lambda t, la, lo: 20.0 + 0.0 * la,
-            EAST: lambda t, la, lo: 0.0 * la,
-            NORTH: lambda t, la, lo: 0.0 * la,
-        }
-    ).filled(wind=0.0)
+    sea = rising_waves(lambda t: 4.0 + (t - closes) / 1e4, from_deg=270.0, period=8.0)
     table = trip_table(
         [WEST_END, EAST_END], ship=vox(), sea=sea, start=0.0, end=25_000.0, step=50.0
     )
