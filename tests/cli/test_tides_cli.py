@@ -170,3 +170,44 @@ def test_a_run_in_metres_is_analysed_with_its_projection(tmp_path, capsys):
     there = ["--at", "32.65,-117.25", "--start", "2031-01-01", "--end", "2031-01-01T01:00"]
     assert main(["tides", "predict", out, *there]) == 0
     assert len(capsys.readouterr().out.splitlines()) == 8
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "size", "lag"),
+    [
+        ("rws_vlissingen_waterlevel_20180101_20180401.noos", (), 1.74, 30.6),
+        ("rws_vlissingen_prediction_2019_hatyan.dia.txt.gz", (), 1.735, 30.6),
+        (
+            "utide_HNL2010_hourly.asc",
+            ("--days-since", "1700-01-01", "--unit", "mm", "--at", "21.3,-157.87"),
+            0.1769,
+            58.8,
+        ),
+    ],
+)
+def test_official_records_are_analysed_as_they_are(capsys, name, words, size, lag):
+    """M2 of Vlissingen by Rijkswaterstaat (2009-2012): 1.747 m, 30.5 degrees."""
+    names = ("--constituents", "M2", "S2", "N2", "K1", "O1", "M4")
+    assert tide("analyse", data_file(f"tide/{name}"), *words, *names, "--json") == 0
+    m2 = json.loads(capsys.readouterr().out)["variables"][nm.WATER_LEVEL][0]
+    assert m2["name"] == "M2"
+    assert m2["amplitude"] == pytest.approx(size, abs=0.01)
+    assert m2["phase_deg"] == pytest.approx(lag, abs=0.5)
+
+
+def test_options_that_would_change_nothing_are_refused(record, tmp_path):
+    with pytest.raises(InputError, match="--map is for variables"):
+        tide("analyse", record, "--at", "-33.9,18.4", "--map", "a=b")
+    run = tmp_path / "run.nc"
+    run.write_bytes(b"CDF\x01" + bytes(100))
+    for words in (("--at", "50,1"), ("--unit", "cm"), ("--days-since", "1970-01-01")):
+        with pytest.raises(InputError, match=f"{words[0]} is for a record"):
+            tide("analyse", run, *words)
+
+
+def test_a_record_of_mostly_gaps_is_refused(record):
+    rows = record.read_text().splitlines()
+    gaps = [f"{row.split(',')[0]}," if k % 5 < 3 else row for k, row in enumerate(rows[1:])]
+    record.write_text("\n".join([rows[0], *gaps]) + "\n")
+    with pytest.raises(InputError, match="known at 40 % of the times"):
+        tide("analyse", record, "--at", "-33.9,18.4", "--constituents", "M2", "S2", "--json")

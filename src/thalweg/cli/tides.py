@@ -16,6 +16,7 @@ import numpy as np
 from thalweg.cli import common
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time, parse_time
+from thalweg.sea.tide_series import LENGTHS
 
 if TYPE_CHECKING:
     from thalweg.sea.constituents import Constituents
@@ -44,11 +45,20 @@ def _add_analyse(actions: Any) -> None:
     parser = actions.add_parser(
         "analyse",
         help="find the tidal constituents of a record or a model run",
-        description="Find the tidal constituents of a record (CSV) or a model run (NetCDF).",
+        description="Find the tidal constituents of a record (CSV, NOOS, DIA or two columns) or of "
+        "a model run (NetCDF).",
     )
-    parser.add_argument("file", metavar="FILE", help="record (CSV) or model run (NetCDF)")
+    parser.add_argument("file", metavar="FILE", help="record or model run")
     common.add_mapping_option(parser)
-    parser.add_argument("--at", metavar="LAT,LON", help="position of the record")
+    parser.add_argument(
+        "--at", metavar="LAT,LON", help="position of the record, if it does not tell it"
+    )
+    parser.add_argument(
+        "--unit", choices=tuple(LENGTHS), help="of levels in two bare columns of a record"
+    )
+    parser.add_argument(
+        "--days-since", metavar="DATE", help="first day of the days in two bare columns"
+    )
     parser.add_argument(
         "--constituents", nargs="+", metavar="NAME", help="by default all the length can tell apart"
     )
@@ -84,6 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _analyse(arguments: argparse.Namespace) -> int:
     from thalweg.sea.tide_files import write_constituents
+    from thalweg.sea.tide_records import is_record
 
     if not (np.isfinite(arguments.rayleigh) and arguments.rayleigh > 0.0):
         raise InputError(
@@ -91,11 +102,10 @@ def _analyse(arguments: argparse.Namespace) -> int:
             "It is a positive number of cycles, usually 1.",
             "Correct it.",
         )
-    is_record = Path(arguments.file).suffix.lower() in (".csv", ".txt")
-    analysis = _record(arguments) if is_record else _model(arguments)
+    analysis, told = _record(arguments) if is_record(arguments.file) else _model(arguments)
     if arguments.out:
         write_constituents(analysis.constituents, arguments.out)
-    found = _summary(analysis, arguments.out)
+    found = _summary(analysis, told, arguments.out)
     if arguments.json:
         print(json.dumps(found, indent=2, allow_nan=False))
     else:
@@ -103,38 +113,63 @@ def _analyse(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _record(arguments: argparse.Namespace) -> TideAnalysis:
-    from thalweg.sea.tide_records import read_record
-    from thalweg.sea.tides import analyse
+def _record(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
+    from thalweg.sea.tide_records import read_record, told_name
+    from thalweg.sea.tides import LEAST_KNOWN, analyse
 
-    if not arguments.at:
+    _refuse(arguments, ("map",), "a record", "variables of a model run")
+    record = read_record(arguments.file, unit=arguments.unit, days_since=arguments.days_since)
+    place = _position(arguments.at) if arguments.at else record.position
+    if place is None:
         raise InputError(
             "The position of the record is not given.",
             "Nodal corrections depend on latitude.",
             "Add --at LAT,LON.",
         )
-    lat, lon = _position(arguments.at)
-    times, series = read_record(arguments.file)
-    return analyse(
-        times,
-        series,
-        lat=lat,
-        lon=lon,
+    analysis = analyse(
+        record.times,
+        record.series,
+        lat=place[0],
+        lon=place[1],
         constituents=arguments.constituents,
         rayleigh=arguments.rayleigh,
     )
+    for name, mean in analysis.constituents.mean.items():
+        if not np.isfinite(mean[0]):
+            share = np.isfinite(record.series[name]).mean()
+            raise InputError(
+                f"The {told_name(name)} is known at {100.0 * share:.0f} % of the times.",
+                f"At least {100.0 * LEAST_KNOWN:.0f} % of a record must be known, and more than "
+                "there are constants to find.",
+                "Take out a part of the record with fewer gaps, or ask for fewer constituents.",
+            )
+    return analysis, f"{record.told} at {place[0]:.4f}, {place[1]:.4f}"
 
 
-def _model(arguments: argparse.Namespace) -> TideAnalysis:
+def _model(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
     from thalweg.sea import Sea
     from thalweg.sea.tidal_run import tidal_analysis
 
-    return tidal_analysis(
+    _refuse(arguments, ("at", "unit", "days_since"), "a model run", "a record")
+    analysis = tidal_analysis(
         Sea.open(arguments.file, mapping=common.mapping_of(arguments)),
         constituents=arguments.constituents,
         rayleigh=arguments.rayleigh,
         progress=_progress(arguments),
     )
+    return analysis, "model run"
+
+
+def _refuse(arguments: argparse.Namespace, names: tuple[str, ...], what: str, others: str) -> None:
+    """Refuse options that mean nothing for the kind of file that is given."""
+    for name in names:
+        if getattr(arguments, name):
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(
+                f"{Path(arguments.file).name} is {what}, and {option} is for {others}.",
+                "It would change nothing.",
+                f"Leave {option} out.",
+            )
 
 
 def _progress(arguments: argparse.Namespace) -> Callable[[int, int], None] | None:
@@ -148,10 +183,11 @@ def _progress(arguments: argparse.Namespace) -> Callable[[int, int], None] | Non
     return tell
 
 
-def _summary(analysis: TideAnalysis, out: str | None) -> dict[str, Any]:
+def _summary(analysis: TideAnalysis, told: str, out: str | None) -> dict[str, Any]:
     constants = analysis.constituents
     known = {n: np.isfinite(constants.mean[n]) for n in sorted(constants.variables)}
     return {
+        "source": told,
         "start": format_time(analysis.start),
         "end": format_time(analysis.end),
         "nodes": int(constants.lat.size),
@@ -177,6 +213,7 @@ def _rows(constants: Constituents, name: str, known: Any) -> list[dict[str, Any]
 
 
 def _show(found: dict[str, Any]) -> None:
+    print(found["source"])
     print(f"{found['start']} to {found['end']}, {found['nodes']} nodes")
     for name, rows in found["variables"].items():
         share = found["tidal_share"][name]

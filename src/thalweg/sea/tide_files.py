@@ -25,10 +25,9 @@ from thalweg.core.units import KNOT
 from thalweg.sea import names as nm
 from thalweg.sea import schureman
 from thalweg.sea.constituents import Constituents
+from thalweg.sea.tide_series import LENGTHS, MET
 
 FORMAT: Final = "thalweg-constituents-1"
-MET: Final = 1.0  #: [h] Middle European Time ahead of UTC
-LENGTHS: Final[dict[str, float]] = {"cm": 0.01, "m": 1.0, "mm": 0.001, "dm": 0.1}
 _PATIENCE = 1e-4  #: [deg/h] how far a printed speed may lie from that of its name
 
 
