@@ -154,3 +154,93 @@ def test_positions_off_the_globe_are_named(ring, said):
     }
     with pytest.raises(InputError, match=said):
         Chart.open_water().with_zones(zone)
+
+
+def _ring_of(*corners):
+    ring = [list(corner) for corner in (*corners, corners[0])]
+    return {
+        "type": "Feature",
+        "properties": {"kind": "no-go"},
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+
+
+@pytest.mark.parametrize(("west", "east"), [(-100, 100), (-170, 170), (10, 350), (-179.9, 179.9)])
+def test_a_wide_zone_is_not_silently_turned_inside_out(west, east):
+    """As written it runs as RFC 7946 asks, so it is not taken to cross the antimeridian."""
+    with pytest.raises(InputError, match="degrees as written, or") as caught:
+        OPEN.with_zones(zone(west, -10, east, 10, kind="no-go"))
+    assert f"longitude {west:g} to {east:g}" in str(caught.value)
+
+
+def test_a_wide_zone_with_points_in_between_is_what_is_written():
+    corners = [(-100, -10), (0, -10), (100, -10), (100, 10), (0, 10), (-100, 10)]
+    chart = OPEN.with_zones(_ring_of(*corners))
+    assert chart.is_navigable(0.0, [-101, -99, 0, 99, 101, 180]).tolist() == [
+        True, False, False, False, True, True,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("west", "east"), [(100, -100), (170, -170), (350, 10), (170, 190)])
+def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_way(west, east):
+    chart = OPEN.with_zones(zone(west, -10, east, 10, kind="no-go"))
+    middle = west + 0.5 * ((east - west) % 360)
+    outside = [west - 1, east + 1, middle + 180]
+    assert chart.is_navigable(0.0, [west + 1, middle, east - 1]).tolist() == [False] * 3
+    assert chart.is_navigable(0.0, outside).tolist() == [True] * 3
+
+
+def test_an_outline_that_is_an_area_only_across_the_antimeridian_is_one_whichever_way_it_runs():
+    lens = [(179, 0), (179.5, -2), (-179.5, -2), (-179, 0), (-179.5, 2), (179.5, 2)]
+    bulging = [
+        (179.5, -1), (179.8, -3), (178, 0), (179.8, 3), (179.5, 1), (-179, 1), (-179, -1),
+    ]  # fmt: skip
+    for corners in (bulging, bulging[::-1]):
+        chart = OPEN.with_zones(_ring_of(*corners))
+        assert not chart.is_navigable(0.0, 179.9)
+        assert chart.is_navigable(0.0, 0.0)
+    assert not OPEN.with_zones(_ring_of(*lens)).is_navigable(0.0, 180.0)
+    both_names = [
+        (170, 0),
+        (180, 0),
+        (-180, 0),
+        (-170, 0),
+        (-170, 9),
+        (-180, 9),
+        (180, 9),
+        (170, 9),
+    ]
+    chart = OPEN.with_zones(_ring_of(*both_names))
+    assert chart.is_navigable(5.0, [175, -175, 0, 165]).tolist() == [False, False, True, True]
+
+
+def test_a_band_round_the_globe_and_a_ring_round_a_pole():
+    band = OPEN.with_zones(zone(-180, 60, 180, 90, kind="no-go"))
+    assert band.is_navigable([70.0, 70.0, 50.0], [0.0, 180.0, 0.0]).tolist() == [False, False, True]
+    with pytest.raises(InputError, match="round a pole"):
+        OPEN.with_zones(_ring_of((-120, -60), (0, -60), (120, -60)))
+
+
+def test_a_hole_across_the_antimeridian():
+    outer = [[170, -10], [-170, -10], [-170, 10], [170, 10], [170, -10]]
+    hole = [[175, -5], [175, 5], [-175, 5], [-175, -5], [175, -5]]
+    feature = zone(0, 0, 1, 1, kind="no-go")
+    feature["geometry"]["coordinates"] = [outer, hole]
+    chart = OPEN.with_zones(feature)
+    assert chart.is_navigable(0.0, [171, 176, 180, -176, -171]).tolist() == [
+        False, True, True, True, False,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        {"geometry": {"type": "Polygon", "coordinates": 5}},
+        {"geometry": {"type": "MultiPolygon", "coordinates": [5]}},
+        {"properties": [1], "geometry": {"type": "Polygon", "coordinates": []}},
+        {"type": "FeatureCollection", "features": 5},
+    ],
+)
+def test_geojson_of_the_wrong_shape_is_refused(broken):
+    with pytest.raises(InputError, match="Check the GeoJSON"):
+        OPEN.with_zones({"type": "Feature", "properties": {"kind": "no-go"}, **broken})

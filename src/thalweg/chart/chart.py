@@ -193,12 +193,13 @@ class Chart:
             "eca" without a factor is an emission control area, inside which the ship burns (and
             pays for) its other fuel; with a factor it is a price zone. With "anchorage" zones a
             ship may wait in these only; it may not in "no-waiting" zones. Rings may cross the
-            antimeridian.
+            antimeridian (see `thalweg.chart.geojson`).
 
         Raises
         ------
         InputError
-            If it cannot be read, an outline crosses itself, or a kind or factor makes no sense.
+            If it cannot be read, an outline crosses itself or may be meant either way round the
+            globe, or a kind or factor makes no sense.
         """
         return replace(self, zones=self.zones.joined(Zones.read(zones)))
 

@@ -1,7 +1,10 @@
 """Polygons from GeoJSON (RFC 7946), with errors that say what is wrong where.
 
-A ring whose longitude jumps by more than 180 degrees (but not by 360) between neighbours is taken
-to cross the antimeridian and runs on beyond it.
+An edge over more than 180 degrees of longitude can be read in two ways: as it is written, round by
+Greenwich, or the short way across the antimeridian, where RFC 7946 would have the area cut. It is
+read the one way in which the ring is an area at all; if it is one both ways, it is taken to cross
+the antimeridian if it runs the way RFC 7946 asks for then (outlines counter-clockwise, holes
+clockwise), and refused otherwise. Edges over 360 degrees are those of bands round the globe.
 """
 
 from __future__ import annotations
@@ -53,11 +56,18 @@ def _features(
         return
     kind = data.get("type") if isinstance(data, Mapping) else None
     if kind == "FeatureCollection":
-        yield from _features(list(data.get("features") or []), properties, what)
+        yield from _features(_list(data.get("features") or [], what), properties, what)
     elif kind == "Feature":
-        yield from _features(data.get("geometry"), data.get("properties") or {}, what)
+        told = data.get("properties") or {}
+        if not isinstance(told, Mapping):
+            raise InputError(
+                f"A feature of the {what} has the properties {str(told)[:40]!r}.",
+                "Properties are names with values.",
+                "Check the GeoJSON.",
+            )
+        yield from _features(data.get("geometry"), told, what)
     elif kind == "GeometryCollection":
-        yield from _features(list(data.get("geometries") or []), properties, what)
+        yield from _features(_list(data.get("geometries") or [], what), properties, what)
     elif kind in ("Polygon", "MultiPolygon"):
         yield data, properties
     else:
@@ -82,8 +92,11 @@ def polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> 
 
     parts = geometry.get("coordinates") or []
     found: list[Any] = []
-    for part in parts if geometry["type"] == "MultiPolygon" else [parts]:
-        rings = [_ring(ring, what) for ring in part]
+    for part in _list(parts, what) if geometry["type"] == "MultiPolygon" else [parts]:
+        rings = [
+            _unwound(_ring(ring, what), what, hole=k > 0)
+            for k, ring in enumerate(_list(part, what))
+        ]
         if not rings:
             continue
         for k in range(1, len(rings)):  # holes go on the same turn as their outline
@@ -114,6 +127,17 @@ def _crooked(reason: str, what: str) -> InputError:
     )
 
 
+def _list(value: Any, what: str) -> list[Any]:
+    """Return a list, or raise for anything else in its place."""
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return list(value)
+    raise InputError(
+        f"The {what} holds {str(value)[:40]!r} where a list belongs.",
+        "Coordinates and features are lists.",
+        "Check the GeoJSON.",
+    )
+
+
 def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:
     try:
         ring = np.array([[float(p[0]), float(p[1])] for p in coordinates])
@@ -134,12 +158,62 @@ def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:
                 "Check the order and the units (no projected coordinates).",
                 value=worst,
             )
-    if not np.array_equal(ring[0], ring[-1]):
-        ring = np.vstack([ring, ring[:1]])
+    return ring if np.array_equal(ring[0], ring[-1]) else np.vstack([ring, ring[:1]])
+
+
+def _unwound(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDArray[np.float64]:
+    """Return a ring with longitudes that run on across the antimeridian, if it crosses that.
+
+    Raises
+    ------
+    InputError
+        If it may be meant either way, or goes once round a pole.
+    """
     step = np.diff(ring[:, 0])
-    turns = np.where((np.abs(step) > 180.0) & (np.abs(step) < 360.0), np.round(step / 360.0), 0.0)
-    ring[1:, 0] -= 360.0 * np.cumsum(turns)
-    return ring
+    long = (np.abs(step) > 180.0) & (np.abs(step) <= 360.0)
+    if not long.any():
+        return ring
+    short = ring.copy()
+    short[1:, 0] -= 360.0 * np.cumsum(np.where(long, np.sign(step), 0.0))
+    is_area, turns = _is_area(ring), short[-1, 0] != short[0, 0]
+    if is_area and (np.abs(step[long]) == 360.0).all():
+        return ring
+    if turns and not is_area:
+        raise InputError(
+            f"A ring of the {what} goes once round a pole.",
+            "As an area it must be closed along a meridian through the pole.",
+            "Let it run from longitude -180 to 180 and back by latitude 90 (or -90) of both.",
+        )
+    if not is_area or (not turns and _is_area(short) and _turns_left(short) != hole):
+        return short
+    raise _either_way(ring, int(np.flatnonzero(long)[0]), what)
+
+
+def _is_area(ring: NDArray[np.float64]) -> bool:
+    import shapely
+
+    shape: Any = shapely.polygons(ring)
+    return bool(shapely.is_valid(shape) and shape.area > 0.0)
+
+
+def _turns_left(ring: NDArray[np.float64]) -> bool:
+    import shapely
+
+    return bool(shapely.is_ccw(shapely.linearrings(ring)))
+
+
+def _either_way(ring: NDArray[np.float64], edge: int, what: str) -> InputError:
+    west, east = sorted(ring[edge : edge + 2, 0])
+    wide = east - west
+    return InputError(
+        f"A ring of the {what} has an edge from longitude {ring[edge, 0]:g} to "
+        f"{ring[edge + 1, 0]:g}: {wide:g} degrees as written, or {360.0 - wide:g} the other way "
+        "round.",
+        f"Across the antimeridian longitudes run on ({west + 360.0:g} for {west:g}), or the area "
+        "is cut in two at 180, as RFC 7946 asks; the long way is sure with points in between.",
+        "Write it one way or the other.",
+        value=[float(west), float(east)],
+    )
 
 
 def rings_of(shapes: list[Any]) -> Rings:
