@@ -217,3 +217,54 @@ def test_whole_classic_files_of_every_version_pass_the_length_check(tmp_path) ->
                     out.createVariable("b", "f8", ("time",))[:] = np.ones(7)
             size = path.stat().st_size
             assert size - 4 <= promised_length(path) <= size, (format_, unlimited)
+
+
+def _levels(values, name, units) -> xr.Dataset:
+    """Return wind that tells the value of its level, on levels of any kind."""
+    level = np.array(values, float)
+    u = np.broadcast_to(level[None, :, None, None] / 20.0, (2, level.size, 3, 3)).copy()
+    dims = ("time", name, "lat", "lon")
+    return xr.Dataset(
+        {
+            "u": (dims, u, {"standard_name": "eastward_wind", "units": "m s-1"}),
+            "v": (dims, 0.0 * u, {"standard_name": "northward_wind", "units": "m s-1"}),
+        },
+        {
+            "time": clock([0.0, 6.0]),
+            name: (name, level, {"units": units}),
+            "lat": [0.0, 1.0, 2.0],
+            "lon": [0.0, 1.0, 2.0],
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    ("values", "name", "units"),
+    [
+        ([1000.0, 500.0, 10.0], "isobaric", "hPa"),  # 10 hPa is the stratosphere, not 10 m
+        ([500.0], "pressure_level", "hPa"),
+        ([850.0], "level", "millibars"),
+        ([85000.0, 1000.0], "plev", "Pa"),
+    ],
+)
+def test_wind_of_the_upper_air_is_never_that_at_ten_metres(values, name, units) -> None:
+    refused("levels of pressure", _levels(values, name, units))
+    mapping = {"eastward_wind": "u", "northward_wind": "v"}
+    if len(values) > 1:  # the user's word for the variables is none for the level
+        refused("levels of pressure", _levels(values, name, units), mapping=mapping)
+    height = Sea.open(_levels([100.0, 10.0], "height", "m"))
+    assert value(height, "eastward_wind", T0, 1.0, 1.0) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("begin", "kind"), [(b"PK\x03\x04", "zip"), (b"\x1f\x8b\x08", "gzip"), (b"BZh9", "bzip2")]
+)
+def test_packed_files_are_called_packed(tmp_path, begin, kind) -> None:
+    path = tmp_path / "era5.nc"
+    path.write_bytes(begin + bytes(100))
+    assert "Unpack it first" in str(refused(f"is packed .{kind}.", path))
+
+
+@pytest.mark.parametrize("what", [5, None, 1.5])
+def test_what_cannot_be_opened(what) -> None:
+    refused("cannot be opened from", what)

@@ -406,6 +406,17 @@ def test_files_that_follow_in_time_become_one_layer(tmp_path) -> None:
     assert sea.times(T0, T0 + 4 * HOUR).size == 5
 
 
+def test_files_of_one_layer_may_differ_in_units() -> None:
+    first, second = regular(hours=[0.0, 1.0]), regular(hours=[2.0, 3.0])
+    second["swh"] = second["swh"] * 100.0
+    second["swh"].attrs = {"standard_name": HS, "units": "cm"}
+    for files in ((first, second), (second, first)):
+        sea = Sea.open(*files)
+        assert len(sea.layers) == 1
+        time = T0 + np.array([0.5, 1.5, 2.5]) * HOUR
+        assert value(sea, HS, time, 11.0, 21.0) == pytest.approx(affine(time, 11.0, 21.0))
+
+
 def test_holes_in_time_stay_unknown_in_samples_and_in_frozen_fields() -> None:
     sea = Sea.open(regular(hours=[0.0, 1.0, 2.0, 9.0, 10.0, 11.0]))
     time = T0 + np.array([1.5, 2.0, 5.0, 9.0, 9.5]) * HOUR

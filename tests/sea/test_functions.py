@@ -60,6 +60,29 @@ def test_the_same_thing_twice_is_refused() -> None:
     one = {"sea_floor_depth_below_geoid": lambda t, y, x: 1.0}
     with pytest.raises(InputError, match="twice"):
         Sea.from_functions({**one, "sea_floor_depth_below_mean_sea_level": lambda t, y, x: 1.0})
+    wind = dict.fromkeys(
+        ("eastward_wind", "northward_wind", "wind_speed"), lambda t, y, x: 0.0 * t + 9.0
+    )
+    with pytest.raises(InputError, match="'wind_speed' is another spelling"):
+        Sea.from_functions(wind)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"area": "abc"},
+        {"area": (1, 2, 3)},
+        {"area": (1, 2, float("nan"), 4)},
+        {"area": (2, 1, 0, 4)},
+        {"period": (1.0,)},
+        {"period": "2026-01-01"},
+        {"period": (2.0, 1.0)},
+        {"time_step": -1.0},
+    ],
+)
+def test_areas_periods_and_steps_that_are_none(given) -> None:
+    with pytest.raises(InputError):
+        Sea.from_functions({"eastness": lambda t, y, x: 1.0}, **given)
 
 
 @pytest.mark.parametrize(
@@ -211,6 +234,12 @@ def test_filling_happens_only_when_named_and_is_told() -> None:
         sea.filled(current=0.0)
     with pytest.raises(InputError, match="no direction"):
         sea.filled(wind=5.0)
+    for wrong in ({"waves": "wnd"}, {"currents": "x"}, {"wind": None}, {"currents": (1, 2, 3)}):
+        with pytest.raises(InputError, match="cannot be filled"):
+            sea.filled(**wrong)
+    for wrong in ({"waves": -3.0}, {"waves": 100.0}, {"ice": 7.0}):
+        with pytest.raises(InputError, match="between 0 and"):
+            sea.filled(**wrong)
 
 
 def test_freezing_outside_the_period_says_which_period_there_is() -> None:

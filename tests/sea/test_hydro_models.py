@@ -144,6 +144,40 @@ def test_without_a_draught_the_surface_layer_is_taken(tmp_path) -> None:
     assert sea.fingerprint() != Sea.open(tmp_path / "run.nc", draught_m=4.0).fingerprint()
 
 
+@pytest.mark.parametrize(
+    ("sigma", "positive", "at_surface"),
+    [((-0.1, -0.5, -0.9), "up", 0), ((0.1, 0.5, 0.9), "down", 0), ((0.1, 0.5, 0.9), "up", 2)],
+)
+def test_the_surface_layer_is_the_one_next_to_the_surface(sigma, positive, at_surface) -> None:
+    """Also where sigma counts from 0 at the bed to 1 at the surface."""
+    shape, dims = (3, 2, 2), ("layer", "lat", "lon")
+    u = np.broadcast_to(np.array([1.0, 2.0, 3.0])[:, None, None], shape)
+    data = xr.Dataset(
+        {
+            "u": (dims, u, {"standard_name": EAST, "units": "m s-1"}),
+            "v": (dims, 0.0 * u, {"standard_name": NORTH, "units": "m s-1"}),
+            "h": (
+                dims[1:],
+                np.full((2, 2), 20.0),
+                {"standard_name": "sea_floor_depth_below_geoid"},
+            ),
+        },
+        {
+            "layer": (
+                "layer",
+                list(sigma),
+                {"standard_name": "ocean_sigma_coordinate", "positive": positive},
+            ),
+            "lat": [0.0, 1.0],
+            "lon": [0.0, 1.0],
+        },
+    )
+    surface = Sea.open(data).sample([EAST], 0.0, 0.5, 0.5)[EAST]
+    assert surface == 1.0 + at_surface
+    shallow = Sea.open(data, draught_m=0.1).sample([EAST], 0.0, 0.5, 0.5)[EAST]
+    assert shallow == pytest.approx(surface)
+
+
 def test_layers_told_downwards_or_from_zero_to_one_mean_the_same(tmp_path) -> None:
     plain = hydro.delft3d_fm(layers="sigma")
     lat, lon = hydro.nodes()

@@ -162,6 +162,12 @@ def test_dates_can_be_shifted() -> None:
     assert sea.fingerprint() != Sea.storm().fingerprint()
 
 
+@pytest.mark.parametrize("step", [0.0, -60.0, float("nan")])
+def test_a_storm_needs_a_step(step) -> None:
+    with pytest.raises(InputError, match="time step"):
+        Sea.storm(time_step=step)
+
+
 def test_unknown_storm_names_the_known() -> None:
     with pytest.raises(InputError, match="danielle-1998"):
         Sea.storm("daniele")

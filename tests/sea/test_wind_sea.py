@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from thalweg import InputError, Sea
+from thalweg.kernels import codes
 from thalweg.sea import names as nm
 from thalweg.sea.wind_sea import carter_1982
 
@@ -60,3 +61,18 @@ def test_no_wind_no_waves():
         )
     with pytest.raises(InputError, match="fetch"):
         carter_1982(10.0, fetch=0.0)
+
+
+def test_waves_alone_are_frozen_at_the_times_of_the_wind():
+    """A ship that asks for waves only gets them, and gaps are told by the wind's own reasons."""
+    sea = Sea.from_functions(WIND, area=(40.0, 60.0, -10.0, 10.0), period=(0.0, 86400.0))
+    sea = sea.filled(waves="wind")
+    frozen = sea.freeze_stations([45.0], [0.0], 0.0, 3600.0, [codes.WAVE_HEIGHT_CH])
+    assert frozen.times[[0, -1]].tolist() == [0.0, 3600.0]
+    assert frozen.values[0, :, 0] == pytest.approx(float(carter_1982(13.0)[0]))
+    assert sea.period_of([nm.WAVE_HEIGHT]) == (0.0, 86400.0)
+    assert sea.why_missing(nm.WAVE_HEIGHT, 90000.0, 45.0, 0.0) == "period"
+    assert sea.why_missing(nm.WAVE_HEIGHT, 0.0, 10.0, 0.0) == "area"
+    assert sea.why_missing(nm.WAVE_HEIGHT, 0.0, 55.0, 0.0) == "gap"
+    still = Sea.from_functions(WIND, time_step=0.0).filled(waves="wind")
+    assert still.period_of([nm.WAVE_HEIGHT]) == (-np.inf, np.inf)

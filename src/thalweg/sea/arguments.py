@@ -13,12 +13,15 @@ def area_of(area: tuple[float, float, float, float] | None) -> Area:
     """Return the box for (south, north, west, east) [deg]; the world for None."""
     if area is None:
         return WORLD
-    south, north, west, east = (float(x) for x in area)
-    if not (-90.0 <= south < north <= 90.0):
+    try:
+        south, north, west, east = (float(x) for x in area)
+    except (TypeError, ValueError):
+        south = north = west = east = np.nan
+    if not (-90.0 <= south < north <= 90.0 and np.isfinite([west, east]).all()):
         raise InputError(
-            f"The area {area} has no height.",
+            f"The area {area!r} is none.",
             "An area is (south, north, west, east) in degrees with south < north.",
-            "Check the order of the four numbers.",
+            "Check the four numbers and their order.",
         )
     return Area(south, north, west, east if east > west else east + 360.0)
 
@@ -27,6 +30,10 @@ def period_of(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] |
     """Return (start, end) [s since epoch]."""
     if period is None:
         return None
+    if isinstance(period, str) or len(period) != 2:
+        raise InputError(
+            f"The period {period!r} is none.", "A period is (start, end).", "Give two times."
+        )
     start, end = parse_time(period[0]), parse_time(period[1])
     if end < start:
         raise InputError(

@@ -49,13 +49,12 @@ def unit_vector(sign: float) -> Combine:
     return combine
 
 
-def maker(factors: list[float], combine: Combine, place: Placement, turn: bool) -> Any:
-    """Return what turns raw arrays of a window into canonical ones."""
+def maker(combine: Combine, place: Placement, turn: bool) -> Any:
+    """Return what turns arrays of a window, in SI, into canonical ones."""
     angle = place.angle if turn else None
 
     def make(raws: Sequence[FloatArray], window: Window) -> Sequence[FloatArray]:
-        scaled = [raw if f == 1.0 else raw * f for raw, f in zip(raws, factors)]
-        made = combine(scaled)
+        made = combine(raws)
         if angle is not None:
             made = _rotate(made[0], made[1], _part(angle, window, place.mesh is not None))
         if place.mesh is not None and place.mesh.averaging is not None:

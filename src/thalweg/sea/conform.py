@@ -169,7 +169,7 @@ def _ingredient(
     times = NO_TIMES if clock is None else co.read_times(clock, source)
     if clock is not None and not has_time and clock.dims[0] != "one_time":
         times = NO_TIMES
-    piece = Piece(array, max(1, times.size), has_time)
+    piece = Piece(array, max(1, times.size), has_time, chosen.factor)
     is_c_grid = all(n in dataset.variables for n in NEMO_U) and place.dims and "glamt" in place.key
     shift = (
         {sp.X_CURRENT: (0, 1), sp.Y_CURRENT: (1, 0)}.get(chosen.role, (0, 0))
@@ -356,7 +356,7 @@ class Assembly:
         """Add a quantity to the draft of its grid and time axis."""
         place = parts[0].place
         times = next((p.times for p in parts if p.times.size), NO_TIMES)
-        make = combining.maker([p.chosen.factor for p in parts], combine, place, turn)
+        make = combining.maker(combine, place, turn)
         layers = max(1 if p.layers is None else p.layers.top.size for p in parts)
         quantity = Quantity(made, tuple(p.variable for p in parts), make, self.file.source, layers)
         draft = self._draft(place, times)

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError
+from thalweg.sea import units
 from thalweg.sea.fields import FloatArray
-from thalweg.sea.levels import is_sigma, level_coordinate
+from thalweg.sea.levels import is_sigma, level_coordinate, surface_of
 
 LATITUDES: Final = (
     "latitude",
@@ -30,7 +31,7 @@ NORTH: Final = ("degrees_north", "degree_north", "degree_n", "degrees_n", "degre
 EAST: Final = ("degrees_east", "degree_east", "degree_e", "degrees_e", "degreee", "degreese")
 VERTICAL: Final = (
     "depth", "lev", "level", "height", "sigma", "s_rho", "deptht", "depthu", "depthv", "altitude",
-    "isobaric", "pressure",
+    "isobaric", "pressure", "plev",
 )  # fmt: skip
 WIND_HEIGHT: Final = 10.0  #: [m] height at which wind is used
 CLIMATE: Final = ("month", "season", "dayofyear", "climatology")
@@ -171,10 +172,14 @@ def _level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
             source, name, f"has a dimension {dim!r} that is neither time, place nor level",
             "Select one entry of it into a file first.",
         )  # fmt: skip
-    values = np.asarray(levels.values, float)
-    if "wind" in role:
-        return int(np.argmin(np.abs(values - WIND_HEIGHT)))
-    return int(np.argmin(np.abs(values)))
+    if "wind" not in role:
+        return surface_of(levels)
+    if _is_pressure(levels):
+        raise _layout_fault(
+            source, name, f"is wind at levels of pressure ({levels.name}), none of them at 10 m",
+            "Fetch the wind at 10 m (u10 and v10).",
+        )  # fmt: skip
+    return int(np.argmin(np.abs(np.asarray(levels.values, float) - WIND_HEIGHT)))
 
 
 def wind_height_fault(dataset: Any, array: Any) -> str | None:
@@ -186,6 +191,13 @@ def wind_height_fault(dataset: Any, array: Any) -> str | None:
     named = array.encoding.get("coordinates", array.attrs.get("coordinates", ""))
     stated = {"heightAboveGround", *str(named or "").split()}
     axes = [dataset[n] for n in dataset.variables if _is_vertical(dataset[n], str(n))]
+    for axis in (a for a in axes if _is_pressure(a)):
+        if str(axis.name) in stated or (axis.ndim == 1 and axis.dims[0] in array.dims):
+            unit = axis.attrs.get("units", "")
+            levels = np.atleast_1d(axis.values).tolist()
+            return (
+                f"it holds wind at levels of pressure ({axis.name}: {levels} {unit}), not at 10 m"
+            )
     along = [a for a in axes if a.ndim == 1 and a.dims[0] in array.dims and a.size > 1]
     single = [a for a in axes if a.size == 1 and (str(a.name) in stated or a.name in array.dims)]
     single = [a for a in single if str(a.name).lower().startswith("height")]
@@ -194,6 +206,12 @@ def wind_height_fault(dataset: Any, array: Any) -> str | None:
         if np.abs(values - WIND_HEIGHT).min() > 1.0:
             return f"it holds wind at {values.tolist()} ({axis.name}), not at 10 m"
     return None
+
+
+def _is_pressure(axis: Any) -> bool:
+    """Return whether a vertical axis counts in pressure."""
+    named = str(axis.name).lower().startswith(("isobaric", "pressure", "plev"))
+    return named or units.factor(str(axis.attrs.get("units", "")), "pressure") is not None
 
 
 def _is_vertical(axis: Any, name: str) -> bool:

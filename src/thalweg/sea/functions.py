@@ -205,11 +205,11 @@ def _take_vector(
             missing=missing,
         )
     if len(have) == 2:
-        if directions:
-            raise _twice(have[0], directions[0])
+        again = [*directions, *(s for s in (vector.speed,) if s in given)]
+        if again:
+            raise _twice(have[0], again[0])
         for name in vector.pair:
             makers[name] = _single(name, given.pop(name))
-        given.pop(vector.speed, None)
         return
     if not directions:
         return

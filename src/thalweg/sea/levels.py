@@ -106,7 +106,7 @@ def _mean(values: FloatArray, shares: FloatArray) -> FloatArray:
     """Return the weighted mean over layers (axis 1) of what is known."""
     weight = np.where(np.isnan(values), 0.0, np.broadcast_to(shares, values.shape))
     total = weight.sum(axis=1)
-    summed = (np.nan_to_num(values) * weight).sum(axis=1)
+    summed = np.where(weight > 0.0, values * weight, 0.0).sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(total > 0.0, summed / total, np.nan)
 
@@ -181,15 +181,26 @@ def find_layers(dataset: Any, array: Any, keep: frozenset[str], source: str) -> 
 
 def _sigma(dataset: Any, coordinate: Any, dim: str, values: FloatArray) -> Layers:
     """Return layers at shares of the depth, told downwards or upwards, from 0 or from -1."""
-    positive = str(coordinate.attrs.get("positive", "up")).lower()
-    if values.min() < -_ROUND:  # the convention: 0 at the surface, -1 at the bed
-        sign, offset = -1.0, 0.0
-    elif positive == "down":
-        sign, offset = 1.0, 0.0
-    else:
-        sign, offset = -1.0, 1.0
+    sign, offset = _sigma_sense(coordinate, values)
     top, bottom = _edges(dataset, coordinate, sign, sign * values + offset, offset, (0.0, 1.0))
     return Layers(dim, True, top, bottom)
+
+
+def _sigma_sense(coordinate: Any, values: FloatArray) -> tuple[float, float]:
+    """Return the sign and offset that make sigma a share of the depth, 0 at the surface."""
+    if values.min() < -_ROUND:  # the convention: 0 at the surface, -1 at the bed
+        return -1.0, 0.0
+    down = str(coordinate.attrs.get("positive", "up")).lower() == "down"
+    return (1.0, 0.0) if down else (-1.0, 1.0)
+
+
+def surface_of(coordinate: Any) -> int:
+    """Return the place of the level nearest to the surface."""
+    values = np.asarray(coordinate.values, float)
+    if is_sigma(coordinate):
+        sign, offset = _sigma_sense(coordinate, values)
+        return int(np.argmin(sign * values + offset))
+    return int(np.argmin(np.abs(values)))
 
 
 def _edges(

@@ -23,6 +23,7 @@ from thalweg.sea.recognise import Ignored, check_mapping
 from thalweg.sea.store import READ_ERRORS, Window
 
 HDF5: Final = b"\x89HDF\r\n\x1a\n"
+PACKED: Final = {b"PK\x03\x04": "zip", b"\x1f\x8b": "gzip", b"BZh": "bzip2", b"\xfd7zXZ": "xz"}
 UNDATED: Final[dict[str, Any]] = {"decode_times": False, "decode_timedelta": False}
 ZARR_MARKS: Final = (".zgroup", ".zmetadata", "zarr.json", ".zattrs")
 KINDS: Final = "NetCDF (classic and netCDF-4), GRIB 1 and 2, and Zarr can be read."
@@ -135,6 +136,12 @@ def open_file(source: Any) -> list[OpenedFile]:
                 {"name": "dataset", "variables": sorted(map(str, source.data_vars))},
             )
         ]
+    if not isinstance(source, (str, os.PathLike)):
+        raise InputError(
+            f"A sea cannot be opened from {type(source).__name__!r}.",
+            "It takes paths of files or Zarr folders, or xarray datasets.",
+            "Give one of these.",
+        )
     path = Path(source).expanduser()
     if not path.exists():
         raise _missing(path)
@@ -152,6 +159,9 @@ def open_file(source: Any) -> list[OpenedFile]:
         return [OpenedFile(_open_netcdf(path, ("netcdf4", "scipy")), path.name, facts)]
     if b"GRIB" in head:
         return [OpenedFile(d, path.name, facts) for d in grib.open_grib(path)]
+    packed = next((kind for mark, kind in PACKED.items() if head.startswith(mark)), None)
+    if packed is not None:
+        raise not_data(path, f"is packed ({packed})", "Unpack it first.")
     raise not_data(path, "does not begin like any file of met-ocean data that is known")
 
 
@@ -173,9 +183,9 @@ def _missing(path: Path) -> InputError:
     )
 
 
-def not_data(path: Path, fault: str) -> DatasetError:
+def not_data(path: Path, fault: str, remedy: str = "Check the file.") -> DatasetError:
     """Return the error for a file that is not data."""
-    return DatasetError(f"{path.name} {fault}.", KINDS, "Check the file.", file=str(path))
+    return DatasetError(f"{path.name} {fault}.", KINDS, remedy, file=str(path))
 
 
 @contextmanager

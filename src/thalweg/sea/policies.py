@@ -6,6 +6,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.sea import names as nm
+from thalweg.sea.limits import PLAUSIBLE
 
 CALM_PERIOD = 8.0  #: [s] placeholder peak period of waves of height zero
 CALM = {
@@ -18,6 +19,7 @@ CALM = {
     nm.WAVE_TO_NORTH: 1.0,
     nm.WAVE_PERIOD: CALM_PERIOD,
 }
+LIMITS = {"waves": PLAUSIBLE[nm.WAVE_HEIGHT], "ice": (0.0, 1.0)}
 FILLABLE: dict[str, tuple[str, ...]] = {
     "currents": nm.CURRENT.pair,
     "wind": nm.WIND.pair,
@@ -32,20 +34,29 @@ def policy_values(policy: str, value: float | tuple[float, float]) -> dict[str, 
     if policy not in FILLABLE:
         raise unknown_name("filling policy", policy, FILLABLE)
     names = FILLABLE[policy]
-    numbers = np.atleast_1d(np.asarray(value, float))
+    try:
+        numbers = np.atleast_1d(np.asarray(value, float))
+    except (TypeError, ValueError):
+        numbers = np.array([np.nan])
     is_pair = numbers.size == 2 and len(names) == 2
     least = 0.0 if policy in ("waves", "ice") else -np.inf
     sound = np.isfinite(numbers).all() and (numbers >= least).all()
     if not sound or not (is_pair or numbers.size == 1):
         raise InputError(
             f"{policy} cannot be filled with {value!r}.",
-            "Give one finite number (waves and ice not below 0), or (east, north) for currents "
-            "and wind.",
+            "Give one finite number (waves and ice not below 0), (east, north) for currents and "
+            "wind, or 'wind' for waves.",
             f"For example filled({policy}=0.0).",
         )
     if is_pair:
         return dict(zip(names, numbers.tolist()))
     number = float(numbers[0])
+    if policy in LIMITS and not LIMITS[policy][0] <= number <= LIMITS[policy][1]:
+        raise InputError(
+            f"{policy}={number:g} cannot be.",
+            f"{policy} lie between {LIMITS[policy][0]:g} and {LIMITS[policy][1]:g}.",
+            "Correct it.",
+        )
     if len(names) == 2 and number != 0.0:
         raise InputError(
             f"{policy}={number:g} has no direction.",

@@ -64,11 +64,14 @@ class Piece:
         Number of times.
     has_time : bool
         Whether time is its first dimension; else all its values belong to one time, or to all.
+    factor : float
+        What its values are multiplied with for SI; files of one layer may differ in units.
     """
 
     array: Any
     levels: int
     has_time: bool
+    factor: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,19 +126,23 @@ class Variable:
 
     def _levels(self, window: Window, columns: int) -> Raw:
         if not self.timed:
-            return self._space(self.pieces[0].array, window, columns)[None]
+            return self._space(self.pieces[0], slice(None), window, columns)[None]
         parts, first = [], 0
         for piece in self.pieces:
             begin, end = max(window.t0 - first, 0), min(window.t1 - first, piece.levels)
             if begin < end and piece.has_time:
-                parts.append(self._space(piece.array[begin:end], window, columns))
+                parts.append(self._space(piece, slice(begin, end), window, columns))
             elif begin < end:
-                parts.append(self._space(piece.array, window, columns)[None])
+                parts.append(self._space(piece, slice(None), window, columns)[None])
             first += piece.levels
         return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
-    def _space(self, array: Any, window: Window, columns: int) -> Raw:
-        """Read rows and columns, in two pieces where the window goes round."""
+    def _space(self, piece: Piece, levels: slice, window: Window, columns: int) -> Raw:
+        """Read rows and columns in SI, in two pieces where the window goes round."""
+        values = self._stored(piece.array[levels], window, columns)
+        return values if piece.factor == 1.0 else np.asarray(values, np.float64) * piece.factor
+
+    def _stored(self, array: Any, window: Window, columns: int) -> Raw:
         if self.is_mesh:
             return np.asarray(array.values)[..., None, :]
         rows = array[..., window.y0 : window.y1, :]

@@ -11,12 +11,13 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import unknown_name
+from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import KNOT
 from thalweg.sea import cyclone_models as models
 from thalweg.sea import names as nm
+from thalweg.sea.arguments import step_of
 from thalweg.sea.fields import WORLD, Area, Coverage, FloatArray, Mesh
 from thalweg.sea.layer import Samples
 
@@ -287,7 +288,19 @@ def storm_layer(
     ambient: Ambient | None = None,
     time_step: float = TIME_STEP,
 ) -> StormLayer:
-    """Return the layer of an embedded storm (see `Sea.storm`)."""
+    """Return the layer of an embedded storm (see `Sea.storm`).
+
+    Raises
+    ------
+    InputError
+        If there is no such storm, or the step is not above zero.
+    """
+    if not step_of(time_step):
+        raise InputError(
+            "A storm moves: it cannot be frozen at a time step of 0 s.",
+            "The step is a positive number of seconds.",
+            "Leave it out to have one hour.",
+        )
     track = load_track(name)
     if start is not None:
         moved = track.time - track.time[0] + parse_time(start)

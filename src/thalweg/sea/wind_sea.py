@@ -92,8 +92,9 @@ class WindSeaLayer:
 
     @property
     def period(self) -> tuple[float, float] | None:
-        """No limits of its own."""
-        return None
+        """That of the wind."""
+        start, end = self.sea.period_of(nm.WIND.pair)
+        return (start, end) if np.isfinite([start, end]).all() else None
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
@@ -108,12 +109,13 @@ class WindSeaLayer:
         return _waves(names, self.sea.series(list(nm.WIND.pair), times, lat, lon))
 
     def times(self, start: float, end: float) -> FloatArray:
-        """Return nothing: the times are those of the wind."""
-        return np.empty(0)
+        """Return the times of the wind."""
+        return self.sea.times(start, end, names=nm.WIND.pair)
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return true everywhere: the wind says where it is known."""
-        return np.ones(np.shape(lat), bool)
+        """Return whether positions lie where the wind may be known."""
+        windy = [x for x in self.sea.layers if set(nm.WIND.pair) & x.variables]
+        return np.any([x.inside(lat, lon) for x in windy], axis=0)
 
     def coverage(self) -> list[Coverage]:
         """Return the rows of the wind, for waves."""
