@@ -194,6 +194,7 @@ def test_help_names_every_command():
         (["plan", HERE, THERE, "--calm", "--speed", "fast", "--json"], "--speed"),
         (["plna", "--json"], "plna"),
         (["inspect", "x.nc", "--map", "u", "--json"], "NAME=VARIABLE"),
+        (["inspect", "x.nc", "--time", "2026-01-01", "--json"], "--out"),
     ],
 )
 def test_command_lines_that_are_not_understood(capsys, command, words):

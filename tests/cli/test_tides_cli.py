@@ -211,3 +211,22 @@ def test_a_record_of_mostly_gaps_is_refused(record):
     record.write_text("\n".join([rows[0], *gaps]) + "\n")
     with pytest.raises(InputError, match="known at 40 % of the times"):
         tide("analyse", record, "--at", "-33.9,18.4", "--constituents", "M2", "S2", "--json")
+
+
+def test_where_nothing_can_be_written_is_told_before_the_work(record, tmp_path, monkeypatch):
+    monkeypatch.setattr("thalweg.sea.tide_records.read_record", None)
+    with pytest.raises(InputError, match="is a folder"):
+        tide("analyse", record, "--at", "-33.9,18.4", "--out", tmp_path)
+    with pytest.raises(InputError, match="cannot be written"):
+        tide("analyse", record, "--at", "-33.9,18.4", "--out", record / "x.json")
+
+
+def test_a_prediction_makes_its_folder_and_refuses_a_position_that_means_nothing(capsys, tmp_path):
+    gauge = tmp_path / "gauge.txt"
+    gauge.write_text("STAT X WATHTE NAP cm 1\nCOMP 65 28.984104 10.0 20.0 M2\n")
+    span = ("--start", "2030-01-01", "--end", "2030-01-01T01:00")
+    out = tmp_path / "new" / "tide.csv"
+    assert tide("predict", gauge, *span, "--out", out) == 0
+    assert len(out.read_text().splitlines()) == 8
+    with pytest.raises(InputError, match="holds one place"):
+        tide("predict", gauge, *span, "--at", "51,3")

@@ -279,8 +279,8 @@ def test_san_diego_tide_needs_a_projection_and_names() -> None:
         ("metocean/buoy_HKNA_Hm0_20171026_29.nc", "no positions"),
         ("metocean/coads_climatology_wind_2deg_monthly.nc", "climatology"),
         ("metocean/dhi_model_points_storm_20171027_29.csv", "does not begin"),
-        ("metocean/nora10_point_1958_3h.txt.gz", "does not begin"),
-        ("metocean/norkystda_point_current_hourly.csv.gz", "does not begin"),
+        ("metocean/nora10_point_1958_3h.txt.gz", "is packed .gzip"),
+        ("metocean/norkystda_point_current_hourly.csv.gz", "is packed .gzip"),
         ("tide/dhi_vanuatu_tidal_current_line_hourly_202108.nc", "no positions"),
     ],
 )

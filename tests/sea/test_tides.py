@@ -211,6 +211,15 @@ def test_share_of_variance_that_is_tidal():
     assert found.share(LEVEL) == pytest.approx(0.5, abs=0.03)
 
 
+@pytest.mark.parametrize(
+    ("count", "wanted", "words"),
+    [(1, None, "1 time"), (2, None, "2 time"), (48, ["Z0", "M2"], "the mean"), (48, [], "named")],
+)
+def test_what_no_record_tells(count, wanted, words):
+    with pytest.raises(InputError, match=words):
+        tides.chosen_constituents(3600.0 * np.arange(count), wanted)
+
+
 def test_progress_is_told_to_the_end():
     told = []
     record = np.repeat(_gauge().predict(LEVEL, _hours(20)), 3, axis=0)
@@ -509,6 +518,19 @@ def test_two_sources_of_one_gauge_agree():
         "STAT X WATHTE NAP cm 1\nNCOM 2\nCOMP 65 28.984104 10.0 20.0 M2\n",
         "STAT X WATHTE NAP ft 1\nCOMP 65 28.984104 10.0 20.0 M2\n",
         "STAT X WATHTE NAP cm 1\nCOMP 65 28.5 10.0 20.0 M2\n",
+        "STAT X WATHTE NAP cm 1\nCOMP 65 28.984104 much 20.0 M2\n",
+        "STAT X WATHTE NAP cm 1\nNCOM one\nCOMP 65 28.984104 10.0 20.0 M2\n",
+        "STAT X WATHTE NAP cm 1\nMIDD x\nCOMP 65 28.984104 10.0 20.0 M2\n",
+        "[]",
+        "[1, 2]",
+        '[{"name": "x"}]',
+        '[{"id": "x", "lat": 1, "lon": 2, "constituents": 5}]',
+        '[{"id": "x", "lat": 1, "lon": 2, "constituents": [["M2", "a", 3]]}]',
+        '[{"id": "x", "lat": null, "lon": 2, "constituents": [["M2", 1, 3]]}]',
+        '[{"id": "x", "lat": 1, "lon": 2, "kind": "current", "constituents": [["M2", 1, 3]]}]',
+        '[{"id": "x", "lat": 1, "lon": 2, "constituents": []}]',
+        '{"format": "thalweg-constituents-1", "names": [], "lat": [5], "lon": [1],'
+        ' "convention": "rws", "variables": {}}',
     ],
 )
 def test_files_that_hold_no_constituents(tmp_path, text):
@@ -516,6 +538,14 @@ def test_files_that_hold_no_constituents(tmp_path, text):
     path.write_text(text)
     with pytest.raises(DatasetError):
         tide_files.read_constituents(path)
+
+
+def test_a_station_asked_of_a_file_that_is_no_set_must_be_the_one_it_holds(tmp_path):
+    path = tmp_path / "x.txt"
+    path.write_text("STAT VLISSGN WATHTE NAP cm 1\nCOMP 65 28.984104 10.0 20.0 M2\n")
+    assert tide_files.read_constituents(path, station="VLISSGN").names == ("M2",)
+    with pytest.raises(InputError, match="holds VLISSGN"):
+        tide_files.read_constituents(path, station="HOEKVHLD")
 
 
 def test_a_file_that_is_not_there():

@@ -7,6 +7,7 @@ import json
 from typing import Any
 
 from thalweg.cli import common
+from thalweg.core.errors import InputError
 
 
 def add_command(commands: Any) -> None:
@@ -29,6 +30,12 @@ def run(arguments: argparse.Namespace) -> int:
     from thalweg.planning.output import check_folder, draw_sea
     from thalweg.sea import Sea
 
+    if arguments.time and not arguments.out:
+        raise InputError(
+            "--time is that of the map, and no map is asked for.",
+            "The map is drawn into the folder of --out.",
+            "Add --out DIR, or leave --time out.",
+        )
     folder = check_folder(arguments.out) if arguments.out else None
     sea = Sea.open(*arguments.file, mapping=common.mapping_of(arguments))
     found = sea.describe().as_dict()

@@ -102,9 +102,10 @@ def _analyse(arguments: argparse.Namespace) -> int:
             "It is a positive number of cycles, usually 1.",
             "Correct it.",
         )
+    out = _writable(arguments.out) if arguments.out else None
     analysis, told = _record(arguments) if is_record(arguments.file) else _model(arguments)
-    if arguments.out:
-        write_constituents(analysis.constituents, arguments.out)
+    if out:
+        write_constituents(analysis.constituents, out)
     found = _summary(analysis, told, arguments.out)
     if arguments.json:
         print(json.dumps(found, indent=2, allow_nan=False))
@@ -236,17 +237,31 @@ def _predict(arguments: argparse.Namespace) -> int:
     from thalweg.sea.tide_files import read_constituents
 
     times = _times(arguments)
+    out = _writable(arguments.out) if arguments.out else None
     constants = read_constituents(arguments.file, station=arguments.station)
     series = _series(constants, times, arguments.at)
     if arguments.json:
         print(json.dumps(_predicted(constants, times, series), indent=2, allow_nan=False))
-    elif arguments.out:
-        with open(arguments.out, "w", encoding="utf-8", newline="") as file:
+    elif out:
+        with out.open("w", encoding="utf-8", newline="") as file:
             _write(file, times, series)
         print(f"wrote {arguments.out}")
     else:
         _write(sys.stdout, times, series)
     return 0
+
+
+def _writable(path: str) -> Path:
+    """Return where to write a file, its folder made; before the work, not after it."""
+    from thalweg.planning.output import check_folder
+
+    target = Path(path)
+    if target.is_dir():
+        raise InputError(
+            f"{path} is a folder.", "--out is a file here.", "Add the name of a file to it."
+        )
+    check_folder(target.parent)
+    return target
 
 
 def _times(arguments: argparse.Namespace) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -271,6 +286,12 @@ def _series(constants: Constituents, times: Any, at: str | None) -> dict[str, An
     """Return the tide by variable, at a station or at a position between nodes."""
     names = sorted(constants.variables)
     if constants.lat.size == 1:
+        if at:
+            raise InputError(
+                "The file holds one place, and --at is for files of many nodes.",
+                "The tide is predicted where the constants are from.",
+                "Leave --at out.",
+            )
         return {n: constants.predict(n, times)[0] for n in names}
     if not at:
         raise InputError(

@@ -49,15 +49,29 @@ def read_constituents(path: str | Path, *, station: str | None = None) -> Consti
         If the station is not in the file, or none is named where there are many.
     """
     text = _text(Path(path))
+    source = Path(path).name
     if not text.lstrip().startswith(("[", "{")):
-        return _hatyan(text, Path(path).name)
+        return _only(_hatyan(text, source), station, source)
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:
-        raise _fault(Path(path).name, f"is broken JSON ({error})") from error
+        raise _fault(source, f"is broken JSON ({error})") from error
     if isinstance(data, list):
-        return station_of(data, station, Path(path).name)
-    return from_dict(data, Path(path).name)
+        return station_of(data, station, source)
+    return _only(from_dict(data, source), station, source)
+
+
+def _only(constants: Constituents, station: str | None, source: str) -> Constituents:
+    """Return constants of a file that is no set of stations, if they are those asked for."""
+    told = [str(constants.facts[k]) for k in ("station", "name") if constants.facts.get(k)]
+    if station is None or station in told:
+        return constants
+    raise InputError(
+        f"{source} is no set of stations, and {station!r} is asked of it.",
+        f"It holds {' or '.join(told) or 'constants without a name'}.",
+        "Leave the station out.",
+        file=source,
+    )
 
 
 def write_constituents(constituents: Constituents, path: str | Path) -> None:
@@ -92,6 +106,8 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
         raise _fault(source, f"is not of the format {FORMAT}")
     try:
         nodes, parts = len(data["lat"]), data["variables"]
+        if not (parts and data["names"]):
+            raise _fault(source, "holds no constituents")
         shape = (len(data["names"]), nodes)
         return Constituents(
             tuple(str(n) for n in data["names"]),
@@ -115,9 +131,14 @@ def station_of(
     stations: Sequence[Mapping[str, Any]], wanted: str | None, source: str = "stations"
 ) -> Constituents:
     """Return the constituents of one station of a JSON set (see the module)."""
-    names = {str(s["id"]): s for s in stations}
-    for s in stations:
-        names.setdefault(str(s.get("name", "")), s)
+    try:
+        names = {str(s["id"]): s for s in stations}
+        for s in stations:
+            names.setdefault(str(s.get("name", "")), s)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise _fault(source, f"is a list, but not of stations with an id ({error!r})") from error
+    if not names:
+        raise _fault(source, "holds no station")
     if wanted is None and len(stations) != 1:
         raise InputError(
             f"{source} holds {len(stations)} stations and none is named.",
@@ -127,7 +148,13 @@ def station_of(
         )
     if wanted is not None and wanted not in names:
         raise unknown_name("station", wanted, names)
-    return _station(names[wanted] if wanted is not None else stations[0], source)
+    one = names[wanted] if wanted is not None else stations[0]
+    try:
+        return _station(one, source)
+    except InputError:
+        raise
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        raise _fault(source, f"holds a broken station {one['id']!r} ({error!r})") from error
 
 
 def _station(data: Mapping[str, Any], source: str) -> Constituents:
@@ -141,6 +168,8 @@ def _station(data: Mapping[str, Any], source: str) -> Constituents:
             table[schureman.species(str(name)).name] = (float(size), float(lag))
         else:
             left_out[str(name)] = float(size)
+    if not table:
+        raise _fault(source, f"holds no constituents for the station {data['id']!r}")
     if left_out:
         told = ", ".join(f"{n} ({a:g})" for n, a in left_out.items())
         warnings.warn(
@@ -195,18 +224,23 @@ def _hatyan(text: str, source: str) -> Constituents:
     unit = station[3]
     if unit not in LENGTHS:
         raise _fault(source, f"gives heights in {unit!r}")
-    if len(rows) != int(header.get("NCOM", len(rows))):
-        raise _fault(source, f"tells of {header['NCOM']} components and has {len(rows)}")
+    try:
+        count, mean = int(header.get("NCOM", len(rows))), float(header.get("MIDD", 0.0))
+        numbers = [(name, float(v), float(size), float(lag)) for v, size, lag, name in rows]
+    except ValueError as error:
+        raise _fault(source, f"holds a constant that is no number ({error})") from error
+    if len(rows) != count:
+        raise _fault(source, f"tells of {count} components and has {len(rows)}")
     table = {}
-    for speed, size, lag, name in rows:
+    for name, speed, size, lag in numbers:
         hourly = schureman.frequency(name) * 360.0
-        if abs(hourly - float(speed)) > _PATIENCE:
-            raise _fault(source, f"gives {name} a speed of {speed}, not {hourly:.6f} deg/h")
-        table[name] = (float(size) * LENGTHS[unit], (float(lag) - hourly * MET) % 360.0)
+        if abs(hourly - speed) > _PATIENCE:
+            raise _fault(source, f"gives {name} a speed of {speed:g}, not {hourly:.6f} deg/h")
+        table[name] = (size * LENGTHS[unit], (lag - hourly * MET) % 360.0)
     return Constituents.single(
         nm.WATER_LEVEL,
         table,
-        mean=float(header.get("MIDD", 0.0)) * LENGTHS[unit],
+        mean=mean * LENGTHS[unit],
         convention="rws",
         facts={"source": source, "station": station[0], "datum": station[2]},
     )

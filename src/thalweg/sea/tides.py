@@ -241,6 +241,12 @@ def chosen_constituents(
     times: FloatArray, wanted: Sequence[str] | None, rayleigh: float = RAYLEIGH
 ) -> tuple[str, ...]:
     """Return the constituents a record can tell apart, or check those that are wanted."""
+    if times.size < 3:
+        raise InputError(
+            f"A record of {times.size} time(s) tells no tides.",
+            "M2 alone needs 13 h, M2 and S2 need 355 h, the usual set 30 days.",
+            "Give a longer record.",
+        )
     step = float(np.median(np.diff(times))) / HOUR
     length = float(times[-1] - times[0]) / HOUR + step
     fastest = 0.5 / step
@@ -256,6 +262,12 @@ def chosen_constituents(
             )
         return names
     names = tuple(dict.fromkeys(n.strip().upper() for n in wanted))
+    if not names or "Z0" in names:
+        raise InputError(
+            "No constituent is named." if not names else "Z0 is the mean, which is always found.",
+            "Tidal constituents are named, such as M2 and S2.",
+            "Leave it out.",
+        )
     check_rayleigh(names, length, rayleigh)
     coarse = [n for n in names if foreman.frequency(n) >= fastest]
     if coarse:
