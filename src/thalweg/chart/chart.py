@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.chart import canals as canal_data
 from thalweg.chart import geojson
 from thalweg.chart.anchoring import may_wait
+from thalweg.chart.area import WORLD, Area
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.depth import Depths, warning_depth
 from thalweg.chart.drawing import coastline_lines, land_polygons
@@ -28,7 +29,6 @@ from thalweg.chart.soundings import Float32Array, make_layer
 from thalweg.chart.store import gshhg_index
 from thalweg.chart.zone_raster import ZoneRaster, zone_raster
 from thalweg.chart.zones import Zones
-from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike
 from thalweg.kernels.coast import CoastArrays
@@ -54,39 +54,6 @@ class Land:
         return self.read()
 
 
-@dataclass(frozen=True)
-class Area:
-    """A box of latitudes and longitudes [deg]; west above east crosses the antimeridian."""
-
-    south: float
-    north: float
-    west: float
-    east: float
-
-    def __post_init__(self) -> None:
-        values = (self.south, self.north, self.west, self.east)
-        swapped = self.south > self.north or abs(self.south) > 90 or abs(self.north) > 90
-        if not all(np.isfinite(values)) or swapped or self.west == self.east:
-            raise InputError(
-                f"The area south {self.south:g}, north {self.north:g}, west {self.west:g}, "
-                f"east {self.east:g} is none.",
-                "South lies below north, both within 90 degrees, and west differs from east.",
-                "Give south, north, west, east in degrees, in that order.",
-                value=values,
-            )
-
-    @property
-    def width(self) -> float:
-        """Degrees of longitude from west to east."""
-        width = self.east - self.west
-        return width % 360.0 if abs(width) < 360.0 else 360.0
-
-    def array(self) -> FloatArray:
-        """South, north, west and width [deg], as kernels take it."""
-        return np.array([self.south, self.north, self.west, self.width])
-
-
-WORLD: Final = Area(-90.0, 90.0, -180.0, 180.0)
 NO_ZONES: Final = Zones()
 NO_DEPTHS: Final = Depths()
 

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.sea import names as nm
 from thalweg.sea.fields import FloatArray, GridFields, IntArray, StationFields
-
-if TYPE_CHECKING:
-    from thalweg.sea.sea import Sea
+from thalweg.sea.layered import LayeredSea
 
 Extra: TypeAlias = Callable[
     [Mapping[str, FloatArray], FloatArray, FloatArray, FloatArray], FloatArray
@@ -27,7 +26,7 @@ CHUNK = 1 << 17  #: values computed at a time, so that temporaries stay small
 class SampledSea(Mapping[str, FloatArray]):
     """The sea at given points as a mapping; each variable is sampled when first asked for."""
 
-    def __init__(self, sea: Sea, time: FloatArray, lat: FloatArray, lon: FloatArray) -> None:
+    def __init__(self, sea: LayeredSea, time: FloatArray, lat: FloatArray, lon: FloatArray) -> None:
         self._sea, self._points = sea, (time, lat, lon)
         self._done: dict[str, FloatArray] = {}
 
@@ -46,7 +45,7 @@ class SampledSea(Mapping[str, FloatArray]):
 
 
 def freeze_stations(
-    sea: Sea,
+    sea: LayeredSea,
     lat: FloatArray,
     lon: FloatArray,
     *,
@@ -67,7 +66,7 @@ def freeze_stations(
 
 
 def freeze_grid(
-    sea: Sea,
+    sea: LayeredSea,
     box: tuple[float, float, float, float],
     *,
     window: tuple[float, float],
@@ -99,7 +98,7 @@ def freeze_grid(
 
 
 def channel_places(
-    sea: Sea, channels: Sequence[int], extra: Mapping[int, Extra]
+    sea: LayeredSea, channels: Sequence[int], extra: Mapping[int, Extra]
 ) -> tuple[IntArray, list[int]]:
     """Return the place of each channel (-1 if the sea lacks it) and the present channels."""
     wanted = sorted({*channels, *extra})
@@ -117,7 +116,10 @@ def channel_places(
 
 
 def frozen_times(
-    sea: Sea, window: tuple[float, float], variables: Sequence[str], extra: Mapping[int, Extra]
+    sea: LayeredSea,
+    window: tuple[float, float],
+    variables: Sequence[str],
+    extra: Mapping[int, Extra],
 ) -> FloatArray:
     """Return the times to freeze, or raise if the data know none in the window."""
     start, end = window
@@ -148,7 +150,7 @@ def _variable(channel: int, extra: Mapping[int, Extra]) -> str | None:
 
 def _fill(
     values: NDArray[np.float32],
-    sea: Sea,
+    sea: LayeredSea,
     points: tuple[FloatArray, FloatArray, FloatArray],
     present: Sequence[int],
     extra: Mapping[int, Extra],
@@ -169,3 +171,73 @@ def _fill(
     for k, channel in enumerate(present):
         if channel in extra:
             values[:, :, k] = extra[channel](sampled, wide[0], wide[1], wide[2])
+
+
+@dataclass(frozen=True, eq=False)
+class FreezableSea(LayeredSea):
+    """A sea that can be handed to kernels, as arrays."""
+
+    def freeze_stations(
+        self,
+        lat: ArrayLike,
+        lon: ArrayLike,
+        start: float,
+        end: float,
+        channels: Sequence[int],
+        *,
+        extra: Mapping[int, Extra] | None = None,
+    ) -> StationFields:
+        """Return the sea at stations for kernels.
+
+        Parameters
+        ----------
+        lat, lon : array_like (S,)
+            Stations [deg].
+        start, end : float
+            Window [s since epoch]; frozen times reach one native step beyond it.
+        channels : sequence of int
+            Channels of `thalweg.kernels.codes`; those the sea lacks get index -1.
+        extra : mapping of int to callable, optional
+            Channels computed as ``f(sampled, time, lat, lon) -> array``, where ``sampled`` maps
+            any variable of the sea to its values and all arrays are (stations, times).
+
+        Raises
+        ------
+        OutsidePeriodError
+            If no data reach into the window.
+        """
+        return freeze_stations(
+            self,
+            np.asarray(lat, np.float64),
+            np.asarray(lon, np.float64),
+            window=(float(start), float(end)),
+            channels=channels,
+            extra=extra or {},
+        )
+
+    def freeze_grid(
+        self,
+        south: float,
+        north: float,
+        west: float,
+        east: float,
+        start: float,
+        end: float,
+        channels: Sequence[int],
+        *,
+        spacing_deg: float,
+        extra: Mapping[int, Extra] | None = None,
+    ) -> GridFields:
+        """Return the sea on a regular raster for kernels; arguments as in `freeze_stations`.
+
+        The spacing [deg] is fitted down so that the raster ends on the box; ``east < west`` spans
+        the antimeridian.
+        """
+        return freeze_grid(
+            self,
+            (float(south), float(north), float(west), float(east)),
+            window=(float(start), float(end)),
+            channels=channels,
+            spacing_deg=float(spacing_deg),
+            extra=extra or {},
+        )

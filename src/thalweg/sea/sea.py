@@ -12,15 +12,14 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.sea import freeze, inspection, storm
 from thalweg.sea import functions as formulas
+from thalweg.sea import inspection, storm
 from thalweg.sea import names as nm
 from thalweg.sea.arguments import area_of, period_of, step_of
 from thalweg.sea.ensemble import together
-from thalweg.sea.fields import GridFields, StationFields
+from thalweg.sea.freeze import FreezableSea
 from thalweg.sea.inspection import Inspection
 from thalweg.sea.layer import Layer
-from thalweg.sea.layered import LayeredSea
 from thalweg.sea.policies import CALM, policy_values
 from thalweg.sea.wind_sea import WindSeaLayer
 
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Sea(LayeredSea):
+class Sea(FreezableSea):
     """Met-ocean fields from layers by priority; never changed, never guessed.
 
     Make one with `Sea.open`, `Sea.from_functions`, `Sea.storm` or `Sea.calm`; put one over another
@@ -360,68 +359,3 @@ class Sea(LayeredSea):
         box = None if area is None else area_of(area)
         lines = [(np.asarray(a, np.float64), np.asarray(o, np.float64)) for a, o in coastline]
         draw(self, path, time=when, area=box, coastline=lines)
-
-    def freeze_stations(
-        self,
-        lat: ArrayLike,
-        lon: ArrayLike,
-        start: float,
-        end: float,
-        channels: Sequence[int],
-        *,
-        extra: Mapping[int, freeze.Extra] | None = None,
-    ) -> StationFields:
-        """Return the sea at stations for kernels.
-
-        Parameters
-        ----------
-        lat, lon : array_like (S,)
-            Stations [deg].
-        start, end : float
-            Window [s since epoch]; frozen times reach one native step beyond it.
-        channels : sequence of int
-            Channels of `thalweg.kernels.codes`; those the sea lacks get index -1.
-        extra : mapping of int to callable, optional
-            Channels computed as ``f(sampled, time, lat, lon) -> array``, where ``sampled`` maps
-            any variable of the sea to its values and all arrays are (stations, times).
-
-        Raises
-        ------
-        OutsidePeriodError
-            If no data reach into the window.
-        """
-        return freeze.freeze_stations(
-            self,
-            np.asarray(lat, np.float64),
-            np.asarray(lon, np.float64),
-            window=(float(start), float(end)),
-            channels=channels,
-            extra=extra or {},
-        )
-
-    def freeze_grid(
-        self,
-        south: float,
-        north: float,
-        west: float,
-        east: float,
-        start: float,
-        end: float,
-        channels: Sequence[int],
-        *,
-        spacing_deg: float,
-        extra: Mapping[int, freeze.Extra] | None = None,
-    ) -> GridFields:
-        """Return the sea on a regular raster for kernels; arguments as in `freeze_stations`.
-
-        The spacing [deg] is fitted down so that the raster ends on the box; ``east < west`` spans
-        the antimeridian.
-        """
-        return freeze.freeze_grid(
-            self,
-            (float(south), float(north), float(west), float(east)),
-            window=(float(start), float(end)),
-            channels=channels,
-            spacing_deg=float(spacing_deg),
-            extra=extra or {},
-        )
