@@ -139,6 +139,16 @@ def test_unclear_or_broken_depth_is_refused(tmp_path):
         OPEN.with_depth(12.0)
 
 
+def test_missing_values_that_are_not_marked_are_not_deep_water():
+    elevation = -RAMP.copy()
+    elevation[5, 7] = -32768.0
+    chart = OPEN.with_depth(grid(elevation, LAT, LON))
+    with pytest.raises(DatasetError, match="reaches 32768 m"):
+        chart.depth_at(50.5, 2.7)
+    with pytest.raises(DatasetError, match="missing values that are not marked"):
+        chart.depth_along(50.5, 2.2, 50.5, 3.0)
+
+
 def test_the_embedded_depth_warns_but_proves_nothing():
     assert 4000.0 < OPEN.warning_depth_at(40.0, -55.0) < 6000.0
     assert 15.0 < OPEN.warning_depth_at(55.0, 3.0) < 45.0  # the North Sea

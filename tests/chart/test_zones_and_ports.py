@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 
 from thalweg.chart import Chart
@@ -40,6 +41,12 @@ def test_factors_are_weighted_by_length():
     penalty, price = chart.zone_factor(0.0, [0.0, 1.2, 5.0], 0.0, [4.0, 1.8, 6.0])
     assert penalty == pytest.approx([1.5, 3.0, 1.0], abs=1e-6)
     assert price.tolist() == [1.0, 1.0, 1.0]
+
+
+def test_factors_of_legs_from_nowhere_are_unknown():
+    for chart in (OPEN, OPEN.with_zones([zone(1, -1, 2, 1, kind="penalty", factor=3.0)])):
+        penalty, price = chart.zone_factor([0.0, float("nan"), 0.0], 0.0, 0.0, 4.0)
+        assert np.isnan(penalty).tolist() == np.isnan(price).tolist() == [False, True, False]
 
 
 def test_overlapping_zones_count_the_largest_factor():

@@ -242,6 +242,17 @@ def test_filling_happens_only_when_named_and_is_told() -> None:
             sea.filled(**wrong)
 
 
+def test_a_speed_without_direction_that_filling_sets_aside_is_told() -> None:
+    sea = Sea.from_functions({"wind_speed": lambda t, y, x: 26.0})
+    told = sea.filled(wind=0.0).assumptions
+    assert told == (
+        "where unknown, wind = 0.0",
+        "the data's wind_speed, without direction, is not used",
+    )
+    assert len(sea.filled(currents=0.0).assumptions) == 1
+    assert len(Sea.calm().filled(wind=0.0).assumptions) == 2
+
+
 def test_freezing_outside_the_period_says_which_period_there_is() -> None:
     sea = Sea.from_functions(
         {"sea_surface_wave_significant_height": lambda t, y, x: 1.0}, period=(0, 9)

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from tests.conftest import data_file
 from thalweg.core.errors import DatasetError, InputError, ThalwegWarning
 from thalweg.core.time import parse_time
-from thalweg.sea import Sea, foreman, schureman, tide_files, tides
+from thalweg.sea import Sea, foreman, schureman, tidal_run, tide_files, tides
 from thalweg.sea import names as nm
 from thalweg.sea.constituents import Constituents, phasors
 from thalweg.sea.repeat import drift_deg, repeated
@@ -413,6 +414,42 @@ def test_one_station_holds_where_it_is_told_to():
     assert np.isnan(sea.sample([LEVEL], np.nan, 51.5, 3.5)[LEVEL])
     with pytest.raises(InputError, match="area"):
         Sea.from_tides(_gauge())
+
+
+def test_constants_are_picked_and_areas_that_mean_nothing_refused(run):
+    area = (51.0, 52.0, 3.0, 4.0)
+    only = Sea.from_tides(_gauge(), area=area, constituents=["M2"])
+    expected = _gauge().predict(LEVEL, [START], only=["M2"])[0]
+    assert only.sample([LEVEL], START, 51.5, 3.5)[LEVEL] == pytest.approx(expected[0])
+    assert abs(expected[0] - _gauge().predict(LEVEL, [START])[0, 0]) > 0.01
+    with pytest.raises(InputError, match="places of their own"):
+        Sea.from_tides(Sea.open(run), area=area)
+    found = tidal_run.tidal_analysis(Sea.open(run), constituents=["M2"])
+    with pytest.raises(InputError, match="places of their own"):
+        Sea.from_tides(found, area=area)
+
+
+def test_another_run_of_the_same_name_size_and_date_is_analysed_anew(run):
+    sea = Sea.open(run)
+    first = tidal_run.tidal_analysis(sea, constituents=["M2", "S2"])
+    stamp, raw = run.stat(), xr.load_dataset(run, decode_times=False)
+    raw["h"] = raw["h"] * 2.0
+    raw.to_netcdf(run.with_suffix(".new"))
+    os.replace(run.with_suffix(".new"), run)
+    os.utime(run, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+    assert run.stat().st_size == stamp.st_size
+    again = tidal_run.tidal_analysis(Sea.open(run), constituents=["M2", "S2"])
+    ratio = again.constituents.amplitude[LEVEL][0] / first.constituents.amplitude[LEVEL][0]
+    assert np.nanmax(np.abs(ratio - 2.0)) < 1e-6
+
+
+def test_what_lies_on_another_grid_is_told(run):
+    data = xr.load_dataset(run)
+    moved = data["h"].isel(lat=slice(0, 2)).rename(lat="y", lon="x")
+    both = data.drop_vars("h").assign(h=moved)
+    with pytest.warns(ThalwegWarning, match="sea_surface_height_above_geopotential_datum on"):
+        found = tidal_run.tidal_analysis(Sea.open(both), constituents=["M2"], cache=False)
+    assert found.constituents.variables == {EAST, NORTH}
 
 
 def test_between_stations_the_tide_is_linear():

@@ -36,6 +36,7 @@ DEPTHS: Final = frozenset(
         "model_sea_floor_depth_below_geoid",
     )
 )
+HIGHEST, DEEPEST = 9_500.0, 12_000.0  # [m] above and below datum that is believed
 UNITS: Final = {
     "m": 1.0,
     "meter": 1.0,
@@ -191,9 +192,24 @@ def make_layer(
 
     def read(rows: slice, columns: slice) -> Float32Array:
         part = array.isel({lat_name: rows, lon_name: columns}).values
-        return np.asarray(part, np.float32) * np.float32(scale)
+        depth = np.asarray(part, np.float32) * np.float32(scale)
+        _check_plausible(depth, name)
+        return depth
 
     return GridLayer(name, lat, lon, read)
+
+
+def _check_plausible(depth: Float32Array, name: str) -> None:
+    """Raise for depths that are none: missing values that are not marked would be deep water."""
+    odd = depth[(depth < -HIGHEST) | (depth > DEEPEST)]
+    if odd.size:
+        raise DatasetError(
+            f"The depth in {name} reaches {odd[0]:g} m.",
+            f"Depths between {-HIGHEST:g} and {DEEPEST:g} m are believed: wrong units, or missing "
+            "values that are not marked?",
+            "Correct the file's units or _FillValue.",
+            file=name,
+        )
 
 
 def _opened(source: Any) -> tuple[str, Any]:

@@ -217,13 +217,20 @@ class Zones:
     def factors(
         self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the penalty and the price factor of legs [deg], weighted by length."""
+        """Return the penalty and the price factor of legs [deg], weighted by length.
+
+        NaN where a position is no number.
+        """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         shape = ends[0].shape
         if not (self.penalty or self.price):
-            return np.ones(shape), np.ones(shape)
-        legs = [np.ascontiguousarray(x).ravel() for x in ends]
-        penalty, price = (self._weighted(legs, group) for group in self._groups)
+            one = np.where(np.isfinite(sum(ends)), 1.0, np.nan)
+            return one, one.copy()
+        legs = np.stack([x.ravel() for x in ends])
+        known = np.isfinite(legs).all(axis=0)
+        penalty, price = np.full((2, known.size), np.nan)
+        whole = list(np.ascontiguousarray(legs[:, known]))
+        penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
         return penalty.reshape(shape), price.reshape(shape)
 
     def _weighted(self, legs: list[FloatArray], group: Group) -> FloatArray:

@@ -248,7 +248,8 @@ class Sea(FreezableSea):
             A sea opened from a model run, analysed at every node (what never changes, such as the
             depth, is kept); or constants at three nodes or more, or at one that holds for ``area``.
         constituents : sequence of str, optional
-            Names to analyse; by default all that the length of the run can tell apart.
+            Names to analyse (by default all that the length of the run can tell apart), or to
+            take of the constants given (by default all).
         area : tuple of float, optional
             (south, north, west, east) [deg] for a single station.
         rayleigh : float
@@ -262,7 +263,7 @@ class Sea(FreezableSea):
         ------
         InputError
             If the run is too short for the constituents (it says which need how long), or has no
-            currents and levels over time.
+            currents and levels over time; or if an area is given for more than one station.
         """
         from thalweg.sea.tidal_layer import tidal_sea
 
@@ -307,6 +308,11 @@ class Sea(FreezableSea):
             if not (by_wind and policy == "waves"):
                 values.update(policy_values(policy, value))  # type: ignore[arg-type]
                 told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
+        for vector in (nm.WIND, nm.CURRENT):
+            if vector.east in values and {vector.east, vector.speed} & self.variables == {
+                vector.speed
+            }:
+                told.append(f"the data's {vector.speed}, without direction, is not used")
         layers: list[Layer] = list(self.layers)
         if values:
             layers.append(formulas.constant_layer(values, "filled"))

@@ -203,7 +203,10 @@ def tidal_sea(
     if isinstance(source, tides.TideAnalysis):
         source = source.constituents
     if isinstance(source, Constituents):
-        return SeaClass((_of_constituents(source, area),))
+        chosen = source if constituents is None else source.picked(constituents)
+        return SeaClass((_of_constituents(chosen, area),))
+    if area is not None:
+        raise _own_places()
     source.check_single()
     layers: list[Any] = []
     for layer in source.layers:
@@ -255,8 +258,18 @@ def _of_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
                 "Give area=(south, north, west, east) in degrees.",
             )
         return TidalLayer(constants, None, area, source=source, facts=facts)
+    if area is not None:
+        raise _own_places()
     grid = _triangulated(constants.lat, constants.lon)
     return TidalLayer(constants, grid, source=source, facts=facts)
+
+
+def _own_places() -> InputError:
+    return InputError(
+        "An area is given for tides that have places of their own.",
+        "It tells where the tide of a single station holds.",
+        "Leave the area out.",
+    )
 
 
 def _triangulated(lat: FloatArray, lon: FloatArray) -> TriangleGrid:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import warnings
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from thalweg.core.cache import cache_folder
-from thalweg.core.errors import InputError
+from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.sea import names as nm
 from thalweg.sea import tides
 from thalweg.sea.constituents import Constituents
@@ -45,11 +46,25 @@ def tidal_analysis(
     progress: tides.Progress | None = None,
     cache: bool = True,
 ) -> tides.TideAnalysis:
-    """Return the tides of the first layer of a sea that has any; as `analyse_layer`."""
+    """Return the tides of the first layer of a sea that has any; as `analyse_layer`.
+
+    Warns
+    -----
+    ThalwegWarning
+        If other layers hold currents or levels, too.
+    """
     sea.check_single()
-    layer = next((x for x in sea.layers if has_tides(x)), None)
+    layer, *others = [x for x in sea.layers if has_tides(x)] or [None]
     if not isinstance(layer, GridLayer):
         raise no_tides()
+    left = sorted(set(TIDAL) & {name for other in others for name in other.variables})
+    if left:
+        warnings.warn(
+            f"{', '.join(left)} on another grid or at other times is not analysed; Sea.from_tides "
+            "takes it along.",
+            ThalwegWarning,
+            stacklevel=2,
+        )
     return analyse_layer(
         layer, constituents=constituents, rayleigh=rayleigh, progress=progress, cache=cache
     )
@@ -105,9 +120,22 @@ def _positions(grid: Any) -> tuple[FloatArray, FloatArray]:
 
 
 def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:
-    key = [VERSION, dict(layer.provenance()), list(names), tides.LEAST_KNOWN]
+    key = [VERSION, dict(layer.provenance()), list(names), tides.LEAST_KNOWN, _glance(layer)]
     text = json.dumps(key, sort_keys=True, default=str)
     return cache_folder("tides") / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
+
+
+def _glance(layer: GridLayer) -> str:
+    """Return a digest of the middle time: files may share name, size and time of change."""
+    rows, columns = layer.grid.shape
+    middle = layer.axis.times.size // 2
+    digest = hashlib.sha256(np.ascontiguousarray(layer.axis.times).tobytes())
+    for quantity in layer.quantities:
+        if set(quantity.names) & set(TIDAL):
+            values = quantity.read(Window(middle, middle + 1, 0, rows, 0, columns), columns)
+            for name in quantity.names:
+                digest.update(np.ascontiguousarray(values[name]).tobytes())
+    return digest.hexdigest()
 
 
 def _write_cache(path: Path, analysis: tides.TideAnalysis) -> None:
