@@ -127,16 +127,31 @@ def test_unclear_or_broken_depth_is_refused(tmp_path):
     with pytest.raises(DatasetError, match="depth, elevation"):
         OPEN.with_depth(two)
     assert OPEN.with_depth(two, variable="depth").has_depth
-    with pytest.raises(DatasetError, match="nothing"):
+    with pytest.raises(DatasetError, match="as the sea"):
         OPEN.with_depth(xr.Dataset({"a": ("t", [1.0, 2.0])}))
     broken = tmp_path / "broken.nc"
     broken.write_bytes(b"CDF\x01 nonsense")
-    with pytest.raises(DatasetError, match="cannot be read"):
+    with pytest.raises(DatasetError, match="cut or damaged"):
         OPEN.with_depth(broken)
+    broken.write_text("lat,lon,depth")
+    with pytest.raises(DatasetError, match="does not begin like any file"):
+        OPEN.with_depth(broken)
+    with pytest.raises(InputError, match="There is no file"):
+        OPEN.with_depth(tmp_path / "depths.nc")
     with pytest.raises(InputError, match="'up' or 'down'"):
         OPEN.with_depth(grid(RAMP, LAT, LON), positive="sideways")
     with pytest.raises(InputError, match="xarray"):
         OPEN.with_depth(12.0)
+
+
+def test_a_cut_file_of_depth_is_refused(tmp_path):
+    """The NetCDF library reads the missing end of a classic file as zeros."""
+    path = tmp_path / "depth.nc"
+    grid(RAMP, LAT, LON, "depth").to_netcdf(path, format="NETCDF3_CLASSIC")
+    assert OPEN.with_depth(path).depth_at(51.0, 3.0) == pytest.approx(30.0)
+    path.write_bytes(path.read_bytes()[:-800])
+    with pytest.raises(DatasetError, match="incomplete"):
+        OPEN.with_depth(path)
 
 
 def test_missing_values_that_are_not_marked_are_not_deep_water():

@@ -75,6 +75,7 @@ def test_zones_cross_the_antimeridian():
     [
         ({}, "no kind"),
         ({"kind": "lovely"}, "'no-go', 'penalty', 'price'"),
+        ({"name": "wind farm"}, "A zone 'wind farm' has no kind"),
         ({"kind": "penalty"}, "at least 1"),
         ({"kind": "penalty", "factor": 0.5}, "at least 1"),
         ({"kind": "price", "factor": -1}, "above 0"),

@@ -372,6 +372,26 @@ def test_bed_level_total_depth_and_level_belong_together() -> None:
     assert [float(got[n]) for n in names] == pytest.approx([20.0, 1.5])
 
 
+def test_a_total_depth_without_its_level_is_left_out_with_the_reason() -> None:
+    data = regular(
+        fields={"h": {"standard_name": "sea_floor_depth_below_sea_surface", "units": "m"}}
+    )
+    data["zeta"] = (
+        xr.DataArray(
+            np.zeros((3, 2)), dims=("time", "x"), attrs={"standard_name": "sea_surface_height"}
+        )
+        .expand_dims(y=2)
+        .transpose("time", "y", "x")
+    )
+    data = data.assign_coords(
+        y=axis([10.0, 11.0], "lat").rename(lat="y"), x=axis([20.0, 21.0], "lon").rename(lon="x")
+    )
+    sea = Sea.open(data)
+    assert "sea_floor_depth_below_geoid" not in sea.variables
+    reasons = {name: reason for _, name, reason in sea.describe().ignored}
+    assert reasons["h"].startswith("no water level on its grid")
+
+
 def test_static_fields_hold_always_and_single_times_only_then() -> None:
     dataset = regular(hours=[0.0])
     dataset["deptho"] = (("lat", "lon"), np.full((4, 3), 30.0), {"units": "m"})

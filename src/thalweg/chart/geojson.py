@@ -72,7 +72,7 @@ def _features(
         yield data, properties
     else:
         raise InputError(
-            f"The {what} holds {kind or type(data).__name__!r}, which is no area.",
+            f"The GeoJSON of the {what} holds {kind or type(data).__name__!r}, which is no area.",
             "Polygon and MultiPolygon are areas, alone or in a Feature or FeatureCollection.",
             "Give areas only.",
             value=str(kind),
@@ -132,7 +132,7 @@ def _list(value: Any, what: str) -> list[Any]:
     if isinstance(value, (list, tuple, np.ndarray)):
         return list(value)
     raise InputError(
-        f"The {what} holds {str(value)[:40]!r} where a list belongs.",
+        f"The GeoJSON of the {what} holds {str(value)[:40]!r} where a list belongs.",
         "Coordinates and features are lists.",
         "Check the GeoJSON.",
     )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.geodesy import FloatArray
+from thalweg.sea.opening import open_file
 
 Float32Array = NDArray[np.float32]
 DepthFunction = Callable[[FloatArray, FloatArray], Any]
@@ -225,15 +226,8 @@ def _opened(source: Any) -> tuple[str, Any]:
             "It comes from a file, an xarray object or a function of (lat, lon).",
             "Give one of these.",
         )
-    try:
-        return str(source), xr.open_dataset(source)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise DatasetError(
-            f"The depth file {str(source)!r} cannot be read: {error}.",
-            "NetCDF grids of latitude and longitude can be (GEBCO, ETOPO, EMODnet, ...).",
-            "Check the path and the file.",
-            file=str(source),
-        ) from error
+    parts = [file.dataset for file in open_file(source)]
+    return str(source), parts[0] if len(parts) == 1 else xr.merge(parts, compat="override")
 
 
 def _axes(array: Any) -> tuple[str, str]:
@@ -263,11 +257,19 @@ def _chosen(data: Any, variable: str | None, name: str) -> Any:
         known = known or (gridded if len(gridded) == 1 else [])
     if len(known) == 1:
         return data[known[0]]
+    if not gridded:
+        raise DatasetError(
+            f"{name} holds no field on an axis of latitude and one of longitude.",
+            "Depth is read from such grids (GEBCO, ETOPO, EMODnet, ...); a model's mesh or turned "
+            "grid is given as the sea, with its bed.",
+            "Give another file, or give this one as the sea.",
+            file=name,
+        )
     raise DatasetError(
         f"It is not clear which variable of {name} is the depth."
         if variable is None
         else f"{name} has no gridded variable {variable!r}.",
-        f"On latitude and longitude it has: {', '.join(known or gridded) or 'nothing'}.",
+        f"On latitude and longitude it has: {', '.join(known or gridded)}.",
         "Name it: with_depth(..., variable='...').",
         file=name,
         near=known or gridded,

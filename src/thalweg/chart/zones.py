@@ -269,8 +269,9 @@ def _kind(properties: Mapping[str, Any]) -> str:
     if plain == "eca" and {"factor", "eca_factor", "price_factor"} & properties.keys():
         return "price"
     if plain not in KINDS:
+        named = f" {str(properties['name'])[:60]!r}" if properties.get("name") else ""
         raise InputError(
-            f"A zone has the kind {written!r}." if written else "A zone has no kind.",
+            f"A zone{named} has " + (f"the kind {written!r}." if written else "no kind."),
             "Kinds are 'no-go', 'penalty', 'price', 'eca', 'anchorage' and 'no-waiting'.",
             "Give every feature the property kind.",
             value=written,

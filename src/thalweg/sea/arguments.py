@@ -42,12 +42,14 @@ def period_of(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] |
     return start, end
 
 
-def step_of(time_step: float | None) -> float | None:
-    """Return a time step [s] that is None, 0 or positive."""
-    if time_step is not None and not (np.isfinite(time_step) and time_step >= 0.0):
+def step_of(time_step: float | None, *, least: float = 0.0) -> float | None:
+    """Return a time step [s] that is None, or not less than the least one."""
+    if time_step is not None and not (np.isfinite(time_step) and time_step >= least):
         raise InputError(
             f"A time step of {time_step!r} s cannot be used.",
-            "It must be positive, or 0 for fields that never change.",
+            f"It must be {least:g} s or more."
+            if least
+            else "It must be positive, or 0 for fields that never change.",
             "Leave it out to have one chosen.",
         )
     return None if time_step is None else float(time_step)

@@ -338,6 +338,10 @@ class Assembly:
         elif level is None and total.place.key == other.place.key:
             pair = [self.left.pop(nm.TOTAL_DEPTH), other]
             self._add((nm.WATER_LEVEL,), pair, combining.minus(sign), "total depth minus bed depth")
+        elif bed is None:
+            self._leave(
+                nm.TOTAL_DEPTH, "no water level on its grid and at its times frees it of it"
+            )
         else:
             self._leave(nm.TOTAL_DEPTH, "bed depth and water level are used")
 

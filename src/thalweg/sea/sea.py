@@ -224,7 +224,7 @@ class Sea(FreezableSea):
         ambient : Ambient, optional
             The sea around; by default 5.2 m/s of wind and 1.5 m of waves from the west.
         time_step : float, optional
-            Step [s] at which kernels get the storm, one hour by default.
+            Step [s] at which kernels get the storm, 1 or more; one hour by default.
         """
         layer = storm.storm_layer(name, start=start, ambient=ambient, time_step=time_step)
         return cls((layer,))

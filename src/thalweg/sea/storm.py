@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import unknown_name
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import KNOT
@@ -288,24 +288,13 @@ def storm_layer(
     ambient: Ambient | None = None,
     time_step: float = TIME_STEP,
 ) -> StormLayer:
-    """Return the layer of an embedded storm (see `Sea.storm`).
-
-    Raises
-    ------
-    InputError
-        If there is no such storm, or the step is not above zero.
-    """
-    if not step_of(time_step):
-        raise InputError(
-            "A storm moves: it cannot be frozen at a time step of 0 s.",
-            "The step is a positive number of seconds.",
-            "Leave it out to have one hour.",
-        )
+    """Return the layer of an embedded storm (see `Sea.storm`)."""
+    step = step_of(time_step, least=1.0) or TIME_STEP
     track = load_track(name)
     if start is not None:
         moved = track.time - track.time[0] + parse_time(start)
         track = Track(track.name, moved, track.lat, track.lon, track.wind, track.pressure)
-    return StormLayer(track, ambient or Ambient(), float(time_step))
+    return StormLayer(track, ambient or Ambient(), step)
 
 
 def load_track(name: str) -> Track:
