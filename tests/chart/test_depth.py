@@ -102,6 +102,13 @@ def test_uneven_steps_keep_the_least_sounding():
     assert chart.depth_at(51.0, 2.4) == pytest.approx(10.0)
 
 
+def test_between_uneven_soundings_the_shallower_one_counts():
+    lon = np.array([2.0, 3.0, 3.25])  # laid on steps of 0.25: 2.25 to 2.75 lie between 10 and 50 m
+    values = np.broadcast_to(np.array([10.0, 50.0, 50.0]), (len(LAT), 3))
+    chart = OPEN.with_depth(grid(values, LAT, lon, "depth"))
+    assert chart.depth_along(51.0, 2.45, 51.0, 2.55) == 10.0
+
+
 def test_the_fingerprint_knows_the_soundings():
     one = OPEN.with_depth(grid(RAMP, LAT, LON, "depth"))
     two = OPEN.with_depth(grid(RAMP + 1.0, LAT, LON, "depth"))

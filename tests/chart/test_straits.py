@@ -104,6 +104,18 @@ def test_nothing_navigable_within_reach_is_none(world):
     assert world.nearest_navigable(47.0, 60.0) is None
 
 
+def test_a_place_by_a_pond_snaps_to_it_when_nothing_else_is_near():
+    land = [[-3, -3], [3, -3], [3, 3], [-3, 3], [-3, -3]]
+    ponds = [
+        [[x, y], [x, y + w], [x + w, y + w], [x + w, y], [x, y]]
+        for x, y, w in ((0.1, 0.0, 0.1), (-0.15, 0.0, 0.02))
+    ]
+    chart = Chart.from_geojson({"type": "Polygon", "coordinates": [land, *ponds]})
+    lat, lon, away = chart.nearest_navigable(0.05, 0.05, largest=30e3)
+    assert 0.1 < lon < 0.12 and 0.0 < lat < 0.1  # the larger of the two
+    assert away == pytest.approx(5566.0, abs=1000.0)
+
+
 def test_land_for_drawing_is_cut_to_the_box_and_crosses_the_antimeridian(world):
     polygons = world.land_polygons(60.0, 70.0, 170.0, -170.0)
     boxes = np.array([p.bounds for p in polygons])

@@ -229,6 +229,14 @@ def test_a_band_round_the_globe_and_a_ring_round_a_pole():
         OPEN.with_zones(_ring_of((-120, -60), (0, -60), (120, -60)))
 
 
+def test_anchorages_across_the_antimeridian():
+    for west, east in ((170, 190), (-190, -170), (170, -170)):
+        chart = OPEN.with_zones(zone(west, -10, east, 10, kind="anchorage"))
+        chart = chart.with_zones(zone(179, -1, 181, 1, kind="no-waiting"))
+        where = [175, -175, 185, -185, 180, -180, 100, -169]
+        assert chart.may_wait(0.0, where).tolist() == [True] * 4 + [False] * 4
+
+
 def test_a_hole_across_the_antimeridian():
     outer = [[170, -10], [-170, -10], [-170, 10], [170, 10], [170, -10]]
     hole = [[175, -5], [175, 5], [-175, 5], [-175, -5], [175, -5]]

@@ -123,6 +123,13 @@ def test_impossible_units_and_values() -> None:
     )
 
 
+@pytest.mark.parametrize("row", [0, 3])
+def test_of_a_small_level_every_row_is_looked_at_on_opening(row) -> None:
+    data = regular()
+    data.swh[1, row, 0] = 9999.0  # the middle time
+    refused("9999", data)
+
+
 def test_implausible_values_away_from_the_first_look_show_when_read() -> None:
     dataset = regular(hours=np.arange(6.0))
     dataset.swh[5] = 1e6

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from tests.sea.worlds import EAST, HS, NORTH, T0, affine, axis, clock, mesh, regular, value
 from thalweg.kernels import codes
 from thalweg.sea import Sea
+from thalweg.sea.grids import TriangleGrid
 
 HOUR = 3600.0
 
@@ -334,6 +335,42 @@ def test_mesh_with_face_data_keeps_the_value_at_each_centre_and_dry_faces_unknow
     assert value(dry, HS, T0, lat[1], lon[1]) == pytest.approx(faces[1])
 
 
+def test_nodes_of_a_mesh_take_their_faces_by_the_inverse_distance_to_the_centres() -> None:
+    dataset = mesh(location="face")
+    dataset.swh[:] = np.array([1.0, 3.0, 7.0])  # the quadrangle, triangles 1 2 5 and 1 5 4
+    lat, lon = dataset.node_lat.values, dataset.node_lon.values
+    far = []
+    for face in ([0, 1, 4, 3], [1, 2, 5], [1, 5, 4]):
+        north, east = lat[face].mean() - lat[1], lon[face].mean() - lon[1]
+        far.append(np.hypot(north, east * np.cos(np.radians(lat[1]))))
+    weight = 1.0 / np.array(far)
+    expected = weight @ [1.0, 3.0, 7.0] / weight.sum()
+    got = value(Sea.open(dataset), HS, T0, lat[1], lon[1])
+    assert got == pytest.approx(expected, rel=1e-6)
+    assert abs(expected - 11.0 / 3.0) > 0.1
+
+
+def test_a_mesh_round_the_world_has_no_seam() -> None:
+    """Two rings of nodes at 10 S and 10 N, on any turn of longitude."""
+    lon = np.arange(0.0, 360.0, 30.0)
+    n = lon.size
+    here = np.arange(n)
+    after = (here + 1) % n
+    triangles = np.concatenate(
+        [np.stack([here, after, n + here], 1), np.stack([after, n + after, n + here], 1)]
+    )
+    for first in (0.0, -180.0, 13.0):
+        ring = (lon + first + 180.0) % 360.0 - 180.0
+        grid = TriangleGrid(np.repeat([-10.0, 10.0], n), np.tile(ring, 2), triangles, (1, 2 * n))
+        where = np.arange(-179.5, 540.0, 7.0)
+        found = grid.locate(np.full(where.size, 3.0), where)
+        assert (found.corner[:, 0] >= 0).all()
+        turned = (np.tile(lon + first, 2)[found.corner] - where[:, None] + 180.0) % 360.0 - 180.0
+        assert (turned * found.weight).sum(axis=1) == pytest.approx(0.0, abs=1e-9)
+        north = np.repeat([-10.0, 10.0], n)[found.corner]
+        assert (north * found.weight).sum(axis=1) == pytest.approx(3.0)
+
+
 def test_mesh_across_the_dateline() -> None:
     dataset = mesh()
     lon = (dataset.node_lon + 176.7 + 180.0) % 360.0 - 180.0
@@ -424,6 +461,23 @@ def test_files_that_follow_in_time_become_one_layer(tmp_path) -> None:
     time = T0 + np.array([0.5, 2.5, 3.5]) * HOUR
     assert value(sea, HS, time, 11.0, 21.0) == pytest.approx(affine(time, 11.0, 21.0))
     assert sea.times(T0, T0 + 4 * HOUR).size == 5
+
+
+def test_files_on_other_positions_are_not_joined() -> None:
+    second = regular(lat=(14.0, 15.0, 16.0, 17.0), hours=[2.0, 3.0])
+    sea = Sea.open(regular(hours=[0.0, 1.0]), second)
+    assert len(sea.layers) == 2
+    assert value(sea, HS, T0 + 2.5 * HOUR, 15.5, 21.0) == pytest.approx(
+        affine(T0 + 2.5 * HOUR, 15.5, 21.0)
+    )
+    assert np.isnan(value(sea, HS, T0 + 2.5 * HOUR, 11.5, 21.0))
+
+
+def test_the_share_of_places_without_a_value_is_told() -> None:
+    data = regular()
+    data.swh[:, :2, :1] = np.nan  # 2 of 12 places
+    (share,) = Sea.open(data).describe().missing.values()
+    assert share == pytest.approx(2.0 / 12.0)
 
 
 def test_files_of_one_layer_may_differ_in_units() -> None:

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from tests.sea.worlds import value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
-from thalweg.sea import Sea
+from thalweg.sea import Sea, grib_worker
 from thalweg.sea.grib import check_messages
 
 pytestmark = pytest.mark.skipif(
@@ -168,3 +169,23 @@ def test_a_head_without_a_message(tmp_path, tail) -> None:
     path.write_bytes(tail)
     with pytest.raises(DatasetError, match="cut or damaged"):
         Sea.open(path)
+
+
+def test_runs_with_steps_become_one_axis_of_valid_times_in_order() -> None:
+    """Two runs of a forecast, the later one first in the file, as ``(time, step)``."""
+    hour = np.timedelta64(3600, "s").astype("timedelta64[ns]")
+    time = np.array(["2026-01-01T12", "2026-01-01T00"], "datetime64[ns]")
+    step = np.array([0, 6]) * hour
+    data = xr.Dataset(
+        {"swh": (("time", "step", "y"), np.array([[[12.0], [18.0]], [[0.0], [6.0]]]))},
+        {
+            "time": time,
+            "step": step,
+            "valid_time": (("time", "step"), time[:, None] + step[None, :]),
+        },
+    )
+    found = grib_worker.dated(data)
+    assert found["swh"].dims == ("valid_time", "y")
+    assert found["swh"].values[:, 0].tolist() == [0.0, 6.0, 12.0, 18.0]
+    hours = (found["valid_time"].values - time[1]) / hour
+    assert hours.tolist() == [0.0, 6.0, 12.0, 18.0]

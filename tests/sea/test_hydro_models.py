@@ -10,6 +10,7 @@ from tests.sea import hydro
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.sea.grids import TriangleGrid
+from thalweg.sea.levels import Layers
 
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
 LEVEL = "sea_surface_height_above_geopotential_datum"
@@ -109,6 +110,17 @@ def test_layers_are_averaged_over_the_draught(tmp_path, kind, draught) -> None:
     told = next(r.how for r in sea.describe().recognised if r.variable == EAST)
     count = 10 if kind == "sigma" else 12
     assert f"mean over the upper {draught:g} m of {count} {kind} layers" in told
+
+
+@pytest.mark.parametrize(
+    ("level", "thick"),
+    [(1.0, [3.0, 1.0]), (0.0, [2.0, 2.0]), (-1.0, [1.0, 2.0]), (-2.5, [0.0, 1.5])],
+)
+def test_the_top_layer_at_fixed_depths_reaches_the_moving_surface(level, thick) -> None:
+    """Layers from 0 to 2 and 2 to 4 m below datum, a draught of 4 m."""
+    layers = Layers("z", False, np.array([0.0, 2.0]), np.array([2.0, 4.0]))
+    shares = layers.shares(4.0, np.full((1, 1, 1), level))
+    assert shares[0, :, 0, 0] == pytest.approx(thick)
 
 
 def _by_hand(kind: str, draught: float, hour: float, x: float) -> float:

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from tests.conftest import data_file
 from thalweg.core.errors import DatasetError, InputError, ThalwegWarning
 from thalweg.core.time import parse_time
+from thalweg.kernels import codes
 from thalweg.sea import Sea, foreman, schureman, tidal_run, tide_files, tides
 from thalweg.sea import names as nm
 from thalweg.sea.constituents import Constituents, phasors
@@ -201,6 +202,23 @@ def test_nodes_known_at_other_times_are_solved_each_on_its_own():
     assert np.isnan(sizes[:, 3:]).all()  # known for less than half the record
 
 
+def test_a_node_known_at_half_days_only_has_no_tide():
+    """There S2 stands still: solved all the same, its amplitude would come out at kilometres."""
+    coarse = START + 43200.0 * np.arange(119)
+    times = np.concatenate([coarse, coarse[-1] + 3600.0 * np.arange(1, 121)])
+    truth = Constituents.single(
+        LEVEL, {"M2": (1.75, 30.5), "S2": (0.48, 87.7)}, lat=51.4, convention="foreman"
+    )
+    record = np.repeat(truth.predict(LEVEL, times), 2, axis=0)
+    record += 0.05 * np.random.default_rng(0).normal(size=record.shape)
+    record[1, (times - coarse[0]) % 43200.0 != 0.0] = np.nan
+    assert np.isfinite(record[1]).mean() > 0.5
+    found = analyse(times, {LEVEL: record}, lat=np.full(2, 51.4), constituents=["M2", "S2"])
+    sizes = found.constituents.amplitude[LEVEL]
+    assert sizes[:, 0] == pytest.approx([1.75, 0.48], abs=0.02)
+    assert np.isnan(sizes[:, 1]).all()
+
+
 def test_share_of_variance_that_is_tidal():
     times = _hours(60)
     tide = _gauge().predict(LEVEL, times)[0]
@@ -354,8 +372,6 @@ def test_the_share_that_is_tidal_is_told(run):
 
 
 def test_kernels_get_the_tide_between_its_steps(run):
-    from thalweg.kernels import codes
-
     sea = Sea.from_tides(Sea.open(run), constituents=["M2", "S2"])
     start = parse_time("2030-01-01")
     frozen = sea.freeze_stations([52.1], [3.1], start, start + 86400.0, [codes.WATER_LEVEL])
@@ -641,6 +657,21 @@ def test_a_run_is_repeated_by_its_period(run):
     series = again.series([LEVEL], times, np.array([52.0]), np.array([3.0]))[LEVEL]
     assert series[0] == pytest.approx(again.sample([LEVEL], times, 52.0, 3.0)[LEVEL])
     assert any("repeated" in a for a in again.assumptions)
+
+
+def test_a_repeated_run_is_frozen_up_to_its_seam():
+    """Interpolating frozen times must not smear the end of one round into the next."""
+    start, length = START, 360.0 * 3600.0
+    level = {LEVEL: lambda t, lat, lon: (t - start) / length + 0.0 * lat}
+    sea = Sea.from_functions(level, period=(start, start + length), time_step=6 * 3600.0)
+    again = repeated(sea, start, period_h=360.0)
+    seam = start + length
+    channels = [codes.WATER_LEVEL]
+    frozen = again.freeze_stations([0.0], [0.0], seam - 86400.0, seam + 86400.0, channels)
+    before = np.interp(seam - 60.0, frozen.times, frozen.values[0, :, 0])
+    assert before == pytest.approx(1.0 - 60.0 / length, abs=1e-3)
+    after = np.interp(seam + 60.0, frozen.times, frozen.values[0, :, 0])
+    assert after == pytest.approx(60.0 / length, abs=1e-3)
 
 
 @pytest.mark.parametrize("period", [354.367, 355.0, 12.4, 0.0, float("nan")])
