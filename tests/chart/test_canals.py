@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.chart.canals import CANALS, Canal
+from thalweg.chart.canals import CANALS, SUEZ, Canal
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
@@ -117,3 +117,19 @@ def test_canals_of_ones_own():
     assert not chart.legs_blocked(0.0, 1.0, 0.0, 0.0)
     assert chart.legs_blocked(0.0, 1.0, 0.0, 0.1)
     assert chart.without_canals("ditch").legs_blocked(0.0, 1.0, 0.0, 0.0)
+
+
+def test_a_no_go_zone_over_a_canal_closes_it(world):
+    ring = [[31.5, 30.0], [33.5, 30.0], [33.5, 30.6], [31.5, 30.6], [31.5, 30.0]]
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    feature = {"type": "Feature", "properties": {"kind": "no-go"}, "geometry": geometry}
+    (lat1, lon1), (lat2, lon2) = SUEZ.ends
+    assert not world.legs_blocked(lat1, lon1, lat2, lon2)
+    closed = world.with_zones(feature)
+    assert [canal.name for canal in closed.canals] == ["panama", "kiel", "corinth"]
+    assert closed.legs_blocked(lat1, lon1, lat2, lon2)
+    assert closed.canal_of_legs(lat1, lon1, lat2, lon2) == -1
+    beside = dataclasses.replace(closed, canals=(SUEZ,))
+    assert beside.canals == ()
+    feature["properties"]["kind"] = "no-waiting"
+    assert len(world.with_zones(feature).canals) == len(world.canals)

@@ -190,6 +190,15 @@ def test_real_grids_have_the_depths_of_the_sea():
     assert 1000.0 < ocean < 5000.0
 
 
+def test_a_long_leg_over_a_gap_in_the_soundings_is_unknown():
+    lon = np.arange(-20.0, 20.01, 0.5)
+    values = np.full((len(LAT), len(lon)), 30.0)
+    values[:, (lon > -1.0) & (lon < 1.0)] = np.nan
+    chart = OPEN.with_depth(grid(values, LAT, lon, "depth"))
+    assert np.isnan(chart.depth_along(51.0, -15.0, 51.0, 15.0))
+    assert chart.depth_along(51.0, -15.0, 51.0, -5.0) == 30.0
+
+
 def test_a_leg_that_clips_the_corner_of_a_shallow_cell_is_shallow():
     """However it is cut: the whole leg is as shallow as the least of its parts."""
     lat = lon = np.arange(0.0, 1.01, 0.1)

@@ -116,6 +116,15 @@ def test_a_place_by_a_pond_snaps_to_it_when_nothing_else_is_near():
     assert away == pytest.approx(5566.0, abs=1000.0)
 
 
+def test_a_lake_is_no_land_in_drawings():
+    land = [[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]]
+    lake = [[0.5, 0.5], [0.5, 1.5], [1.5, 1.5], [1.5, 0.5], [0.5, 0.5]]
+    chart = Chart.from_geojson({"type": "Polygon", "coordinates": [land, lake]})
+    drawn = chart.land_polygons(-1.0, 3.0, -1.0, 3.0)
+    assert sum(polygon.area for polygon in drawn) == pytest.approx(4.0 - 1.0)
+    assert sum(p.area for p in chart.land_polygons(0.0, 1.0, 0.0, 1.0)) == pytest.approx(0.75)
+
+
 def test_land_for_drawing_is_cut_to_the_box_and_crosses_the_antimeridian(world):
     polygons = world.land_polygons(60.0, 70.0, 170.0, -170.0)
     boxes = np.array([p.bounds for p in polygons])

@@ -248,6 +248,17 @@ def test_a_hole_across_the_antimeridian():
     ]  # fmt: skip
 
 
+def test_a_hole_may_be_written_on_another_turn_of_longitude_than_its_outline():
+    outer = [[170, -10], [190, -10], [190, 10], [170, 10], [170, -10]]
+    hole = [[-176, -5], [-176, 5], [-172, 5], [-172, -5], [-176, -5]]
+    feature = zone(0, 0, 1, 1, kind="no-go")
+    feature["geometry"]["coordinates"] = [outer, hole]
+    chart = OPEN.with_zones(feature)
+    assert chart.is_navigable(0.0, [175, -178, -174, 186, -171]).tolist() == [
+        False, False, True, True, False,
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize(
     "broken",
     [

@@ -246,6 +246,54 @@ def test_components_along_a_turned_grid_become_east_and_north(angle) -> None:
     )
 
 
+def _unit_along_x(name: str, **attributes) -> dict:
+    def one(t, lat, lon):
+        return np.ones_like(lat) + 0 * t
+
+    def none(t, lat, lon):
+        return np.zeros_like(lat) + 0 * t
+
+    standard = {"x_wind": ("x_wind", "y_wind"), "eastward": ("eastward_wind", "northward_wind")}
+    return {
+        key: (make, {"units": "m/s", "standard_name": word, **attributes})
+        for key, make, word in zip("uv", (one, none), standard[name])
+    }
+
+
+def test_components_along_an_x_axis_that_falls_point_the_other_way() -> None:
+    """Columns run against the projected x axis along which components are told."""
+    data = rotated_grid(30.0, _unit_along_x("x_wind"))
+    x = np.arange(float(data.sizes["x"]))
+    for sign in (1.0, -1.0):
+        sea = Sea.open(data.assign_coords(x=("x", sign * x)))
+        got = sea.sample(["eastward_wind", "northward_wind"], T0, 0.0, 0.0)
+        assert got["eastward_wind"] == pytest.approx(sign * np.cos(np.radians(30.0)), abs=2e-5)
+        assert got["northward_wind"] == pytest.approx(sign * np.sin(np.radians(30.0)), abs=2e-5)
+
+
+def test_components_that_grib_tells_along_the_grid_are_turned() -> None:
+    for flag, east, north in ((1, np.cos(np.radians(30.0)), 0.5), (0, 1.0, 0.0)):
+        data = rotated_grid(30.0, _unit_along_x("eastward", GRIB_uvRelativeToGrid=flag))
+        got = Sea.open(data).sample(["eastward_wind", "northward_wind"], T0, 0.0, 0.0)
+        assert got["eastward_wind"] == pytest.approx(east, abs=2e-5)
+        assert got["northward_wind"] == pytest.approx(north, abs=2e-5)
+
+
+@pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:3413", "EPSG:28992"])
+def test_the_x_axis_of_a_projection_is_turned_by_its_convergence(crs) -> None:
+    from pyproj import Geod, Transformer
+
+    from thalweg.sea.coordinates import meridian_angle
+
+    back = Transformer.from_crs(4326, crs, always_xy=True)
+    lat, lon = np.array([52.5, 55.5, 53.0]), np.array([4.5, 9.0, 6.5])
+    x, y = (np.asarray(a) for a in back.transform(lon, lat))
+    there = Transformer.from_crs(crs, 4326, always_xy=True).transform(x + 500.0, y)
+    azimuth = Geod(ellps="WGS84").inv(lon, lat, *there)[0]
+    turned = np.degrees(meridian_angle(crs, x, y)) - (90.0 - azimuth)
+    assert (turned + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.2)
+
+
 def test_grid_over_the_pole_and_over_the_dateline() -> None:
     x, y = np.meshgrid(np.linspace(-500e3, 500e3, 21), np.linspace(-400e3, 400e3, 17))
     for crs, positions in (

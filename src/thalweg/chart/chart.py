@@ -71,6 +71,14 @@ class Chart:
     depths: Depths = NO_DEPTHS
     canals: tuple[Canal, ...] = ()
 
+    def __post_init__(self) -> None:
+        if self.canals and self.zones.no_go:  # a canal through a no-go zone is closed
+            none = CoastArrays(empty_index(), self.zones.index, WORLD.array())
+            paths = [np.array(canal.path, float).T for canal in self.canals]
+            shut = [(leg_status(none, a[:-1], o[:-1], a[1:], o[1:]) != OK).any() for a, o in paths]
+            left = tuple(c for c, is_shut in zip(self.canals, shut) if not is_shut)
+            object.__setattr__(self, "canals", left)
+
     @classmethod
     def gshhg(cls, resolution: str = "i") -> Chart:
         """Return the chart of the world's coasts from GSHHG.
@@ -159,8 +167,8 @@ class Chart:
             or "price" (with ``factor`` > 0). Where zones of a kind overlap the largest counts.
             "eca" without a factor is an emission control area, inside which the ship burns (and
             pays for) its other fuel; with a factor it is a price zone. With "anchorage" zones a
-            ship may wait in these only; it may not in "no-waiting" zones. Rings may cross the
-            antimeridian (see `thalweg.chart.geojson`).
+            ship may wait in these only; it may not in "no-waiting" zones. A canal through a
+            "no-go" zone is closed. Rings may cross the antimeridian (`thalweg.chart.geojson`).
 
         Raises
         ------

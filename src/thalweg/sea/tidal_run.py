@@ -54,10 +54,11 @@ def tidal_analysis(
         If other layers hold currents or levels, too.
     """
     sea.check_single()
-    layer, *others = [x for x in sea.layers if has_tides(x)] or [None]
-    if not isinstance(layer, GridLayer):
+    tidal = [x for x in sea.layers if isinstance(x, GridLayer) and has_tides(x)]
+    if not tidal:
         raise no_tides()
-    left = sorted(set(TIDAL) & {name for other in others for name in other.variables})
+    layer = tidal[0]
+    left = sorted(set(TIDAL) & {name for other in tidal[1:] for name in other.variables})
     if left:
         warnings.warn(
             f"{', '.join(left)} on another grid or at other times is not analysed; Sea.from_tides "
