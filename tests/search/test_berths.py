@@ -146,3 +146,12 @@ def test_where_waiting_is_allowed_everywhere_nothing_changes():
     plain = earliest_arrival(network, fields, steady(4.0), **given)
     barred = replace(network, can_wait=np.ones(7, bool))
     assert earliest_arrival(barred, fields, steady(4.0), **given).arrive == plain.arrive
+
+
+def test_open_water_takes_one_wave():
+    """No bar, no reason to wait: a few searches settle every node once, whatever the period."""
+    network = replace(line(60, 1000.0), can_wait=np.arange(60) % 2 == 0)
+    fields = make_fields(network, [0.0, 8 * HOUR, 300 * HOUR], bed_depth=10.0)
+    found = earliest_arrival(network, fields, steady(4.0), start=0, goal=59, depart=0.0, **GIVEN)
+    assert found.arrive == pytest.approx(59_000.0 / 4.0)
+    assert found.settled <= 3 * (network.n_nodes + 1)  # and one more to tell the way

@@ -1,9 +1,13 @@
 """The best departure of a window."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.search.small import limits, line, make_fields, steady
+from tests.search.test_berths import barred_line
+from tests.search.test_tides import GIVEN as TIDAL
 from thalweg.core.errors import InputError
 from thalweg.search import best_departure, earliest_arrival
 
@@ -68,3 +72,20 @@ def test_empty_windows_are_refused(window):
     network, fields = tidal()
     with pytest.raises(InputError, match="window"):
         best_departure(network, fields, steady(5.0), window=window, **GIVEN)
+
+
+@pytest.mark.parametrize("waits_at", [[0, 1], [0]])
+def test_a_window_where_the_ship_may_wait_at_some_nodes_only(waits_at):
+    """A bar that opens at 4 h: who leaves within the first hour must wait, and can."""
+    network, fields = barred_line(4 * HOUR)
+    network = replace(network, can_wait=np.isin(np.arange(6), waits_at))
+    asked = {"start": 0, "goal": 5, **TIDAL}
+    found = best_departure(network, fields, steady(4.0), window=(0.0, HOUR), **asked)
+    last = earliest_arrival(network, fields, steady(4.0), depart=HOUR, **asked)
+    assert found.found and last.found
+    assert found.arrive == pytest.approx(last.arrive, abs=1.0)
+    assert found.duration == pytest.approx(last.duration, abs=1.0)
+    later = best_departure(network, fields, steady(4.0), window=(0.0, 6 * HOUR), **asked)
+    assert later.duration == pytest.approx(5000.0 / 4.0, abs=1.0)
+    with pytest.raises(InputError, match="node 99"):
+        best_departure(network, fields, steady(4.0), window=(0.0, HOUR), **(asked | {"goal": 99}))

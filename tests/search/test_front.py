@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_network, make_table
+from tests.search.test_berths import barred_line
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels import codes
 from thalweg.search import cheapest, earliest_arrival, front
@@ -461,3 +462,51 @@ def test_settings_can_be_chosen():
     fields = make_fields(network, [0.0, 1e6], **STILL)
     found = search(network, fields, 11, 20_000.0, settings=[0, 2])
     assert {int(s) for p in found.points for s in p.setting} == {0, 2}
+
+
+def tidal_front(network, fields, latest, **more):
+    table, fuel = make_table(((), (), np.array([4.0]))), make_table(((), (), np.array([1.0])))
+    more = {"limits": limits(depth=5.0), "depart": 0.0, "start": 0, "goal": 5, **more}
+    return front(network, fields, table, fuel, latest=latest, **more)
+
+
+def test_waiting_at_an_anchorage_before_a_bar():
+    """The fastest way is that of `earliest_arrival`, which waits where it may."""
+    network, fields = barred_line(4.0 * 3600.0)
+    one = earliest_arrival(
+        network, fields, make_table(((), (), np.array([4.0]))), start=0, goal=5, depart=0.0,
+        setting=0, limits=limits(depth=5.0), top_speed=4.0,
+    )  # fmt: skip
+    found = tidal_front(network, fields, 7 * 3600.0)
+    assert found.fastest.time == pytest.approx(one.arrive, abs=1e-6)
+    assert found.fastest.path.tolist() == [0, 1, 2, 3, 4, 5]
+    waits = found.fastest.path_depart - found.fastest.path_arrive
+    assert set(np.flatnonzero(waits > 1.0)) <= {0, 1}
+    assert found.fastest.cost == pytest.approx(1250.0)  # waiting is free here
+    with pytest.raises(InputError) as refused:
+        tidal_front(network, fields, 3 * 3600.0)
+    assert refused.value.details["earliest"] == pytest.approx(one.arrive)
+
+
+def test_a_ship_that_may_not_wait_may_circle():
+    """A long way round is open; to go to and fro until the bar opens is shorter and dearer."""
+    network, fields = barred_line(4.0 * 3600.0)
+    around = [(0, 5)]
+    edges = [(i, i + 1) for i in range(5)] + [(i + 1, i) for i in range(5)] + around
+    length = np.array([1000.0] * 10 + [100_000.0])
+    network = make_network(network.lat, network.lon, edges, length=length, can_wait=False)
+    fields = replace(fields, values=fields.values.copy())
+    found = tidal_front(network, fields, 7.5 * 3600.0, wait=False, bin_s=120.0)
+    assert found.fastest.time < 15_500.0
+    assert len(found.fastest.path) > 40
+    assert found.cheapest.waiting == 0.0
+
+
+def test_no_way_names_the_nearest_place_across_the_antimeridian():
+    """Nodes 0 and 1 are joined, 179.9 and 179.0 E; the goal lies at 179.9 W."""
+    lon = np.array([179.9, 179.0, -179.9])
+    network = make_network(np.zeros(3), lon, [(0, 1), (1, 0)])
+    fields = make_fields(network, [0.0, 1e6], **STILL)
+    with pytest.raises(NoRouteError) as refused:
+        search(network, fields, 2, 9e5)
+    assert refused.value.details["nearest"] == pytest.approx((0.0, 179.9))

@@ -5,7 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.search.small import NO_LIMITS, limits, make_fields, make_network, steady
+from tests.search.small import (
+    NO_LIMITS,
+    limits,
+    line,
+    make_fields,
+    make_network,
+    make_table,
+    steady,
+)
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.kernels import codes
@@ -191,3 +199,80 @@ def test_bad_questions():
     other = make_network([0.0, 0.0, 0.0], [0.0, 0.1, 0.2], [(0, 1)])
     with pytest.raises(InputError, match="stations"):
         Waters.prepare(other, fields)
+
+
+HOUR = 3600.0
+
+
+def passages_on(network, fields, table, **asked):
+    asked = {"setting": 0, "limits": NO_LIMITS, "top_speed": 5.0, "start": 0, **asked}
+    passages = Waters.prepare(network, fields).passages(table, **asked)
+    return passages, lambda t, **more: earliest_arrival(
+        network, fields, table, depart=t, **asked, **more
+    )
+
+
+@pytest.mark.parametrize("by_depth", [False, True])
+def test_water_of_no_charted_depth_is_deep_enough(by_depth):
+    """Depths of +inf (not checked) with a required depth and a water level."""
+    network = line(5, 1000.0)
+    still = {"current_east": 0.0, "current_north": 0.0, "water_level": 0.0}
+    fields = make_fields(network, [0.0, HOUR, 2 * HOUR], **still)
+    grid = np.linspace(5.0, 25.0, 21)
+    speeds = 3.0 + np.linspace(0.0, 1.0, 21)[:, None] ** 0.5
+    table = make_table(((codes.AXIS_DEPTH,), (grid,), speeds)) if by_depth else steady(4.0)
+    passages, alone = passages_on(network, fields, table, goal=4, limits=limits(depth=6.0))
+    assert passages.sail(0.0).arrive == alone(0.0).arrive == pytest.approx(1000.0)
+    assert 799.0 < passages.shortest <= 1000.0  # 4 km at the top speed named
+
+
+def between_two_stations(bed, east):
+    """A leg from node 0 to 1 whose samples lie midway between nodes 2 and 3."""
+    network = line(4, 10_000.0)
+    edges, inside = network.n_edges, 9
+    network = replace(
+        network,
+        via_ptr=np.arange(edges + 1) * inside,
+        via_a=np.full(edges * inside, 2, np.int32),
+        via_b=np.full(edges * inside, 3, np.int32),
+        via_w=np.full(edges * inside, 0.5, np.float32),
+        via_s=np.tile(np.arange(1, inside + 1) / (inside + 1.0), edges).astype(np.float32),
+    )
+    wide = np.array([10.0, 10.0, *bed])[:, None], np.array([0.0, 0.0, *east])[:, None]
+    return network, make_fields(
+        network, [0.0, 10 * HOUR], bed_depth=wide[0] + np.zeros((4, 2)),
+        current_east=wide[1] + np.zeros((4, 2)), current_north=0.0,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("bed", "east"),
+    [
+        ((20.0, 5.0), (0.0, 2.0)),  # the current of a bank with the depth beside it
+        ((25.0, 6.5), (0.0, 0.8)),  # speed grows with depth, but ever less
+    ],
+)
+def test_bounds_hold_for_mixtures_of_two_stations(bed, east):
+    network, fields = between_two_stations(bed, east)
+    grid = np.linspace(5.0, 25.0, 21)
+    speeds = 3.0 + 2.0 * np.linspace(0.0, 1.0, 21)[:, None] ** 0.2
+    table = make_table(((codes.AXIS_DEPTH,), (grid,), speeds))
+    passages, alone = passages_on(network, fields, table, goal=1, limits=limits(depth=6.0))
+    truth = alone(0.0).arrive
+    assert passages.shortest <= truth
+    assert passages.sail(0.0).arrive == truth
+
+
+def test_penalties_weigh_but_do_not_shorten_the_period():
+    """30 km at 4 m/s in 3 hours of data; a penalty of 2 makes a cost of over four hours of it."""
+    network = line(4, 10_000.0, factor=2.0)
+    fields = make_fields(network, [0.0, 3 * HOUR], current_east=0.0, current_north=0.0)
+    passages, alone = passages_on(network, fields, steady(4.0), goal=3)
+    assert passages.sail(0.0).arrive == alone(0.0).arrive == pytest.approx(7500.0)
+    assert passages.sail(0.0, known=7500.0).arrive == pytest.approx(7500.0)
+    assert not passages.sail(3400.0).found  # after the data
+    assert passages.sail(0.0, arrive_by=7501.0).found
+    assert not passages.sail(0.0, arrive_by=7499.0).found
+    profile = passages.profile([0.0, 1000.0, 3200.0, 3400.0])
+    assert profile.arrivals == pytest.approx([7500.0, 8500.0, 10_700.0, np.inf])
+    assert profile.searched == 4

@@ -20,9 +20,9 @@ from thalweg.kernels.edges import (
     least_time,
     sail_edge,
     sample_station,
-    wait_for_edge,
 )
 from thalweg.kernels.extremes import never_deep_enough
+from thalweg.kernels.waiting import wait_for_edge
 
 
 class Query(NamedTuple):

@@ -19,7 +19,8 @@ from thalweg.kernels.codes import (
     CURRENT_NORTH,
     OK,
 )
-from thalweg.kernels.edges import interval_of, sail_edge, sample_station, wait_for_edge
+from thalweg.kernels.edges import interval_of, sail_edge, sample_station
+from thalweg.kernels.waiting import wait_for_edge
 
 SECTORS = 16  # directions for which the strongest current is kept
 _SHRINK = 1.0 - 1e-7  # keeps bounds below the truth in single precision
@@ -44,6 +45,8 @@ class Trip(NamedTuple):
         [s].
     limit : float
         Costs above this are of no use [s].
+    latest : float
+        So are later arrivals [s].
     slowness : float
         Lower bound of the time per metre anywhere [s/m].
     wait : bool
@@ -58,6 +61,7 @@ class Trip(NamedTuple):
     goal: int
     depart: float
     limit: float
+    latest: float
     slowness: float
     wait: bool
     eager: float
@@ -126,22 +130,39 @@ def strongest_currents(sea, strongest):
 
 
 @woven
-def _slowness_at(network, sea, strongest, caps, station, edge, course, required):
-    """Return the least time per metre ever at a station on an edge [s/m]; inf if it never opens."""
-    speed = caps[caps.shape[0] - 1]
+def _most_at(network, sea, strongest, station, edge, course, required):
+    """Return (greatest depth, strongest current along the course) ever at a station on an edge."""
+    depth = math.inf
     if required > -math.inf:
-        depth = min(float(network.depth[edge]) + sea.highest[station], sea.deepest[station])
-        if not depth >= required - _SPARE:
-            return math.inf
-        speed = caps[min(int(max(depth + _SPARE, 0.0) / CAP_STEP), caps.shape[0] - 1)]
+        depth = min(float(network.depth[edge]) + sea.highest[station], float(sea.deepest[station]))
     sector = course * (SECTORS / (2.0 * math.pi))
     low = math.floor(sector)
     share, gap = (sector - low) * (2.0 * math.pi / SECTORS), 2.0 * math.pi / SECTORS
     k = int(low) % SECTORS
     along = math.sin(gap - share) * strongest[station, k]
     along = (along + math.sin(share) * strongest[station, (k + 1) % SECTORS]) / math.sin(gap)
+    return depth, along if along == along else -math.inf
+
+
+@woven
+def _least_slowness(caps, most, required):
+    """Return the least time per metre with that depth and current [s/m]; inf if too shallow."""
+    depth, along = most
+    last = caps.shape[0] - 1
+    speed = caps[last]
+    if required > -math.inf:
+        if not depth >= required - _SPARE:
+            return math.inf
+        if depth + _SPARE < last * CAP_STEP:
+            speed = caps[int(max(depth + _SPARE, 0.0) / CAP_STEP)]
     speed = (speed + along) * (1.0 + 1e-6)
     return 1.0 / speed if speed > 0.0 else math.inf
+
+
+@woven
+def _larger(first, second):
+    """Return the larger of each: what bounds every mixture of the two."""
+    return max(first[0], second[0]), max(first[1], second[1])
 
 
 CAP_STEP = 0.25  # of the depths for which the greatest speed is kept [m]
@@ -169,19 +190,19 @@ def least_times(network, tails, sea, strongest, caps, required, times):
             times[e] = network.fixed_time[e] * float(network.factor[e]) * _SHRINK
             continue
         course, length = float(network.course[e]), network.length[e]
-        before = _slowness_at(network, sea, strongest, caps, tails[e], e, course, required)
+        most = _most_at(network, sea, strongest, tails[e], e, course, required)
+        before = _least_slowness(caps, most, required)
         at, total = 0.0, 0.0
         for p in range(network.via_ptr[e], network.via_ptr[e + 1] + 1):
+            a = b = network.target[e]
+            to = 1.0
             if p < network.via_ptr[e + 1]:
                 a, b, to = network.via_a[p], network.via_b[p], float(network.via_s[p])
-                first = _slowness_at(network, sea, strongest, caps, a, e, course, required)
-                now = _slowness_at(network, sea, strongest, caps, b, e, course, required)
-                now = min(first, now)
-            else:
-                to = 1.0
-                now = _slowness_at(
-                    network, sea, strongest, caps, network.target[e], e, course, required
-                )
+            most = _most_at(network, sea, strongest, a, e, course, required)
+            if b != a:  # a mixture may have the depth of the one and the current of the other
+                other = _most_at(network, sea, strongest, b, e, course, required)
+                most = _larger(most, other)
+            now = _least_slowness(caps, most, required)
             total += 0.5 * (to - at) * length * (before + now)
             before, at = now, to
         times[e] = total * float(network.factor[e]) * _SHRINK
@@ -258,7 +279,7 @@ def _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, siz
             network, sea, ship, trip, node, edge, k, time, states.until[state],
             enough, quickest, marks.samples,
         )  # fmt: skip
-        if status != OK or arrival == math.inf:
+        if status != OK or arrival == math.inf or arrival > trip.latest:
             continue
         new = cost + (departure - time) + float(network.factor[edge]) * (arrival - departure)
         known = marks.cost[s]

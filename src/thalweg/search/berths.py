@@ -40,6 +40,7 @@ FloatArray = NDArray[np.float64]
 
 STEP = 600.0  #: longest time between two waves [s]
 LEAST_WAVES = 24  #: ... and at least so many over the time looked at
+_EQUAL = 1e-6  # arrivals closer than this are one [s]
 _HALVINGS = 10  # of the step before the best wave, in which an earlier one is looked for
 
 
@@ -99,22 +100,42 @@ class Sweep:
         """Sail without waiting from several nodes at one time."""
         start = len(self.given.network.station)
         arrays = _with_source(self.given.network, sources, max(self.goal, 0))
-        away = np.zeros(start + 1)
+        return self.search(arrays, start, time, goal, horizon, wait=False)
+
+    def search(
+        self,
+        arrays: NetworkArrays,
+        start: int,
+        time: float,
+        goal: int,
+        horizon: float,
+        *,
+        wait: bool,
+    ) -> Labels:
+        """Search from one state of a network."""
+        count = len(arrays.station)
+        away = np.zeros(count)
         if goal >= 0:
             lat, lon = self.network.lat, self.network.lon
-            away[:start] = distance_bounds(lat, lon, float(lat[goal]), float(lon[goal]))
+            bounds = distance_bounds(lat, lon, float(lat[goal]), float(lon[goal]))
+            away[: self.network.n_nodes] = bounds
         soonest = SHRINK / max(self.given.fastest, canal_speed(self.network))
         query = Query(
-            start=start, goal=goal, depart=time, horizon=horizon, by_distance=False, wait=False,
+            start=start, goal=goal, depart=time, horizon=horizon, by_distance=False, wait=wait,
             slowness=SHRINK / self.given.fastest, per_metre=soonest,
         )  # fmt: skip
-        labels, memory = new_labels(start + 1), new_workspace(start + 1)
+        labels, memory = new_labels(count), new_workspace(count)
         label_setting(arrays, self.given.sea, self.given.ship, query, away, labels, memory)
         self.counts = self.counts + memory.counts[: len(self.counts)]
         if not len(self.refused):
             self.refused = np.zeros_like(memory.refused)
         self.refused = self.refused + memory.refused
         return labels
+
+
+def berths_matter(network: Network) -> bool:
+    """Return whether a ship may wait at some nodes but not at all of them."""
+    return not bool(np.all(network.can_wait))
 
 
 def earliest_from_berths(
@@ -148,7 +169,8 @@ def earliest_from_berths(
     -----
     Exact on the network but for the times of waves: the last wait ends within a thousandth of a
     step of the best moment, earlier waits within a step; an opening shorter than a step between two
-    waves can be missed.
+    waves can be missed. No further wave is sent once a ship that may wait anywhere would arrive no
+    sooner: in open water the first one is the only one.
     """
     horizon = math.inf if arrive_by is None else float(arrive_by)
     end = min(horizon, float(given.sea.times[-1]))
@@ -157,9 +179,12 @@ def earliest_from_berths(
     afloat = _afloat(network, given, np.asarray(limits, float), start)
     reached = np.full(network.n_nodes, math.inf)
     best, best_wave = math.inf, -1
+    least = _waiting_anywhere(sweep, start)
     for time in _departures(depart, end, step):
         sources = sweep.present(time)
         if time >= min(best, end) or _soonest(sweep, sources, time) >= best:
+            break
+        if sweep.waves and (best <= least + _EQUAL or least == math.inf):
             break
         sweep.waves.append(Wave(float(time), sources))
         safe = all(any(s.until == math.inf for s in sweep.stays.get(n, ())) for n in afloat)
@@ -175,6 +200,16 @@ def earliest_from_berths(
     return _answer(sweep, start, best_wave, reached)
 
 
+def _waiting_anywhere(sweep: Sweep, start: int) -> float:
+    """Return when a ship would arrive that may wait anywhere, afloat or not: no wave is sooner."""
+    network = sweep.given.network
+    free = network._replace(
+        can_wait=np.ones_like(network.can_wait), factor=np.ones_like(network.factor)
+    )
+    labels = sweep.search(free, start, sweep.depart, sweep.goal, sweep.horizon, wait=True)
+    return float(labels.time[sweep.goal])
+
+
 def _departures(depart: float, end: float, step: float) -> FloatArray:
     span = max(end - depart, 0.0)
     count = max(LEAST_WAVES, math.ceil(span / step))
@@ -185,6 +220,7 @@ def _soonest(sweep: Sweep, sources: dict[int, Stay], time: float) -> float:
     """Return a time before which no wave that leaves now can be at the goal."""
     network, goal = sweep.network, sweep.goal
     nodes = np.flatnonzero(network.can_wait)
+    nodes = nodes[nodes != goal]  # who is there leaves no more
     nodes = np.union1d(nodes, list(sources)).astype(np.int64)
     lat, lon = network.lat, network.lon
     away = distance_bounds(lat[nodes], lon[nodes], float(lat[goal]), float(lon[goal]))

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.kernels.tables import TableArrays
 from thalweg.search.arrays import Problem, problem
-from thalweg.search.earliest_arrival import Method, Objective, solve
+from thalweg.search.berths import berths_matter, earliest_from_berths
+from thalweg.search.earliest_arrival import Method, Objective, check_request, solve
 from thalweg.search.result import SearchResult
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from thalweg.ship.table import PerformanceTable
 
 _MOST_DEPARTURES = 97  # of the first pass
+_MOST_FROM_BERTHS = 25  # where every departure is a search by waves
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 _EQUAL = 1e-3  # costs closer than this are equal [s or m]
 
@@ -54,7 +56,7 @@ def best_departure(
         Earliest and latest departure [s].
     step : float, optional
         Spacing of the departures tried [s]. By default the times of the fields inside the window,
-        but not more than 96 even steps.
+        but not more than 96 even steps (24 where the ship may wait at some nodes only).
     tolerance : float
         The best departure is refined to this [s].
 
@@ -83,6 +85,8 @@ def best_departure(
             "It ends no earlier than it begins.",
             "Exchange the two times.",
         )
+    check_request(network.n_nodes, start, goal, first, objective, method)
+    berths = wait and objective == "time" and berths_matter(network)
     given = problem(
         network,
         fields,
@@ -90,10 +94,15 @@ def best_departure(
         setting=setting,
         limits=limits,
         top_speed=top_speed,
-        ends=(start, goal) if wait else None,
+        ends=(start, goal) if wait and not berths else None,
     )
 
     def sail(depart: float) -> SearchResult:
+        if berths:
+            return earliest_from_berths(
+                network, given, start=start, goal=goal, depart=depart, limits=limits,
+                arrive_by=arrive_by,
+            )  # fmt: skip
         return solve(
             network,
             given,
@@ -106,7 +115,8 @@ def best_departure(
             method=method,
         )
 
-    departures = _departures(given, first, last, step)
+    most = _MOST_FROM_BERTHS if berths else _MOST_DEPARTURES
+    departures = _departures(given, first, last, step, most)
     tried = [sail(t) for t in departures]
     tried += [sail(t) for t in _after_waiting(tried, last)]
     best = min(tried, key=_rank)
@@ -127,15 +137,15 @@ def best_departure(
 
 
 def _departures(
-    given: Problem, first: float, last: float, step: float | None
+    given: Problem, first: float, last: float, step: float | None, most: int
 ) -> NDArray[np.float64]:
     if step is not None and step > 0.0:
         count = max(2, math.ceil((last - first) / step) + 1)
         return np.unique(np.linspace(first, last, count))
     times = given.sea.times
     inside = times[(times > first) & (times < last)]
-    if len(inside) + 2 > _MOST_DEPARTURES:
-        return np.linspace(first, last, _MOST_DEPARTURES)
+    if len(inside) + 2 > most:
+        return np.linspace(first, last, most)
     return np.unique(np.concatenate(([first], inside, [last])))
 
 

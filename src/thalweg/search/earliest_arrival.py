@@ -23,7 +23,7 @@ from thalweg.kernels.label_setting import (
 )
 from thalweg.kernels.tables import TableArrays
 from thalweg.search.arrays import SHRINK, Problem, canal_speed, distance_bounds, problem
-from thalweg.search.berths import earliest_from_berths
+from thalweg.search.berths import berths_matter, earliest_from_berths
 from thalweg.search.result import SearchResult, SearchWork
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def earliest_arrival(
     -----
     By time and with penalty factors of 1 the result is exact on the network as long as edges keep
     order (who departs later arrives later); waiting provides that where it is allowed, to within
-    the sampling of departures named in `thalweg.kernels.edges.wait_for_edge`. Elsewhere
+    the sampling of departures named in `thalweg.kernels.waiting.wait_for_edge`. Elsewhere
     `thalweg.search.fifo.fifo_report` measures how far order is broken. By distance, or with other
     penalty factors, one label per node is exact as long as the time of passage does not decide
     which edges are open; ties go to the earlier arrival.
@@ -107,8 +107,8 @@ def earliest_arrival(
     sea is.
     """
     goal = -1 if goal is None else int(goal)
-    _check(network.n_nodes, start, goal, depart, objective, method)
-    berths = wait and goal >= 0 and objective == "time" and not np.all(network.can_wait)
+    check_request(network.n_nodes, start, goal, depart, objective, method)
+    berths = wait and goal >= 0 and objective == "time" and berths_matter(network)
     given = problem(
         network,
         fields,
@@ -154,7 +154,7 @@ def solve(
     ``shortened`` is the least ratio of an edge length to the geodesic between its nodes.
     """
     goal = -1 if goal is None else int(goal)
-    _check(network.n_nodes, start, goal, depart, objective, method)
+    check_request(network.n_nodes, start, goal, depart, objective, method)
     station = given.network.station
     slowness = SHRINK / given.fastest
     soonest = SHRINK / max(given.fastest, canal_speed(network))
@@ -178,7 +178,10 @@ def solve(
     return _result(network, station, query, labels, memory)
 
 
-def _check(n_nodes: int, start: int, goal: int, depart: float, objective: str, method: str) -> None:
+def check_request(
+    n_nodes: int, start: int, goal: int, depart: float, objective: str, method: str
+) -> None:
+    """Raise `InputError` unless nodes, departure, objective and method exist; goal -1 is none."""
     if not (0 <= start < n_nodes and -1 <= goal < n_nodes):
         raise InputError(
             f"There is no way from node {start} to node {goal} to search for.",

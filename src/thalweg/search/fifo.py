@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.kernels.edges import edge_arrivals
 from thalweg.kernels.tables import TableArrays
+from thalweg.kernels.waiting import edge_arrivals
 from thalweg.search.arrays import problem
 
 if TYPE_CHECKING:

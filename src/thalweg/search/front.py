@@ -15,6 +15,8 @@ from thalweg.kernels.codes import REASONS
 from thalweg.kernels.front_labels import PRUNED, RELAXED, VISITED, WAITED, advance
 from thalweg.kernels.front_legs import Blocks
 from thalweg.kernels.tables import TableArrays
+from thalweg.search.arrays import distance_bounds
+from thalweg.search.berths import berths_matter, earliest_from_berths
 from thalweg.search.front_lower import Lower, lower_front
 from thalweg.search.front_plan import (
     Plan,
@@ -25,9 +27,15 @@ from thalweg.search.front_plan import (
     new_target,
 )
 from thalweg.search.front_points import Front, FrontPoint, FrontWork
-from thalweg.search.front_ways import know, not_dominated, seeds, ways_found
+from thalweg.search.front_ways import (
+    fastest_way,
+    know,
+    not_dominated,
+    seeds,
+    way_found,
+    ways_found,
+)
 from thalweg.search.front_world import (
-    Arrivals,
     Bounds,
     Gathered,
     Request,
@@ -244,10 +252,18 @@ def _first_ways(
     network: Network, got: Gathered, request: Request, bounds: Bounds
 ) -> list[FrontPoint]:
     """Return the ways to begin with; raise if even the fastest is too late."""
-    arrivals = earliest_arrivals(got, request, everywhere=False)
-    arrive = float(arrivals.time[request.goal])
-    if not math.isfinite(arrive):
-        raise _no_route(network, got, request, arrivals)
+    if request.wait and berths_matter(network):
+        found = earliest_from_berths(
+            network, got.whole, start=request.start, goal=request.goal, depart=request.depart,
+            limits=got.world.ship.limits,
+        )  # fmt: skip
+        arrive, fastest = found.arrive, way_found(got, found) if found.found else None
+    else:
+        arrivals = earliest_arrivals(got, request, everywhere=False)
+        arrive = float(arrivals.time[request.goal])
+        fastest = fastest_way(got, request, arrivals) if math.isfinite(arrive) else None
+    if fastest is None:
+        raise _no_route(network, got, request)
     if arrive > request.latest:
         raise InputError(
             f"No way arrives by {request.latest:.0f} s.",
@@ -256,16 +272,16 @@ def _first_ways(
             "Ask for a later arrival, depart earlier or allow a higher setting.",
             earliest=arrive,
         )
-    return seeds(got, request, arrivals, bounds)
+    return seeds(got, request, fastest, bounds)
 
 
-def _no_route(
-    network: Network, got: Gathered, request: Request, arrivals: Arrivals
-) -> NoRouteError:
+def _no_route(network: Network, got: Gathered, request: Request) -> NoRouteError:
+    arrivals = earliest_arrivals(got, request, everywhere=False)
     reasons = {REASONS[c]: int(n) for c, n in enumerate(arrivals.refused) if n > 0 and c > 0}
     reached = got.world.network.station[np.isfinite(arrivals.time)]
     lat, lon = network.lat, network.lon
-    off = np.hypot(lat[reached] - lat[request.goal], lon[reached] - lon[request.goal])
+    to = float(lat[request.goal]), float(lon[request.goal])
+    off = distance_bounds(lat[reached], lon[reached], *to)
     nearest = int(reached[np.argmin(off)])
     return NoRouteError(
         f"There is no way from node {request.start} to node {request.goal}.",

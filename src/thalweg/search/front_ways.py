@@ -14,6 +14,7 @@ from thalweg.kernels.front_labels import BinLabels, Clock, Target, trace
 from thalweg.kernels.front_legs import sail_path
 from thalweg.search.front_points import FrontPoint
 from thalweg.search.front_world import Arrivals, Bounds, Gathered, Request, new_work
+from thalweg.search.result import SearchResult
 
 _SWITCHES = 24  # places at most where a seed changes from one setting to the next
 
@@ -52,14 +53,14 @@ def sail_way(got: Gathered, request: Request, way: Way) -> FrontPoint | None:
     )
 
 
-def seeds(got: Gathered, request: Request, arrivals: Arrivals, bounds: Bounds) -> list[FrontPoint]:
+def seeds(got: Gathered, request: Request, fastest: Way, bounds: Bounds) -> list[FrontPoint]:
     """Return ways that are likely to lie near the front; the fastest at the highest setting first.
 
     They are the fastest way, and the best for each price of time in the most favourable weather, at
     every setting and at two settings one after the other. Those that take too long are left out.
     A dense front known from the beginning spares most labels.
     """
-    ways = [_fastest_way(got, request, arrivals)]
+    ways = [fastest]
     known = {ways[0].states.tobytes()}
     for rate in bounds.rates:
         states = bounds.to_goal.way(request.start, float(rate))
@@ -92,7 +93,8 @@ def _allowed(got: Gathered, edges: IntArray, choice: int) -> IntArray:
     return np.where(sailed, choice, prices.fixed_choice[edges]).astype(np.int64)
 
 
-def _fastest_way(got: Gathered, request: Request, arrivals: Arrivals) -> Way:
+def fastest_way(got: Gathered, request: Request, arrivals: Arrivals) -> Way:
+    """Return the way of the earliest arrival at the goal."""
     states = [request.goal]
     while states[-1] != request.start:
         states.append(int(arrivals.before[states[-1]]))
@@ -101,6 +103,22 @@ def _fastest_way(got: Gathered, request: Request, arrivals: Arrivals) -> Way:
     waited = departed > arrivals.time[path[:-1]]
     way = _way_through(got, path)
     return way._replace(leave=np.where(waited, departed, -math.inf))
+
+
+def way_found(got: Gathered, found: SearchResult) -> Way:
+    """Return the way of a search on a network with one state for each node."""
+    net = got.world.network
+    states = [int(found.path[0])]
+    for node, time in zip(found.path[1:].tolist(), found.path_arrive[1:].tolist()):
+        leaving = np.arange(net.indptr[states[-1]], net.indptr[states[-1] + 1])
+        heads = net.target[leaving]
+        there = (
+            (net.station[heads] == node) & (net.opens[heads] <= time) & (time < net.closes[heads])
+        )
+        states.append(int(heads[there][0]))
+    waited = found.path_depart[:-1] > found.path_arrive[:-1]
+    way = _way_through(got, np.array(states, np.int64))
+    return way._replace(leave=np.where(waited, found.path_depart[:-1], -math.inf))
 
 
 def _way_through(got: Gathered, path: IntArray) -> Way:
@@ -135,6 +153,9 @@ def ways_found(got: Gathered, request: Request, labels: BinLabels) -> tuple[list
     found, dropped = [], 0
     for slot in start + np.flatnonzero(cost < best):
         n = int(trace(labels, int(slot), slots))
+        while n < 0:  # ships that may not wait can circle
+            slots = np.empty(2 * len(slots), np.int64)
+            n = int(trace(labels, int(slot), slots))
         way = _way_of(got, request, labels, slots[:n][::-1], count)
         point = sail_way(got, request, way)
         if point is None:

@@ -64,6 +64,8 @@ class Gathered(NamedTuple):
     world : World
     given : Problem
         For the search of the earliest arrival, at the highest setting.
+    whole : Problem
+        The same with one state for each node.
     origin : int64[E]
         Edge of the network that each edge of the world comes from.
     tails : int64[E]
@@ -74,6 +76,7 @@ class Gathered(NamedTuple):
 
     world: World
     given: Problem
+    whole: Problem
     origin: IntArray
     tails: IntArray
     fastest: FloatArray
@@ -103,10 +106,12 @@ def gather(
     fastest = extreme(ship.table, np.fmax)[request.settings]
     thriftiest = np.maximum(extreme(burning, np.fmin)[request.settings], 0.0)
     top = float(np.nanmax(fastest)) if top_speed is None else float(top_speed)
-    given = problem(
+    whole = problem(
         network, fields, table, setting=int(request.settings[-1]), limits=limits, top_speed=top
     )
-    given, origin = _with_states(given, request)
+    given, origin = _with_states(whole, request)
+    factor = np.ones_like(whole.network.factor)
+    whole = whole._replace(network=whole.network._replace(factor=factor))
     if given.sea.channel_index[SPEED_FIELD] >= 0:
         fastest = np.full(len(fastest), given.top_speed)
     net = given.network
@@ -117,7 +122,7 @@ def gather(
     prices = _prices(network, origin, priced, request)
     tails = np.repeat(np.arange(len(net.station)), np.diff(net.indptr))
     world = World(net, given.sea, priced, prices, request.depart)
-    return Gathered(world, given, origin, tails, fastest, thriftiest)
+    return Gathered(world, given, whole, origin, tails, fastest, thriftiest)
 
 
 def _with_states(given: Problem, request: Request) -> tuple[Problem, IntArray]:

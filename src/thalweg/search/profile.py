@@ -20,7 +20,7 @@ from thalweg.kernels import profile as kernel
 from thalweg.kernels.afloat import States
 from thalweg.kernels.edges import NetworkArrays, ShipArrays
 from thalweg.search.arrays import SHRINK, Problem
-from thalweg.search.berths import earliest_from_berths
+from thalweg.search.berths import berths_matter, earliest_from_berths
 from thalweg.search.waters import Waters
 
 FloatArray = NDArray[np.float64]
@@ -161,47 +161,53 @@ class Passages:
             nodes only, to within a wave of `thalweg.search.berths`).
         """
         depart = float(depart)
-        last = min(float(arrive_by), float(self.waters.sea.times[-1]))
-        longest = last - depart
+        latest = min(float(arrive_by), float(self.waters.sea.times[-1]))
+        longest = (latest - depart) * self._dearest
         if not (math.isfinite(depart) and self.shortest <= longest):
             return _nothing(depart)
-        limit = known - depart + _SPARE if known < math.inf else 0.0
+        limit = (known - depart) * self._dearest + _SPARE if known < math.inf else 0.0
         search = self._from_berths if self._has_berths else self._search
         if known == math.inf and not self._has_berths:
-            limit = self._possible(depart, min(1.6 * self.shortest + _FIRST_SLACK, longest))
+            slack = 1.6 * self.shortest + _FIRST_SLACK
+            limit = self._possible(depart, min(slack, longest), latest)
         while True:
             limit = limit if limit >= self.shortest else 1.6 * self.shortest + _FIRST_SLACK
-            found = search(depart, min(limit, longest))
+            found = search(depart, min(limit, longest), latest)
             if found.found or limit >= longest:
                 return found
             limit = max(2.0 * limit, 1.6 * self.shortest + _FIRST_SLACK)
 
-    def _possible(self, depart: float, limit: float) -> float:
+    @cached_property
+    def _dearest(self) -> float:
+        """The largest penalty factor: what a second costs at most."""
+        return float(np.max(self.waters.network.factor, initial=1.0))
+
+    def _possible(self, depart: float, limit: float, latest: float) -> float:
         """Return a cost [s] that some way has, found by a hasty search; 0 if it finds none."""
-        _, cost = self._labelled(depart, limit, _EAGER, _HASTY)
+        _, cost = self._labelled(depart, limit, latest, _EAGER, _HASTY)
         kernel.forget(self._marks)
         return cost + _SPARE if cost < math.inf else 0.0
 
     @cached_property
     def _has_berths(self) -> bool:
         """Whether the ship may wait at some nodes but not at all of them."""
-        return self.wait and not bool(np.all(self.waters.network.can_wait))
+        return self.wait and berths_matter(self.waters.source)
 
-    def _from_berths(self, depart: float, limit: float) -> Passage:
+    def _from_berths(self, depart: float, limit: float, latest: float) -> Passage:
         """Search where waiting is allowed at some nodes only (`thalweg.search.berths`)."""
         waters = self.waters
         top = SHRINK / self.slowness - waters.top_current
         given = Problem(waters.network, waters.sea, self.ship, top, waters.top_current)
         found = earliest_from_berths(
             waters.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
-            limits=self.ship.limits, arrive_by=depart + limit,
+            limits=self.ship.limits, arrive_by=min(depart + limit, latest),
         )  # fmt: skip
         return Passage(
             depart, found.arrive, found.path, found.path_arrive, found.path_depart, found.settled
         )
 
-    def _search(self, depart: float, limit: float) -> Passage:
-        trip, cost = self._labelled(depart, limit)
+    def _search(self, depart: float, limit: float, latest: float) -> Passage:
+        trip, cost = self._labelled(depart, limit, latest)
         marks = self._marks
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
@@ -214,13 +220,18 @@ class Passages:
         return Passage(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
 
     def _labelled(
-        self, depart: float, limit: float, eager: float = 1.0, most: int = sys.maxsize
+        self,
+        depart: float,
+        limit: float,
+        latest: float,
+        eager: float = 1.0,
+        most: int = sys.maxsize,
     ) -> tuple[kernel.Trip, float]:
         """Search one departure; return it and its cost. The marks hold its labels."""
         first = self.states.ptr
         start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
         trip = kernel.Trip(
-            start, goal, depart, float(limit), self.slowness, bool(self.wait), eager, most
+            start, goal, depart, float(limit), latest, self.slowness, bool(self.wait), eager, most
         )
         sea = self.waters.by_time
         cost = kernel.sail_once(
@@ -244,16 +255,17 @@ class Passages:
 
         Notes
         -----
-        Where a ship may wait at the start, arrivals never fall with the departure. So the last
-        departure's arrival bounds that of those before it, and between two departures that arrive
-        together all arrive together: these wait at the start and sail with the later one.
+        Where a ship may wait at the start, and no edge has a penalty, arrivals never fall with the
+        departure. So the last departure's arrival bounds that of those before it, and between two
+        departures that arrive together all arrive together: these wait at the start and sail with
+        the later one.
         """
         times = np.asarray(departures, float).ravel()
         if times.size == 0 or not np.all(np.isfinite(times)) or np.any(np.diff(times) <= 0.0):
             raise InputError("The departures do not ascend.", "Times in order [s].", "Sort them.")
         found: dict[int, Passage] = {}
         waits = self.wait and bool(self.waters.network.can_wait[self.ends[0]])
-        if waits:
+        if waits and self._dearest == 1.0:
             self._halve(times, found, arrive_by)
         else:
             for k, t in enumerate(times):
@@ -269,8 +281,8 @@ class Passages:
 
     def _halve(self, times: FloatArray, found: dict[int, Passage], arrive_by: float) -> None:
         last = len(times) - 1
-        found[last] = self.sail(times[last], arrive_by=arrive_by)
-        found.setdefault(0, self.sail(times[0], arrive_by=arrive_by))
+        for k in {0, last}:
+            found[k] = self.sail(times[k], arrive_by=arrive_by)
         open_ranges = [(0, last)] if last > 0 else []
         while open_ranges:
             low, high = open_ranges.pop()
