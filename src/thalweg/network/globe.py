@@ -216,8 +216,8 @@ def _sheet(chart: Chart, options: _Options, start: Position, goal: Position) -> 
             canals.append(canal)
             joints += ends
     stations, more = _attached(closed, grid, joints)
-    ends_at = np.arange(len(grid.lat) + 2, len(grid.lat) + len(joints), dtype=np.int32)
-    through = measure(stations.lat, stations.lon, ends_at[::2], ends_at[1::2])
+    ends_at = np.arange(len(grid.lat) + 2, len(grid.lat) + len(joints), 2, dtype=np.int32)
+    through = measure(stations.lat, stations.lon, ends_at, ends_at + np.int32(1))
     through = replace(through, length=np.array([canal.length for canal in canals], float))
     start_node = len(grid.lat)
     return _Sheet(stations, join_pairs([pairs, more]), through, tuple(canals), start_node, grid)
