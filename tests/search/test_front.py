@@ -510,3 +510,43 @@ def test_no_way_names_the_nearest_place_across_the_antimeridian():
     with pytest.raises(NoRouteError) as refused:
         search(network, fields, 2, 9e5)
     assert refused.value.details["nearest"] == pytest.approx((0.0, 179.9))
+
+
+def surfing(height, east, speed_limit=6.0, latest=5e4):
+    """30 km eastward in three legs, waves from astern; faster than the limit is surf-riding.
+
+    ``height`` of the waves and current ``east`` are by node.
+    """
+    table = make_table(((), (), np.array([4.0, 8.0])))
+    table = table._replace(safety=np.array([speed_limit, 0.0, 0.0, 0.0, 0.0, 0.0, 0.9]))
+    fuel = make_table(((), (), np.array([1.0, 4.0])))
+    network = line(4, 10_000.0)
+    column = np.zeros((4, 2))
+    fields = make_fields(
+        network, [0.0, 1e5], current_north=0.0, current_east=np.array(east)[:, None] + column,
+        wave_height_ch=np.array(height)[:, None] + column, wave_east=1.0, wave_north=0.0,
+        wave_period=8.0,
+    )  # fmt: skip
+    return search(network, fields, 3, latest, tables=(table, fuel))
+
+
+def test_a_slower_setting_may_keep_a_limit_that_the_highest_breaks():
+    found = surfing([3.0, 3.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0])
+    assert found.time == pytest.approx([7500.0])
+    assert found.cost == pytest.approx([7500.0])
+    assert found.gap == pytest.approx([0.0], abs=1e-4)
+
+
+def test_neither_setting_alone_passes_but_both_in_turn():
+    """Waves at the first three nodes, 5 m/s of head current at the last one of four."""
+    found = surfing([3.0, 3.0, 0.0, 0.0], [0.0, 0.0, 0.0, -5.0])
+    assert found.fastest.setting.tolist() == [0, 0, 1]
+    last = 0.5 * (10_000.0 / 8.0 + 10_000.0 / 3.0)
+    assert found.fastest.time == pytest.approx(5000.0 + last, rel=1e-6)
+
+
+def test_limits_in_waves_that_no_setting_keeps():
+    with pytest.raises(NoRouteError, match="safety or comfort"):
+        surfing([3.0, 3.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0], speed_limit=3.0)
+    with pytest.raises(InputError, match="7500 s"):
+        surfing([3.0, 3.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0], latest=7000.0)

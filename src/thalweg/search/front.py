@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,7 @@ from thalweg.search.front_plan import (
 )
 from thalweg.search.front_points import Front, FrontPoint, FrontWork
 from thalweg.search.front_ways import (
+    Way,
     fastest_way,
     know,
     not_dominated,
@@ -39,6 +40,7 @@ from thalweg.search.front_world import (
     Bounds,
     Gathered,
     Request,
+    at_setting,
     bounds_to_goal,
     earliest_arrivals,
     gather,
@@ -145,7 +147,8 @@ def front(
     * A label keeps its own time, not that of its bin, and every point of the front is sailed
       again, leg by leg, with the kernel that `earliest_arrival` sails with: its time and cost
       are those of a real way. The fastest point is that of `earliest_arrival` at the highest
-      setting, as exact as that is.
+      setting, as exact as that is; with limits in waves, which a lower setting may keep where the
+      highest does not, it is the fastest way found.
     * One label per bin is not always the right one: a dearer label of the same bin may be
       earlier by less than the bin and win later. So the front lies on or above the true one,
       and nearer the narrower the bins are.
@@ -180,9 +183,9 @@ def front(
     got = gather(network, fields, table, fuel, request=request, limits=limits, top_speed=top_speed)
     bounds = bounds_to_goal(got, request.goal)
     soonest = earliest_arrivals(got, request, everywhere=True)
-    known = _first_ways(network, got, request, bounds)
+    first = _first_ways(network, got, request, bounds)
     plan = make_plan(got, request, bounds, soonest.time, bin_s=bin_s, memory_limit=memory_limit)
-    return _search(got, request, bounds, plan, known, lower=lower, progress=progress)
+    return _search(got, request, bounds, plan, first, lower=lower, progress=progress)
 
 
 def _search(
@@ -190,7 +193,7 @@ def _search(
     request: Request,
     bounds: Bounds,
     plan: Plan,
-    known: list[FrontPoint],
+    first: _First,
     *,
     lower: bool,
     progress: Callable[[float], None] | None,
@@ -202,8 +205,10 @@ def _search(
             progress((part + share) / parts)
 
     blocks = new_blocks(got, plan)
-    found, dropped, counts = _labelled(got, request, bounds, plan, known, blocks, tell)
-    points = not_dominated([*known, *found])
+    found, dropped, counts = _labelled(got, request, bounds, plan, first.points, blocks, tell)
+    points = not_dominated([*first.points, *found])
+    if not points and first.refusal is not None:
+        raise first.refusal
     below = Lower(np.empty(0), np.empty(0), 0, 0, 0)
     if lower:
         below = lower_front(
@@ -248,31 +253,54 @@ def _labelled(
     return found, dropped, agenda.counts
 
 
-def _first_ways(
-    network: Network, got: Gathered, request: Request, bounds: Bounds
-) -> list[FrontPoint]:
-    """Return the ways to begin with; raise if even the fastest is too late."""
-    if request.wait and berths_matter(network):
-        found = earliest_from_berths(
-            network, got.whole, start=request.start, goal=request.goal, depart=request.depart,
-            limits=got.world.ship.limits,
-        )  # fmt: skip
-        arrive, fastest = found.arrive, way_found(got, found) if found.found else None
-    else:
-        arrivals = earliest_arrivals(got, request, everywhere=False)
-        arrive = float(arrivals.time[request.goal])
-        fastest = fastest_way(got, request, arrivals) if math.isfinite(arrive) else None
+class _First(NamedTuple):
+    """Ways to begin with, and what to raise if there are none in the end."""
+
+    points: list[FrontPoint]
+    refusal: InputError | NoRouteError | None
+
+
+def _first_ways(network: Network, got: Gathered, request: Request, bounds: Bounds) -> _First:
+    """Return the ways to begin with; raise if even the fastest is too late.
+
+    What is forbidden in waves may be allowed at a lower setting: then the search has the last word.
+    """
+    table, arrive, fastest = got.world.ship.table, math.inf, None
+    heeds = len(table.safety) > 0 or len(table.motions) > 0
+    for choice in range(len(request.settings))[::-1]:
+        arrive, fastest = _fastest(network, got, request, choice)
+        if fastest is not None or not heeds:
+            break
+    refusal: InputError | NoRouteError | None = None
     if fastest is None:
-        raise _no_route(network, got, request)
-    if arrive > request.latest:
-        raise InputError(
+        refusal = _no_route(network, got, request)
+    elif arrive > request.latest:
+        refusal = InputError(
             f"No way arrives by {request.latest:.0f} s.",
             f"The earliest arrival is {arrive:.0f} s, {(arrive - request.latest) / 3600:.2f} h "
             "later.",
             "Ask for a later arrival, depart earlier or allow a higher setting.",
             earliest=arrive,
         )
-    return seeds(got, request, fastest, bounds)
+    if refusal is not None and not heeds:
+        raise refusal
+    return _First([] if fastest is None else seeds(got, request, fastest, bounds), refusal)
+
+
+def _fastest(
+    network: Network, got: Gathered, request: Request, choice: int
+) -> tuple[float, Way | None]:
+    """Return the earliest arrival at one of the chosen settings [s], and its way."""
+    if request.wait and berths_matter(network):
+        ship = at_setting(got.whole.ship, int(request.settings[choice]))
+        found = earliest_from_berths(
+            network, got.whole._replace(ship=ship), start=request.start, goal=request.goal,
+            depart=request.depart, limits=ship.limits,
+        )  # fmt: skip
+        return found.arrive, way_found(got, found) if found.found else None
+    arrivals = earliest_arrivals(got, request, everywhere=False, choice=choice)
+    arrive = float(arrivals.time[request.goal])
+    return arrive, fastest_way(got, request, arrivals) if math.isfinite(arrive) else None
 
 
 def _no_route(network: Network, got: Gathered, request: Request) -> NoRouteError:

@@ -18,6 +18,7 @@ from thalweg.kernels.codes import (
     CURRENT_NORTH,
     SPEED_FIELD,
 )
+from thalweg.kernels.edges import ShipArrays
 from thalweg.kernels.front_legs import PricedShip, Prices, World, fastest_flow
 from thalweg.kernels.graph import static_distances
 from thalweg.kernels.label_setting import Query, label_setting, new_labels, new_workspace
@@ -300,7 +301,7 @@ def _above(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float
 
 
 class Arrivals(NamedTuple):
-    """Earliest arrivals at the highest setting, with the tree they came by."""
+    """Earliest arrivals at one setting, with the tree they came by."""
 
     time: FloatArray
     before: NDArray[np.int32]
@@ -308,12 +309,30 @@ class Arrivals(NamedTuple):
     refused: NDArray[np.int64]
 
 
-def earliest_arrivals(got: Gathered, request: Request, *, everywhere: bool) -> Arrivals:
-    """Search the earliest arrival at every state; ``everywhere`` lets the ship wait at any."""
+def at_setting(ship: ShipArrays, setting: int) -> ShipArrays:
+    """Return a ship at another of its settings."""
+    return ship._replace(setting=int(setting))
+
+
+def heedless(ship: ShipArrays) -> ShipArrays:
+    """Return a ship that nothing is forbidden in waves: never slower than itself."""
+    none = np.empty(0), np.empty((0, 0, 0), np.float32), np.empty((0, 0))
+    table = ship.table._replace(safety=none[0], motions=none[1], motion_grid=none[2])
+    return ship._replace(table=table, needs=int(axes_needed(table)))
+
+
+def earliest_arrivals(
+    got: Gathered, request: Request, *, everywhere: bool, choice: int = -1
+) -> Arrivals:
+    """Search the earliest arrival at every state at one of the chosen settings.
+
+    ``everywhere`` lets the ship wait at any and pass what is forbidden in waves: at the highest
+    setting no choice of settings is sooner.
+    """
     given = got.given
-    net = given.network
+    net, ship = given.network, at_setting(given.ship, int(request.settings[choice]))
     if everywhere:
-        net = net._replace(can_wait=np.ones_like(net.can_wait))
+        net, ship = net._replace(can_wait=np.ones_like(net.can_wait)), heedless(ship)
     count = len(net.station)
     query = Query(
         start=request.start,
@@ -326,7 +345,7 @@ def earliest_arrivals(got: Gathered, request: Request, *, everywhere: bool) -> A
         per_metre=0.0,
     )
     labels, memory = new_labels(count), new_workspace(count)
-    label_setting(net, given.sea, given.ship, query, np.zeros(count), labels, memory)
+    label_setting(net, given.sea, ship, query, np.zeros(count), labels, memory)
     time = np.where(labels.settled, labels.time, math.inf)
     return Arrivals(time, labels.before, labels.departed, memory.refused)
 
