@@ -262,8 +262,7 @@ def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
 
 def _flat(values: ArrayLike, kind: type) -> NDArray[Any]:
-    """Return a copy: kernels are compiled anew for arrays that cannot be written to."""
-    return np.array(values, dtype=kind).reshape(-1)
+    return np.require(values, kind, ["C", "W"]).reshape(-1)  # read-only ones are another kernel
 
 
 def _padded(values: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any]:
