@@ -184,6 +184,34 @@ def test_never_worse_and_told_when_it_cannot_be_asked():
     assert polished(start, unpriced, objective="fuel").fuel_t <= start.fuel_t
 
 
+def by_cubed_speed(**costs):
+    """A ship whose fuel is unknown and that pays for time and cubed speed (van Halem 2019)."""
+    costs = {"per_week": 700_000.0, "per_second_per_cubed_speed": 0.008, **costs}
+    hull, speeds = {"draught_m": 5.0}, [6.0, 8.0, 10.0, 12.0]
+    return Ship.from_dict({"name": "x", "hull": hull, "speeds_kn": speeds, "costs": costs})
+
+
+def by_cost(start, ship, chart, arrive_by):
+    table = ship.tabulate()
+    return polish(
+        start, ship=ship, sea=Sea.calm(), chart=chart, table=table, fuel=table, limits=FREE,
+        objective="cost", arrive_by=arrive_by,
+    )  # fmt: skip
+
+
+def test_the_cost_of_time_and_cubed_speed():
+    """The cost of a metre is least where 2 lambda_f V^3 = lambda_t: at 8.1 kn, so at 8 kn."""
+    ship = by_cubed_speed()
+    track = Track([0, 0.4, 0], [0, 1, 2], 0.0, None, [3, 3])
+    start = evaluate(track, ship=ship, sea=Sea.calm(), chart=OPEN)
+    taut = evaluate([(0, 0), (0, 2)], ship=ship, sea=Sea.calm(), chart=OPEN, depart=0)
+    route = by_cost(start, ship, OPEN, 24 * HOUR)
+    speed = 8.0 * KNOT
+    per_second = 700_000.0 / 604_800.0 + 0.008 * speed**3
+    wanted = per_second * taut.distance_nm * NAUTICAL_MILE / speed
+    assert route.cost == pytest.approx(wanted, rel=1e-4)
+
+
 @settings(max_examples=8, deadline=None)
 @given(st.floats(-2, 2), st.floats(-2, 2), st.floats(1.0, 1.5), st.integers(0, 11))
 def test_never_worse_whatever_the_sea_and_the_start(u, v, later, setting):
@@ -285,6 +313,21 @@ def _through_suez(route) -> bool:
     return len(number) == 1 and all(
         (track.lat[number[0] + k], track.lon[number[0] + k]) == SUEZ.ends[k] for k in (0, 1)
     )
+
+
+def test_canals_count_by_cubed_speed_where_the_rest_does(world):
+    ship = by_cubed_speed(currency="USD")
+    lat, lon = np.array([(33.5, 30.0), (32.6, 31.0), *SUEZ.ends, (28.9, 32.75), (28.2, 33.35)]).T
+    track = Track(lat, lon, 0.0, None, [3] * 5)
+    start = evaluate(track, ship=ship, sea=Sea.calm(), chart=world)
+    assert start.feasible and start.cost > SUEZ.fee
+    route = by_cost(start, ship, world, start.arrive + 24 * HOUR)
+    assert _through_suez(route)
+    # the canal costs the same in both; the rest is as cheap as at 8 kn on a way no longer
+    at_sea = start.distance_nm * NAUTICAL_MILE - SUEZ.length
+    per_second = [700_000.0 / 604_800.0 + 0.008 * (kn * KNOT) ** 3 for kn in (12.0, 8.0)]
+    saved = at_sea * (per_second[0] / (12.0 * KNOT) - per_second[1] / (8.0 * KNOT))
+    assert start.cost - route.cost >= 0.999 * saved
 
 
 def test_polishing_keeps_the_canal(world):

@@ -14,9 +14,9 @@ from thalweg.core.units import DAY, HOUR, MEGAWATT_HOUR, TONNE
 from thalweg.network import Network, eca_shares
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
-from thalweg.ship import Conditions, PerformanceTable, Ship, TableError
+from thalweg.ship import Conditions, PerformanceTable, Ship
 from thalweg.ship.fuel_terms import FuelTerms
-from thalweg.ship.tabulate import constant_part
+from thalweg.ship.tabulate import tabulate_cubed_speed
 
 #: What a ship meets in still water; the period of no waves is any.
 _STILL = {
@@ -96,8 +96,7 @@ class Criterion:
         """
         if self.name == "cost" and self.terms.by_speed:
             cubed = np.asarray(ship.speeds, float) ** 3
-            exact, parts = TableError(0.0, 0.0, 0.0, 0), (constant_part(cubed),)
-            return Rate(PerformanceTable(parts, ship.speeds, "", exact), 0.0, cubed)
+            return Rate(tabulate_cubed_speed(ship.speeds), 0.0, cubed)
         energy = self.name == "energy"
         table = ship.tabulate_power() if energy else ship.tabulate_fuel()
         conditions = Conditions({name: v for name, v in _STILL.items() if name in ship.reads})

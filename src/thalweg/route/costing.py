@@ -14,11 +14,12 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.kernels import fitness as columns
 from thalweg.kernels.fitness import FitnessWorld, sail_population
 from thalweg.kernels.tables import TableArrays
-from thalweg.route.canal_legs import canal_legs, canal_rates
+from thalweg.route.canal_legs import canal_legs, canal_rates, canal_setting
 from thalweg.route.quick import Bundle, IntArray, Sailor, make_sailor
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
     from thalweg.route.track import Track
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable, Ship
@@ -41,6 +42,8 @@ class Weights:
         Of a second lain still.
     priced : bool
         Whether price zones and canal dues count.
+    cubed : bool
+        Whether ``inside`` and ``outside`` are of a cubed speed for a second, in place of fuel.
     """
 
     inside: float = 1.0
@@ -48,6 +51,7 @@ class Weights:
     time: float = 0.0
     waiting: float = 0.0
     priced: bool = False
+    cubed: bool = False
 
     @classmethod
     def of(cls, objective: str, terms: FuelTerms, waiting_rate: float) -> Weights:
@@ -65,6 +69,9 @@ class Weights:
                 "Choose one of them.",
                 field="objective",
             )
+        if objective == "cost" and terms.by_speed:
+            price = terms.speed_price
+            return cls(price, price, terms.time_price, 0.0, priced=True, cubed=True)
         inside, outside = terms.per_kg(objective, True), terms.per_kg(objective, False)
         if not (math.isfinite(inside) and math.isfinite(outside)):
             what = "price" if objective == "cost" else "carbon factor"
@@ -310,8 +317,14 @@ def make_purse(
     channels[index[index >= 0]] = np.flatnonzero(index >= 0)
     world = FitnessWorld(sailor.raster, channels, sailor.table, rates, sailor.limits, terms)
     passed = canal_legs(track, chart)  # none: canals need not be looked for again and again
+
+    def rate(canal: Canal) -> float:
+        if weights.cubed:
+            return float(ship.speeds[canal_setting(ship, canal)]) ** 3
+        return canal_rates(ship, canal)[1]
+
     canals = [
-        (c.transit_time, canal_rates(ship, c)[1] * c.transit_time, c.fee * weights.priced)
+        (c.transit_time, rate(c) * c.transit_time, c.fee * weights.priced)
         for c in (passed.canals if passed.any else ())
     ]
     return Purse(sailor, world, weights, 0.0, np.array(canals, float).reshape(-1, 3))

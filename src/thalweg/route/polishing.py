@@ -25,6 +25,7 @@ from thalweg.route.route import Route
 from thalweg.route.smooth import resampled
 from thalweg.route.thinning import thinned
 from thalweg.route.track import Track
+from thalweg.ship.tabulate import tabulate_cubed_speed
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -69,7 +70,8 @@ def polish(
     sea : Sea
     chart : Chart or None
     table, fuel : PerformanceTable or TableArrays
-        Of the ship: speed through water [m/s] and fuel rate [kg/s] (`Ship.tabulate_fuel`).
+        Of the ship: speed through water [m/s] and fuel rate [kg/s] (`Ship.tabulate_fuel`). Where
+        the cost is that of time and cubed speed (`FuelTerms.by_speed`) fuel is not looked at.
     limits : array_like of float
         Required depth [m], wave height [m] and wind speed [m/s] for the kernels.
     objective : {"fuel", "cost", "co2"}
@@ -105,6 +107,8 @@ def polish(
     """
     terms = ship.fuel_terms if terms is None else terms
     weights = Weights.of(objective, terms, ship.waiting_fuel_rate)
+    if weights.cubed:
+        fuel = tabulate_cubed_speed(ship.speeds)
     latest = scored.arrive if arrive_by is None else max(parse_time(arrive_by), scored.arrive)
     if not (scored.feasible and math.isfinite(scored.arrive)):
         return scored

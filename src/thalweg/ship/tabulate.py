@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.kernels import codes
-from thalweg.ship.table import TableError, TablePart
+from thalweg.ship.table import PerformanceTable, TableError, TablePart
 from thalweg.ship.variables import CONDITION_OF
 
 FloatArray = NDArray[np.float64]
@@ -123,6 +123,16 @@ def tabulate_dense(
 def constant_part(values: FloatArray) -> TablePart:
     """Return the part that adds one number per setting, whatever the conditions."""
     return TablePart((), (), np.asarray(values, np.float32))
+
+
+def tabulate_cubed_speed(speeds: Sequence[float] | FloatArray) -> PerformanceTable:
+    """Return the cube of the ordered speed of every setting [m3/s3], whatever the conditions.
+
+    It takes the place of the fuel rate where a ship's costs are told by it (van Halem 2019).
+    """
+    ordered = np.asarray(speeds, float)
+    exact = TableError(0.0, 0.0, 0.0, 0)
+    return PerformanceTable((constant_part(ordered**3),), ordered, "", exact)
 
 
 def random_conditions(axes: Sequence[Axis], count: int, seed: int) -> dict[str, FloatArray]:
