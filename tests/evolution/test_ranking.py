@@ -98,6 +98,9 @@ def test_a_climber_moves_as_m_paes_says():
     crowded = Climber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [2.9, 3.1, 0.0]]))
     assert crowded.accepts(point(6, 0.5), 10)  # nothing dominates it and there is more room
     assert crowded.near.shape[0] == 4
+    # between its neighbours (5, 5) has more room than (6.9, 3.1); it is no neighbour of itself
+    alone = Climber(point(5, 5), np.array([[5, 5, 0.0], [0, 10, 0.0], [10, 0, 0.0]]))
+    assert not alone.accepts(point(6.9, 3.1), 10)
     full = Climber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [9, 0, 0.0], [3.1, 2.9, 0.0]]))
     full.accepts(point(1, 6), 4)
     assert full.near.shape[0] == 4  # the most crowded had to go

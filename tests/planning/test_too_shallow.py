@@ -63,6 +63,43 @@ def test_too_late_is_not_too_shallow() -> None:
     assert "too shallow at any tide" not in str(caught.value)
 
 
+@pytest.mark.parametrize("objective", ["time", "distance", "fuel"])
+def test_an_arrival_before_the_tide_allows_it_is_too_early_and_not_too_shallow(objective) -> None:
+    """The gully opens at high water, 6 h after the departure: an arrival 3 h after it is not."""
+    cost = {"fuel": {"reference_t_per_day": 24.0}, "engine": {"reference_speed_kn": 10.0}}
+    data = {"name": "x", "hull": {"draught_m": 6.5}, "speeds_kn": [10.0]}
+    ship = Ship.from_dict({**data, **cost, "models": {"calm_water": "cubic"}})
+    given = {"ship": ship, "sea": estuary(6.5), "chart": Chart.open_water(*AREA)}
+    ends = {"start": (51.71, 3.45), "goal": (51.77, 3.70), "depart": LOW, "min_ukc_m": 1.0}
+    ends = {**ends, "objective": objective, "method": "exact"}
+    with pytest.raises(NoRouteError) as caught:
+        plan(Voyage(**ends, arrive_by=LOW + 3 * 3600.0), **given)
+    assert caught.value.asked == "No route arrives by 2026-01-01T06:00:00Z."
+    assert "too shallow" not in str(caught.value)
+    earliest = parse_time(caught.value.details["earliest"])
+    assert LOW + 4 * 3600.0 < earliest < LOW + 7 * 3600.0
+    assert "later arrival" in caught.value.remedy
+    best = plan(Voyage(**ends, arrive_by=earliest + 1800.0), **given).best
+    assert best.feasible and best.arrive <= earliest + 1800.0
+
+
+def test_an_arrival_before_a_window_allows_it() -> None:
+    voyage = {"start": (51.71, 3.45), "goal": (51.77, 3.70), "min_ukc_m": 1.0}
+    window = (LOW, LOW + 1800.0)
+    given = {"ship": SHIP, "sea": estuary(6.5), "chart": Chart.open_water(*AREA)}
+    with pytest.raises(NoRouteError) as caught:
+        plan(Voyage(**voyage, depart_window=window, arrive_by=LOW + 3 * 3600.0), **given)
+    assert caught.value.asked == "No route arrives by 2026-01-01T06:00:00Z."
+    assert "shortest passage of the window" in caught.value.possible
+
+
+def test_water_that_is_never_deep_enough_is_told_whatever_the_arrival() -> None:
+    with pytest.raises(NoRouteError, match="too shallow at any tide") as caught:
+        asked(estuary(5.5), arrive_by=LOW + 3 * 3600.0)
+    # 5.5 + 1.5 m at high water, which is after the latest arrival; 6.5 + 1 m are needed
+    assert caught.value.details["missing_m"] == pytest.approx(0.5, abs=0.02)
+
+
 @pytest.mark.parametrize("end", ["start", "goal"])
 def test_an_end_in_water_that_is_never_deep_enough(end) -> None:
     with pytest.raises(NoRouteError, match="at any tide of the data") as caught:

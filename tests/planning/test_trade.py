@@ -8,6 +8,8 @@ import pytest
 
 from thalweg import Chart, InputError, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
+from thalweg.core.time import parse_time
+from thalweg.planning.robust import MOST_SAILED, _picked
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
 CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)
@@ -15,11 +17,11 @@ KNOT, HOUR = 1852.0 / 3600.0, 3600.0
 LENGTH = float(distance(*START, *GOAL))
 
 
-def cubic_ship(**fuel):
+def cubic_ship(speeds=(6.0, 8.0, 10.0, 12.0), **fuel):
     data = {
         "name": "cubic",
         "hull": {"draught_m": 5.0},
-        "speeds_kn": [6.0, 8.0, 10.0, 12.0],
+        "speeds_kn": list(speeds),
         "engine": {"reference_speed_kn": 12.0},
         "fuel": {"reference_t_per_day": 24.0, **fuel},
         "models": {"calm_water": "cubic"},
@@ -88,6 +90,52 @@ def test_least_cost_weighs_time_against_fuel():
     assert answer.unit == "USD"
 
 
+def against(head_kn, speeds, **more):
+    """Plan 120 nm against a steady current, exactly on the network."""
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat - head_kn * KNOT,
+            "northward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
+        }
+    )
+    more = {"objective": "front", "method": "exact", **more}
+    voyage = Voyage(start=START, goal=GOAL, depart="2026-01-01T00:00Z", **more)
+    return plan(voyage, ship=cubic_ship(speeds), sea=sea, chart=CHART)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "best"),
+    [
+        ((4.0,), 4.0),  # the only one: 1 kn over ground, four times as long as in still water
+        ((4.0, 5.0, 6.0, 8.0), 5.0),  # V^3 / (V - 3): 64, 62.5, 72, 102.4
+        ((4.0, 4.5, 5.0, 6.0, 8.0, 10.0), 4.5),  # one and a half times the current
+        ((2.0, 2.5, 6.0, 8.0), 6.0),  # the slowest never arrive
+    ],
+)
+def test_the_front_reaches_to_the_cheapest_however_slow_the_current_makes_it(speeds, best):
+    answer = against(3.0, speeds)
+    hours = LENGTH / ((best - 3.0) * KNOT) / HOUR
+    cheapest = answer.routes[-1]
+    assert cheapest.time_h == pytest.approx(hours, rel=1e-3)
+    assert cheapest.fuel_t == pytest.approx(fuel_per_second(best) * hours * HOUR, rel=1e-3)
+    fastest = LENGTH / ((max(speeds) - 3.0) * KNOT) / HOUR
+    assert answer.routes[0].time_h == pytest.approx(fastest, rel=1e-3)
+
+
+def test_the_earliest_arrival_is_told_however_slow_the_current_makes_it():
+    depart = 1767225600.0
+    with pytest.raises(NoRouteError) as refusal:
+        against(3.0, (4.0,), arrive_by=depart + 20.0 * HOUR)
+    hours = (parse_time(refusal.value.details["earliest"]) - depart) / HOUR
+    assert hours == pytest.approx(LENGTH / KNOT / HOUR, rel=1e-3)
+
+
+def test_a_current_faster_than_the_ship_is_the_reason():
+    with pytest.raises(NoRouteError) as refusal:
+        against(6.0, (4.0, 5.0))
+    assert "current" in refusal.value.remedy
+
+
 def test_waiting_is_hardly_chosen_where_nothing_changes():
     answer = still("front", cubic_ship(), method="exact")
     bins = 25.1 / 720  # a ship may wait for the next bin of time
@@ -154,6 +202,10 @@ def test_co2_is_fuel_times_carbon():
         {"method": "nsga3"},
         {"objective": "front", "depart_window": ("2026-01-01", "2026-01-02"), "depart": None},
         {"ensemble": "median"},
+        {"seed": -1},
+        {"seed": 0.5},
+        {"depart_window": 5, "depart": None},
+        {"depart_window": "no", "depart": None},
     ],
 )
 def test_impossible_requests_are_refused(more):
@@ -182,6 +234,16 @@ def test_a_voyage_with_prices_round_trips(tmp_path):
     voyage.save(tmp_path / "v.yaml")
     assert Voyage.load(tmp_path / "v.yaml") == voyage
     assert not math.isnan(voyage.fuel_price_usd)
+
+
+def test_of_a_plan_for_least_fuel_the_cheapest_routes_are_sailed_in_all_members():
+    """They come with the best first and the rest by time: the first ten would be the fastest."""
+    answer = still("fuel", cubic_ship(), method="exact")
+    picked = _picked(answer)
+    assert len(answer.routes) > MOST_SAILED == len(picked)
+    assert picked[0] == 0
+    left_out = np.delete(answer.front.values, picked)
+    assert answer.front.values[picked].max() <= left_out.min()
 
 
 def test_a_choice_over_members_needs_members():

@@ -12,12 +12,11 @@ from thalweg.chart.rings import Rings
 from thalweg.core.geodesy import FloatArray, direct, inverse
 from thalweg.kernels.coast import CoastArrays, outlines_touched, point_codes
 from thalweg.kernels.codes import LAND
-from thalweg.kernels.cube import ALL_LAND, IndexArrays
-from thalweg.kernels.zones import middles_inside
+from thalweg.kernels.cube import ALL_LAND, RADIUS, IndexArrays
+from thalweg.kernels.zones import middles_inside, shares_by_halves
 
-PARTS: Final = 16  # pieces that a touched piece is cut into
 FINEST: Final = 0.25  # pieces this short are taken whole [m]
-MOST_PIECES: Final = 512  # of one leg at one level: a leg that runs along an outline
+LONGEST: Final = 400_000.0  # longer legs are cut into such pieces first [m]
 IntArray = NDArray[np.int64]
 _WORLD: Final = np.array([-90.0, 90.0, -180.0, 360.0])
 
@@ -59,9 +58,9 @@ def shares_inside(
 
     ``outlines`` is `outlines_only` of the index.
 
-    Legs that touch no outline are told by their middle. The others are cut into sixteenths, and
-    those again that touch an outline, until pieces are shorter than ``finest`` [m]: each crossing
-    is found to that. NaN where a position is no number.
+    Legs that touch no outline are told by their middle. The others are halved again and again where
+    they touch one, until pieces are shorter than ``finest`` [m]: each crossing is found to that.
+    NaN where a position is no number.
     """
     legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
     known = (
@@ -94,38 +93,20 @@ def _refined(
 ) -> FloatArray:
     """Return shares of legs that touch an outline."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
-    share = np.zeros(len(length))
-    leg = np.arange(len(length))
-    start, size = np.zeros(len(leg)), np.ones(len(leg))  # as parts of the leg
-    while len(leg):
-        done = size * length[leg] <= finest
-        done |= np.bincount(leg, minlength=len(length))[leg] > MOST_PIECES
-        if done.any():
-            middle = (start[done] + 0.5 * size[done]) * length[leg[done]]
-            lat, lon = direct(lat1[leg[done]], lon1[leg[done]], course[leg[done]], middle)
-            share += np.bincount(
-                leg[done], size[done] * points_inside(index, lat, lon), minlength=len(length)
-            )
-            leg, start, size = leg[~done], start[~done], size[~done]
-            if not len(leg):
-                break
-        cuts = np.arange(PARTS + 1) / PARTS
-        at = (start[:, None] + cuts * size[:, None]) * length[leg, None]
-        place = np.repeat(leg, PARTS + 1)
-        lat, lon = direct(lat1[place], lon1[place], course[place], at.ravel())
-        lat, lon = lat.reshape(-1, PARTS + 1), lon.reshape(-1, PARTS + 1)
-        a = lat[:, :-1].ravel(), lon[:, :-1].ravel()
-        b = lat[:, 1:].ravel(), lon[:, 1:].ravel()
-        start = (start[:, None] + cuts[:-1] * size[:, None]).ravel()
-        size = np.repeat(size / PARTS, PARTS)
-        leg = np.repeat(leg, PARTS)
-        touched = np.empty(len(leg), np.bool_)
-        outlines_touched(outlines, a[0], a[1], b[0], b[1], touched)
-        clear = ~touched
-        inside = _middles(index, *(x[clear] for x in (*a, *b)))
-        share += np.bincount(leg[clear], size[clear] * inside, minlength=len(length))
-        leg, start, size = leg[touched], start[touched], size[touched]
-    return np.minimum(share, 1.0)
+    parts = np.maximum(np.ceil(length / LONGEST), 1.0).astype(np.int64)
+    leg = np.repeat(np.arange(len(parts)), parts)
+    number = np.arange(len(leg)) - np.repeat(np.cumsum(parts) - parts, parts)
+
+    def ends(share: FloatArray) -> tuple[FloatArray, FloatArray]:
+        lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
+        lat, lon = (np.where(share <= 0.0, x[leg], y) for x, y in ((lat1, lat), (lon1, lon)))
+        lat, lon = (np.where(share >= 1.0, x[leg], y) for x, y in ((lat2, lat), (lon2, lon)))
+        return lat, lon
+
+    low, high = ends(number / parts[leg]), ends((number + 1) / parts[leg])
+    share = np.empty(len(leg))
+    shares_by_halves(index, outlines, *low, *high, finest / RADIUS, share)
+    return np.minimum(np.bincount(leg, share / parts[leg], minlength=len(parts)), 1.0)
 
 
 def box_touched(

@@ -14,7 +14,7 @@ def add_command(commands: Any) -> None:
     parser = commands.add_parser(
         "demo",
         help="cross the North Atlantic round the embedded storm",
-        description="Plan Bishop Rock to New York through a modelled storm on its real track.",
+        description="Plan Halifax to Bishop Rock through a modelled storm on its real track.",
     )
     parser.add_argument("--out", default="demo", metavar="DIR", help="folder for the result")
     parser.add_argument("--json", action="store_true", help="print one JSON object")

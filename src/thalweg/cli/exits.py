@@ -8,6 +8,7 @@ import sys
 from thalweg.core.errors import CoverageError, NoRouteError, ThalwegError
 
 DONE, BAD_INPUT, NO_COVERAGE, NO_ROUTE = 0, 2, 3, 4
+STOPPED = 130  # by Ctrl-C, as shells tell it
 
 
 def exit_code(error: ThalwegError) -> int:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from thalweg.cli import demo, evaluate, inspect, plan, project, ship, tides, tracks, waiting
-from thalweg.cli.exits import report
+from thalweg.cli.exits import STOPPED, report
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
 _COMMANDS = (
@@ -88,7 +88,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             return 0
         except KeyboardInterrupt:
             print("stopped", file=sys.stderr)
-            return 130
+            return STOPPED
 
 
 def _show_warning(message, category, filename, lineno, file=None, line=None):  # type: ignore[no-untyped-def]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import common
-from thalweg.cli.exits import DONE, NO_ROUTE
+from thalweg.cli.exits import DONE, NO_ROUTE, STOPPED
 from thalweg.kernels import warming
 
 if TYPE_CHECKING:
@@ -85,15 +86,19 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out:
         check_folder(arguments.out)
     ship, sea = common.open_ship(arguments), common.open_sea(arguments)
-    found = plan(
-        _voyage(arguments, sea),
-        ship=ship,
-        sea=sea,
-        chart=common.open_chart(arguments),
-        network=arguments.network,
-        resolution=common.resolution_m(arguments.resolution),
-        progress=common.progress_for(arguments),
-    )
+    try:
+        found = plan(
+            _voyage(arguments, sea),
+            ship=ship,
+            sea=sea,
+            chart=common.open_chart(arguments),
+            network=arguments.network,
+            resolution=common.resolution_m(arguments.resolution),
+            progress=common.progress_for(arguments),
+        )
+    except KeyboardInterrupt:
+        print("stopped: there was no plan yet, nothing is kept", file=sys.stderr)
+        return STOPPED
     files = found.write(arguments.out) if arguments.out else []
     if arguments.json:
         print(found.to_json())
@@ -187,7 +192,8 @@ def show_front(console: Any, plan: Plan) -> None:
     title = f"{front.criterion} against time ({front.unit})"
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
     for name in ("h", front.criterion, "nm", "wait h", "gap %", "from", "way"):
-        table.add_column(name, justify="left" if name in ("from", "way") else "right", no_wrap=True)
+        justify = "left" if name in ("from", "way") else "right"
+        table.add_column(name, justify=justify, no_wrap=name != "way")  # type: ignore[arg-type]
     rows = sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"]))
     shown = spread(
         np.array([row["time_h"] for row in rows]),
@@ -260,7 +266,7 @@ def _cells(row: dict[str, Any]) -> list[str]:
     return [
         f"{abs(lat):6.3f}{'N' if lat >= 0 else 'S'} {abs(lon):7.3f}{'E' if lon >= 0 else 'W'}",
         str(row["time"] or "")[5:16].replace("T", " "),
-        f"{int(course):03d}" if course else "",
+        f"{int(course) % 360:03d}" if course else "",
         number("distance_nm", 1),
         number("speed_through_water_kn", 1),
         number("speed_over_ground_kn", 1),

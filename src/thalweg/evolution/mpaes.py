@@ -58,7 +58,7 @@ class Climber:
 
     def _test(self, tried: FloatArray, most: int) -> bool:
         """Remember a mutant that nothing known dominates; stand there if it is less crowded."""
-        both = np.vstack([self.near, self.score, tried])
+        both = np.vstack([_without(self.near, self.score[None]), self.score, tried])
         crowding = crowding_distance(both[:, :2])
         self._remember(tried, most)
         if crowding[-1] > crowding[-2]:
@@ -71,6 +71,11 @@ class Climber:
         self.near = np.vstack([near, tried])
         if len(self.near) > most:
             self.near = np.delete(self.near, np.argmin(crowding_distance(self.near[:, :2])), axis=0)
+
+
+def _without(scores: FloatArray, some: FloatArray) -> FloatArray:
+    """Return scores (n, 3) without those among some: a twin would make a point look crowded."""
+    return scores[(scores[:, None] != some[None]).any(axis=2).all(axis=1)]
 
 
 @dataclass
@@ -178,6 +183,7 @@ class Mpaes(Strategy):
             return False
         if dominates(child[None], archive).any():
             return True
-        both = np.vstack([archive, self.scores[parents], child])
+        elders = self.scores[parents]
+        both = np.vstack([_without(archive, elders), elders, child])
         crowding = crowding_distance(both[:, :2])
         return bool(crowding[-1] > crowding[-3:-1].min())

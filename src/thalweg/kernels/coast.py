@@ -366,12 +366,18 @@ def point_codes(coast, lat, lon, code):
 
 
 @bare
+def outline_touched(index, a, b):
+    """Return whether a leg between unit vectors may touch an outline; long ones may."""
+    x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    chord = sqrt(x * x + y * y + z * z)
+    if SHORTEST_ARC < chord < LONGEST_ARC:
+        return _touched(index, a, b, chord, 0.3 * (FLATTENING * chord) ** 2) > 0
+    return not chord < LONGEST_ARC
+
+
+@bare
 def outlines_touched(index, lat1, lon1, lat2, lon2, touched):
     """Fill ``touched`` (bool) with whether legs [deg] may touch an outline; long ones may."""
     for i in range(len(touched)):
         a, b = unit_vector(lat1[i], lon1[i]), unit_vector(lat2[i], lon2[i])
-        x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-        chord = sqrt(x * x + y * y + z * z)
-        touched[i] = not chord < LONGEST_ARC
-        if SHORTEST_ARC < chord < LONGEST_ARC:
-            touched[i] = _touched(index, a, b, chord, 0.3 * (FLATTENING * chord) ** 2) > 0
+        touched[i] = outline_touched(index, a, b)

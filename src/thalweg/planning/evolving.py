@@ -38,7 +38,14 @@ def evolved(means: Means, explored: Explored, found: list[Candidate]) -> list[Ca
     genomes = [_genome(means, seed) for seed in seeds]
     seed = task.voyage.seed
     if method == "default":
-        result = refine_front(evaluator, genomes, size=_SIZE, generations=_GENERATIONS, seed=seed)
+        result = refine_front(
+            evaluator,
+            genomes,
+            size=_SIZE,
+            generations=_GENERATIONS,
+            seed=seed,
+            cancel=means.keeper.stopped,
+        )
     else:
         ends = [genomes[0], genomes[-1]]
         result = evolve(
@@ -48,9 +55,8 @@ def evolved(means: Means, explored: Explored, found: list[Candidate]) -> list[Ca
             size=_OWN_SIZE,
             generations=_OWN_GENERATIONS,
             seed=seed,
+            cancel=means.keeper.stopped,
         )
-    if result.cancelled:
-        means.notes.append("Stopped before refinement had settled: the best so far is kept.")
     return _candidates(result, explored, task.voyage.earliest_departure)
 
 
@@ -88,6 +94,7 @@ def _evaluator(means: Means, explored: Explored, seeds: list[Track]) -> Evaluato
     criterion, task = means.criterion, means.task
     depart = task.voyage.earliest_departure
     latest = task.last if task.voyage.arrive_by is None else float(task.voyage.arrive_by)  # type: ignore[arg-type]
+    assert explored.exact is not None  # a front that was stopped is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
     return make_evaluator(

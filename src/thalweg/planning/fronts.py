@@ -32,7 +32,8 @@ class FrontOfPlan:
     stages : tuple of str (n,)
         What each route comes from: ``"fastest"``, ``"exact"`` or the evolutionary method.
     ways : tuple of str (n,)
-        The way round of each: its canals, or ``"open sea"``.
+        The way round of each: its canals, or ``"open sea"``; where routes pass land on other sides,
+        with these (`thalweg.planning.sides.names_of_ways`).
     lower : ndarray (2, m)
         Times [h] and values of the lower front: on the evidence of the network no route that
         takes at most such a time counts less.

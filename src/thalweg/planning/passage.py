@@ -17,7 +17,7 @@ from thalweg.network import Network
 from thalweg.planning.ends import End
 from thalweg.planning.needs import Needs, least_clearance
 from thalweg.planning.networks import NetworkChoice, build_network
-from thalweg.planning.refusal import no_route
+from thalweg.planning.refusal import no_route, too_late
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, better_route, evaluate
 from thalweg.route.improving import rank
@@ -112,7 +112,7 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
     Raises
     ------
     NoRouteError
-        If no route exists within the limits and the data.
+        If no route exists within the limits, the data and the latest arrival.
     """
     networks: dict[int, Network] = {}
     passage: Passage | None = None
@@ -135,6 +135,9 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
         if passage.route.feasible:
             break
     assert passage is not None  # every way without one has raised
+    latest, arrive = task.voyage.arrive_by, passage.route.arrive
+    if latest is not None and arrive > float(latest) + 1.0:  # type: ignore[arg-type]
+        raise too_late(float(latest), arrive, window=window[1] > window[0])  # type: ignore[arg-type]
     return passage
 
 
@@ -297,11 +300,24 @@ def _search(
         if result.found or end >= latest:
             break
     if not result.found:
+        if task.voyage.arrive_by is not None:
+            raise _too_late(task, network, limits, window, ends)
         raise no_route(
             network, result, ends, depart=task.voyage.earliest_departure, last=task.last,
             fields=frozen.stations, required=float(limits[codes.LIMIT_REQUIRED_DEPTH]),
         )  # fmt: skip
     return frozen, result
+
+
+def _too_late(
+    task: Task, network: Network, limits: np.ndarray, window: tuple[float, float],
+    ends: tuple[End, End],
+) -> NoRouteError:  # fmt: skip
+    """Return the error for a latest arrival that is missed; raise the one without it, if any."""
+    freely = replace(task, voyage=replace(task.voyage, arrive_by=None, objective="time"))
+    _, result = _search(freely, network, limits, window, ends)
+    latest = float(task.voyage.arrive_by)  # type: ignore[arg-type]
+    return too_late(latest, result.arrive, window=window[1] > window[0])
 
 
 def _usual_speed(task: Task, ends: tuple[End, End], depart: float) -> float:

@@ -80,6 +80,8 @@ class Plan:
         `routes` when the whole front was asked, ordered by time.
     ensemble : tuple of mappings
         With a forecast of several members: how each of the routes fares over them.
+    cancelled : bool
+        Whether it was stopped by Ctrl-C: the routes are the best so far; the notes tell more.
     """
 
     voyage: Voyage
@@ -91,6 +93,7 @@ class Plan:
     surroundings: Surroundings | None = field(default=None, repr=False, compare=False)
     front: FrontOfPlan | None = None
     ensemble: tuple[Mapping[str, Any], ...] = ()
+    cancelled: bool = False
 
     @property
     def best(self) -> Route:
@@ -134,7 +137,7 @@ class Plan:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the plan as plain data, ready for JSON (unknown numbers are None)."""
-        more: dict[str, Any] = {}
+        more: dict[str, Any] = {"cancelled": True} if self.cancelled else {}
         if self.ensemble:
             more["ensemble"] = [dict(row) for row in self.ensemble]
         if self.front is not None:

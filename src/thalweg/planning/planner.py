@@ -60,7 +60,9 @@ def plan(
     Returns
     -------
     Plan
-        The best route, its proof and its provenance.
+        The best route, its proof and its provenance. Where speeds are chosen leg by leg, Ctrl-C
+        ends the planning with the best so far once a route has been found (`Plan.cancelled`);
+        pressed again, or before, it interrupts.
 
     Raises
     ------

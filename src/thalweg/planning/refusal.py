@@ -77,6 +77,28 @@ def no_route(
     )
 
 
+def too_late(arrive_by: float, earliest: float, *, window: bool = False) -> NoRouteError:
+    """Build the error for a latest arrival that even the fastest way misses.
+
+    Parameters
+    ----------
+    arrive_by : float
+        Latest arrival asked [s since 1970].
+    earliest : float
+        Arrival of the fastest way [s since 1970].
+    window : bool
+        Whether that is the shortest passage of a window of departures, not the earliest arrival.
+    """
+    told = "shortest passage of the window arrives at" if window else "earliest arrival is"
+    return NoRouteError(
+        f"No route arrives by {format_time(arrive_by)}.",
+        f"The {told} {format_time(earliest)}.",
+        "Allow a later arrival, or depart earlier.",
+        reasons={codes.REASONS[codes.ARRIVE_BY]: 1},
+        earliest=format_time(earliest),
+    )
+
+
 class Shallow(NamedTuple):
     """Too little water at any tide: where, how much at most, when, and how much is needed."""
 

@@ -13,6 +13,7 @@ import numpy as np
 from thalweg.core.errors import NoRouteError
 from thalweg.planning.criterion import Criterion, find_criterion
 from thalweg.planning.fronts import FrontOfPlan
+from thalweg.planning.needs import least_clearance
 from thalweg.planning.plan import Plan
 from thalweg.planning.trade import not_dominated, spread
 from thalweg.planning.voyage import TRADES, Voyage
@@ -81,11 +82,16 @@ def plan_robust(
     planned = np.unique(np.linspace(0, sea.members - 1, min(MOST_PLANNED, sea.members)).astype(int))
     plans: dict[int, Plan] = {}
     refusal = None
+    tried: list[int] = []
     for member in planned.tolist():
+        tried.append(member)
         try:
             plans[member] = plan_one(voyage, sea.member(member))
         except NoRouteError as error:
             refusal = error
+            continue
+        if plans[member].cancelled:
+            break
     if not plans:
         assert refusal is not None  # some member was planned
         raise refusal
@@ -96,7 +102,9 @@ def plan_robust(
     ]
     usable = [item for item in sailed if math.isfinite(item.value)] or sailed
     criterion = find_criterion(voyage, ship) if voyage.objective in TRADES else None
-    return _chosen(voyage, criterion, usable, planned.tolist(), measure)
+    chosen = _chosen(voyage, criterion, usable, tried, measure)
+    stopped = any(plan.cancelled for plan in plans.values())
+    return dataclasses.replace(chosen, cancelled=stopped)
 
 
 def _sailed(
@@ -113,7 +121,7 @@ def _sailed(
             sea=sea,
             terms=terms,
             chart=None if plan.surroundings is None else plan.surroundings.chart,
-            min_ukc=voyage.min_ukc_m,
+            min_ukc=least_clearance(voyage, ship),
         )
         time = distribution.risk("time_h", measure)
         found.append(
@@ -125,8 +133,9 @@ def _sailed(
 
 
 def _picked(plan: Plan) -> list[int]:
+    """Return the routes that are sailed in all members: along a front, or the least of it."""
     if plan.front is None or plan.voyage.objective != "front":
-        return [0] if plan.front is None else list(range(min(len(plan.routes), MOST_SAILED)))
+        return [0] if plan.front is None else np.argsort(plan.front.values)[:MOST_SAILED].tolist()
     time = np.array([route.time_h for route in plan.routes])
     return [int(i) for i in spread(time, plan.front.values, MOST_SAILED)]
 

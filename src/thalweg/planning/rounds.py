@@ -11,13 +11,12 @@ import math
 
 from thalweg.network import Network, Weighing, line, ways_round
 from thalweg.network.way import Way as TautWay
+from thalweg.planning.keeping import Stopped
 from thalweg.planning.networks import lattice_between
-from thalweg.planning.passage import freeze
 from thalweg.planning.trade import (
     Candidate,
     Means,
-    fastest_way,
-    horizons,
+    look_ahead,
     network_front,
     track_of_point,
 )
@@ -45,7 +44,10 @@ def round_candidates(means: Means) -> list[Candidate]:
     for way in ways_round(
         network, task.chart, weighings=_weighings(means, network), most=_MOST, stretch=_STRETCH
     ):
-        found += _sped(means, way)
+        try:
+            found += _sped(means, way)
+        except Stopped:
+            break
     return found
 
 
@@ -63,12 +65,10 @@ def _sped(means: Means, way: TautWay) -> list[Candidate]:
     """Return routes along one way with the best speeds; none if it cannot be sailed in time."""
     task = means.task
     network = line(task.chart, way.waypoints, spacing=max(way.length / _PIECES, 1.0))
-    latest, until = horizons(means, network)
-    frozen = freeze(task, network, task.voyage.earliest_departure, until)
-    first = fastest_way(means, network, frozen)
-    if not first.found or first.arrive > latest:
+    ahead = look_ahead(means, network)
+    if not ahead.first.found or ahead.first.arrive > ahead.latest:
         return []
-    found = network_front(means, network, frozen, latest, lower=False)
+    found = network_front(means, network, ahead.frozen, ahead.latest, lower=False)
     name = " and ".join(way.canals) or "open sea"
     return [
         Candidate(track_of_point(network, point), "way round", name, point.time, point.cost)

@@ -8,24 +8,28 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import FloatArray, inverse
-from thalweg.core.time import format_time
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, distance, inverse
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes, warming
 from thalweg.network import Network, shortest
 from thalweg.planning.criterion import Criterion, Rate
 from thalweg.planning.ends import End
+from thalweg.planning.keeping import Keeper, Stopped
 from thalweg.planning.passage import Frozen, Task, freeze, isochrones, refined, track_of
-from thalweg.planning.refusal import no_route
+from thalweg.planning.refusal import no_route, too_late
 from thalweg.planning.voyage import Voyage
 from thalweg.planning.ways import Way
 from thalweg.route import Route, Track
 from thalweg.sea import StationFields
 from thalweg.search import Front, SearchResult, direction_factor, earliest_arrival, front
 
-#: How much longer than in still water the slowest ship worth looking at may take.
+#: How much longer than in still water the slowest ship worth looking at may take ...
 _PATIENCE = 1.25
+#: ... how much longer than the cheapest constant setting that was sailed ...
+_SPARE = 1.1
+#: ... and how much longer than in still water it is looked for, step by step.
+_LONGEST, _GROWTH = 30.0, 1.6
 _TWO_TIDES = 25 * HOUR
 #: How much longer the sea is frozen, so that edges left last can be sailed to their end.
 _MORE = 0.05
@@ -47,8 +51,8 @@ class Explored:
         The fastest route, refined and refereed.
     first : SearchResult
         The fastest way on the network.
-    exact : Front
-        The exact front of the network.
+    exact : Front or None
+        The exact front of the network; None where its search was stopped.
     isochrones : ndarray
         Earliest arrival at every node [s since 1970]; inf where never reached.
     factor : float
@@ -59,7 +63,7 @@ class Explored:
     frozen: Frozen
     fastest: Route
     first: SearchResult
-    exact: Front
+    exact: Front | None
     isochrones: np.ndarray
     factor: float
 
@@ -74,12 +78,31 @@ class Means:
     ends: tuple[End, ...]
     settings: np.ndarray
     limits: np.ndarray
+    keeper: Keeper
     notes: list[str] = field(default_factory=list)  # for the plan, as they come up
 
     @property
     def via(self) -> tuple[End, ...]:
         """The places between the first end and the last."""
         return self.ends[1:-1]
+
+
+@dataclass(frozen=True)
+class Ahead:
+    """The sea over a network for as long as a front needs it.
+
+    Attributes
+    ----------
+    frozen : Frozen
+    first : SearchResult
+        The fastest way; not found where there is none in that time.
+    latest : float
+        Latest arrival of the front [s since 1970].
+    """
+
+    frozen: Frozen
+    first: SearchResult
+    latest: float
 
 
 @dataclass(frozen=True)
@@ -107,7 +130,7 @@ class Candidate:
 
 
 def explore(means: Means, way: Way) -> Explored:
-    """Search the exact front of one way round.
+    """Search the fastest route and the exact front of one way round.
 
     Raises
     ------
@@ -116,12 +139,10 @@ def explore(means: Means, way: Way) -> Explored:
     """
     task = means.task
     depart = task.voyage.earliest_departure
-    latest, until = horizons(means, way.network)
     task.tell(f"freezing the sea: {way.name}")
-    frozen = freeze(task, way.network, depart, until)
-    warming.finish()
+    ahead = look_ahead(means, way.network)
+    frozen, first, latest = ahead.frozen, ahead.first, ahead.latest
     task.tell(f"searching: {way.name}")
-    first = fastest_way(means, way.network, frozen)
     if not first.found:
         raise no_route(
             way.network,
@@ -133,8 +154,13 @@ def explore(means: Means, way: Way) -> Explored:
             required=float(means.limits[codes.LIMIT_REQUIRED_DEPTH]),
         )
     _in_time(first, task.voyage)
-    exact = network_front(means, way.network, frozen, latest)
     fastest = refined(task, track_of(way.network, first, task.setting), means.limits)
+    means.keeper.begin()
+    task.tell(f"searching the front: {way.name}")
+    try:
+        exact = network_front(means, way.network, frozen, latest)
+    except Stopped:
+        exact = None
     until = first.arrive + 0.5 * first.duration
     arrival = isochrones(task, way.network, frozen, depart, until)
     return Explored(way, frozen, fastest, first, exact, arrival, _factor(means, way, frozen))
@@ -143,8 +169,20 @@ def explore(means: Means, way: Way) -> Explored:
 def network_front(
     means: Means, network: Network, frozen: Frozen, latest: float, *, lower: bool = True
 ) -> Front:
-    """Search the exact front of a network."""
+    """Search the exact front of a network.
+
+    Raises
+    ------
+    Stopped
+        If Ctrl-C is pressed before there is a front.
+    """
     task = means.task
+    share_of_labels = 0.5 if lower else 1.0
+
+    def progress(share: float) -> None:
+        if share < share_of_labels and means.keeper.stopped():
+            raise Stopped
+
     depart = task.voyage.earliest_departure
     dues = network.fee if means.criterion.name == "cost" else np.zeros(network.n_edges)
     return front(
@@ -166,6 +204,7 @@ def network_front(
         bin_s=(latest - depart) / _BINS,
         top_speed=frozen.top_speed,
         lower=lower,
+        progress=progress,
     )
 
 
@@ -176,8 +215,10 @@ def _factor(means: Means, way: Way, frozen: Frozen) -> float:
     return direction_factor(way.network.meta.gap_rad, ratio)
 
 
-def fastest_way(means: Means, network: Network, frozen: Frozen) -> SearchResult:
-    """Search the fastest way over a network."""
+def fastest_way(
+    means: Means, network: Network, frozen: Frozen, setting: int | None = None
+) -> SearchResult:
+    """Search the fastest way over a network, at the highest setting unless one is given."""
     task = means.task
     return earliest_arrival(
         network,
@@ -186,7 +227,7 @@ def fastest_way(means: Means, network: Network, frozen: Frozen) -> SearchResult:
         start=network.meta.start,
         goal=network.meta.goal,
         depart=task.voyage.earliest_departure,
-        setting=int(means.settings[-1]),
+        setting=int(means.settings[-1]) if setting is None else setting,
         limits=means.limits,
         wait=task.voyage.wait,
         top_speed=frozen.top_speed,
@@ -196,30 +237,69 @@ def fastest_way(means: Means, network: Network, frozen: Frozen) -> SearchResult:
 def _in_time(first: SearchResult, voyage: Voyage) -> None:
     """Raise `NoRouteError` if even the fastest way arrives too late."""
     if voyage.arrive_by is not None and first.arrive > float(voyage.arrive_by):  # type: ignore[arg-type]
-        raise NoRouteError(
-            f"No route arrives by {format_time(float(voyage.arrive_by))}.",  # type: ignore[arg-type]
-            f"The earliest arrival on the network is {format_time(first.arrive)}.",
-            "Allow a later arrival, or depart earlier.",
-            reasons={"arrives too late": 1},
-            earliest=format_time(first.arrive),
-        )
+        raise too_late(float(voyage.arrive_by), first.arrive)  # type: ignore[arg-type]
 
 
-def horizons(means: Means, network: Network) -> tuple[float, float]:
-    """Return the latest arrival of the front, and until when the sea is frozen [s since 1970]."""
-    task = means.task
+def look_ahead(means: Means, network: Network) -> Ahead:
+    """Freeze the sea over a network as long as its front needs it, and search the fastest way.
+
+    Without a latest arrival that is until the slowest ship worth looking at has arrived. How long
+    it takes is guessed by its speed in still water first; where currents or weather make it
+    slower, the period grows until the cheapest constant setting has been sailed to the end.
+
+    Raises
+    ------
+    InputError
+        If the sea over the shortest period takes more memory than is allowed.
+    """
+    task, depart = means.task, means.task.voyage.earliest_departure
+    asked = task.voyage.arrive_by
+    tides = math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH])
     length = shortest_length(network)
-    until = task.last
-    if math.isfinite(length):
-        speed = float(task.ship.speeds[economical(means)])
-        until = task.voyage.earliest_departure + _PATIENCE * length / speed
-        if math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
-            until += _TWO_TIDES
-    if task.voyage.arrive_by is None:
-        latest = min(until, task.last)
-        return latest, min(latest + _MORE * (latest - task.voyage.earliest_departure), task.last)
-    latest = min(float(task.voyage.arrive_by), task.last)  # type: ignore[arg-type]
-    return latest, min(max(latest, until), task.last)
+    if math.isinf(length):  # no way: the sea is frozen as for a straight one
+        ends = means.ends[0], means.ends[-1]
+        length = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
+    still = length / float(task.ship.speeds[economical(means)])
+    slow = depart + _PATIENCE * still + (_TWO_TIDES if tides else 0.0)
+    final = min(task.last, depart + _LONGEST * still + _TWO_TIDES)
+    latest = min(slow, final) if asked is None else min(float(asked), task.last)  # type: ignore[arg-type]
+    ahead: Ahead | None = None
+    while True:
+        until = min(latest + _MORE * (latest - depart), final) if asked is None else latest
+        until = max(until, min(slow, final))
+        try:
+            frozen = freeze(task, network, depart, until)
+        except InputError:
+            if ahead is None:
+                raise
+            return ahead  # what fits into the memory
+        warming.finish()
+        first = fastest_way(means, network, frozen)
+        ahead = Ahead(frozen, first, latest)
+        need = first.arrive if asked is not None else _slow_arrival(means, network, frozen, until)
+        if need <= until or until >= final:
+            return ahead
+        slow = depart + _GROWTH * (until - depart) if math.isinf(need) else need
+        latest = latest if asked is not None else min(slow, final)
+
+
+def _slow_arrival(means: Means, network: Network, frozen: Frozen, until: float) -> float:
+    """Return until when a front is worth looking for: later than its cheapest constant setting.
+
+    Infinite while a setting that has not arrived when the frozen sea ends may still be cheaper.
+    """
+    depart = means.task.voyage.earliest_departure
+
+    def duration(setting: int) -> float:
+        return fastest_way(means, network, frozen, setting).arrive - depart
+
+    late = _SPARE * duration(economical(means))
+    if depart + late <= until:
+        return depart + late
+    rates = spending(means)
+    time = np.array([duration(int(setting)) for setting in means.settings])
+    cost = rates * np.minimum(time, until - depart)  # of what has not arrived: so much at least
+    return depart + _SPARE * float(time[np.argmin(cost)])
 
 
 def shortest_length(network: Network) -> float:
@@ -230,12 +310,14 @@ def shortest_length(network: Network) -> float:
 
 def economical(means: Means) -> int:
     """Return the setting that makes a mile cheapest in still water."""
-    ship = means.task.ship
-    rate = means.rate.still[means.settings]
-    speeds = np.asarray(ship.speeds)[means.settings]
-    cost = (means.criterion.outside * rate + means.criterion.time_price) / speeds
-    known = np.where(np.isfinite(cost), cost, np.inf)
-    return int(means.settings[np.argmin(known)])
+    cost = spending(means) / np.asarray(means.task.ship.speeds)[means.settings]
+    return int(means.settings[np.argmin(cost)])
+
+
+def spending(means: Means) -> FloatArray:
+    """Return what a second at each of the settings costs in still water; infinite if unknown."""
+    rate = means.criterion.outside * means.rate.still[means.settings] + means.criterion.time_price
+    return np.where(np.isfinite(rate), rate, np.inf)
 
 
 def track_of_point(network: Network, point: Any) -> Track:

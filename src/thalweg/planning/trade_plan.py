@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import distance
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
@@ -19,8 +18,11 @@ from thalweg.planning.comparison import blind_tracks, compare, sail_blind
 from thalweg.planning.criterion import find_criterion
 from thalweg.planning.ends import End
 from thalweg.planning.fronts import FrontOfPlan
+from thalweg.planning.keeping import Keeper
 from thalweg.planning.passage import Task
-from thalweg.planning.plan import Plan, Proof, Surroundings
+from thalweg.planning.plan import Plan, Surroundings
+from thalweg.planning.proving import certain, disproved, lower_front, lowered_notes, proof_of
+from thalweg.planning.sides import names_of_ways
 from thalweg.planning.telling import known, network_facts, provenance, route_notes
 from thalweg.planning.trade import (
     Candidate,
@@ -30,24 +32,19 @@ from thalweg.planning.trade import (
     not_dominated,
     shortest_length,
     spread,
-    strongest_current,
     track_of_point,
 )
 from thalweg.planning.ways import find_ways
 from thalweg.route import Route, evaluate
-from thalweg.search import extreme
 
 #: Margins on the depth [m] and on wave height and wind [fraction], tried in turn while the referee
 #: finds no route within the limits.
 _MARGINS = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.1))
 #: A route that ends so near the end of the data was bounded by it [s].
 _NEAR_THE_END = 3.0 * HOUR
-_KIND = (
-    "the lower front of the network: all as favourable as at any moment of each time step, "
-    "lengths as short as in open water"
-)
 #: Routes of a front that are refereed and published, fewer where one takes many steps to sail.
 _FEWEST_ROUTES, _MOST_ROUTES, _MOST_STEPS = 40, 100, 150_000
+_STOPPED_ROUTES = 20  # after Ctrl-C
 
 
 @dataclass(frozen=True)
@@ -73,16 +70,19 @@ def trade(task: Task, ends: list[End]) -> Plan:
     rate = criterion.rate_of(task.ship)
     single = task.voyage.speed_kn is not None
     settings = np.array([task.setting]) if single else np.arange(len(task.ship.speeds))
-    means = Means(task, criterion, rate, tuple(ends), settings, task.needs.limits)
-    ways = find_ways(task, ends)
-    for depth, fraction in _MARGINS:
-        limits = task.needs.limits * (1.0 - fraction)
-        limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
-        explored = _explored(replace(means, limits=limits), ways)
-        scored = _scored(means, _candidates(replace(means, limits=limits), explored))
-        if any(item.route.feasible for item in scored):
-            break
-    return _gathered(means, ends, explored, scored)
+    with Keeper() as keeper:
+        means = Means(task, criterion, rate, tuple(ends), settings, task.needs.limits, keeper)
+        ways = find_ways(task, ends)
+        for depth, fraction in _MARGINS:
+            limits = task.needs.limits * (1.0 - fraction)
+            limits[codes.LIMIT_REQUIRED_DEPTH] = (
+                task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+            )
+            explored = _explored(replace(means, limits=limits), ways)
+            scored = _scored(means, _candidates(replace(means, limits=limits), explored))
+            if keeper.stopped() or any(item.route.feasible for item in scored):
+                break
+        return _gathered(means, ends, explored, scored)
 
 
 def _explored(means: Means, ways: list[Any]) -> list[Explored]:
@@ -90,6 +90,9 @@ def _explored(means: Means, ways: list[Any]) -> list[Explored]:
     found: list[Explored] = []
     refusal: NoRouteError | None = None
     for way in ways:
+        if found and means.keeper.stopped():
+            means.notes.append(f"Stopped before the way round by {way.name} was looked at.")
+            break
         try:
             found.append(explore(means, way))
         except NoRouteError as error:
@@ -101,22 +104,22 @@ def _explored(means: Means, ways: list[Any]) -> list[Explored]:
 
 
 def _candidates(means: Means, explored: list[Explored]) -> list[Candidate]:
-    """Return routes worth the referee's time, by ascending time."""
+    """Return routes worth the referee's time: the fastest of each way, and a front."""
+    fastest = [
+        Candidate(one.fastest.track, "fastest", one.way.name, one.fastest.time_h * HOUR, math.nan)
+        for one in explored
+    ]
     found = [candidate for one in explored for candidate in _exact(one)]
-    method = means.task.voyage.method
-    if method != "exact":
-        from thalweg.planning.evolving import evolved
-        from thalweg.planning.rounds import round_candidates
-
-        found += round_candidates(means) if method == "default" else []
-        for one in explored:
-            means.task.tell(f"refining the front: {one.way.name}")
-            found += evolved(means, one, [c for c in found if c.way == one.way.name])
+    if not found:  # stopped before there was a front
+        return fastest
+    found += _refined(means, explored, found)
     kept = not_dominated(*_points(found))
     time, value = _points([found[index] for index in kept])
     steps = max(len(one.fastest.samples["time"]) for one in explored)
     most = min(max(_MOST_STEPS // max(steps, 1), _FEWEST_ROUTES), _MOST_ROUTES)
-    return [found[kept[index]] for index in spread(time, value, most)]
+    if means.keeper.stopped():
+        most = min(most, _STOPPED_ROUTES)
+    return [*fastest, *(found[kept[index]] for index in spread(time, value, most))]
 
 
 def _exact(one: Explored) -> list[Candidate]:
@@ -124,8 +127,26 @@ def _exact(one: Explored) -> list[Candidate]:
     network, name = one.way.network, one.way.name
     return [
         Candidate(track_of_point(network, point), "exact", name, point.time, point.cost)
-        for point in one.exact.points
+        for point in (one.exact.points if one.exact else ())
     ]
+
+
+def _refined(means: Means, explored: list[Explored], exact: list[Candidate]) -> list[Candidate]:
+    """Return what comes of drawing ways round and of refining the front, as far as was asked."""
+    method, stopped = means.task.voyage.method, means.keeper.stopped
+    if method == "exact" or stopped():
+        return []
+    from thalweg.planning.evolving import evolved
+    from thalweg.planning.rounds import round_candidates
+
+    found = round_candidates(means) if method == "default" else []
+    for one in explored:
+        if stopped():
+            break
+        means.task.tell(f"refining the front: {one.way.name}")
+        of_way = [c for c in (*exact, *found) if c.way == one.way.name]
+        found += evolved(means, one, of_way)
+    return found
 
 
 def _points(found: list[Candidate]) -> tuple[np.ndarray, np.ndarray]:
@@ -177,8 +198,8 @@ def _gathered(
         ordered = [best, *(item for item in ordered if item is not best)]
     routes = tuple(item.route for item in ordered)
     values = np.array([item.value for item in ordered])
-    lower = _lower(explored, certain(means, explored)[1])
-    share = _disproved(lower, np.array([route.time_h for route in routes]), values)
+    lower = lower_front(explored, certain(means, explored)[1])
+    share = disproved(lower, np.array([route.time_h for route in routes]), values)
     lower *= share[:, None]
     shortest_way = min(explored, key=lambda one: shortest_length(one.way.network)).way.name
     front = FrontOfPlan(
@@ -186,74 +207,53 @@ def _gathered(
         unit=criterion.unit,
         values=values,
         stages=tuple(item.candidate.stage for item in ordered),
-        ways=tuple(item.candidate.way or shortest_way for item in ordered),
+        ways=names_of_ways(
+            routes,
+            [item.candidate.way or shortest_way for item in ordered],
+            {one.way.name: one.way.network for one in explored},
+            task.chart,
+        ),
         lower=lower,
         comparison=compare(task, criterion, routes, values, blind),
     )
+    stopped = means.keeper.stopped()
     return Plan(
         voyage=task.voyage,
         routes=routes,
-        proof=_proof(means, explored, front, whole=whole),
+        proof=proof_of(means, explored, front, whole=whole),
         rejections=_rejections(explored),
         notes=tuple(
-            dict.fromkeys([*_notes(means, ends, explored, ordered), *means.notes, *_lowered(share)])
+            dict.fromkeys(
+                [
+                    *(_stopped(explored, front) if stopped else ()),
+                    *_notes(means, ends, explored, ordered),
+                    *means.notes,
+                    *lowered_notes(share),
+                ]
+            )
         ),
         provenance=provenance(task, ends, _networks(explored), _speeds_kn(means)),
         surroundings=_surroundings(task, explored),
         front=front,
+        cancelled=stopped,
     )
 
 
-def _lower(explored: list[Explored], criterion_floor: float) -> np.ndarray:
-    """Return the lower front of open water over all ways round: times [h] and values.
-
-    A way in open water that takes T and costs C has one on the network that takes at most T / k
-    and costs at most C / k, with k the factor of directions: so C is at least k L(T / k), L being
-    the lower front of the network. As certain as that factor.
-    """
-    time, value = [], []
-    for one in explored:
-        k = one.factor
-        time.append(k * one.exact.lower_time / HOUR)
-        value.append(np.maximum(k * one.exact.lower_cost, criterion_floor))
-    times, values = np.concatenate(time), np.concatenate(value)
-    kept = not_dominated(times, values)
-    return np.array([times[kept], values[kept]]).reshape(2, -1)
-
-
-def _disproved(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the factors (time, value) by which routes show the lower front to be too high.
-
-    1 where none does. Ways between islands may be shorter, by more than the factor of directions,
-    than those of a coarse network.
-    """
-    if not lower.size:
-        return np.ones(2)
-    factors = np.array([min(1.0, float(time_h.min() / lower[0].min())), 1.0])
-    for time, value in zip(time_h, values):
-        bound = lower[1, factors[0] * lower[0] <= time].min(initial=math.inf)
-        if value < bound < math.inf:
-            factors[1] = min(factors[1], float(value / bound))
-    return factors
-
-
-def _proof(means: Means, explored: list[Explored], front: FrontOfPlan, *, whole: bool) -> Proof:
-    """Return the bound: of the fast end for a whole front, else of the criterion."""
-    certain_time, certain_value = certain(means, explored)
-    if whole:
-        fastest = min(one.first.duration for one in explored) / HOUR
-        lower = front.lower[0].min() if front.lower.size else certain_time
-        return Proof(max(float(lower), certain_time), _KIND, certain_time, fastest)
-    solver = min(point.cost for one in explored for point in one.exact.points)
-    value = float(front.values[0])
-    lower = float(front.lower[1].min()) if front.lower.size else certain_value
-    if lower > value:  # disproved by the route itself, which is not confined to the network
-        lower = certain_value
-    return Proof(max(lower, certain_value), _KIND, certain_value, solver)
+def _stopped(explored: list[Explored], front: FrontOfPlan) -> list[str]:
+    """Say what a plan holds that was stopped by Ctrl-C."""
+    if all(one.exact is None for one in explored):
+        kept = "before there was a front: the fastest route is kept"
+    elif set(front.stages) <= {"exact", "fastest"}:
+        kept = "before refinement: the exact front of the network is kept"
+    else:
+        kept = "before all was done: the best so far is kept"
+    return [f"Stopped by Ctrl-C {kept}; more time may find better."]
 
 
 def _blind(means: Means, explored: list[Explored]) -> list[Route]:
     """Return the weather-blind routes of the shortest way round, in the weather of the plan."""
+    if means.keeper.stopped():
+        return []
     network = min((one.way.network for one in explored), key=shortest_length)
     _, path = shortest(network, network.meta.start, network.meta.goal)
     means.task.tell("sailing the weather-blind route")
@@ -293,7 +293,7 @@ def _rejections(explored: list[Explored]) -> dict[str, int]:
     for one in explored:
         refused.update(one.way.network.meta.rejected)
         refused.update(one.first.refused)
-        refused.update(one.exact.refused)
+        refused.update(one.exact.refused if one.exact else {})
     return {reason: count for reason, count in refused.items() if count}
 
 
@@ -326,29 +326,6 @@ def _surroundings(task: Task, explored: list[Explored]) -> Surroundings:
     )
 
 
-def certain(means: Means, explored: list[Explored]) -> tuple[float, float]:
-    """Return what no route at all undercuts: a time [h] and a value of the criterion.
-
-    The geodesic at the greatest speed over ground that the data allow, for the value with the
-    least rate of the best setting and the least weight of it.
-    """
-    task, criterion = means.task, means.criterion
-    start, goal = means.ends[0], means.ends[-1]
-    geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
-    current = max(strongest_current(one.frozen.stations) for one in explored)
-    least = min(criterion.inside, criterion.outside)
-    if criterion.name == "cost":
-        least *= min(float(one.way.network.price.min()) for one in explored)
-    rates = np.maximum(extreme(means.rate.table.kernel_arrays(), np.fmin), 0.0)
-    fastest, value = 0.0, math.inf
-    for setting in means.settings:
-        over_ground = float(task.ship.top_speed(int(setting)) or math.inf) + current
-        fastest = max(fastest, over_ground)
-        per_second = least * float(rates[setting]) + criterion.time_price
-        value = min(value, per_second * geodesic / over_ground)
-    return geodesic / fastest / HOUR, value
-
-
 def _notes(
     means: Means, ends: list[End], explored: list[Explored], ordered: list[Scored]
 ) -> list[str]:
@@ -361,16 +338,6 @@ def _notes(
     if bounded and slowest > task.last - _NEAR_THE_END:
         notes.append(f"The data end at {format_time(task.last)}: slower routes were not looked at.")
     return notes
-
-
-def _lowered(share: np.ndarray) -> list[str]:
-    least = float(share.min())
-    if least == 1.0:
-        return []
-    return [
-        f"Refined routes undercut the lower front of the network by up to {1.0 - least:.1%}; it "
-        "was lowered by that, and is evidence, no proof."
-    ]
 
 
 def _nothing_sails(means: Means, explored: list[Explored]) -> NoRouteError:

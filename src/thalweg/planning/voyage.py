@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Integral
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -125,7 +126,12 @@ class Voyage:
         _check_number(
             "time_price_usd_per_h", self.time_price_usd_per_h, above=nothing, below=1e7, unit="USD"
         )
-        forbidden = (self.forbid,) if isinstance(self.forbid, str) else tuple(self.forbid)
+        forbidden = (self.forbid,) if isinstance(self.forbid, str) else _listed(self.forbid)
+        if not isinstance(self.seed, Integral) or self.seed < 0:
+            raise InputError(
+                f"The seed is {self.seed!r}.", "It is a whole number of zero or more.", "Give one.",
+                field="seed",
+            )  # fmt: skip
         object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
         if self.method not in METHODS:
             raise unknown_name("method", str(self.method), METHODS)
@@ -148,7 +154,7 @@ class Voyage:
                 "Give one of them.",
             )
         if self.depart_window is not None:
-            if len(self.depart_window) != 2:
+            if isinstance(self.depart_window, str) or len(_listed(self.depart_window)) != 2:
                 raise InputError("A departure window is two times.", "", "Give (earliest, latest).")
             first, last = (parse_time(t) for t in self.depart_window)
             if not first <= last:
@@ -244,6 +250,14 @@ class Voyage:
         as_json = path.suffix == ".json"
         text = json.dumps(data, indent=2, allow_nan=False) if as_json else yaml.safe_dump(data)
         path.write_text(text, encoding="utf-8")
+
+
+def _listed(given: Any) -> tuple[Any, ...]:
+    """Return what is given as a list; a single thing as a list of it."""
+    try:
+        return tuple(given)
+    except TypeError:
+        return (given,)
 
 
 def _place(place: Any, what: str) -> Place:

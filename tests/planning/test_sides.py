@@ -1,0 +1,96 @@
+"""Names that tell ways round apart: on which side of which land they pass."""
+
+import numpy as np
+import pytest
+
+from tests.reference.test_floro_santander_seuren_2020 import GOAL, SHIP, START, WAYS
+from thalweg import Chart, Sea, Ship, evaluate
+from thalweg.network import line
+from thalweg.planning.sides import LANDS, name_of, names_of_ways
+from thalweg.route import Route
+
+SLOW = Ship.simple(speed_kn=10.0, draught_m=5.0)
+
+
+def sailed(places, chart, ship=SLOW) -> Route:
+    return evaluate(places, ship=ship, sea=Sea.calm(), chart=chart, depart=0, strict=False)
+
+
+def block(west, south, east, north):
+    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    return {"type": "Feature", "properties": {}, "geometry": geometry}
+
+
+def islands(*boxes) -> Chart:
+    features = [block(*box) for box in boxes]
+    return Chart.from_geojson({"type": "FeatureCollection", "features": features})
+
+
+def told(chart, *ways, names=None):
+    """Return the names of ways over the Gulf of Guinea, the first of them the network."""
+    routes = [sailed(way, chart) for way in ways]
+    names = names or ["open sea"] * len(routes)
+    return names_of_ways(routes, names, {names[0]: line(chart, ways[0], spacing=50_000.0)}, chart)
+
+
+WEST, EAST = (0.0, -2.0), (0.0, 2.0)
+NORTHERN, SOUTHERN = [WEST, (0.7, 0.0), EAST], [WEST, (-0.7, 0.0), EAST]
+
+
+def test_ways_on_either_side_of_an_island_are_told_apart():
+    chart = islands((-0.3, -0.3, 0.3, 0.3))
+    north, south, again = told(chart, NORTHERN, SOUTHERN, NORTHERN)
+    assert north == again == "north of the land at 0.0000N 0.0000E"
+    assert south == "south of the land at 0.0000N 0.0000E"
+
+
+def test_ways_on_the_same_side_keep_their_name():
+    chart = islands((-0.3, -0.3, 0.3, 0.3))
+    assert told(chart, NORTHERN, [WEST, (0.9, 0.2), EAST]) == ("open sea", "open sea")
+    assert told(Chart.open_water(), NORTHERN, SOUTHERN) == ("open sea", "open sea")
+
+
+def test_small_islands_make_no_other_way():
+    chart = islands((-0.01, -0.01, 0.01, 0.01))
+    assert told(chart, NORTHERN, SOUTHERN) == ("open sea", "open sea")
+
+
+def test_canals_stay_in_the_name_and_ways_by_others_are_not_compared():
+    chart = islands((-0.3, -0.3, 0.3, 0.3))
+    names = ["suez", "suez", "open sea"]
+    first, second, third = told(chart, NORTHERN, SOUTHERN, SOUTHERN, names=names)
+    assert first == "suez, north of the land at 0.0000N 0.0000E"
+    assert second == "suez, south of the land at 0.0000N 0.0000E"
+    assert third == "open sea"
+
+
+def test_every_way_between_two_islands_has_a_name_of_its_own():
+    chart = islands((-1.0, -0.2, -0.6, 0.2), (0.6, -0.2, 1.0, 0.2))
+    ways = [[WEST, (a, -0.8), (0.0, 0.0), (b, 0.8), EAST] for a in (0.5, -0.5) for b in (0.5, -0.5)]
+    names = told(chart, *ways)
+    assert len(set(names)) == 4
+    assert all(name.count(" of the land at ") == 2 for name in names)
+
+
+def test_the_three_ways_from_floro_to_santander():
+    chart = Chart.gshhg("i")
+    routes = [sailed([START, *middle, GOAL], chart, SHIP) for middle in WAYS.values()]
+    network = line(chart, [START, *WAYS["R3"], GOAL], spacing=100_000.0)
+    names = names_of_ways(routes, ["open sea"] * 3, {"open sea": network}, chart)
+    assert names[0].startswith("east of Great Britain")  # by Dover
+    assert names[1] == "west of Great Britain, east of Skye"  # by Kyle Rhea
+    assert names[2] == "west of Great Britain, west of Skye"  # by the Minch
+
+
+@pytest.mark.parametrize("name", ["Great Britain", "Ireland", "Iceland", "Viti Levu", "Australia"])
+def test_land_has_its_name(name):
+    chart = Chart.gshhg("l")
+    rings = chart.land.rings
+    found = []
+    for a, b in zip(rings.start[:-1], rings.start[1:]):
+        lat, lon = rings.lat[a:b], np.degrees(np.unwrap(np.radians(rings.lon[a:b])))
+        if name_of(lat, lon) == name:
+            found.append((lat, lon))
+    assert len(found) == 1
+    assert found[0][0].min() < LANDS[name][0] < found[0][0].max()

@@ -1,0 +1,101 @@
+"""Ctrl-C while a front is planned: what is found by then is kept and marked, else nothing."""
+
+import json
+import signal
+
+import pytest
+
+from tests.planning.test_trade import CHART, GOAL, START, cubic_ship
+from thalweg import Sea, Voyage, plan
+from thalweg.cli.main import main
+
+VOYAGE = {"start": START, "goal": GOAL, "depart": "2026-01-01T00:00Z", "objective": "front"}
+
+
+def at(stage, times=1):
+    """Return a progress that presses Ctrl-C when a stage begins."""
+    left = [times]
+
+    def progress(text):
+        while text.startswith(stage) and left[0] > 0:
+            left[0] -= 1
+            signal.raise_signal(signal.SIGINT)
+
+    return progress
+
+
+def stopped(stage, times=1, **more):
+    voyage = Voyage(**{**VOYAGE, **more})
+    return plan(voyage, ship=cubic_ship(), sea=Sea.calm(), chart=CHART, progress=at(stage, times))
+
+
+@pytest.mark.parametrize("stage", ["building", "freezing", "searching: ", "refining the route"])
+def test_before_any_route_is_found_nothing_is_kept(stage):
+    with pytest.raises(KeyboardInterrupt):
+        stopped(stage)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_before_the_front_is_found_the_fastest_route_is_kept():
+    found = stopped("searching the front")
+    assert found.cancelled and found.front.stages == ("fastest",)
+    assert found.best.feasible
+    assert found.best.time_h == pytest.approx(120.0 / 12.0, rel=0.01)
+    assert "the fastest route is kept" in found.notes[0]
+    told = json.loads(found.to_json())
+    assert told["cancelled"] is True and told["front"]["lower"] == []
+    assert told["lower_bound"] <= told["routes"][0]["time_h"]
+    assert "geodesic" in told["lower_bound_kind"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_before_refinement_the_exact_front_is_kept_and_refereed():
+    found = stopped("drawing the ways")
+    assert found.cancelled and set(found.front.stages) <= {"exact", "fastest", "way round"}
+    assert 10 < len(found.routes) <= 22
+    assert all(route.feasible for route in found.routes)
+    whole = plan(Voyage(**VOYAGE, method="exact"), ship=cubic_ship(), sea=Sea.calm(), chart=CHART)
+    assert found.routes[0].time_h == pytest.approx(whole.routes[0].time_h, rel=1e-3)
+    assert found.routes[-1].fuel_t == pytest.approx(whole.routes[-1].fuel_t, rel=1e-3)
+    assert found.front.comparison is None
+
+
+def test_in_refinement_the_best_so_far_is_kept():
+    found = stopped("refining the front")
+    assert found.cancelled and len(found.routes) > 10
+    assert "Stopped by Ctrl-C" in found.notes[0]
+
+
+def test_least_fuel_is_kept_too():
+    found = stopped("refining the front", objective="fuel")
+    assert found.cancelled and found.best.fuel_t == min(route.fuel_t for route in found.routes)
+
+
+def test_pressed_again_it_ends_all():
+    with pytest.raises(KeyboardInterrupt):
+        stopped("searching the front", times=2)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_plan_that_was_not_stopped_does_not_say_so():
+    found = stopped("no such stage", method="exact")
+    assert not found.cancelled and "cancelled" not in json.loads(found.to_json())
+
+
+def test_the_command_line_keeps_and_marks_it_and_says_where_nothing_is_kept(
+    tmp_path, monkeypatch, capsys
+):
+    ship = tmp_path / "ship.yaml"
+    ship.write_text(json.dumps(dict(cubic_ship().data)))
+    command = [
+        "plan", "0.0N 0.0E", "0.0N 2.0E", "--ship", str(ship), "--calm", "--coast", "none",
+        "--depart", "2026-01-01T00:00Z", "--objective", "front", "--json",
+    ]  # fmt: skip
+    for stage, code in (("searching the front", 0), ("building", 130)):
+        monkeypatch.setattr("thalweg.cli.common.progress_for", lambda _, s=stage: at(s))
+        assert main(command) == code
+        told = capsys.readouterr()
+        if code == 0:
+            assert json.loads(told.out)["cancelled"] is True
+        else:
+            assert "nothing is kept" in told.err and not told.out
