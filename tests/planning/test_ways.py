@@ -69,6 +69,28 @@ def test_a_deep_ship_does_not_pass_a_shallow_canal():
     assert len(notes) == 1 and "Kiel Canal" in notes[0] and "draught of 12 m" in notes[0]
 
 
+def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
+    ends = [End("a", *ELBE, 0.0), End("b", *GDANSK, 0.0)]
+    data = {
+        "name": "x", "hull": {"draught_m": 5.0}, "speeds_kn": [8.0, 12.0],
+        "fuel": {"reference_t_per_day": 24.0, "price_per_t": 500.0},
+        "engine": {"reference_speed_kn": 12.0}, "models": {"calm_water": "cubic"},
+    }  # fmt: skip
+
+    def passed(currency, objective):
+        ship = Ship.from_dict({**data, "fuel": {**data["fuel"], "currency": currency}})
+        depart = "2026-01-01T00:00Z"
+        voyage = Voyage(start=ELBE, goal=GDANSK, depart=depart, objective=objective)
+        chart, notes = open_canals(CHART, voyage, ship, ends)
+        return "kiel" in [canal.name for canal in chart.canals], notes
+
+    assert passed("USD", "cost") == (True, [])
+    assert passed("EUR", "fuel") == (True, [])
+    open_, notes = passed("EUR", "cost")
+    assert not open_ and len(notes) == 1
+    assert "Kiel Canal: its dues are in USD, and the prices are in EUR" in notes[0]
+
+
 def test_ice_is_left_out_unless_the_voyage_goes_there():
     def reach(lat):
         chart = without_ice(CHART, [End("a", 60.0, 0.0, 0.0), End("b", lat, 10.0, 0.0)])

@@ -27,7 +27,8 @@ def open_canals(
 ) -> tuple[Chart, list[str]]:
     """Return the chart without the canals that are forbidden or too small, and what to say.
 
-    Of a canal that is too small only what lies on the way is said.
+    Where the cost is made least and is in another currency than the dues of canals, which are in
+    USD, those with dues are left out, too. Only what lies on the way is said.
 
     Raises
     ------
@@ -37,14 +38,25 @@ def open_canals(
     if voyage.forbid:
         chart = chart.without_canals(*voyage.forbid)
     beam = ship.data.get("hull", {}).get("breadth_m")
+    currency = _other_currency(voyage, ship)
     notes, closed = [], []
     for canal in chart.canals:
         why = canal.why_not(draught=float(ship.draught) or None, beam=beam)
+        if not why and currency and canal.fee > 0.0:
+            why = f"{canal.title}: its dues are in USD, and the prices are in {currency}"
         if why:
             closed.append(canal.name)
             if any(_on_the_way(canal, *pair) for pair in itertools.pairwise(ends)):
                 notes.append(f"Not passed: {why}.")
     return (chart.without_canals(*closed) if closed else chart), notes
+
+
+def _other_currency(voyage: Voyage, ship: Ship) -> str:
+    """Return the currency of the cost that is made least, where there is one and not USD."""
+    if voyage.objective not in TRADES:
+        return ""
+    criterion = find_criterion(voyage, ship)
+    return criterion.unit if criterion.name == "cost" and criterion.unit != "USD" else ""
 
 
 def _on_the_way(canal: Canal, start: End, goal: End) -> bool:
