@@ -19,8 +19,9 @@ from thalweg.network import Network, NetworkMeta, lattice, mesh
 from thalweg.network.pairs import Stations, assemble, measure, no_samples
 from thalweg.network.sides import sampled_on_sides
 from thalweg.operations.project import Sites
+from thalweg.planning.freezing import MEMORY_LIMIT
 from thalweg.planning.needs import Needs, check_period, find_needs, least_clearance
-from thalweg.planning.passage import MEMORY_LIMIT, table_of
+from thalweg.planning.passage import table_of
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import names as nm
 from thalweg.search import Passages, Waters

@@ -93,7 +93,7 @@ def _on(track: Track, place: tuple[float, float]) -> bool:
 def _evaluator(means: Means, explored: Explored, seeds: list[Track]) -> Evaluator:
     criterion, task = means.criterion, means.task
     depart = task.voyage.earliest_departure
-    latest = task.last if task.voyage.arrive_by is None else float(task.voyage.arrive_by)  # type: ignore[arg-type]
+    latest = task.latest if math.isfinite(task.latest) else task.last
     assert explored.exact is not None  # a front that was stopped is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)

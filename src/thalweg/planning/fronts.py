@@ -30,7 +30,9 @@ class FrontOfPlan:
     values : ndarray (n,)
         Of the plan's routes, in their order.
     stages : tuple of str (n,)
-        What each route comes from: ``"fastest"``, ``"exact"`` or the evolutionary method.
+        What each route comes from: ``"fastest"`` (refined for time), ``"exact"``, ``"way round"``
+        (a taut one with its best speeds), ``"polish"``, the evolutionary method, or ``"constant
+        speed"`` (of the weather-blind route).
     ways : tuple of str (n,)
         The way round of each: its canals, or ``"open sea"``; where routes pass land on other sides,
         with these (`thalweg.planning.sides.names_of_ways`).

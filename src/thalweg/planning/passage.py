@@ -2,31 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import along, distance
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes, warming
 from thalweg.network import Network
 from thalweg.planning.ends import End
+from thalweg.planning.freezing import Frozen, freeze
 from thalweg.planning.needs import Needs, least_clearance
 from thalweg.planning.networks import NetworkChoice, build_network
 from thalweg.planning.refusal import no_route, too_late
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, better_route, evaluate
 from thalweg.route.improving import rank
-from thalweg.sea import Sea, StationFields
+from thalweg.sea import Sea
 from thalweg.search import Bound, SearchResult, best_departure, earliest_arrival, lower_bound
 from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 
-#: Frozen fields larger than this are refused before they are taken [bytes].
-MEMORY_LIMIT = 4_000_000_000
 #: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
 _HORIZONS = (2.5, 8.0, 30.0)
 #: Gap to the bound [fraction] from which the way of the bound is refined as well.
@@ -66,6 +66,12 @@ class Task:
         """The least under-keel clearance asked [m]."""
         return least_clearance(self.voyage, self.ship)
 
+    @property
+    def latest(self) -> float:
+        """The latest arrival asked for [s since 1970]; inf without any."""
+        asked = self.voyage.arrive_by
+        return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
+
 
 @dataclass(frozen=True)
 class Passage:
@@ -98,14 +104,6 @@ class Passage:
     notes: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Frozen:
-    """The sea at the stations of a network, and what it allows at most."""
-
-    stations: StationFields
-    top_speed: float
-
-
 def make_passage(task: Task, start: End, goal: End, window: tuple[float, float]) -> Passage:
     """Find the best route between two ends, departing inside a window of times.
 
@@ -135,9 +133,9 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
         if passage.route.feasible:
             break
     assert passage is not None  # every way without one has raised
-    latest, arrive = task.voyage.arrive_by, passage.route.arrive
-    if latest is not None and arrive > float(latest) + 1.0:  # type: ignore[arg-type]
-        raise too_late(float(latest), arrive, window=window[1] > window[0])  # type: ignore[arg-type]
+    arrive, latest = passage.route.arrive, task.latest
+    if latest + 1.0 < arrive < math.inf:
+        raise too_late(latest, arrive, window=window[1] > window[0])
     return passage
 
 
@@ -286,9 +284,7 @@ def _search(
 ) -> tuple[Frozen, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
     usual = straight / _usual_speed(task, ends, window[0])
-    latest = task.last
-    if task.voyage.arrive_by is not None:
-        latest = min(latest, float(task.voyage.arrive_by))  # type: ignore[arg-type]
+    latest = min(task.last, task.latest)
     for number, horizon in enumerate(_HORIZONS):
         end = window[1] + horizon * usual + (_TWO_TIDES if number else 0.0)
         end = min(end, latest)
@@ -316,8 +312,7 @@ def _too_late(
     """Return the error for a latest arrival that is missed; raise the one without it, if any."""
     freely = replace(task, voyage=replace(task.voyage, arrive_by=None, objective="time"))
     _, result = _search(freely, network, limits, window, ends)
-    latest = float(task.voyage.arrive_by)  # type: ignore[arg-type]
-    return too_late(latest, result.arrive, window=window[1] > window[0])
+    return too_late(task.latest, result.arrive, window=window[1] > window[0])
 
 
 def _usual_speed(task: Task, ends: tuple[End, End], depart: float) -> float:
@@ -339,39 +334,6 @@ def table_of(ship: Ship) -> PerformanceTable:
         return ship.tabulate()
     none = TablePart((), (), np.zeros(len(ship.speeds), np.float32))
     return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))
-
-
-def freeze(task: Task, network: Network, start: float, end: float) -> Frozen:
-    """Freeze the sea at the stations of a network.
-
-    Raises
-    ------
-    InputError
-        If it would take more memory than is allowed.
-    """
-    lat, lon = network.station_lat, network.station_lon
-    steps = len(task.sea.times(start, end))
-    channels = task.needs.channels
-    extra = None
-    if task.ship.speed_field is not None:
-        extra = {codes.SPEED_FIELD: task.ship.speed_field}
-    size = len(lat) * steps * (len(channels) + bool(extra)) * 4
-    if size > MEMORY_LIMIT:
-        raise InputError(
-            f"The sea at {len(lat):,} stations and {steps:,} times takes {size / 1e9:.1f} GB.",
-            f"At most {MEMORY_LIMIT / 1e9:.0f} GB are taken.",
-            "Use a coarser resolution or a shorter window.",
-        )
-    stations = task.sea.freeze_stations(lat, lon, start, end, channels, extra=extra)
-    return Frozen(stations, _top_speed(task, stations))
-
-
-def _top_speed(task: Task, stations: StationFields) -> float:
-    column = stations.channel_index[codes.SPEED_FIELD]
-    if column >= 0:
-        return float(np.nanmax(stations.values[:, :, column], initial=0.0))
-    top = task.ship.top_speed(task.setting)
-    return float(task.ship.speeds[task.setting] if top is None else top)
 
 
 def _run(

@@ -89,6 +89,13 @@ def too_late(arrive_by: float, earliest: float, *, window: bool = False) -> NoRo
     window : bool
         Whether that is the shortest passage of a window of departures, not the earliest arrival.
     """
+    if earliest <= arrive_by:  # that of another objective
+        return NoRouteError(
+            f"The shortest way does not arrive by {format_time(arrive_by)}.",
+            f"The fastest arrives at {format_time(earliest)}.",
+            "Ask for the least time, or allow a later arrival.",
+            reasons={codes.REASONS[codes.ARRIVE_BY]: 1},
+        )
     told = "shortest passage of the window arrives at" if window else "earliest arrival is"
     return NoRouteError(
         f"No route arrives by {format_time(arrive_by)}.",

@@ -15,10 +15,10 @@ from thalweg.kernels import codes, warming
 from thalweg.network import Network, shortest
 from thalweg.planning.criterion import Criterion, Rate
 from thalweg.planning.ends import End
+from thalweg.planning.freezing import Frozen, freeze
 from thalweg.planning.keeping import Keeper, Stopped
-from thalweg.planning.passage import Frozen, Task, freeze, isochrones, refined, track_of
+from thalweg.planning.passage import Task, isochrones, refined, track_of
 from thalweg.planning.refusal import no_route, too_late
-from thalweg.planning.voyage import Voyage
 from thalweg.planning.ways import Way
 from thalweg.route import Route, Track
 from thalweg.sea import StationFields
@@ -153,7 +153,8 @@ def explore(means: Means, way: Way) -> Explored:
             fields=frozen.stations,
             required=float(means.limits[codes.LIMIT_REQUIRED_DEPTH]),
         )
-    _in_time(first, task.voyage)
+    if first.arrive > task.latest:
+        raise too_late(task.latest, first.arrive)
     fastest = refined(task, track_of(way.network, first, task.setting), means.limits)
     means.keeper.begin()
     task.tell(f"searching the front: {way.name}")
@@ -234,12 +235,6 @@ def fastest_way(
     )
 
 
-def _in_time(first: SearchResult, voyage: Voyage) -> None:
-    """Raise `NoRouteError` if even the fastest way arrives too late."""
-    if voyage.arrive_by is not None and first.arrive > float(voyage.arrive_by):  # type: ignore[arg-type]
-        raise too_late(float(voyage.arrive_by), first.arrive)  # type: ignore[arg-type]
-
-
 def look_ahead(means: Means, network: Network) -> Ahead:
     """Freeze the sea over a network as long as its front needs it, and search the fastest way.
 
@@ -253,7 +248,7 @@ def look_ahead(means: Means, network: Network) -> Ahead:
         If the sea over the shortest period takes more memory than is allowed.
     """
     task, depart = means.task, means.task.voyage.earliest_departure
-    asked = task.voyage.arrive_by
+    asked = math.isfinite(task.latest)
     tides = math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH])
     length = shortest_length(network)
     if math.isinf(length):  # no way: the sea is frozen as for a straight one
@@ -262,10 +257,10 @@ def look_ahead(means: Means, network: Network) -> Ahead:
     still = length / float(task.ship.speeds[economical(means)])
     slow = depart + _PATIENCE * still + (_TWO_TIDES if tides else 0.0)
     final = min(task.last, depart + _LONGEST * still + _TWO_TIDES)
-    latest = min(slow, final) if asked is None else min(float(asked), task.last)  # type: ignore[arg-type]
+    latest = min(task.latest, task.last) if asked else min(slow, final)
     ahead: Ahead | None = None
     while True:
-        until = min(latest + _MORE * (latest - depart), final) if asked is None else latest
+        until = latest if asked else min(latest + _MORE * (latest - depart), final)
         until = max(until, min(slow, final))
         try:
             frozen = freeze(task, network, depart, until)
@@ -276,11 +271,11 @@ def look_ahead(means: Means, network: Network) -> Ahead:
         warming.finish()
         first = fastest_way(means, network, frozen)
         ahead = Ahead(frozen, first, latest)
-        need = first.arrive if asked is not None else _slow_arrival(means, network, frozen, until)
+        need = first.arrive if asked else _slow_arrival(means, network, frozen, until)
         if need <= until or until >= final:
             return ahead
         slow = depart + _GROWTH * (until - depart) if math.isinf(need) else need
-        latest = latest if asked is not None else min(slow, final)
+        latest = latest if asked else min(slow, final)
 
 
 def _slow_arrival(means: Means, network: Network, frozen: Frozen, until: float) -> float:

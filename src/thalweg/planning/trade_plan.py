@@ -169,7 +169,7 @@ def _scored(means: Means, candidates: list[Candidate]) -> list[Scored]:
             terms=means.criterion.terms,
         )
         scored.append(Scored(candidate, route, means.criterion.of(route)))
-    latest = latest_arrival(task)
+    latest = task.latest
     usable = [
         item
         for item in scored
@@ -268,7 +268,7 @@ def _blind(means: Means, explored: list[Explored]) -> list[Route]:
 
 def _with_blind(means: Means, scored: list[Scored], blind: list[Route]) -> list[Scored]:
     """Return all that is not dominated, constant speeds on the shortest way among it."""
-    latest = latest_arrival(means.task)
+    latest = means.task.latest
     constant = [
         Scored(Candidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value)
         for r, value in ((route, means.criterion.of(route)) for route in blind)
@@ -280,12 +280,6 @@ def _with_blind(means: Means, scored: list[Scored], blind: list[Route]) -> list[
     time = np.array([item.route.time_h for item in pool])
     value = np.array([item.value for item in pool])
     return [pool[index] for index in not_dominated(time, value)]
-
-
-def latest_arrival(task: Task) -> float:
-    """Return the latest arrival asked for [s since 1970]; inf without any."""
-    asked = task.voyage.arrive_by
-    return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
 
 
 def _rejections(explored: list[Explored]) -> dict[str, int]:
@@ -341,8 +335,8 @@ def _notes(
 
 
 def _nothing_sails(means: Means, explored: list[Explored]) -> NoRouteError:
-    latest = means.task.voyage.arrive_by
-    by = "" if latest is None else f" by {format_time(float(latest))}"  # type: ignore[arg-type]
+    latest = means.task.latest
+    by = f" by {format_time(latest)}" if math.isfinite(latest) else ""
     soonest = min(one.first.arrive for one in explored)
     return NoRouteError(
         f"No route arrives{by} when it is sailed in fine steps.",

@@ -1,0 +1,60 @@
+"""Latest arrivals that are missed: by the shortest way only, and by the referee only."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
+from thalweg.core.geodesy import distance
+from thalweg.planning import passage
+from thalweg.planning.refusal import too_late
+
+KNOT, HOUR, DEPART = 1852.0 / 3600.0, 3600.0, 1767225600.0
+SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
+ENDS = {"start": (0.0, 0.0), "goal": (0.0, 2.0), "depart": DEPART}
+
+
+def contrary(time, lat, lon):
+    """6 kn against the ship near the equator, still water beside it."""
+    return np.where(np.abs(lat) < 0.1, -6.0 * KNOT, 0.0) + 0.0 * lon
+
+
+def test_the_shortest_way_is_late_and_another_is_not() -> None:
+    sea = Sea.from_functions(
+        {
+            "eastward_sea_water_velocity": contrary,
+            "northward_sea_water_velocity": lambda t, lat, lon: 0.0 * lat,
+        }
+    )
+    given = {"ship": SHIP, "sea": sea, "chart": Chart.open_water(-0.6, 0.6, -0.2, 2.2)}
+    fast = plan(Voyage(**ENDS), **given).best  # about 13 h; along the equator it takes 30 h
+    assert fast.time_h < 20.0
+    latest = DEPART + 22.0 * HOUR
+    short = plan(Voyage(**ENDS, objective="distance", arrive_by=latest), **given).best
+    assert short.arrive <= latest and 120.0 < short.distance_nm < fast.distance_nm + 0.1
+
+
+def test_a_fastest_arrival_in_time_is_not_told_as_too_late() -> None:
+    """A search for the least distance keeps one label a node: it may miss a longer, faster way."""
+    error = too_late(DEPART + 10.0 * HOUR, DEPART + 8.0 * HOUR)
+    assert error.asked == "The shortest way does not arrive by 2026-01-01T10:00:00Z."
+    assert error.possible == "The fastest arrives at 2026-01-01T08:00:00Z."
+
+
+def test_a_route_that_the_referee_finds_late_is_not_told_as_in_time(monkeypatch) -> None:
+    given = {"ship": SHIP, "sea": Sea.calm(), "chart": Chart.open_water(-0.6, 0.6, -0.2, 2.2)}
+    hours = float(distance(0.0, 0.0, 0.0, 2.0)) / (10.0 * KNOT) / HOUR
+    latest = DEPART + (hours + 0.5) * HOUR
+    assert plan(Voyage(**ENDS, arrive_by=latest), **given).best.arrive <= latest
+    refined = passage.refined
+
+    def slower(task, track, limits):
+        route = refined(task, track, limits)
+        legs = {**route.legs, "arrive": route.legs["arrive"] + HOUR}
+        return dataclasses.replace(route, legs=legs)
+
+    monkeypatch.setattr(passage, "refined", slower)
+    with pytest.raises(NoRouteError, match="No route arrives by") as caught:
+        plan(Voyage(**ENDS, arrive_by=latest), **given)
+    assert "earliest arrival is 2026-01-01T13:0" in caught.value.possible
