@@ -39,13 +39,10 @@ def policy_values(policy: str, value: float | tuple[float, float]) -> dict[str, 
     except (TypeError, ValueError):
         numbers = np.array([np.nan])
     is_pair = numbers.size == 2 and len(names) == 2
-    least = 0.0 if policy in ("waves", "ice") else -np.inf
-    sound = np.isfinite(numbers).all() and (numbers >= least).all()
-    if not sound or not (is_pair or numbers.size == 1):
+    if not np.isfinite(numbers).all() or not (is_pair or numbers.size == 1):
         raise InputError(
             f"{policy} cannot be filled with {value!r}.",
-            "Give one finite number (waves and ice not below 0), (east, north) for currents and "
-            "wind, or 'wind' for waves.",
+            "Give one finite number, (east, north) for currents and wind, or 'wind' for waves.",
             f"For example filled({policy}=0.0).",
         )
     if is_pair:
