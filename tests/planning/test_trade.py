@@ -9,6 +9,7 @@ import pytest
 from thalweg import Chart, InputError, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.time import parse_time
+from thalweg.network import line
 from thalweg.planning.robust import MOST_SAILED, _picked
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
@@ -249,3 +250,42 @@ def test_of_a_plan_for_least_fuel_the_cheapest_routes_are_sailed_in_all_members(
 def test_a_choice_over_members_needs_members():
     with pytest.raises(InputError, match="no members"):
         still("fuel", cubic_ship(), ensemble="mean")
+
+
+def test_a_speed_that_waves_forbid_leaves_the_slower_ones():
+    # 1.8 sqrt(150) = 22.05 kn dead astern: 24 kn would surf, 18 kn does not
+    ship = Ship.from_dict(
+        {
+            "name": "surfing",
+            "hull": {
+                "length_between_perpendiculars_m": 150.0,
+                "breadth_m": 25.0,
+                "draught_m": 8.0,
+                "block_coefficient": 0.7,
+                "roll_period_s": 14.0,
+            },
+            "speeds_kn": [12.0, 18.0, 24.0],
+            "engine": {"reference_speed_kn": 24.0},
+            "fuel": {"reference_t_per_day": 24.0},
+            "models": {"calm_water": "cubic"},
+            "limits": {"msc_circ_1228": ["surf_riding"]},
+        }
+    )
+    astern = {
+        "sea_surface_wave_significant_height": 4.0,
+        "sea_surface_wave_to_direction": 90.0,
+        "sea_surface_wave_period_at_variance_spectral_density_maximum": 9.0,
+    }
+    sea = Sea.from_functions(
+        {name: lambda t, lat, lon, value=value: value + 0 * lat for name, value in astern.items()}
+    )
+    voyage = Voyage(start=START, goal=GOAL, depart="2026-01-01T00:00Z", objective="front")
+    found = plan(
+        voyage,
+        ship=ship,
+        sea=sea,
+        chart=CHART,
+        network=lambda chart, start, goal, spacing: line(chart, [start, goal], spacing=10_000.0),
+    )
+    assert all(route.feasible for route in found.routes)
+    assert found.best.time_h == pytest.approx(LENGTH / (18.0 * KNOT) / HOUR, rel=2e-3)

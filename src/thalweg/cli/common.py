@@ -101,13 +101,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     from thalweg.sea import Sea
 
     policies = dict(_policy(text) for text in arguments.fill)
-    for option, given in (("--sea", arguments.sea), ("--fill", arguments.fill)):
-        if arguments.calm and given:
-            raise InputError(
-                f"Both --calm and {option} are given.",
-                "A calm sea has no wind, waves or currents anywhere.",
-                "Choose one.",
-            )
+    _check_options(arguments)
     if not arguments.calm and not arguments.sea:
         raise InputError(
             "No sea is given.",
@@ -129,6 +123,25 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
     sea = _with_members(sea, arguments)
     return sea.filled(**policies) if policies else sea
+
+
+def _check_options(arguments: argparse.Namespace) -> None:
+    """Raise `InputError` for options that the sea asked for has no use for."""
+    of_files = [("--map", arguments.map), ("--average-over", arguments.average_over is not None)]
+    for option, given in [("--sea", arguments.sea), ("--fill", arguments.fill), *of_files]:
+        if arguments.calm and given:
+            raise InputError(
+                f"Both --calm and {option} are given.",
+                "A calm sea has no wind, waves or currents anywhere.",
+                "Choose one.",
+            )
+    for option, given in of_files:
+        if given and arguments.sea and set(arguments.sea) == {"storm"}:
+            raise InputError(
+                f"{option} is given, but no file.",
+                "It is about files; the embedded storm is none.",
+                "Leave it out, or name a file.",
+            )
 
 
 def _with_members(sea: Sea, arguments: argparse.Namespace) -> Sea:

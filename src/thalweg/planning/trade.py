@@ -96,12 +96,15 @@ class Ahead:
     frozen : Frozen
     first : SearchResult
         The fastest way; not found where there is none in that time.
+    setting : int
+        That of this way: the highest there is a way with.
     latest : float
         Latest arrival of the front [s since 1970].
     """
 
     frozen: Frozen
     first: SearchResult
+    setting: int
     latest: float
 
 
@@ -155,7 +158,7 @@ def explore(means: Means, way: Way) -> Explored:
         )
     if first.arrive > task.latest:
         raise too_late(task.latest, first.arrive)
-    fastest = refined(task, track_of(way.network, first, task.setting), means.limits)
+    fastest = refined(task, track_of(way.network, first, ahead.setting), means.limits)
     means.keeper.begin()
     task.tell(f"searching the front: {way.name}")
     try:
@@ -216,10 +219,21 @@ def _factor(means: Means, way: Way, frozen: Frozen) -> float:
     return direction_factor(way.network.meta.gap_rad, ratio)
 
 
-def fastest_way(
-    means: Means, network: Network, frozen: Frozen, setting: int | None = None
-) -> SearchResult:
-    """Search the fastest way over a network, at the highest setting unless one is given."""
+def fastest_allowed(means: Means, network: Network, frozen: Frozen) -> tuple[SearchResult, int]:
+    """Search the fastest way at the highest setting with which there is one; return both.
+
+    A lower setting may keep what is forbidden in waves where the highest does not.
+    """
+    table = means.task.table.kernel_arrays()
+    heeds = table.safety.size > 0 or table.motions.size > 0
+    tried = means.settings[::-1] if heeds else means.settings[-1:]
+    ways = ((fastest_way(means, network, frozen, int(one)), int(one)) for one in tried)
+    first = next(ways)
+    return first if first[0].found else next((way for way in ways if way[0].found), first)
+
+
+def fastest_way(means: Means, network: Network, frozen: Frozen, setting: int) -> SearchResult:
+    """Search the fastest way over a network at one setting."""
     task = means.task
     return earliest_arrival(
         network,
@@ -228,7 +242,7 @@ def fastest_way(
         start=network.meta.start,
         goal=network.meta.goal,
         depart=task.voyage.earliest_departure,
-        setting=int(means.settings[-1]) if setting is None else setting,
+        setting=setting,
         limits=means.limits,
         wait=task.voyage.wait,
         top_speed=frozen.top_speed,
@@ -269,8 +283,8 @@ def look_ahead(means: Means, network: Network) -> Ahead:
                 raise
             return ahead  # what fits into the memory
         warming.finish()
-        first = fastest_way(means, network, frozen)
-        ahead = Ahead(frozen, first, latest)
+        first, setting = fastest_allowed(means, network, frozen)
+        ahead = Ahead(frozen, first, setting, latest)
         need = first.arrive if asked else _slow_arrival(means, network, frozen, until)
         if need <= until or until >= final:
             return ahead
