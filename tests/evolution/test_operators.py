@@ -13,7 +13,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import inverse
 from thalweg.evolution import Genome, Habits, Mix
 from thalweg.evolution.operators import children
-from thalweg.kernels import breeding, fitness
+from thalweg.kernels import chance, fitness
 
 DRAWS = 4000
 NONE = dict.fromkeys(("insert", "translate", "delete", "speed", "split", "merge", "pause"), 0.0)
@@ -196,7 +196,7 @@ def test_new_legs_keep_clear_of_land_and_canals_stay():
 def test_random_numbers_are_those_of_splitmix():
     from thalweg.kernels.jit import jit
 
-    draw = jit(lambda state: breeding.uniform(state))
+    draw = jit(lambda state: chance.uniform(state))
     state = np.array([1234567], dtype=np.uint64)
     known = (6457827717110365317, 3203168211198807973, 9817491932198370423)  # published for 1234567
     assert [draw(state) for _ in known] == [(x >> 11) / 2.0**53 for x in known]

@@ -12,15 +12,15 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.evolution.evaluator import Evaluator, in_threads
 from thalweg.evolution.genome import IntArray, Population
-from thalweg.kernels import breeding
+from thalweg.kernels import chance, mutating
 from thalweg.kernels.breeding import breed
 from thalweg.kernels.coast import CoastArrays
 from thalweg.kernels.fitness import COLUMNS
 
 SHAPES = {
-    "rhombus": breeding.RHOMBUS,
-    "ellipse": breeding.ELLIPSE,
-    "gaussian": breeding.GAUSSIAN,
+    "rhombus": chance.RHOMBUS,
+    "ellipse": chance.ELLIPSE,
+    "gaussian": chance.GAUSSIAN,
 }
 
 
@@ -103,13 +103,13 @@ class Habits:
 
     def array(self) -> FloatArray:
         """Return them as the kernel takes them."""
-        out = np.empty(breeding.HABITS)
+        out = np.empty(mutating.HABITS)
         weights = [getattr(self.mix, field.name) for field in fields(Mix)]
-        out[: breeding.OPERATORS] = weights
-        out[breeding.CHANGES], out[breeding.SHAPE] = self.changes, SHAPES[self.shape]
-        out[breeding.INSERT_WIDTH] = self.insert_width
-        out[breeding.RADIUS_LEAST], out[breeding.RADIUS_MOST] = self.radius
-        out[breeding.CROSSOVER], out[breeding.MUTATION] = self.crossover, self.mutation
+        out[: mutating.OPERATORS] = weights
+        out[mutating.CHANGES], out[mutating.SHAPE] = self.changes, SHAPES[self.shape]
+        out[mutating.INSERT_WIDTH] = self.insert_width
+        out[mutating.RADIUS_LEAST], out[mutating.RADIUS_MOST] = self.radius
+        out[mutating.CROSSOVER], out[mutating.MUTATION] = self.crossover, self.mutation
         return out
 
 
