@@ -226,7 +226,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
     if fixed == fixed:
         return pass_canal(network, edge, t, sea.times[-1])
     east, north = course_vector(float(network.course[edge]))
-    depth = float(network.depth[edge])
+    depth = np.float64(network.depth[edge])  # single precision would be another leg to compile
     table, setting, limits, needs = ship
     index = sea.channel_index
     slowness, at, here, guess, then = 0.0, 0.0, tail, math.inf, t

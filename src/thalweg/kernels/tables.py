@@ -271,9 +271,10 @@ def _asked(table, planes, column):
 @inlined
 def _crossing(table, axis_values, setting):
     """Return (speed, ok) at which the sum rises through the curve; 0 where it is above it all."""
-    first = _plane(table, 0, axis_values)
-    second = _plane(table, 1, axis_values)
-    third = _plane(table, 2, axis_values)
+    part = np.int64(0)  # not a literal: each would be compiled by itself
+    first = _plane(table, part, axis_values)
+    second = _plane(table, part + 1, axis_values)
+    third = _plane(table, part + 2, axis_values)
     if not (first[0] and second[0] and third[0]):
         return 0.0, False
     planes = (first, second, third)
