@@ -9,13 +9,15 @@ import shutil
 import tempfile
 from pathlib import Path
 
-_KEPT = 4  # folders of compiled code, the newest ones
+#: The folder of the package `kernels`.
+PACKAGE = Path(__file__).resolve().parents[1]
+_MAX_FOLDERS = 4  # folders of compiled code that are kept, the newest ones
 
 
 def _stamp() -> str:
-    """Return a hash that changes with any kernel file."""
-    files = sorted(Path(__file__).parent.glob("*.py"))
-    facts = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in files]
+    """Return a hash that changes with any file of the package, its sub-packages included."""
+    files = sorted(PACKAGE.rglob("*.py"))
+    facts = [(str(file), file.stat().st_size, file.stat().st_mtime_ns) for file in files]
     return hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
 
 
@@ -42,7 +44,7 @@ def _make_folder() -> Path:
 
 def _forget_old(base: Path) -> None:
     folders = sorted(base.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
-    for folder in folders[_KEPT:]:
+    for folder in folders[_MAX_FOLDERS:]:
         shutil.rmtree(folder, ignore_errors=True)
 
 

@@ -22,6 +22,8 @@ FloatArray = NDArray[np.float64]
 #: a table (its fingerprint empty), and the greatest value of every setting
 Kept: TypeAlias = tuple[PerformanceTable, FloatArray]
 MOST_FILES: Final = 24
+#: The folder of package `ship`.
+PACKAGE: Final = Path(__file__).resolve().parents[1]
 
 
 def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
@@ -50,10 +52,9 @@ def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
 
 
 def _code_stamp() -> list[tuple[str, int, int]]:
-    """Size and time of every source file of the room, so that changed code builds anew."""
-    folder = Path(__file__).parent
-    files = sorted([*folder.glob("*.py"), *folder.glob("methods/*.py")])
-    return [(f.name, f.stat().st_size, f.stat().st_mtime_ns) for f in files]
+    """Size and time of every source file of package `ship`, so that changed code builds anew."""
+    files = sorted(PACKAGE.rglob("*.py"))
+    return [(str(f), f.stat().st_size, f.stat().st_mtime_ns) for f in files]
 
 
 def _read(path: Path) -> Kept | None:
