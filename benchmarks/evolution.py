@@ -32,10 +32,11 @@ from tests.evolution import jet
 from thalweg import Chart, Ship
 from thalweg.core.geodesy import along
 from thalweg.evolution import Evaluator, Genome, evolve, make_evaluator, refine_front
-from thalweg.evolution.metrics import hypervolume
-from thalweg.kernels import codes, fitness
-from thalweg.route.quick import rough_lengths
-from thalweg.sea.fields import GridFields
+from thalweg.evolution.indicators import hypervolume
+from thalweg.kernels import codes
+from thalweg.kernels.leg import population_sailing
+from thalweg.route.refinement.time_evaluator import rough_lengths
+from thalweg.sea.frozen_fields import GridFields
 
 EVALUATIONS = 21_000
 POPULATION = 336
@@ -85,8 +86,8 @@ def crossing(legs: int) -> Genome:
 def pieces_of(route: Genome) -> int:
     """Return how many pieces the legs of a route are cut into, as the kernel cuts them."""
     lengths = rough_lengths(route.lat[None], route.lon[None])
-    cut = np.ceil(lengths / OCEAN.world.terms[fitness.SPACING])
-    return int(np.maximum(cut, fitness.LEAST_PIECES).sum())
+    cut = np.ceil(lengths / OCEAN.world.terms[population_sailing.SPACING])
+    return int(np.maximum(cut, population_sailing.LEAST_PIECES).sum())
 
 
 def timed(label: str, target: float, work, *, runs: int = 3) -> None:
@@ -110,13 +111,13 @@ def evaluations(run: int, route: Genome) -> str:
     rng = np.random.default_rng(run)
     rounds = math.ceil(EVALUATIONS / POPULATION)
     population = evaluator.population([route] * POPULATION)
-    places = population.genes[:, 1:-1, : fitness.LON + 1].copy()
+    places = population.genes[:, 1:-1, : population_sailing.LON + 1].copy()
     away = 2.0 / (len(route) - 1)  # degrees, a tenth of a leg or so
     points = 0
     for _ in range(rounds):
         moved = places + rng.normal(0.0, away, places.shape)
-        population.genes[:, 1:-1, : fitness.LON + 1] = moved
-        population.genes[:, :, fitness.KNOWN] = 0.0  # every leg is looked up again
+        population.genes[:, 1:-1, : population_sailing.LON + 1] = moved
+        population.genes[:, :, population_sailing.KNOWN] = 0.0  # every leg is looked up again
         evaluator.score(population)
         points += POPULATION
     return (

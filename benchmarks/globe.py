@@ -14,7 +14,8 @@ import time
 from pathlib import Path
 
 from thalweg.chart import Chart
-from thalweg.network import alternatives, globe, globe_grid, shortest, ways_round
+from thalweg.network import alternatives, globe, shortest, ways_round
+from thalweg.network.global_grid import grid as globe_grid
 
 VOYAGES = {
     "Rotterdam - Singapore": ((51.98, 4.0), (1.2, 103.9)),
@@ -43,8 +44,8 @@ def main() -> None:
     print(f"  {len(grid.lat):,} nodes, {len(grid.pairs.first):,} legs, {grid.rejected:,} refused")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "grid.npz"
-        globe_grid._save(path, grid)
-        timed(f"loaded ({path.stat().st_size / 1e6:.0f} MB)", globe_grid._load, path)
+        grid._save(path, grid)
+        timed(f"loaded ({path.stat().st_size / 1e6:.0f} MB)", grid._load, path)
     globe(chart, *VOYAGES["Rotterdam - Gdansk"])
     for name, ends in VOYAGES.items():
         print(name)

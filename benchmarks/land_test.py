@@ -19,7 +19,7 @@ import numpy as np
 import shapely
 
 from thalweg.chart import Chart
-from thalweg.chart.drawing import land_polygons
+from thalweg.chart.basemap import land_polygons
 from thalweg.core import geodesy
 
 

@@ -2,8 +2,8 @@
 
 The mesh is triangular, three rings of neighbours (24 directions), sampled once per spacing; 30 h of
 a rotary M2 tide in half-hour steps. Asked: under 50 ms for one query, warm. "Prepared" queries keep
-what never changes between departures (`thalweg.search.waters`), as a project of many trips does;
-the plain query gathers it anew every time.
+what never changes between departures (`thalweg.search.prepared_network`), as a project of many
+trips does; the plain query gathers it anew every time.
 
     python benchmarks/mesh_query.py [--nodes 50000] [--runs 20] [--places 5] [--quick]
 
@@ -22,11 +22,11 @@ from scipy.spatial import Delaunay
 
 from thalweg.chart import Chart
 from thalweg.kernels import codes
-from thalweg.kernels.tables import TableArrays
+from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network import mesh
-from thalweg.sea.fields import StationFields
+from thalweg.sea.frozen_fields import StationFields
 from thalweg.search import earliest_arrival
-from thalweg.search.waters import Waters
+from thalweg.search.prepared_network import Waters
 
 SPACING = 300.0  # m
 SPEED, DRAUGHT = 5.0, 5.0

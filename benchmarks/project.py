@@ -19,11 +19,11 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.kernels import codes
-from thalweg.network.mesh import mesh
-from thalweg.network.sides import sampled_on_sides
-from thalweg.operations import run_project as running
-from thalweg.operations.estuary import synthetic_estuary
-from thalweg.operations.project_files import example_file, open_project, open_things
+from thalweg.network.triangular_mesh.edge_sampling import sampled_on_sides
+from thalweg.network.triangular_mesh.mesh_builder import mesh
+from thalweg.operations.dredging import run_project as running
+from thalweg.operations.dredging.project_inputs import example_file, open_project, open_things
+from thalweg.operations.examples.estuary import synthetic_estuary
 from thalweg.search import Passages, Waters
 
 

@@ -21,11 +21,11 @@ import time
 import numpy as np
 
 from thalweg.kernels import codes
-from thalweg.kernels.tables import TableArrays
+from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network.network import Network, NetworkMeta
-from thalweg.sea.fields import StationFields
-from thalweg.search.arrays import problem
+from thalweg.sea.frozen_fields import StationFields
 from thalweg.search.earliest_arrival import solve
+from thalweg.search.search_problem import problem
 
 SPACING = 2000.0  # [m]
 OFFSETS = [

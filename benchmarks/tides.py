@@ -13,8 +13,8 @@ import numpy as np
 
 from thalweg.kernels import codes
 from thalweg.sea import Sea
-from thalweg.sea import names as nm
-from thalweg.sea.tides import analyse, chosen_constituents
+from thalweg.sea import standard_names as nm
+from thalweg.sea.tides.harmonic_analysis import analyse, chosen_constituents
 
 VARIABLES = (*nm.CURRENT.pair, nm.WATER_LEVEL)
 START = 1.7e9

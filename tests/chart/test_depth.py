@@ -9,7 +9,7 @@ import xarray as xr
 from tests.conftest import data_file
 from thalweg.chart import Chart
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.kernels.soundings import least_depth
+from thalweg.kernels.geometry.depth_sampling import least_depth
 
 OPEN = Chart.open_water()
 

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thalweg.chart import Chart
-from thalweg.chart.eca import chosen_areas, emission_areas
+from thalweg.chart.zones.emission_control_areas import chosen_areas, emission_areas
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import along, direct, distance
-from thalweg.kernels.cube import inside, unit_vector
-from thalweg.kernels.jit import jit
+from thalweg.kernels.compilation.jit import jit
+from thalweg.kernels.geometry.cube_sphere import inside, unit_vector
 
 
 def zone(west, south, east, north, **properties):

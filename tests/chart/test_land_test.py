@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
-from thalweg.kernels.coast import leg_blocked, leg_code
 from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OK
+from thalweg.kernels.geometry.coast_index import leg_blocked, leg_code
 
 
 def densified(lat, lon, lat2, lon2, spacing):

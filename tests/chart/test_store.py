@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thalweg.chart import Chart, store
-from thalweg.chart.index import build_index, empty_index
-from thalweg.chart.rings import Rings
+from thalweg.chart import Chart
+from thalweg.chart.coast import coast_cache
+from thalweg.chart.coast.coast_index_builder import build_index, empty_index
+from thalweg.chart.coast.rings import Rings
 
 SQUARE = Rings.from_lists([([(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)], False)])
 
@@ -21,8 +22,8 @@ def test_a_broken_file_is_replaced(tmp_path, harm):
         made.append(1)
         return build_index(SQUARE, 16)
 
-    first = store.stored(path, make)
-    assert store.stored(path, make).side == 16
+    first = coast_cache.stored(path, make)
+    assert coast_cache.stored(path, make).side == 16
     assert len(made) == 1
     content = path.read_bytes()
     if harm == "other arrays":
@@ -32,7 +33,7 @@ def test_a_broken_file_is_replaced(tmp_path, harm):
         path.write_bytes(
             {"cut": content[: len(content) // 2], "junk": b"x" * 99, "empty": b""}[harm]
         )
-    again = store.stored(path, make)
+    again = coast_cache.stored(path, make)
     assert len(made) == 2
     for a, b in zip(first, again):
         assert np.array_equal(a, b)
@@ -41,7 +42,7 @@ def test_a_broken_file_is_replaced(tmp_path, harm):
 
 def test_a_folder_that_cannot_be_written_is_no_harm(tmp_path):
     path = tmp_path / "missing" / "index.npz"
-    assert store.stored(path, empty_index).side == 1
+    assert coast_cache.stored(path, empty_index).side == 1
     assert not path.exists()
 
 

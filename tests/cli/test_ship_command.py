@@ -9,8 +9,8 @@ import sys
 import pytest
 from matplotlib.figure import Figure
 
-from thalweg.cli.ship import add_ship_command, gathered_notes, parse_speeds
-from thalweg.cli.ship_pictures import _resistance
+from thalweg.cli.ship_command import add_ship_command, gathered_notes, parse_speeds
+from thalweg.cli.ship_plots import _resistance
 from thalweg.core.errors import InputError, ModelRangeError
 
 KEYS = {

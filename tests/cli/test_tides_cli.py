@@ -10,12 +10,12 @@ import pytest
 import xarray as xr
 
 from tests.conftest import data_file
-from thalweg.cli import tides
+from thalweg.cli import tides_command
 from thalweg.cli.main import main
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import format_time, parse_time
-from thalweg.sea import names as nm
-from thalweg.sea.constituents import Constituents
+from thalweg.sea import standard_names as nm
+from thalweg.sea.tides.constituents import Constituents
 
 pytest.importorskip("utide")
 
@@ -28,7 +28,7 @@ TRUTH = Constituents.single(
 
 def tide(*words):
     parser = argparse.ArgumentParser()
-    tides.add_command(parser.add_subparsers(dest="command"))
+    tides_command.add_command(parser.add_subparsers(dest="command"))
     arguments = parser.parse_args(["tides", *map(str, words)])
     return arguments.run(arguments)
 
@@ -214,7 +214,7 @@ def test_a_record_of_mostly_gaps_is_refused(record):
 
 
 def test_where_nothing_can_be_written_is_told_before_the_work(record, tmp_path, monkeypatch):
-    monkeypatch.setattr("thalweg.sea.tide_records.read_record", None)
+    monkeypatch.setattr("thalweg.sea.tides.tide_records.read_record", None)
     with pytest.raises(InputError, match="is a folder"):
         tide("analyse", record, "--at", "-33.9,18.4", "--out", tmp_path)
     with pytest.raises(InputError, match="cannot be written"):

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from thalweg.cli.main import main
-from thalweg.operations.synthetic_tracks import Cycle, synthetic_track
+from thalweg.operations.examples.synthetic_tracks import Cycle, synthetic_track
 from thalweg.sea import Sea
 
 CYCLE = Cycle((52.3, 4.0), (52.1, 4.2))

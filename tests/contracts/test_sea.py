@@ -10,7 +10,7 @@ import pytest
 from tests.sea.worlds import T0, clock, mesh, regular
 from thalweg.kernels import codes
 from thalweg.sea import Sea
-from thalweg.sea import names as nm
+from thalweg.sea import standard_names as nm
 
 LAYERS = {
     "functions": lambda: Sea.from_functions(

@@ -7,8 +7,8 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.ship import Ship, TableError, library_names
-from thalweg.ship.contract import check_ship_model
-from thalweg.ship.tabulate import constant_part
+from thalweg.ship.model_check import check_ship_model
+from thalweg.ship.tables.tabulate import constant_part
 
 _QUICK = [name for name in library_names() if name not in ("jbc", "kvlcc2", "s175", "gunnerus")]
 

@@ -11,7 +11,7 @@ from thalweg.ship.conditions import Conditions
 MODULE = """
 import numpy as np
 from thalweg.ship import Ship, TableError
-from thalweg.ship.tabulate import constant_part
+from thalweg.ship.tables.tabulate import constant_part
 
 
 class Barge:

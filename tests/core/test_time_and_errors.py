@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import thalweg
-from thalweg.cli.exits import report
-from thalweg.core.cache import cache_folder
+from thalweg.cli.exit_codes import report
+from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, NoRouteError, near_matches, unknown_name
 from thalweg.core.time import format_time, parse_time, to_datetime64
 

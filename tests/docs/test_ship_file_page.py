@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from thalweg.ship.build import SPEED_LOSSES
-from thalweg.ship.calm_parts import CALM_WATER, FRICTION, SHALLOW_WATER, STERN_SHAPES
-from thalweg.ship.compose import RUDDER
-from thalweg.ship.methods.engine import BASE_SFOC
-from thalweg.ship.propulsion_parts import PROPULSION
-from thalweg.ship.schema import SECTIONS, TOP
-from thalweg.ship.weather_parts import WAVES, WIND
+from thalweg.ship.file.resistance_ship_builder import RUDDER
+from thalweg.ship.file.ship_builder import SPEED_LOSSES
+from thalweg.ship.file.ship_schema import SECTIONS, TOP
+from thalweg.ship.methods.engine.specific_consumption import BASE_SFOC
+from thalweg.ship.models.added_resistance_model import WAVES, WIND
+from thalweg.ship.models.calm_water_model import CALM_WATER, FRICTION, SHALLOW_WATER, STERN_SHAPES
+from thalweg.ship.models.propulsion_model import PROPULSION
 
 PAGE = (Path(__file__).parents[2] / "docs" / "howto" / "ship_file.md").read_text(encoding="utf-8")
 ROWS = {

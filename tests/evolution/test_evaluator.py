@@ -11,9 +11,9 @@ from tests.evolution import jet
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.evolution import Genome, Population
-from thalweg.evolution.genome import joined
-from thalweg.kernels import fitness
-from thalweg.route.quick import Bundle
+from thalweg.kernels.leg import population_sailing
+from thalweg.route.refinement.population import joined
+from thalweg.route.refinement.time_evaluator import Bundle
 from thalweg.route.track import Track
 
 rng = np.random.default_rng(7)
@@ -42,7 +42,7 @@ def test_the_quick_sailor_agrees_to_rounding():
     n = len(genome)
     population = evaluator.population([genome])
     pieces = np.full((1, n - 1), 7)
-    population.genes[0, : n - 1, fitness.PIECES] = 7
+    population.genes[0, : n - 1, population_sailing.PIECES] = 7
     _, arrive = evaluator.sail(population)
     still = np.full((1, n), -np.inf)
     bundle = Bundle(
@@ -126,7 +126,7 @@ def test_only_changed_legs_are_looked_up():
     evaluator.score(population)
     evaluator.score(population)
     assert asked == [9 + 11]
-    population.genes[1, 4:6, fitness.KNOWN] = 0.0
+    population.genes[1, 4:6, population_sailing.KNOWN] = 0.0
     evaluator.score(population)
     assert asked == [20, 2]
 

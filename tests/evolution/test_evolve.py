@@ -11,10 +11,10 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.evolution import Genome, Habits, evolve, refine_front
 from thalweg.evolution.evolve import METHODS, Settling
-from thalweg.evolution.initial import thriftiest
-from thalweg.evolution.metrics import c_metric, hypervolume, non_dominated
+from thalweg.evolution.indicators import c_metric, hypervolume, non_dominated
+from thalweg.evolution.initial_population import thriftiest
 from thalweg.evolution.nsga2 import Nsga2
-from thalweg.evolution.polish import lower_hull, time_prices
+from thalweg.evolution.scalarised_search import lower_hull, time_prices
 
 ISLANDS = (
     ((200, 180), (240, 160), (260, 240), (250, 320), (215, 330)),

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from thalweg.core.errors import InputError
-from thalweg.evolution.metrics import (
+from thalweg.evolution.indicators import (
     c_metric,
     crowding_distance,
     generational_distance,

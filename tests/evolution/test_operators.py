@@ -12,8 +12,9 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import inverse
 from thalweg.evolution import Genome, Habits, Mix
-from thalweg.evolution.operators import children
-from thalweg.kernels import chance, fitness
+from thalweg.evolution.variation import children
+from thalweg.kernels.evolution import random_numbers
+from thalweg.kernels.leg import population_sailing
 
 DRAWS = 4000
 NONE = dict.fromkeys(("insert", "translate", "delete", "speed", "split", "merge", "pause"), 0.0)
@@ -181,7 +182,7 @@ def test_new_legs_keep_clear_of_land_and_canals_stay():
     evaluator = jet.evaluator(chart=chart)
     population = evaluator.population([Genome(lat, lon, [6, 6, 6])], room=32)
     evaluator.look(population)
-    population.genes[0, 1, fitness.FIXED_TIME] = 50.0
+    population.genes[0, 1, population_sailing.FIXED_TIME] = 50.0
     pairs = np.zeros((200, 2), dtype=np.int64)
     habits = Habits(crossover=0.0, radius=(0.05, 0.5))
     rng = np.random.default_rng(1)
@@ -194,9 +195,9 @@ def test_new_legs_keep_clear_of_land_and_canals_stay():
 
 
 def test_random_numbers_are_those_of_splitmix():
-    from thalweg.kernels.jit import jit
+    from thalweg.kernels.compilation.jit import jit
 
-    draw = jit(lambda state: chance.uniform(state))
+    draw = jit(lambda state: random_numbers.uniform(state))
     state = np.array([1234567], dtype=np.uint64)
     known = (6457827717110365317, 3203168211198807973, 9817491932198370423)  # published for 1234567
     assert [draw(state) for _ in known] == [(x >> 11) / 2.0**53 for x in known]

@@ -6,7 +6,7 @@ import pytest
 from thalweg.evolution.mpaes import Climber
 from thalweg.evolution.ranking import best_of, front_of, ranked, strength_fitness, thinned
 from thalweg.evolution.spea2 import archive
-from thalweg.kernels.ranking import truncate
+from thalweg.kernels.evolution.dominance import truncate
 
 WORKED = [(1, 5), (2, 3), (4, 1), (3, 4), (5, 5), (4, 4)]
 

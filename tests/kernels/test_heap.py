@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thalweg.kernels import heap
-from thalweg.kernels.jit import jit
+from thalweg.kernels.compilation.jit import jit
+from thalweg.kernels.search import heap
 
 
 @jit(cache=False)

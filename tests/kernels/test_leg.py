@@ -7,7 +7,7 @@ import pytest
 
 from tests.search.small import limits, make_table, steady
 from thalweg.kernels import codes
-from thalweg.kernels.leg import point_speed
+from thalweg.kernels.leg.point_speed import point_speed
 
 
 def at(table=None, *, course=0.0, depth=np.inf, bounds=None, setting=0, **channels):

@@ -6,7 +6,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from tests.search.small import make_table
 from thalweg.kernels import codes
-from thalweg.kernels.tables import axes_needed, table_value
+from thalweg.kernels.leg.table_lookup import axes_needed, table_value
 
 GRIDS = {
     codes.AXIS_WIND_SPEED: np.linspace(0.0, 10.0, 5),

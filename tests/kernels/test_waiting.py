@@ -5,7 +5,7 @@ import pytest
 
 from tests.search.small import limits, line, make_fields, make_table, steady
 from thalweg.kernels import codes
-from thalweg.kernels.waiting import OPENING_TOLERANCE
+from thalweg.kernels.search.edge_departure import OPENING_TOLERANCE
 from thalweg.search import earliest_arrival
 from thalweg.search.fifo import sampled_arrivals
 

@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from thalweg.kernels import warming
+from thalweg.kernels.compilation import warm_up
 
 WRITES = "from pathlib import Path\n\n\ndef compile_search():\n    Path({!r}).write_text('done')\n"
 
@@ -15,8 +15,8 @@ def marks(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    monkeypatch.setattr(warming, "_DONE", tmp_path / "warm")
-    monkeypatch.setattr(warming, "_BUSY", tmp_path / "warming")
+    monkeypatch.setattr(warm_up, "_DONE", tmp_path / "warm")
+    monkeypatch.setattr(warm_up, "_BUSY", tmp_path / "warming")
     before = gc.get_threshold()
     yield tmp_path
     gc.set_threshold(*before)
@@ -28,8 +28,8 @@ def _module(folder, name, text):
 
 
 def test_a_child_does_the_work_and_is_waited_for(marks):
-    warming.begin(_module(marks, "does_it", WRITES.format(str(marks / "proof"))))
-    warming.finish()
+    warm_up.begin(_module(marks, "does_it", WRITES.format(str(marks / "proof"))))
+    warm_up.finish()
     assert (marks / "proof").read_text() == "done"
 
 
@@ -37,20 +37,20 @@ def test_nothing_is_started_when_all_is_compiled_or_another_is_at_it(marks):
     name = _module(marks, "is_late", WRITES.format(str(marks / "proof")))
     for mark in ("warm", "warming"):
         (marks / mark).touch()
-        warming.begin(name)
-        assert not warming._children
+        warm_up.begin(name)
+        assert not warm_up._children
         (marks / mark).unlink()
 
 
 def test_a_child_that_fails_says_nothing_and_is_not_done(marks, monkeypatch):
     with pytest.raises(RuntimeError, match="no compiler"):
-        warming.work(_here(marks, monkeypatch, "raise RuntimeError('no compiler')"))
+        warm_up.work(_here(marks, monkeypatch, "raise RuntimeError('no compiler')"))
     assert not (marks / "warm").exists()
     assert not (marks / "warming").exists()
 
 
 def test_work_marks_what_is_compiled(marks, monkeypatch):
-    warming.work(_here(marks, monkeypatch, "pass"))
+    warm_up.work(_here(marks, monkeypatch, "pass"))
     assert (marks / "warm").exists()
 
 

@@ -12,12 +12,13 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import CANALS
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.network import check_network, globe, globe_grid, shortest
-from thalweg.network.bounding import distance_bounds
+from thalweg.network import check_network, globe, shortest
+from thalweg.network.distance_bounds import distance_bounds
+from thalweg.network.global_grid import grid
 
 ROTTERDAM, SINGAPORE, SUEZ_BAY = (51.98, 4.0), (1.2, 103.9), (29.6, 32.6)
 NEW_YORK, SAN_FRANCISCO = (40.5, -73.9), (37.75, -122.6)
-SMALL = globe_grid.Fineness(2, 1)
+SMALL = grid.Fineness(2, 1)
 LATITUDE, LONGITUDE = st.floats(-90.0, 90.0), st.floats(-180.0, 180.0)
 
 
@@ -168,27 +169,27 @@ def test_ends_on_land_are_refused():
 def test_the_grid_is_kept_on_disk_and_a_broken_file_is_replaced(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     chart = Chart.gshhg("c")
-    made = globe_grid.globe_grid(chart, SMALL)
+    made = grid.globe_grid(chart, SMALL)
     (path,) = (tmp_path / "globe").glob("*.npz")
-    globe_grid._kept_or_made.cache_clear()
-    monkeypatch.setattr(globe_grid, "make_grid", lambda *_: pytest.fail("made again"))
-    loaded = globe_grid.globe_grid(chart.without_canals("all"), SMALL)
+    grid._kept_or_made.cache_clear()
+    monkeypatch.setattr(grid, "make_grid", lambda *_: pytest.fail("made again"))
+    loaded = grid.globe_grid(chart.without_canals("all"), SMALL)
     for name in ("lat", "lon", "rejected", "spacing", "gap"):
         assert np.array_equal(getattr(loaded, name), getattr(made, name))
     for name in ("first", "second", "length", "course"):
         assert np.array_equal(getattr(loaded.pairs, name), getattr(made.pairs, name))
     monkeypatch.undo()
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
-    globe_grid._kept_or_made.cache_clear()
+    grid._kept_or_made.cache_clear()
     path.write_bytes(b"broken")
-    assert np.array_equal(globe_grid.globe_grid(chart, SMALL).lat, made.lat)
+    assert np.array_equal(grid.globe_grid(chart, SMALL).lat, made.lat)
     assert path.stat().st_size > 1000
-    globe_grid._kept_or_made.cache_clear()
+    grid._kept_or_made.cache_clear()
 
 
 def test_another_coastline_is_another_grid():
-    crude = globe_grid.globe_grid(Chart.gshhg("c"), SMALL)
-    low = globe_grid.globe_grid(Chart.gshhg("l"), SMALL)
+    crude = grid.globe_grid(Chart.gshhg("c"), SMALL)
+    low = grid.globe_grid(Chart.gshhg("l"), SMALL)
     assert len(crude.lat) != len(low.lat)
 
 

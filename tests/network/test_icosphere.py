@@ -5,9 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thalweg.chart import Chart
-from thalweg.kernels.graph import mirror_pairs
-from thalweg.network.globe_grid import Fineness, _gaps, _sphere, make_grid, positions
-from thalweg.network.icosphere import Rule, icosphere
+from thalweg.kernels.network.graph_building import mirror_pairs
+from thalweg.network.global_grid.grid import Fineness, _gaps, _sphere, make_grid, positions
+from thalweg.network.global_grid.icosphere import Rule, icosphere
 
 SEEDS = st.integers(0, 2**31)
 

@@ -14,7 +14,7 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.network import Network, check_network, default_spacing, lattice, shortest
-from thalweg.network.directions import SIZES, half_offsets, largest_gap
+from thalweg.network.regional_lattice.directions import SIZES, half_offsets, largest_gap
 
 OPEN = Chart.open_water()
 

@@ -16,8 +16,8 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
 from thalweg.network import check_network, mesh, shortest, spacing_fraction, with_endpoints
-from thalweg.network.pruning import dimensionless_curl, thinned
-from thalweg.network.rings import influence, pairs_by_ring
+from thalweg.network.triangular_mesh.node_neighbours import influence, pairs_by_ring
+from thalweg.network.triangular_mesh.thinning import dimensionless_curl, thinned
 
 OPEN = Chart.open_water()
 

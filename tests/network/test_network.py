@@ -14,9 +14,9 @@ from tests.network.worlds import land_chart
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.kernels import graph
+from thalweg.kernels.network import graph_building
 from thalweg.network import Network, check_network, lattice, shortest, with_endpoints
-from thalweg.network.frame import great_circle_frame, mercator_frame
+from thalweg.network.regional_lattice.conformal_projection import great_circle_frame, mercator_frame
 
 OPEN = Chart.open_water()
 
@@ -124,9 +124,9 @@ def test_static_distances_equal_networkx(seed):
     a, b = rng.integers(0, 30, (2, 70)).astype(np.int32)
     a, b = a[a != b], b[a != b]
     weight = rng.random(len(a))
-    indptr, target, pair, _ = graph.mirror_pairs(30, a, b)
+    indptr, target, pair, _ = graph_building.mirror_pairs(30, a, b)
     distance, parent = np.empty(30), np.empty(30, np.int64)
-    graph.static_distances(indptr, target, weight[pair], 0, -1, distance, parent)
+    graph_building.static_distances(indptr, target, weight[pair], 0, -1, distance, parent)
     peer = nx.Graph()
     peer.add_nodes_from(range(30))
     for p, q, w in zip(a.tolist(), b.tolist(), weight.tolist()):
@@ -143,7 +143,7 @@ def test_measure_agrees_with_the_exact_geodesic():
     to = geodesy.direct(lat, lon, course, length)
     here = np.arange(3000, dtype=np.int32)
     measured, middle = np.empty(3000), np.empty(3000, np.float32)
-    graph.measure(
+    graph_building.measure(
         np.append(lat, to[0]), np.append(lon, to[1]), here, here + np.int32(3000), measured, middle
     )
     assert np.abs(measured - length).max() < 1e-3

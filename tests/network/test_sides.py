@@ -5,8 +5,8 @@ import pytest
 
 from thalweg import Chart
 from thalweg.network import check_network
-from thalweg.network.mesh import mesh
-from thalweg.network.sides import least_over, sampled_on_sides
+from thalweg.network.triangular_mesh.edge_sampling import least_over, sampled_on_sides
+from thalweg.network.triangular_mesh.mesh_builder import mesh
 
 
 @pytest.fixture(scope="module")

@@ -11,11 +11,11 @@ from tests.network.worlds import land_chart
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.kernels.ways import meridian_crossings
+from thalweg.kernels.network.static_paths import meridian_crossings
 from thalweg.network import Weighing, alternatives, globe, lattice, ways_round
-from thalweg.network.islands import obstacles
-from thalweg.network.pulling import pulled, total_cost
-from thalweg.network.ways import _kinds
+from thalweg.network.alternatives.homotopy import obstacles
+from thalweg.network.alternatives.path_search import _kinds
+from thalweg.network.alternatives.path_shortening import pulled, total_cost
 
 WEST, EAST = (0.0, -1.0), (0.0, 1.0)
 #: An island north of the line between, wider to the south of it, and a rock further south.

@@ -8,9 +8,9 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify
-from thalweg.operations.activities import CuttingRules, find_activities
-from thalweg.operations.areas import Areas
-from thalweg.operations.track_files import read_tracks
+from thalweg.operations.tracks.activities import CuttingRules, find_activities
+from thalweg.operations.tracks.track_readers import read_tracks
+from thalweg.operations.tracks.work_areas import Areas
 
 
 def box(west, south, east, north, **properties):

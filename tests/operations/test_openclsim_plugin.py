@@ -14,10 +14,10 @@ from shapely.geometry import Point
 
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.time import parse_time
-from thalweg.operations.estuary import synthetic_estuary
-from thalweg.operations.fairways import Fairways
-from thalweg.operations.openclsim_plugin import SailsFairways
-from thalweg.operations.project_files import open_project, open_things
+from thalweg.operations.dredging.project_inputs import open_project, open_things
+from thalweg.operations.examples.estuary import synthetic_estuary
+from thalweg.operations.openclsim.leg_planner import Fairways
+from thalweg.operations.openclsim.plugin import SailsFairways
 
 START = parse_time("2026-05-01T00:00Z")
 PARTS = (

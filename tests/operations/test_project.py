@@ -16,16 +16,16 @@ from thalweg.cli.main import main
 from thalweg.core.errors import CoverageError, InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import direct, distance, inverse
 from thalweg.core.time import parse_time
-from thalweg.operations.cycles import Leg
-from thalweg.operations.estuary import bed_depth
-from thalweg.operations.loading_curves import Pumping
-from thalweg.operations.project import Project
-from thalweg.operations.project_files import example_file, open_project, open_things
-from thalweg.operations.project_pictures import draw_routes
-from thalweg.operations.project_result import ROWS, finished_run
-from thalweg.operations.project_world import World, open_ways, project_network
-from thalweg.operations.run_project import run_project
-from thalweg.operations.sailing_legs import LegSailor, _corners, track_of_passage
+from thalweg.operations.dredging.cycles import Leg
+from thalweg.operations.dredging.loading_curves import Pumping
+from thalweg.operations.dredging.project import Project
+from thalweg.operations.dredging.project_environment import World, open_ways, project_network
+from thalweg.operations.dredging.project_inputs import example_file, open_project, open_things
+from thalweg.operations.dredging.project_result import ROWS, finished_run
+from thalweg.operations.dredging.run_project import run_project
+from thalweg.operations.dredging.verified_legs import LegSailor, _corners, track_of_passage
+from thalweg.operations.examples.estuary import bed_depth
+from thalweg.operations.plots.project_plots import draw_routes
 from thalweg.route import evaluate
 
 WEEK = 604800.0
@@ -213,7 +213,7 @@ def test_corners_keep_a_way_along_a_parallel_near_its_nodes():
 
 def test_the_load_chosen_produces_most(result):
     """No other load, sailed from the same moment, moves more per time of its cycle."""
-    from thalweg.operations.simulation import Simulator
+    from thalweg.operations.dredging.cycle_simulation import Simulator
 
     world, work = result.world, result.project.work
     ways = open_ways(world, project_network(world), lambda text: None)

@@ -10,8 +10,8 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import direct
 from thalweg.core.time import parse_time
 from thalweg.core.units import KNOT
-from thalweg.operations.track_cleaning import Cleaning
-from thalweg.operations.track_files import read_tracks
+from thalweg.operations.tracks.track_cleaning import Cleaning
+from thalweg.operations.tracks.track_readers import read_tracks
 
 START = parse_time("2026-03-01T00:00Z")
 

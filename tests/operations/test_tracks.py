@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import KNOT
-from thalweg.operations.synthetic_tracks import Cycle, synthetic_track
-from thalweg.operations.track_model import calibrate, leg_speeds, over_ground, spread
-from thalweg.operations.tracks import analyse_tracks
+from thalweg.operations.examples.synthetic_tracks import Cycle, synthetic_track
+from thalweg.operations.tracks.track_analysis import analyse_tracks
+from thalweg.operations.tracks.track_calibration import calibrate, leg_speeds, over_ground, spread
 from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
 

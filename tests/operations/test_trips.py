@@ -8,8 +8,8 @@ import pytest
 from thalweg.chart import Chart
 from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import distance
-from thalweg.operations.trip_tables import TripTable
-from thalweg.operations.trips import trip_table
+from thalweg.operations.waiting.trip_durations import trip_table
+from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Ship

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import CoverageError, InputError
-from thalweg.operations.trip_tables import TripTable
-from thalweg.operations.waiting import RULES, optimum_energy, plan_waiting
-from thalweg.operations.waiting_study import break_even_power, waiting_study
+from thalweg.operations.waiting.trip_table import TripTable
+from thalweg.operations.waiting.waiting_optimisation import RULES, optimum_energy, plan_waiting
+from thalweg.operations.waiting.waiting_study import break_even_power, waiting_study
 
 STEP = 60.0
 

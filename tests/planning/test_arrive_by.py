@@ -7,8 +7,8 @@ import pytest
 
 from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
-from thalweg.planning import passage
-from thalweg.planning.refusal import too_late
+from thalweg.planning.single import passage
+from thalweg.planning.single.no_route_diagnosis import too_late
 
 KNOT, HOUR, DEPART = 1852.0 / 3600.0, 3600.0, 1767225600.0
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)

@@ -5,8 +5,8 @@ import pytest
 
 from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship, Voyage, plan
-from thalweg.planning.map_picture import Box, draw_map
-from thalweg.planning.profile_picture import draw_profile
+from thalweg.planning.plots.route_profile import draw_profile
+from thalweg.planning.plots.voyage_map import Box, draw_map
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 

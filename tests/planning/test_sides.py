@@ -6,7 +6,7 @@ import pytest
 from tests.reference.test_floro_santander_seuren_2020 import GOAL, SHIP, START, WAYS
 from thalweg import Chart, Sea, Ship, evaluate
 from thalweg.network import line
-from thalweg.planning.sides import LANDS, name_of, names_of_ways
+from thalweg.planning.pareto.route_names import LANDS, name_of, names_of_ways
 from thalweg.route import Route
 
 SLOW = Ship.simple(speed_kn=10.0, draught_m=5.0)

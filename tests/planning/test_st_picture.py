@@ -7,8 +7,8 @@ import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
 from thalweg.core.errors import InputError
-from thalweg.planning.st_diagram import find_closures
-from thalweg.planning.st_picture import draw_st, write_st
+from thalweg.planning.plots.channel_closures import find_closures
+from thalweg.planning.plots.space_time_diagram import draw_st, write_st
 
 M2 = 12.4206012 * 3600.0
 LOW = 1767236400.0  # 2026-01-01T03:00Z

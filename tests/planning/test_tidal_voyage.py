@@ -6,9 +6,9 @@ import xarray as xr
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.time import parse_time
-from thalweg.sea import names as nm
-from thalweg.sea.constituents import Constituents
-from thalweg.sea.north_sea import north_sea_current
+from thalweg.sea import standard_names as nm
+from thalweg.sea.models.stratified_coast import north_sea_current
+from thalweg.sea.tides.constituents import Constituents
 
 AREA = (51.6, 51.9, 3.40, 3.75)
 

@@ -10,7 +10,7 @@ from thalweg import Chart, InputError, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.time import parse_time
 from thalweg.network import line
-from thalweg.planning.robust import MOST_SAILED, _picked
+from thalweg.planning.ensemble_plan import MOST_SAILED, _picked
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
 CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)

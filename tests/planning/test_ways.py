@@ -6,9 +6,9 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.errors import NoRouteError
 from thalweg.network import check_network, lattice, shortest
-from thalweg.network.joined import Link, joined
-from thalweg.planning.ends import End
-from thalweg.planning.waters import NORTHERN, open_canals, without_ice
+from thalweg.network.network_concatenation import Link, joined
+from thalweg.planning.request.chart_restrictions import NORTHERN, open_canals, without_ice
+from thalweg.planning.request.voyage_endpoints import End
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 CHART = Chart.gshhg("i")

@@ -9,25 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thalweg.ship.methods.calm_water_hollenbach import hollenbach_1998, hollenbach_validity
-from thalweg.ship.methods.calm_water_holtrop import Extremities, holtrop
-from thalweg.ship.methods.holtrop_form import hull_form
-from thalweg.ship.methods.propeller_b_series import (
-    Propeller,
-    b_series_polynomials,
-    largest_advance,
-    operating_point,
-    solve_advance,
-)
-from thalweg.ship.methods.propulsion import propulsion
-from thalweg.ship.methods.shallow_water import (
-    karpov_speed,
-    lackenby_1963_speed_loss,
-    zeng_2019_friction,
-)
-from thalweg.ship.methods.waves import stawave1, stawave2
-from thalweg.ship.methods.waves_snnm import SnnmHull, snnm
-from thalweg.ship.methods.wind import (
+from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm
+from thalweg.ship.methods.added_resistance.stawave import stawave1, stawave2
+from thalweg.ship.methods.added_resistance.wind_resistance import (
     BLENDERMANN,
     ITTC_CURVES,
     FujiwaraShip,
@@ -37,6 +21,22 @@ from thalweg.ship.methods.wind import (
     relative_wind,
     wind_resistance,
     yu_2021_coefficient,
+)
+from thalweg.ship.methods.propulsion.b_series import (
+    Propeller,
+    b_series_polynomials,
+    largest_advance,
+    operating_point,
+    solve_advance,
+)
+from thalweg.ship.methods.propulsion.propulsion_factors import propulsion
+from thalweg.ship.methods.resistance.hollenbach import hollenbach_1998, hollenbach_validity
+from thalweg.ship.methods.resistance.holtrop_form import hull_form
+from thalweg.ship.methods.resistance.holtrop_mennen import Extremities, holtrop
+from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
+    karpov_speed,
+    lackenby_1963_speed_loss,
+    zeng_2019_friction,
 )
 
 quick = settings(max_examples=40, deadline=None)

@@ -7,9 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thalweg.ship.methods import comfort, seakeeping, stability_checks, wave_spectra
+from thalweg.ship.methods.seakeeping import (
+    motion_sickness,
+    ship_motions,
+    stability_msc1_circ1228,
+    wave_spectra,
+)
 
-HULL = seakeeping.MotionHull(length=140.0, breadth=22.0, draught=8.0, block_coefficient=0.7)
+HULL = ship_motions.MotionHull(length=140.0, breadth=22.0, draught=8.0, block_coefficient=0.7)
 
 heights = st.floats(0.1, 12.0)
 periods = st.floats(3.0, 18.0)
@@ -20,7 +25,7 @@ speeds = st.floats(0.0, 12.0)
 def respond(**changes):
     given_ = {"height": 3.0, "period": 9.0, "wave_angle": 0.5, "speed": 7.0, "hull": HULL,
               "forward": 50.0, "peak_factor": 1.0}  # fmt: skip
-    return seakeeping.ship_response(**{**given_, **changes})
+    return ship_motions.ship_response(**{**given_, **changes})
 
 
 @given(period=periods, angle=angles, speed=speeds)
@@ -58,8 +63,8 @@ def test_port_equals_starboard(height, period, angle, speed):
 @given(angle=angles, speed=speeds)
 def test_long_waves_lift_the_ship_as_they_lift_the_water(angle, speed):
     w = np.array([0.03])
-    heave, pitch = seakeeping.jensen_motions(w, speed=speed, wave_angle=angle, hull=HULL)
-    strip = seakeeping.jensen_motions(w, speed=speed, wave_angle=angle, hull=HULL, decay="strip")
+    heave, pitch = ship_motions.jensen_motions(w, speed=speed, wave_angle=angle, hull=HULL)
+    strip = ship_motions.jensen_motions(w, speed=speed, wave_angle=angle, hull=HULL, decay="strip")
     assert strip[0] == pytest.approx(heave, abs=0.001)
     slope = w**2 / 9.80665 * np.abs(np.cos(angle))
     assert heave == pytest.approx([1.0], abs=0.01)
@@ -68,7 +73,7 @@ def test_long_waves_lift_the_ship_as_they_lift_the_water(angle, speed):
 
 @given(angle=angles, speed=speeds)
 def test_short_waves_do_not_move_the_ship(angle, speed):
-    heave, pitch = seakeeping.jensen_motions(
+    heave, pitch = ship_motions.jensen_motions(
         [6.0], speed=speed, wave_angle=angle, hull=HULL, decay="strip"
     )
     assert heave[0] < 1e-6
@@ -77,15 +82,15 @@ def test_short_waves_do_not_move_the_ship(angle, speed):
 
 def test_published_decay_does_not_fade_in_beam_seas():
     """The flaw the notes speak of: heave goes to one half, not to zero."""
-    heave, _ = seakeeping.jensen_motions([20.0], speed=0.0, wave_angle=np.pi / 2, hull=HULL)
+    heave, _ = ship_motions.jensen_motions([20.0], speed=0.0, wave_angle=np.pi / 2, hull=HULL)
     assert heave[0] == pytest.approx(0.5, abs=0.01)
 
 
 @given(w=st.floats(0.1, 2.0), speed=speeds)
 def test_both_decays_are_one_in_head_seas(w, speed):
     pairs = [
-        seakeeping.jensen_motions([w], speed=speed, wave_angle=0.0, hull=HULL, decay=decay)
-        for decay in seakeeping.DECAYS
+        ship_motions.jensen_motions([w], speed=speed, wave_angle=0.0, hull=HULL, decay=decay)
+        for decay in ship_motions.DECAYS
     ]
     assert pairs[0][0] == pytest.approx(pairs[1][0])
     assert pairs[0][1] == pytest.approx(pairs[1][1])
@@ -96,7 +101,7 @@ def test_acceleration_does_not_hang_on_the_cut_off():
     got = respond(wave_angle=np.pi / 2, period=7.0, forward=0.0)
     w = np.linspace(0.2, 16.0 * 2.0 * np.pi / 7.0, 40_001)
     waves = wave_spectra.bretschneider(w, height=3.0, period=7.0)
-    heave, _ = seakeeping.jensen_motions(
+    heave, _ = ship_motions.jensen_motions(
         w, speed=7.0, wave_angle=np.pi / 2, hull=HULL, decay="strip"
     )
     assert got.acceleration.m0 == pytest.approx(np.trapezoid(w**4 * heave**2 * waves, w), rel=0.01)
@@ -104,7 +109,7 @@ def test_acceleration_does_not_hang_on_the_cut_off():
 
 @given(w=st.floats(0.05, 4.0), angle=angles, speed=speeds)
 def test_finite_everywhere(w, angle, speed):
-    heave, pitch = seakeeping.jensen_motions([w], speed=speed, wave_angle=angle, hull=HULL)
+    heave, pitch = ship_motions.jensen_motions([w], speed=speed, wave_angle=angle, hull=HULL)
     assert np.isfinite(heave).all()
     assert np.isfinite(pitch).all()
 
@@ -112,13 +117,13 @@ def test_finite_everywhere(w, angle, speed):
 def test_the_pole_of_following_seas_is_removed():
     """Where the ship keeps pace with the waves, and beside it, the response is one curve."""
     w = 9.80665 / 12.0 * (1.0 + np.array([-1e-7, 0.0, 1e-7]))
-    heave, pitch = seakeeping.jensen_motions(w, speed=12.0, wave_angle=np.pi, hull=HULL)
+    heave, pitch = ship_motions.jensen_motions(w, speed=12.0, wave_angle=np.pi, hull=HULL)
     assert np.ptp(heave) < 1e-5
     assert np.ptp(pitch) < 1e-5
 
 
 def test_beam_seas_do_not_pitch():
-    _, pitch = seakeeping.jensen_motions([0.5], speed=5.0, wave_angle=np.pi / 2, hull=HULL)
+    _, pitch = ship_motions.jensen_motions([0.5], speed=5.0, wave_angle=np.pi / 2, hull=HULL)
     assert pitch[0] == pytest.approx(0.0, abs=1e-15)
 
 
@@ -172,7 +177,7 @@ def test_broadcasting_of_grids():
 @given(a=st.floats(0.01, 5.0), f=st.floats(0.08, 0.6), t=st.floats(600.0, 7200.0))
 def test_more_motion_more_sickness(a, f, t):
     def sick(rms, seconds):
-        return comfort.sick_percent_mccauley(rms, frequency_hz=f, duration=seconds)
+        return motion_sickness.sick_percent_mccauley(rms, frequency_hz=f, duration=seconds)
 
     assert 0.0 <= sick(a, t) <= 100.0
     assert sick(1.1 * a, t) >= sick(a, t)
@@ -182,7 +187,7 @@ def test_more_motion_more_sickness(a, f, t):
 @given(angle=angles, speed=st.floats(0.0, 20.0), height=heights, period=periods)
 def test_stability_flags_agree_with_margins_and_sides(angle, speed, height, period):
     def check(side):
-        return stability_checks.stability_checks(
+        return stability_msc1_circ1228.stability_checks(
             speed=speed, wave_angle=side, wave_height=height, wave_period=period,
             length=120.0, roll_period=14.0,
         )  # fmt: skip

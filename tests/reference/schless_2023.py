@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 
 from thalweg.core.geodesy import direct
-from thalweg.operations.trip_tables import TripTable
-from thalweg.operations.trips import trip_table
+from thalweg.operations.waiting.trip_durations import trip_table
+from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.sea import Sea
-from thalweg.sea.north_sea import Scenario, north_sea_current
+from thalweg.sea.models.stratified_coast import Scenario, north_sea_current
 from thalweg.ship import Ship
 
 COAST = (52.1, 4.26)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
-from thalweg.ship.methods import indicators as cii
+from thalweg.ship.methods import carbon_intensity as cii
 
 #: exp(d1) to exp(d4) as printed in MEPC.354(78), Table 1.
 PRINTED_BOUNDARIES = [

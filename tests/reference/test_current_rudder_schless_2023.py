@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
-from thalweg.ship.methods import current_rudder as cur
+from thalweg.ship.methods import current_triangle as cur
 
 
 def triangle(speed, course_deg, east, north):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
-from thalweg.ship.methods import fuel
+from thalweg.ship.methods.engine import fuel_properties
 
 PRINTED = {
     "mgo": (3.206, 42_700),
@@ -23,13 +23,13 @@ PRINTED = {
 
 @pytest.mark.parametrize(("name", "row"), PRINTED.items())
 def test_factors(name, row):
-    found = fuel.fuel_named(name)
+    found = fuel_properties.fuel_named(name)
     assert (found.carbon_factor, found.heating_value / 1e3) == row
     assert found.source
 
 
 def test_every_fuel_is_in_the_printed_table():
-    assert set(fuel.FUELS) == set(PRINTED)
+    assert set(fuel_properties.FUELS) == set(PRINTED)
 
 
 def test_carbon_factor_is_carbon_content_times_44_over_12():
@@ -47,7 +47,7 @@ def test_carbon_factor_is_carbon_content_times_44_over_12():
     }
     for name, content in contents.items():
         factor = content * (12.0107 + 2 * 15.9994) / 12.0107
-        assert fuel.FUELS[name].carbon_factor == pytest.approx(factor, abs=4e-3)
+        assert fuel_properties.FUELS[name].carbon_factor == pytest.approx(factor, abs=4e-3)
 
 
 @pytest.mark.parametrize(
@@ -57,30 +57,34 @@ def test_carbon_factor_is_carbon_content_times_44_over_12():
 def test_pure_fuels_burn_to_the_carbon_of_their_molecule(name, carbon, hydrogen, oxygen):
     """The table's carbon contents are rounded: 0.12 % for the alcohols, 0.25 % for methane."""
     molecule = carbon * 12.011 + hydrogen * 1.008 + oxygen * 15.999
-    assert fuel.FUELS[name].carbon_factor == pytest.approx(carbon * 44.009 / molecule, rel=2.6e-3)
+    assert fuel_properties.FUELS[name].carbon_factor == pytest.approx(
+        carbon * 44.009 / molecule, rel=2.6e-3
+    )
 
 
 def test_co2_of_the_example():
     """27.593 t of heavy fuel oil: 85.925 t CO2."""
-    assert fuel.co2_mass(27.593, carbon_factor=3.114) == pytest.approx(85.925, abs=5e-4)
+    assert fuel_properties.co2_mass(27.593, carbon_factor=3.114) == pytest.approx(85.925, abs=5e-4)
 
 
 def test_names():
-    assert fuel.fuel_named("MDO").name == "mgo"
-    assert fuel.fuel_named("LPG Butane").name == "lpg_butane"
+    assert fuel_properties.fuel_named("MDO").name == "mgo"
+    assert fuel_properties.fuel_named("LPG Butane").name == "lpg_butane"
     with pytest.raises(InputError, match="methanol"):
-        fuel.fuel_named("metanol")
+        fuel_properties.fuel_named("metanol")
 
 
 def test_same_heat():
-    mgo, hfo = fuel.FUELS["mgo"], fuel.FUELS["hfo"]
-    assert fuel.same_heat_mass(100.0, of=hfo, to=mgo) == pytest.approx(100.0 * 40.2 / 42.7)
-    assert fuel.same_heat_mass(5.0, of=hfo, to=hfo) == 5.0
+    mgo, hfo = fuel_properties.FUELS["mgo"], fuel_properties.FUELS["hfo"]
+    assert fuel_properties.same_heat_mass(100.0, of=hfo, to=mgo) == pytest.approx(
+        100.0 * 40.2 / 42.7
+    )
+    assert fuel_properties.same_heat_mass(5.0, of=hfo, to=hfo) == 5.0
 
 
 def test_switching_all_none_half():
-    hfo, mgo = fuel.FUELS["hfo"], fuel.FUELS["mgo"]
-    got = fuel.switch_in_control_area(
+    hfo, mgo = fuel_properties.FUELS["hfo"], fuel_properties.FUELS["mgo"]
+    got = fuel_properties.switch_in_control_area(
         [1000.0, 1000.0, 1000.0],
         [0.0, 1.0, 0.5],
         outside=hfo,
@@ -95,21 +99,21 @@ def test_switching_all_none_half():
 
 
 def test_switching_without_price_and_with_unknown():
-    hfo, mgo = fuel.FUELS["hfo"], fuel.FUELS["mgo"]
-    got = fuel.switch_in_control_area(
+    hfo, mgo = fuel_properties.FUELS["hfo"], fuel_properties.FUELS["mgo"]
+    got = fuel_properties.switch_in_control_area(
         [1000.0, np.nan], [0.0, 0.5], outside=hfo, inside=mgo, price_outside_t=500.0
     )
     assert got.cost[0] == pytest.approx(500.0)
     assert np.isnan(got.mass[1])
     assert np.isnan(got.cost[1])
     with pytest.raises(InputError, match="share"):
-        fuel.switch_in_control_area(1.0, 1.5, outside=hfo, inside=mgo)
+        fuel_properties.switch_in_control_area(1.0, 1.5, outside=hfo, inside=mgo)
 
 
 def test_seuren_multiplier():
     """300 USD/t and 1.5593 inside (Seuren 2020, Table 5.2)."""
-    hfo = fuel.FUELS["hfo"]
-    got = fuel.switch_in_control_area(
+    hfo = fuel_properties.FUELS["hfo"]
+    got = fuel_properties.switch_in_control_area(
         2000.0, True, outside=hfo, inside=hfo, price_outside_t=300.0, price_inside_t=300 * 1.5593
     )
     assert got.cost == pytest.approx(2.0 * 300.0 * 1.5593)
@@ -117,8 +121,10 @@ def test_seuren_multiplier():
 
 def test_van_halem_cost():
     """One hour at 5 m/s costs 7766.67; in still water 4.1667 m/s is cheapest."""
-    assert fuel.halem_cost(3600.0, 5.0) == pytest.approx(7766.67, abs=5e-3)
-    best = fuel.halem_cheapest_speed()
+    assert fuel_properties.halem_cost(3600.0, 5.0) == pytest.approx(7766.67, abs=5e-3)
+    best = fuel_properties.halem_cheapest_speed()
     assert best == pytest.approx(4.1667, abs=5e-5)
     speeds = np.linspace(3.0, 6.0, 30_001)
-    assert speeds[np.argmin(fuel.halem_cost(1e5 / speeds, speeds))] == pytest.approx(best, abs=2e-4)
+    assert speeds[np.argmin(fuel_properties.halem_cost(1e5 / speeds, speeds))] == pytest.approx(
+        best, abs=2e-4
+    )

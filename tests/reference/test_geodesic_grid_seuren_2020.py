@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.kernels.ways import connected_waters
-from thalweg.network.globe_grid import Fineness, make_grid
-from thalweg.network.icosphere import icosphere
+from thalweg.kernels.network.static_paths import connected_waters
+from thalweg.network.global_grid.grid import Fineness, make_grid
+from thalweg.network.global_grid.icosphere import icosphere
 
 RADIUS = 3440.0695
 PRINTED = {  # level: chord c, arc s [nm]

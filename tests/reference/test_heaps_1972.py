@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError, ModelRangeError
-from thalweg.sea.vertical import GRAVITY, WaterColumn, density_mean, density_profile
+from thalweg.sea.models.current_profiles import GRAVITY, WaterColumn, density_mean, density_profile
 
 TABLE_2_2 = WaterColumn()  # Schless (2023), Table 2.2: rise 0.2 m, gradient -2e-4 kg/m4
 CHECKS = {

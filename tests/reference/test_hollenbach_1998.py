@@ -9,7 +9,7 @@ its input file is a digit swap; the particulars of its Table 2 belong to another
 import numpy as np
 import pytest
 
-from thalweg.ship.methods.calm_water_hollenbach import (
+from thalweg.ship.methods.resistance.hollenbach import (
     correlation_allowance,
     critical_froude_number,
     froude_factor,

@@ -4,16 +4,8 @@ import numpy as np
 import pytest
 
 from thalweg.core.units import KNOT
-from thalweg.ship.methods.calm_water_holtrop import (
-    Extremities,
-    bulb_resistance,
-    correlation_coefficient,
-    holtrop,
-    holtrop_validity,
-    transom_resistance,
-)
-from thalweg.ship.methods.friction import froude_number
-from thalweg.ship.methods.holtrop_form import (
+from thalweg.ship.methods.resistance.friction_lines import froude_number
+from thalweg.ship.methods.resistance.holtrop_form import (
     form_factor_1982,
     form_factor_1984,
     half_angle_of_entrance,
@@ -21,7 +13,15 @@ from thalweg.ship.methods.holtrop_form import (
     length_of_run,
     wetted_surface,
 )
-from thalweg.ship.methods.holtrop_wave import (
+from thalweg.ship.methods.resistance.holtrop_mennen import (
+    Extremities,
+    bulb_resistance,
+    correlation_coefficient,
+    holtrop,
+    holtrop_validity,
+    transom_resistance,
+)
+from thalweg.ship.methods.resistance.holtrop_wave import (
     bulb_wave_factor,
     transom_wave_factor,
     wave_resistance,

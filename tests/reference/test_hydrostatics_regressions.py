@@ -6,32 +6,32 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
-from thalweg.ship.methods import hydrostatics as hydro
-from thalweg.ship.methods import loading
-from thalweg.ship.methods import regressions as reg
+from thalweg.ship.hull import particulars_regressions as hydro
+from thalweg.ship.methods import displacement
+from thalweg.ship.methods import hull_regressions as reg
 
 
 def test_load_factor_runs_from_empty_to_full():
-    got = loading.between_empty_and_full([0.0, 0.25, 1.0], empty=4.0, full=8.0)
+    got = displacement.between_empty_and_full([0.0, 0.25, 1.0], empty=4.0, full=8.0)
     assert got.tolist() == [4.0, 5.0, 8.0]
-    assert loading.load_factor_of(5.0, empty=4.0, full=8.0) == 0.25
+    assert displacement.load_factor_of(5.0, empty=4.0, full=8.0) == 0.25
 
 
 def test_load_factor_outside_is_unknown():
     assert np.isnan(
-        loading.between_empty_and_full([-0.01, 1.01, np.nan], empty=4.0, full=8.0)
+        displacement.between_empty_and_full([-0.01, 1.01, np.nan], empty=4.0, full=8.0)
     ).all()
-    assert np.isnan(loading.load_factor_of([3.9, 8.1], empty=4.0, full=8.0)).all()
+    assert np.isnan(displacement.load_factor_of([3.9, 8.1], empty=4.0, full=8.0)).all()
 
 
 def test_a_full_ship_may_be_slower():
-    assert loading.between_empty_and_full(0.5, empty=14.0, full=12.0) == 13.0
+    assert displacement.between_empty_and_full(0.5, empty=14.0, full=12.0) == 13.0
 
 
 def test_volume_and_block_are_inverse():
-    volume = loading.displacement_volume(200.0, 32.0, draught=10.0, block_coefficient=0.8)
+    volume = displacement.displacement_volume(200.0, 32.0, draught=10.0, block_coefficient=0.8)
     assert volume == pytest.approx(51_200.0)
-    back = loading.block_coefficient_of(volume, length=200.0, breadth=32.0, draught=10.0)
+    back = displacement.block_coefficient_of(volume, length=200.0, breadth=32.0, draught=10.0)
     assert back == pytest.approx(0.8)
 
 
@@ -73,7 +73,7 @@ def test_regressions_written_out():
     assert reg.waterplane_kristensen(0.7) == pytest.approx(0.865)
     assert reg.lcb_from_prismatic(0.7) == pytest.approx(0.08)
     assert reg.lcb_from_froude(0.2) == pytest.approx(1.02)
-    block = loading.block_at_draught(10.0, design_draught=8.0, design_block=0.7)
+    block = displacement.block_at_draught(10.0, design_draught=8.0, design_block=0.7)
     assert block == pytest.approx(1.0 - 0.3 * 0.8 ** (1.0 / 3.0))
 
 
@@ -84,13 +84,13 @@ def test_block_from_froude():
 
 
 def test_block_grows_with_draught_and_meets_the_design():
-    blocks = loading.block_at_draught([6.0, 8.0, 10.0], design_draught=10.0, design_block=0.8)
+    blocks = displacement.block_at_draught([6.0, 8.0, 10.0], design_draught=10.0, design_block=0.8)
     assert np.all(np.diff(blocks) > 0.0)
     assert blocks[-1] == pytest.approx(0.8)
 
 
 def test_wall_sided_volume():
-    got = loading.displacement_at_draught(
+    got = displacement.displacement_at_draught(
         [10.0, 9.0, 1.0], design_draught=10.0, design_displacement=50_000.0, waterplane_area=6000.0
     )
     np.testing.assert_allclose(got, [50_000.0, 44_000.0, np.nan])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.units import GRAVITY, KNOT
-from thalweg.ship.speed_loss import (
+from thalweg.ship.methods.speed_loss import (
     beaufort_number,
     kwon_direction_coefficients,
     kwon_form_coefficient,

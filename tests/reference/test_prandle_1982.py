@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
 from thalweg.sea import Sea
-from thalweg.sea import names as nm
-from thalweg.sea.north_sea import (
+from thalweg.sea import standard_names as nm
+from thalweg.sea.models.current_profiles import WaterColumn, tidal_mean, tidal_profile
+from thalweg.sea.models.stratified_coast import (
     DECAY,
     M2_PERIOD,
     SCENARIOS,
@@ -20,7 +21,6 @@ from thalweg.sea.north_sea import (
     north_sea_current,
     phasors,
 )
-from thalweg.sea.vertical import WaterColumn, tidal_mean, tidal_profile
 
 TABLE_2_1 = WaterColumn()  # Schless (2023), Table 2.1
 

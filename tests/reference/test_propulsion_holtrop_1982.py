@@ -5,8 +5,7 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
-from thalweg.ship.methods.holtrop_form import hull_form
-from thalweg.ship.methods.propeller_b_series import (
+from thalweg.ship.methods.propulsion.b_series import (
     Propeller,
     b_series,
     b_series_polynomials,
@@ -14,7 +13,7 @@ from thalweg.ship.methods.propeller_b_series import (
     largest_advance,
     operating_point,
 )
-from thalweg.ship.methods.propulsion import (
+from thalweg.ship.methods.propulsion.propulsion_factors import (
     Efficiencies,
     constant_efficiency_power,
     hull_efficiency,
@@ -27,6 +26,7 @@ from thalweg.ship.methods.propulsion import (
     wake_fraction_single,
     wake_fraction_twin,
 )
+from thalweg.ship.methods.resistance.holtrop_form import hull_form
 
 SHIP = hull_form(
     length_waterline=205.0,

@@ -15,12 +15,15 @@ import numpy as np
 import pytest
 
 from tests.reference.schless_2023 import COAST, GENERATOR, TIDE, dredger, offshore, waters
-from thalweg.operations.trips import trip_table
-from thalweg.sea.north_sea import SCENARIOS
-from thalweg.ship.methods.calm_water_holtrop import Extremities, holtrop
-from thalweg.ship.methods.holtrop_form import hull_form, wetted_surface
-from thalweg.ship.methods.propulsion import Efficiencies
-from thalweg.ship.methods.shallow_water import karpov_speed, zeng_2019_friction
+from thalweg.operations.waiting.trip_durations import trip_table
+from thalweg.sea.models.stratified_coast import SCENARIOS
+from thalweg.ship.methods.propulsion.propulsion_factors import Efficiencies
+from thalweg.ship.methods.resistance.holtrop_form import hull_form, wetted_surface
+from thalweg.ship.methods.resistance.holtrop_mennen import Extremities, holtrop
+from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
+    karpov_speed,
+    zeng_2019_friction,
+)
 
 LENGTH, BREADTH, BLOCK, INSTALLED = 95.57, 19.93, 0.85, 6542e3
 MIDSHIP = 1.006 - 0.0056 * BLOCK**-3.56

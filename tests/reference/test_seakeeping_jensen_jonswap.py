@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
-from thalweg.ship.methods import seakeeping as sea
-from thalweg.ship.methods import time_series as series
-from thalweg.ship.methods import wave_spectra as spectra
+from thalweg.ship.methods.seakeeping import irregular_waves as series
+from thalweg.ship.methods.seakeeping import ship_motions as sea
+from thalweg.ship.methods.seakeeping import wave_spectra as spectra
 
 G = 9.81
 #: Prestegårdshus (2020) prints 5.058 where (5/16)(2 pi)^4 / g^2 is 5.0609.

@@ -5,8 +5,8 @@ import warnings
 import numpy as np
 import pytest
 
-from thalweg.ship.methods.friction import ittc_1957, reynolds_number
-from thalweg.ship.methods.shallow_water import (
+from thalweg.ship.methods.resistance.friction_lines import ittc_1957, reynolds_number
+from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
     bottom_speed_ratio,
     karpov,
     karpov_speed,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.mean_wave_force import spectral_density
-from thalweg.ship.methods.waves_snnm import (
+from thalweg.ship.methods.added_resistance.mean_wave_force import spectral_density
+from thalweg.ship.methods.added_resistance.snnm import (
     SnnmHull,
     entrance_length,
     snnm,

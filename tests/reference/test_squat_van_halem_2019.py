@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.units import KNOT
-from thalweg.ship.methods import squat
+from thalweg.ship.methods.shallow_water import squat
 
 HOPPER = {"draught": 6.5, "breadth": 20.0}
 BLOCK = 10_000e3 / 1025.0 / (80.0 * 20.0 * 6.5)  # 10 000 t, 80 x 20 x 6.5 m: 0.938

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.units import KNOT
-from thalweg.ship.methods import stability_checks as checks
+from thalweg.ship.methods.seakeeping import stability_msc1_circ1228 as checks
 
 
 def check(**changes):

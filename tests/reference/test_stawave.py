@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from thalweg.ship.methods.mean_wave_force import (
+from thalweg.ship.methods.added_resistance.mean_wave_force import (
     bessel_i1_scaled,
     bessel_k1_scaled,
     peak_period,
     spectral_density,
 )
-from thalweg.ship.methods.waves import (
+from thalweg.ship.methods.added_resistance.stawave import (
     stawave1,
     stawave1_validity,
     stawave2,

@@ -35,14 +35,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thalweg.ship.methods.calm_water_holtrop import Extremities, holtrop
-from thalweg.ship.methods.friction import ittc_1957, reynolds_number
-from thalweg.ship.methods.holtrop_form import (
+from thalweg.ship.methods.resistance.friction_lines import ittc_1957, reynolds_number
+from thalweg.ship.methods.resistance.holtrop_form import (
     form_factor_1982,
     form_factor_1984,
     hull_form,
     wetted_surface,
 )
+from thalweg.ship.methods.resistance.holtrop_mennen import Extremities, holtrop
 
 
 def jbc(waterplane):

@@ -22,9 +22,9 @@ import pytest
 
 from tests.conftest import data_file
 from thalweg.core.time import parse_time
-from thalweg.sea import names as nm
-from thalweg.sea import schureman
-from thalweg.sea.tide_files import read_constituents
+from thalweg.sea import standard_names as nm
+from thalweg.sea.tides import schureman
+from thalweg.sea.tides.constituent_files import read_constituents
 
 COMPONENTS = "tide/rws_vlissingen_components_hatyan.txt"
 

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 from tests.reference.schless_2023 import GENERATOR, TIDE, nourishment
-from thalweg.operations.waiting import plan_waiting
-from thalweg.operations.waiting_study import break_even_power, waiting_study
-from thalweg.sea.north_sea import SCENARIOS, Scenario
+from thalweg.operations.waiting.waiting_optimisation import plan_waiting
+from thalweg.operations.waiting.waiting_study import break_even_power, waiting_study
+from thalweg.sea.models.stratified_coast import SCENARIOS, Scenario
 
 QUARTERS = [0.0, 0.25 * TIDE, 0.5 * TIDE, 0.75 * TIDE]
 WAITS = np.linspace(0.0, TIDE, 13)

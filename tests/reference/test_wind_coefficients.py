@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thalweg.ship.methods.wind import (
+from thalweg.ship.methods.added_resistance.wind_resistance import (
     BLENDERMANN,
     ITTC_CURVES,
     FujiwaraShip,

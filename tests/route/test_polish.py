@@ -16,7 +16,7 @@ from thalweg.chart.canals import SUEZ
 from thalweg.core.errors import InputError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.route import Track, better_route, evaluate, join, polish, smooth
-from thalweg.route.paces import _hull, _knapsack
+from thalweg.route.refinement.speed_profile import _hull, _knapsack
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 

@@ -18,7 +18,7 @@ from thalweg.route import Track, evaluate
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-from thalweg.ship.fuel_terms import fuel_terms
+from thalweg.ship.fuel_prices import fuel_terms
 
 BULKER = Ship.load("handysize-bulker")
 STEADY = Ship.from_dict(

@@ -8,9 +8,9 @@ import pytest
 from tests.route.planar import Islands, Plane, rectangle, ship
 from thalweg.chart import Chart
 from thalweg.route import Track, better_route, evaluate
-from thalweg.route.line import line_of
-from thalweg.route.pulling import pull
-from thalweg.route.quick import make_sailor
+from thalweg.route.refinement.polyline import line_of
+from thalweg.route.refinement.string_pulling import pull
+from thalweg.route.refinement.time_evaluator import make_sailor
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -233,7 +233,7 @@ def test_a_limit_in_the_field_is_kept():
 
 def test_quick_sailor_measures_like_the_geodesic():
     from thalweg.core.geodesy import distance
-    from thalweg.route.quick import Bundle
+    from thalweg.route.refinement.time_evaluator import Bundle
 
     fields = Sea.calm().freeze_grid(-85, 85, -100, 100, 0, 1e7, [0, 1], spacing_deg=5.0)
     sailor = make_sailor(
@@ -257,7 +257,7 @@ def test_quick_sailor_measures_like_the_geodesic():
 
 
 def test_quick_sailor_knows_the_edges_of_its_raster():
-    from thalweg.route.quick import Bundle
+    from thalweg.route.refinement.time_evaluator import Bundle
 
     fields = Sea.calm().freeze_grid(-1, 1, -1, 1, 0, 1e4, [0, 1], spacing_deg=0.5)
     sailor = make_sailor(

@@ -6,7 +6,7 @@ import pytest
 from thalweg import Sea, Ship, evaluate
 from thalweg.core.geodesy import along, densify
 from thalweg.route import Track
-from thalweg.route.thinning import thinned
+from thalweg.route.refinement.simplification import thinned
 
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
 

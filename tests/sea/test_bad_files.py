@@ -203,7 +203,7 @@ def test_wind_at_another_height_gives_way_to_wind_at_ten_metres() -> None:
 
 
 def test_whole_classic_files_of_every_version_pass_the_length_check(tmp_path) -> None:
-    from thalweg.sea.netcdf3 import promised_length
+    from thalweg.sea.files.netcdf3_check import promised_length
 
     for format_ in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"):
         for unlimited in ([], ["time"]):

@@ -11,7 +11,7 @@ import xarray as xr
 from tests.sea.worlds import EAST, HS, NORTH, T0, affine, mesh, regular, value
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea.ensemble import EnsembleLayer
+from thalweg.sea.ensemble_layer import EnsembleLayer
 
 DEPTH = "sea_floor_depth_below_geoid"
 

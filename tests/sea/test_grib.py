@@ -14,8 +14,9 @@ import xarray as xr
 from tests.sea.worlds import value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
-from thalweg.sea import Sea, grib_worker
-from thalweg.sea.grib import check_messages
+from thalweg.sea import Sea
+from thalweg.sea.files import grib_worker
+from thalweg.sea.files.grib import check_messages
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("eccodes") is None or importlib.util.find_spec("cfgrib") is None,

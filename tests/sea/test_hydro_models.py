@@ -9,8 +9,8 @@ import xarray as xr
 from tests.sea import hydro
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea.grids import TriangleGrid
-from thalweg.sea.levels import Layers
+from thalweg.sea.files.vertical_levels import Layers
+from thalweg.sea.grids.point_location import TriangleGrid
 
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
 LEVEL = "sea_surface_height_above_geopotential_datum"
@@ -220,7 +220,7 @@ def test_many_times_are_averaged_in_parts(monkeypatch) -> None:
     y, x = lat[hydro.quads()].mean(axis=1), lon[hydro.quads()].mean(axis=1)
     times = hydro.T0 + 3600.0 * hydro.HOURS
     whole = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
-    monkeypatch.setattr("thalweg.sea.store.LARGEST_LAYERED", 1000)
+    monkeypatch.setattr("thalweg.sea.files.block_cache.LARGEST_LAYERED", 1000)
     parts = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
     assert np.array_equal(whole, parts, equal_nan=True)
 

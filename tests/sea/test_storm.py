@@ -11,8 +11,8 @@ from thalweg.core.time import parse_time
 from thalweg.core.units import KNOT
 from thalweg.kernels import codes
 from thalweg.sea import Sea
-from thalweg.sea import cyclone_models as models
-from thalweg.sea.storm import Ambient, load_track, vortex
+from thalweg.sea.models import cyclone_formulas as models
+from thalweg.sea.models.cyclone_layer import Ambient, load_track, vortex
 
 HS = "sea_surface_wave_significant_height"
 STILL = Ambient(wind=(0.0, 0.0), wave_height=0.0)

@@ -8,8 +8,8 @@ import pytest
 from tests.conftest import data_file
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import parse_time
-from thalweg.sea import names as nm
-from thalweg.sea.tide_records import is_record, read_record
+from thalweg.sea import standard_names as nm
+from thalweg.sea.tides.tide_records import is_record, read_record
 
 NOOS = """#------------------------------------------------------
 # Timeseries retrieved from the MATROOS series database

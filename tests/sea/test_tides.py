@@ -14,11 +14,18 @@ from tests.conftest import data_file
 from thalweg.core.errors import DatasetError, InputError, ThalwegWarning
 from thalweg.core.time import parse_time
 from thalweg.kernels import codes
-from thalweg.sea import Sea, foreman, schureman, tidal_run, tide_files, tides
-from thalweg.sea import names as nm
-from thalweg.sea.constituents import Constituents, phasors
-from thalweg.sea.repeat import drift_deg, repeated
-from thalweg.sea.tides import analyse, check_rayleigh
+from thalweg.sea import Sea
+from thalweg.sea import standard_names as nm
+from thalweg.sea.tides import (
+    constituent_files,
+    foreman,
+    harmonic_analysis,
+    model_run_analysis,
+    schureman,
+)
+from thalweg.sea.tides.constituents import Constituents, phasors
+from thalweg.sea.tides.harmonic_analysis import analyse, check_rayleigh
+from thalweg.sea.tides.periodic_repeat import drift_deg, repeated
 
 utide = pytest.importorskip("utide")
 
@@ -236,7 +243,7 @@ def test_share_of_variance_that_is_tidal():
 )
 def test_what_no_record_tells(count, wanted, words):
     with pytest.raises(InputError, match=words):
-        tides.chosen_constituents(3600.0 * np.arange(count), wanted)
+        harmonic_analysis.chosen_constituents(3600.0 * np.arange(count), wanted)
 
 
 def test_progress_is_told_to_the_end():
@@ -274,7 +281,7 @@ def test_rayleigh_of_m2_and_s2():
 
 
 def test_without_names_only_what_can_be_told_apart_is_analysed():
-    names = tides.chosen_constituents(_hours(16), None)
+    names = harmonic_analysis.chosen_constituents(_hours(16), None)
     assert {"M2", "S2", "K1", "O1"} <= set(names)
     assert not {"N2", "K2", "P1", "SSA"} & set(names)
     check_rayleigh(names, 16 * 24.0)
@@ -387,7 +394,7 @@ def test_an_analysis_is_kept_on_disk(run, monkeypatch):
         raise AssertionError("analysed again")
 
     with monkeypatch.context() as patch:
-        patch.setattr(tides, "analyse", never)
+        patch.setattr(harmonic_analysis, "analyse", never)
         again = Sea.from_tides(Sea.open(run), constituents=["M2", "S2"])
         assert again.fingerprint() == first.fingerprint()
         with pytest.raises(AssertionError):
@@ -440,21 +447,21 @@ def test_constants_are_picked_and_areas_that_mean_nothing_refused(run):
     assert abs(expected[0] - _gauge().predict(LEVEL, [START])[0, 0]) > 0.01
     with pytest.raises(InputError, match="places of their own"):
         Sea.from_tides(Sea.open(run), area=area)
-    found = tidal_run.tidal_analysis(Sea.open(run), constituents=["M2"])
+    found = model_run_analysis.tidal_analysis(Sea.open(run), constituents=["M2"])
     with pytest.raises(InputError, match="places of their own"):
         Sea.from_tides(found, area=area)
 
 
 def test_another_run_of_the_same_name_size_and_date_is_analysed_anew(run):
     sea = Sea.open(run)
-    first = tidal_run.tidal_analysis(sea, constituents=["M2", "S2"])
+    first = model_run_analysis.tidal_analysis(sea, constituents=["M2", "S2"])
     stamp, raw = run.stat(), xr.load_dataset(run, decode_times=False)
     raw["h"] = raw["h"] * 2.0
     raw.to_netcdf(run.with_suffix(".new"))
     os.replace(run.with_suffix(".new"), run)
     os.utime(run, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
     assert run.stat().st_size == stamp.st_size
-    again = tidal_run.tidal_analysis(Sea.open(run), constituents=["M2", "S2"])
+    again = model_run_analysis.tidal_analysis(Sea.open(run), constituents=["M2", "S2"])
     ratio = again.constituents.amplitude[LEVEL][0] / first.constituents.amplitude[LEVEL][0]
     assert np.nanmax(np.abs(ratio - 2.0)) < 1e-6
 
@@ -464,7 +471,7 @@ def test_what_lies_on_another_grid_is_told(run):
     moved = data["h"].isel(lat=slice(0, 2)).rename(lat="y", lon="x")
     both = data.drop_vars("h").assign(h=moved)
     with pytest.warns(ThalwegWarning, match="sea_surface_height_above_geopotential_datum on"):
-        found = tidal_run.tidal_analysis(Sea.open(both), constituents=["M2"], cache=False)
+        found = model_run_analysis.tidal_analysis(Sea.open(both), constituents=["M2"], cache=False)
     assert found.constituents.variables == {EAST, NORTH}
 
 
@@ -496,8 +503,8 @@ def test_half_a_current_is_refused():
 
 def test_constituents_survive_their_file(tmp_path):
     path = tmp_path / "gauge.json"
-    tide_files.write_constituents(_gauge(facts={"station": "X"}), path)
-    back = tide_files.read_constituents(path)
+    constituent_files.write_constituents(_gauge(facts={"station": "X"}), path)
+    back = constituent_files.read_constituents(path)
     times = _hours(2)
     assert np.array_equal(back.predict(LEVEL, times), _gauge().predict(LEVEL, times))
     assert back.facts == {"station": "X"}
@@ -517,7 +524,7 @@ CURRENT = {
 
 
 def test_currents_of_a_station_run_along_the_flood(tmp_path):
-    found = tide_files.read_constituents(_set(tmp_path, [CURRENT]))
+    found = constituent_files.read_constituents(_set(tmp_path, [CURRENT]))
     times = _hours(1)
     east, north = (found.predict(n, times)[0] for n in (EAST, NORTH))
     along = Constituents.single("x", {"M2": (2.0, 10.0), "LAM2": (0.1, 20.0)}, mean=0.1)
@@ -529,17 +536,17 @@ def test_currents_of_a_station_run_along_the_flood(tmp_path):
 
 def test_a_station_must_be_named_where_there_are_many(tmp_path):
     path = _set(tmp_path, [CURRENT, {**CURRENT, "id": "noaa/X2", "name": "Race"}])
-    assert tide_files.read_constituents(path, station="Race").facts["station"] == "noaa/X2"
+    assert constituent_files.read_constituents(path, station="Race").facts["station"] == "noaa/X2"
     with pytest.raises(InputError, match="none is named"):
-        tide_files.read_constituents(path)
+        constituent_files.read_constituents(path)
     with pytest.raises(InputError, match="Narrows"):
-        tide_files.read_constituents(path, station="Narows")
+        constituent_files.read_constituents(path, station="Narows")
 
 
 def test_constituents_without_argument_are_left_out_aloud(tmp_path):
     odd = {**CURRENT, "constituents": [["M2", 2.0, 10.0], ["XYZ9", 0.2, 1.0]]}
     with pytest.warns(ThalwegWarning, match="XYZ9"):
-        found = tide_files.read_constituents(_set(tmp_path, [odd]))
+        found = constituent_files.read_constituents(_set(tmp_path, [odd]))
     assert found.names == ("M2",)
 
 
@@ -547,8 +554,10 @@ def test_constituents_without_argument_are_left_out_aloud(tmp_path):
 def test_two_sources_of_one_gauge_agree():
     """Vlissingen: TICON-4 (UTC, two years) and Rijkswaterstaat (MET, four years)."""
     path = data_file("tide/tide_constituents_nw_europe_ticon4_kartverket.json.gz")
-    ticon = tide_files.read_constituents(path, station="ticon/vlissingen-vlis-nld-rws")
-    rws = tide_files.read_constituents(data_file("tide/rws_vlissingen_components_hatyan.txt"))
+    ticon = constituent_files.read_constituents(path, station="ticon/vlissingen-vlis-nld-rws")
+    rws = constituent_files.read_constituents(
+        data_file("tide/rws_vlissingen_components_hatyan.txt")
+    )
     fast = [n for n in ticon.names if schureman.frequency(n) > 0.03]  # the year is weather
     ticon = ticon.picked(fast)
     times = _hours(30, start=parse_time("2026-01-01"))
@@ -590,20 +599,20 @@ def test_files_that_hold_no_constituents(tmp_path, text):
     path = tmp_path / "x.txt"
     path.write_text(text)
     with pytest.raises(DatasetError):
-        tide_files.read_constituents(path)
+        constituent_files.read_constituents(path)
 
 
 def test_a_station_asked_of_a_file_that_is_no_set_must_be_the_one_it_holds(tmp_path):
     path = tmp_path / "x.txt"
     path.write_text("STAT VLISSGN WATHTE NAP cm 1\nCOMP 65 28.984104 10.0 20.0 M2\n")
-    assert tide_files.read_constituents(path, station="VLISSGN").names == ("M2",)
+    assert constituent_files.read_constituents(path, station="VLISSGN").names == ("M2",)
     with pytest.raises(InputError, match="holds VLISSGN"):
-        tide_files.read_constituents(path, station="HOEKVHLD")
+        constituent_files.read_constituents(path, station="HOEKVHLD")
 
 
 def test_a_file_that_is_not_there():
     with pytest.raises(DatasetError):
-        tide_files.read_constituents("no/such/file.txt")
+        constituent_files.read_constituents("no/such/file.txt")
 
 
 def test_constants_that_make_no_sense():

@@ -5,8 +5,8 @@ import pytest
 
 from thalweg import InputError, Sea
 from thalweg.kernels import codes
-from thalweg.sea import names as nm
-from thalweg.sea.wind_sea import carter_1982
+from thalweg.sea import standard_names as nm
+from thalweg.sea.models.wind_sea import carter_1982
 
 WIND = {
     "eastward_wind": lambda t, lat, lon: np.where(lat > 50.0, np.nan, 12.0) + 0.0 * t,

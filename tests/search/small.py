@@ -6,9 +6,9 @@ import numpy as np
 
 from thalweg.core import geodesy
 from thalweg.kernels import codes
-from thalweg.kernels.tables import TableArrays
+from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network.network import Network, NetworkMeta
-from thalweg.sea.fields import StationFields
+from thalweg.sea.frozen_fields import StationFields
 
 NO_LIMITS = np.array([-np.inf, np.inf, np.inf])
 

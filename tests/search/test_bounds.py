@@ -8,8 +8,8 @@ import pytest
 from tests.search.small import grid, limits, make_fields, steady
 from thalweg.core.geodesy import distance
 from thalweg.search import direction_factor, earliest_arrival, lower_bound
-from thalweg.search.arrays import problem
-from thalweg.search.bounds import free_space_bound, network_bound
+from thalweg.search.lower_bounds import free_space_bound, network_bound
+from thalweg.search.search_problem import problem
 
 
 @pytest.mark.parametrize("gap_deg", [4.0, 19.107, 26.565, 45.0, 60.0])

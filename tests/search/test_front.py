@@ -13,8 +13,8 @@ from tests.search.test_berths import barred_line
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels import codes
 from thalweg.search import cheapest, earliest_arrival, front
-from thalweg.search.front_ways import Way, sail_way
-from thalweg.search.front_world import Request, gather
+from thalweg.search.pareto.front_problem import Request, gather
+from thalweg.search.pareto.seed_paths import Way, sail_way
 
 SPEEDS = np.array([4.0, 6.0, 8.0])
 STILL = {"current_east": 0.0, "current_north": 0.0}

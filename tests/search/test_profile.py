@@ -17,10 +17,10 @@ from tests.search.small import (
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.kernels import codes
-from thalweg.kernels.profile import SECTORS
-from thalweg.network.mesh import mesh
-from thalweg.network.sides import sampled_on_sides
-from thalweg.operations.estuary import synthetic_estuary
+from thalweg.kernels.search.repeated_search import SECTORS
+from thalweg.network.triangular_mesh.edge_sampling import sampled_on_sides
+from thalweg.network.triangular_mesh.mesh_builder import mesh
+from thalweg.operations.examples.estuary import synthetic_estuary
 from thalweg.search import Waters, earliest_arrival
 from thalweg.ship import Ship
 

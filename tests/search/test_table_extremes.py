@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thalweg import Ship
-from thalweg.kernels.tables import table_value
-from thalweg.search.table_extremes import extreme
+from thalweg.kernels.leg.table_lookup import table_value
+from thalweg.ship.tables.table_bounds import extreme
 
 
 @pytest.mark.parametrize("name", ["handysize-bulker", "s175", "vox-olympia"])

@@ -5,9 +5,9 @@ import pytest
 
 from tests.search.small import limits, line, make_fields, make_network, steady
 from thalweg.search import earliest_arrival
-from thalweg.search.arrays import network_arrays, sea_arrays
 from thalweg.search.fifo import sampled_arrivals
-from thalweg.search.tides import tidal_states
+from thalweg.search.search_problem import network_arrays, sea_arrays
+from thalweg.search.tidal_states import tidal_states
 
 HOUR, MINUTE = 3600.0, 60.0
 REQUIRED = 5.0

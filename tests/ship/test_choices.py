@@ -10,11 +10,15 @@ from thalweg.core.units import KNOT
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.contract import check_ship_model
-from thalweg.ship.methods.squat import barrass_2004_speed, barrass_2004_squat, critical_speed
-from thalweg.ship.methods.waves_snnm import SnnmHull, snnm
-from thalweg.ship.sheet import performance_sheet
-from thalweg.ship.speed_loss import kwon_speed_loss
+from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm
+from thalweg.ship.methods.shallow_water.squat import (
+    barrass_2004_speed,
+    barrass_2004_squat,
+    critical_speed,
+)
+from thalweg.ship.methods.speed_loss import kwon_speed_loss
+from thalweg.ship.model_check import check_ship_model
+from thalweg.ship.performance_sheet import performance_sheet
 
 HULL = {
     "length_waterline_m": 172.42,

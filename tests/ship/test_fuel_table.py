@@ -10,7 +10,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.units import DAY
 from thalweg.ship import Conditions, Ship, TableError
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.tabulate import constant_part
+from thalweg.ship.tables.tabulate import constant_part
 
 DATA = {
     "name": "composed",

@@ -8,7 +8,7 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.ship import Ship
-from thalweg.ship.fuel_terms import fuel_terms
+from thalweg.ship.fuel_prices import fuel_terms
 
 
 def test_what_a_kilogram_stands_for():

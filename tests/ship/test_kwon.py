@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
-from thalweg.ship.speed_loss import (
+from thalweg.ship.methods.speed_loss import (
     GREATEST_LOSS,
     beaufort_number,
     kwon_form_coefficient,

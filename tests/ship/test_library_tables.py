@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thalweg.kernels.tables import table_value
+from thalweg.kernels.leg.table_lookup import table_value
 from thalweg.ship import Conditions, Ship
 
 

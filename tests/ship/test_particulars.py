@@ -7,8 +7,8 @@ import pytest
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.hull import complete_hull
-from thalweg.ship.sheet import performance_sheet
+from thalweg.ship.hull.hull import complete_hull
+from thalweg.ship.performance_sheet import performance_sheet
 
 HULL = {
     "length_between_perpendiculars_m": 120.0,

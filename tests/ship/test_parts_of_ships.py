@@ -5,10 +5,10 @@ import pytest
 
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.hull import complete_hull
-from thalweg.ship.methods.calm_water_hollenbach import hollenbach_wetted_surface
-from thalweg.ship.methods.shallow_water import lackenby_1963_deep_speed
-from thalweg.ship.sheet import performance_sheet
+from thalweg.ship.hull.hull import complete_hull
+from thalweg.ship.methods.resistance.hollenbach import hollenbach_wetted_surface
+from thalweg.ship.methods.shallow_water.shallow_water_resistance import lackenby_1963_deep_speed
+from thalweg.ship.performance_sheet import performance_sheet
 
 HULL = {
     "length_between_perpendiculars_m": 120.0,

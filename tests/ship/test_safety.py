@@ -9,18 +9,18 @@ from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
-from thalweg.kernels.leg import point_speed
-from thalweg.kernels.tables import axes_needed
+from thalweg.kernels.leg.point_speed import point_speed
+from thalweg.kernels.leg.table_lookup import axes_needed
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.methods.comfort import (
+from thalweg.ship.methods.seakeeping.motion_sickness import (
     motion_sickness_dose,
     sick_percent_iso,
     weighted_acceleration,
 )
-from thalweg.ship.methods.seakeeping import MotionHull, ship_response
-from thalweg.ship.methods.stability_checks import stability_checks
+from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, ship_response
+from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import stability_checks
 
 HULL = {
     "length_between_perpendiculars_m": 150.0,

@@ -6,7 +6,7 @@ import pytest
 from thalweg.core.errors import InputError
 from thalweg.core.units import DAY, KNOT
 from thalweg.ship import Conditions, Ship, library_names
-from thalweg.ship.sheet import performance_sheet
+from thalweg.ship.performance_sheet import performance_sheet
 
 CALM = Conditions(wind_speed=0.0, wind_angle=0.0)
 GOOD = """

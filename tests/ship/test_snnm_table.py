@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.waves_snnm import SnnmHull, snnm
-from thalweg.ship.methods.waves_snnm_table import SnnmTable
+from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm
+from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
 
 HULLS = {
     "tanker": SnnmHull(320.0, 58.0, 20.8, 20.8, 0.81, 54.0, 70.0),

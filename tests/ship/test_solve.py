@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thalweg.ship.solve import bracketed_root
+from thalweg.ship.models.root_finding import bracketed_root
 
 
 def _solve(function, low, high, tolerance=1e-4):

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
-from thalweg.kernels.tables import table_value
+from thalweg.kernels.leg.table_lookup import table_value
 from thalweg.ship import PerformanceTable, TableError, TablePart
-from thalweg.ship.finish import Finish
-from thalweg.ship.tabulate import Axis, tabulate_dense
+from thalweg.ship.tables.output_curve import Finish
+from thalweg.ship.tables.tabulate import Axis, tabulate_dense
 
 NO_ERROR = TableError(0.0, 0.0, 0.0)
 

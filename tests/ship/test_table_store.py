@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thalweg.ship import PerformanceTable, TableError, TablePart
-from thalweg.ship.finish import Finish
-from thalweg.ship.table_store import MOST_FILES, kept_table
+from thalweg.ship.tables.output_curve import Finish
+from thalweg.ship.tables.table_cache import MOST_FILES, kept_table
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def test_a_disk_that_is_full_only_costs_time(folder, monkeypatch):
     def full(*arguments, **options):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("thalweg.ship.table_store.np.savez", full)
+    monkeypatch.setattr("thalweg.ship.tables.table_cache.np.savez", full)
     calls = []
     for _ in range(2):
         found = kept_table({"ship": 1}, lambda: _table(calls))

@@ -24,9 +24,9 @@ from tests.evolution.jet import (
 )
 from tests.search.small import make_table
 from thalweg.kernels import codes
-from thalweg.kernels.tables import TableArrays
+from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network.network import Network, NetworkMeta
-from thalweg.sea.fields import StationFields
+from thalweg.sea.frozen_fields import StationFields
 
 NM = 1852.0 / SHRINK  # [m] of the shrunk case
 HOUR = 3600.0 / SHRINK  # [s] of the shrunk case

@@ -11,11 +11,11 @@ from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
 from thalweg.evolution import Genome, Habits, evolve
 from thalweg.evolution.evolve import METHODS
-from thalweg.evolution.operators import Mix
+from thalweg.evolution.variation import Mix
 from thalweg.search import Front, earliest_arrival, front
-from thalweg.search.front_points import FrontPoint
-from thalweg.search.front_ways import Way, sail_way
-from thalweg.search.front_world import Request, gather
+from thalweg.search.pareto.front_problem import Request, gather
+from thalweg.search.pareto.front_result import FrontPoint
+from thalweg.search.pareto.seed_paths import Way, sail_way
 
 GRID = world.Grid(20.0, 3)
 LATEST = world.T0 + world.LATEST * world.HOUR

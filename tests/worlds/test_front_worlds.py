@@ -15,7 +15,7 @@ import pytest
 from tests.evolution import jet
 from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
-from thalweg.evolution.metrics import hypervolume
+from thalweg.evolution.indicators import hypervolume
 from thalweg.route import Track, evaluate
 from thalweg.search import Front, front
 

@@ -14,8 +14,8 @@ from tests.worlds.test_current_worlds import HALEM, rotating
 from tests.worlds.test_waiting_worlds import bar_sea
 from thalweg import Sea, Voyage, plan
 from thalweg.network import with_endpoints
-from thalweg.planning import model_mesh
-from thalweg.planning.model_mesh import flow_of, pruned_mesh
+from thalweg.planning.network_selection import model_mesh
+from thalweg.planning.network_selection.model_mesh import flow_of, pruned_mesh
 
 WATER = HALEM.water(-0.5, 0.5, -0.5, 0.5)
 PERIOD = (T0, T0 + 36_000.0)

@@ -12,30 +12,30 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart import canals as canal_data
-from thalweg.chart import geojson
-from thalweg.chart.anchoring import may_wait
-from thalweg.chart.area import WORLD, Area
+from thalweg.chart.anchorages import may_wait
+from thalweg.chart.basemap import coastline_lines, land_polygons
 from thalweg.chart.canals import CANALS, Canal
-from thalweg.chart.depth import Depths, warning_depth
-from thalweg.chart.drawing import coastline_lines, land_polygons
-from thalweg.chart.eca import EcaZone, chosen_areas
-from thalweg.chart.gshhg import read_land
-from thalweg.chart.index import build_index, empty_index
-from thalweg.chart.legs import leg_status, point_status
+from thalweg.chart.coast.coast_cache import gshhg_index
+from thalweg.chart.coast.coast_index_builder import build_index, empty_index
+from thalweg.chart.coast.gshhg import read_land
+from thalweg.chart.coast.leg_tests import leg_status, point_status
+from thalweg.chart.coast.rings import Rings
+from thalweg.chart.coast.snapping import nearest_navigable
+from thalweg.chart.depth.depth_grids import Float32Array, make_layer
+from thalweg.chart.depth.depth_layers import Depths, warning_depth
 from thalweg.chart.ports import PORTS, Port, Ports
-from thalweg.chart.rings import Rings
-from thalweg.chart.snapping import nearest_navigable
-from thalweg.chart.soundings import Float32Array, make_layer
-from thalweg.chart.store import gshhg_index
-from thalweg.chart.zone_raster import ZoneRaster, zone_raster
-from thalweg.chart.zones import Zones
+from thalweg.chart.zones import geojson_zones
+from thalweg.chart.zones.emission_control_areas import EcaZone, chosen_areas
+from thalweg.chart.zones.zone_raster import ZoneRaster, zone_raster
+from thalweg.chart.zones.zone_set import Zones
+from thalweg.core.bounding_box import WORLD, Area
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike
-from thalweg.kernels.coast import CoastArrays
 from thalweg.kernels.codes import LAND, OK
-from thalweg.kernels.cube import IndexArrays
-from thalweg.kernels.shore import shore_distances
-from thalweg.kernels.soundings import DepthArrays
+from thalweg.kernels.geometry.coast_index import CoastArrays
+from thalweg.kernels.geometry.cube_sphere import IndexArrays
+from thalweg.kernels.geometry.depth_sampling import DepthArrays
+from thalweg.kernels.geometry.shore_distance import shore_distances
 
 SIDE: Final = 512  # cells along a face of the index of land from GeoJSON
 
@@ -112,7 +112,7 @@ class Chart:
         return cls(land, Area(float(south), float(north), float(west), float(east)))
 
     @classmethod
-    def from_geojson(cls, land: geojson.Source) -> Chart:
+    def from_geojson(cls, land: geojson_zones.Source) -> Chart:
         """Return a chart whose land is the areas of a GeoJSON file or plain data.
 
         Holes in them are water. Edges are straight in longitude and latitude.
@@ -122,7 +122,7 @@ class Chart:
         InputError
             If it cannot be read, or holds anything but areas.
         """
-        rings = geojson.read_land(land)
+        rings = geojson_zones.read_land(land)
         index = build_index(rings, SIDE)
         return cls(Land(f"GeoJSON {rings.fingerprint()}", index, lambda: rings))
 
@@ -157,7 +157,7 @@ class Chart:
         layer = make_layer(source, variable=variable, positive=positive, spacing_deg=spacing_deg)
         return replace(self, depths=Depths((*self.depths.layers, layer)))
 
-    def with_zones(self, zones: geojson.Source) -> Chart:
+    def with_zones(self, zones: geojson_zones.Source) -> Chart:
         """Return this chart with zones added.
 
         Parameters
@@ -168,7 +168,8 @@ class Chart:
             "eca" without a factor is an emission control area, inside which the ship burns (and
             pays for) its other fuel; with a factor it is a price zone. With "anchorage" zones a
             ship may wait in these only; it may not in "no-waiting" zones. A canal through a
-            "no-go" zone is closed. Rings may cross the antimeridian (`thalweg.chart.geojson`).
+            "no-go" zone is closed. Rings may cross the antimeridian
+            (`thalweg.chart.zones.geojson_zones`).
 
         Raises
         ------
@@ -187,7 +188,8 @@ class Chart:
         ----------
         names : str or iterable of str, optional
             Such as "north-sea", "baltic-sea", "mediterranean", "us-caribbean", "north-america";
-            see `thalweg.chart.eca.emission_areas`. By default all whose limit on sulphur counts.
+            see `thalweg.chart.zones.emission_control_areas.emission_areas`. By default all whose
+            limit on sulphur counts.
         date : time, optional
             When; by default the day the package's dates were looked up (2026-11-21).
 
@@ -231,9 +233,9 @@ class Chart:
     ) -> ZoneRaster:
         """Return a raster of a box [deg] that tells kernels where fuel has which price.
 
-        See `thalweg.chart.zone_raster.ZoneRaster`: cells wholly outside or inside the emission
-        control areas, and mixed ones, for which ``zones.eca_index`` (exact, for
-        `thalweg.kernels.cube.inside`) or `eca_share` decides.
+        See `thalweg.chart.zones.zone_raster.ZoneRaster`: cells wholly outside or inside the
+        emission control areas, and mixed ones, for which ``zones.eca_index`` (exact, for
+        `thalweg.kernels.geometry.cube_sphere.inside`) or `eca_share` decides.
         """
         return zone_raster(self.zones, Area(south, north, west, east).array(), spacing)
 
@@ -265,7 +267,7 @@ class Chart:
         return CoastArrays(self.land.index, self.zones.index, self.area.array())
 
     def kernel(self) -> CoastArrays:
-        """Return the arrays for `thalweg.kernels.coast.leg_blocked` and its kin."""
+        """Return the arrays for `thalweg.kernels.geometry.coast_index.leg_blocked` and its kin."""
         return self._coast
 
     def is_navigable(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
@@ -336,7 +338,8 @@ class Chart:
         return self.depths.along(lat1, lon1, lat2, lon2)
 
     def depth_kernel(self, south: float, north: float, west: float, east: float) -> DepthArrays:
-        """Return the depth of a box [deg] for `thalweg.kernels.soundings.least_depth`.
+        """Return the depth of a box [deg] for
+        `thalweg.kernels.geometry.depth_sampling.least_depth`.
 
         Empty arrays when the chart has no depth; a function is laid on a grid of 1000 steps.
         """

@@ -10,20 +10,30 @@ import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
-from thalweg.cli import demo, evaluate, inspect, plan, project, ship, tides, tracks, waiting
-from thalweg.cli.exits import STOPPED, report
+from thalweg.cli import (
+    demo_command,
+    evaluate_command,
+    inspect_command,
+    plan_command,
+    project_command,
+    ship_command,
+    tides_command,
+    tracks_command,
+    waiting_command,
+)
+from thalweg.cli.exit_codes import STOPPED, report
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
 _COMMANDS = (
-    plan.add_command,
-    evaluate.add_command,
-    inspect.add_command,
-    ship.add_ship_command,
-    tides.add_command,
-    project.add_command,
-    waiting.add_command,
-    tracks.add_command,
-    demo.add_command,
+    plan_command.add_command,
+    evaluate_command.add_command,
+    inspect_command.add_command,
+    ship_command.add_ship_command,
+    tides_command.add_command,
+    project_command.add_command,
+    waiting_command.add_command,
+    tracks_command.add_command,
+    demo_command.add_command,
 )
 
 

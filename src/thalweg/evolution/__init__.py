@@ -1,10 +1,10 @@
 """Evolution of tracks: populations scored by the shared kernel, their operators and fronts."""
 
-from thalweg.evolution.evaluator import Evaluator, Prices, make_evaluator
 from thalweg.evolution.evolve import Evolution, Progress, evolve
-from thalweg.evolution.genome import Genome, Population
-from thalweg.evolution.operators import Habits, Mix
-from thalweg.evolution.refine import refine_front
+from thalweg.evolution.memetic import refine_front
+from thalweg.evolution.variation import Habits, Mix
+from thalweg.route.refinement.population import Genome, Population
+from thalweg.route.refinement.population_evaluator import Evaluator, Prices, make_evaluator
 
 __all__ = [
     "Evaluator",

@@ -12,18 +12,18 @@ import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.evaluator import Evaluator
-from thalweg.evolution.genome import Genome, Population
-from thalweg.evolution.initial import first_population
-from thalweg.evolution.metrics import generational_distance
+from thalweg.core.interrupt import stoppable
+from thalweg.evolution.algorithm import Strategy
+from thalweg.evolution.indicators import generational_distance
+from thalweg.evolution.initial_population import first_population
 from thalweg.evolution.mpaes import Mpaes
 from thalweg.evolution.nsga2 import Nsga2
-from thalweg.evolution.operators import Habits
 from thalweg.evolution.ranking import front_of, thinned
 from thalweg.evolution.spea2 import Spea2
-from thalweg.evolution.stopping import stoppable
-from thalweg.evolution.strategy import Strategy
-from thalweg.kernels import fitness
+from thalweg.evolution.variation import Habits
+from thalweg.kernels.leg import population_sailing
+from thalweg.route.refinement.population import Genome, Population
+from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.track import Track
 
 METHODS: dict[str, type[Strategy]] = {"nsga2": Nsga2, "spea2": Spea2, "mpaes": Mpaes}
@@ -242,7 +242,7 @@ def run(
 
 def paused(habits: Habits, population: Population) -> Habits:
     """Return habits that change waits too, if a population has any."""
-    waits = bool((population.genes[:, :, fitness.WAIT] > 0.0).any())
+    waits = bool((population.genes[:, :, population_sailing.WAIT] > 0.0).any())
     if not waits or habits.mix.pause > 0.0:
         return habits
     return replace(habits, mix=replace(habits.mix, pause=0.5))

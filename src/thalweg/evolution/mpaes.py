@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.genome import IntArray, joined
-from thalweg.evolution.metrics import crowding_distance
+from thalweg.evolution.algorithm import Steps, Strategy
+from thalweg.evolution.indicators import crowding_distance
 from thalweg.evolution.ranking import best_of, dominates
-from thalweg.evolution.strategy import Steps, Strategy
+from thalweg.route.refinement.population import IntArray, joined
 
 MOST_FAILS = 5  #: moves in a row to somewhere worse that end a climb
 MOST_MOVES = 20  #: of a climb

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from thalweg.evolution.algorithm import Steps, Strategy
 from thalweg.evolution.ranking import best_of
-from thalweg.evolution.strategy import Steps, Strategy
 
 
 class Nsga2(Strategy):

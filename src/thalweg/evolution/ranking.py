@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.genome import BoolArray, IntArray
-from thalweg.kernels import ranking
+from thalweg.kernels.evolution import dominance
+from thalweg.route.refinement.population import BoolArray, IntArray
 
 TIME, COST, VIOLATION = 0, 1, 2
 
@@ -25,9 +25,9 @@ def ranked(scores: FloatArray) -> tuple[IntArray, FloatArray]:
     feasible = scores[:, VIOLATION] == 0.0
     order = np.lexsort((second, first))
     order = order[feasible[order]]
-    fronts = ranking.assign_fronts(order, second, np.empty(len(order)), rank)
+    fronts = dominance.assign_fronts(order, second, np.empty(len(order)), rank)
     ends = np.full((max(fronts, 1), 4), -1, dtype=np.int64)
-    ranking.assign_crowding(order, first, second, rank, ends, crowding)
+    dominance.assign_crowding(order, first, second, rank, ends, crowding)
     broken = np.flatnonzero(~feasible)
     worst = broken[np.argsort(scores[broken, VIOLATION], kind="stable")]
     rank[worst] = fronts + np.arange(len(worst))
@@ -49,8 +49,8 @@ def strength_fitness(scores: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
     """
     first, second, violation = (np.ascontiguousarray(scores[:, c]) for c in range(3))
     strength, raw = np.empty(len(scores)), np.empty(len(scores))
-    ranking.strengths(first, second, violation, strength, raw)
-    near = ranking.neighbour_distances(first, second)
+    dominance.strengths(first, second, violation, strength, raw)
+    near = dominance.neighbour_distances(first, second)
     k = min(math.isqrt(len(scores)), near.shape[1])
     density = 1.0 / (near[:, k - 1] + 2.0) if k else np.full(len(scores), 0.5)
     return strength, raw, raw + density

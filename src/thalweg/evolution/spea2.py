@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.genome import IntArray
+from thalweg.evolution.algorithm import Steps, Strategy
 from thalweg.evolution.ranking import normalised, strength_fitness
-from thalweg.evolution.strategy import Steps, Strategy
-from thalweg.kernels.ranking import truncate
+from thalweg.kernels.evolution.dominance import truncate
+from thalweg.route.refinement.population import IntArray
 
 
 class Spea2(Strategy):

@@ -11,10 +11,8 @@ import numpy as np
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import MEAN_RADIUS, Position
-from thalweg.kernels import graph
-from thalweg.network.frame import arc, unit_vectors
-from thalweg.network.network import FloatArray, Int32Array, Network
-from thalweg.network.pairs import (
+from thalweg.kernels.network import graph_building
+from thalweg.network.assembly import (
     Pairs,
     Rejected,
     Stations,
@@ -24,6 +22,8 @@ from thalweg.network.pairs import (
     free_legs,
     measure,
 )
+from thalweg.network.network import FloatArray, Int32Array, Network
+from thalweg.network.regional_lattice.conformal_projection import arc, unit_vectors
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -280,7 +280,7 @@ def _merge(old: Network, new: Network) -> Network:
     ptr = np.append(old.via_ptr, new.via_ptr[1:] + old.via_ptr[-1])
     forward = np.zeros(len(order), bool)
     vias = (both(name) for name in ("via_a", "via_b", "via_w", "via_s"))
-    via_ptr, via_a, via_b, via_w, via_s = graph.mirror_vias(order, forward, ptr, *vias)
+    via_ptr, via_a, via_b, via_w, via_s = graph_building.mirror_vias(order, forward, ptr, *vias)
     columns: dict[str, Any] = {name: both(name)[order] for name in _COLUMNS}
     return replace(
         new, indptr=old.indptr + new.indptr, can_wait=old.can_wait,

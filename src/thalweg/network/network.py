@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
-from thalweg.kernels import graph
-from thalweg.kernels.ways import static_astar
-from thalweg.network.bounding import distance_bounds
+from thalweg.kernels.network import graph_building
+from thalweg.kernels.network.static_paths import static_astar
+from thalweg.network.distance_bounds import distance_bounds
 
 FloatArray: TypeAlias = NDArray[np.float64]
 Float32Array: TypeAlias = NDArray[np.float32]
@@ -188,7 +188,7 @@ def shortest(
         static_astar(network.indptr, network.target, weights, bound, start, goal, distance, parent)
     else:
         arrays = network.indptr, network.target, weights
-        graph.static_distances(*arrays, start, goal, distance, parent)
+        graph_building.static_distances(*arrays, start, goal, distance, parent)
     if goal < 0 or not np.isfinite(distance[goal]):
         return distance, []
     path = [goal]

@@ -12,7 +12,7 @@ import numpy as np
 
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
-from thalweg.planning.fronts import FrontOfPlan
+from thalweg.planning.pareto.plan_front import FrontOfPlan
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 
@@ -169,7 +169,7 @@ class Plan:
 
     def plot(self, path: str | Path | None = None) -> Any:
         """Draw the map of the plan; save it when a path is given. Returns a matplotlib figure."""
-        from thalweg.planning.map_picture import draw_map
+        from thalweg.planning.plots.voyage_map import draw_map
 
         return draw_map(self, path)
 
@@ -189,7 +189,7 @@ class Plan:
         InputError
             If the folder cannot be written.
         """
-        from thalweg.planning.output import write_plan
+        from thalweg.planning.report.output_files import write_plan
 
         return write_plan(self, folder)
 

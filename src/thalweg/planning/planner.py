@@ -13,15 +13,15 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
-from thalweg.planning.door import check_kinds, covered_ends
-from thalweg.planning.ends import End, check_apart, find_end
-from thalweg.planning.needs import check_period, find_needs
-from thalweg.planning.networks import Builder, NetworkChoice
-from thalweg.planning.passage import Passage, Task, make_passage, table_of
+from thalweg.planning.network_selection.network_choice import Builder, NetworkChoice
 from thalweg.planning.plan import Plan, Proof, Surroundings, in_unit
-from thalweg.planning.telling import known, network_facts, provenance, route_notes
+from thalweg.planning.report.provenance import known, network_facts, provenance, route_notes
+from thalweg.planning.request.chart_restrictions import open_canals, with_control_areas, without_ice
+from thalweg.planning.request.coverage_check import check_kinds, covered_ends
+from thalweg.planning.request.requirements import check_period, find_needs
+from thalweg.planning.request.voyage_endpoints import End, check_apart, find_end
+from thalweg.planning.single.passage import Passage, Task, make_passage, table_of
 from thalweg.planning.voyage import TRADES, Voyage
-from thalweg.planning.waters import open_canals, with_control_areas, without_ice
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
@@ -51,7 +51,8 @@ def plan(
     chart : Chart, optional
         Land, depth and zones; GSHHG coastline at resolution "i" when not given.
     network : {"auto", "lattice", "mesh", "globe"} or callable
-        How the network is built; see `thalweg.planning.networks.NetworkChoice`.
+        How the network is built; see
+        `thalweg.planning.network_selection.network_choice.NetworkChoice`.
     resolution : float, optional
         Spacing of the network [m]; chosen from the distance when not given.
     progress : callable, optional
@@ -76,7 +77,7 @@ def plan(
     chart = Chart.gshhg("i") if chart is None else chart
     check_kinds(voyage, ship, sea, chart)
     if sea.members:
-        from thalweg.planning.robust import plan_robust
+        from thalweg.planning.ensemble_plan import plan_robust
 
         options = {
             "ship": ship,
@@ -120,7 +121,7 @@ def plan(
         tell=progress or (lambda text: None),
     )
     if voyage.objective in TRADES:
-        from thalweg.planning.trade_plan import trade
+        from thalweg.planning.pareto.trade_off_planner import trade
 
         return trade(task, ends)
     passages = _make_passages(task, ends)

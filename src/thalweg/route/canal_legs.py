@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.ship.condition_variables import WAVE_NORTH, WAVE_PERIOD
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.variables import WAVE_NORTH, WAVE_PERIOD
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

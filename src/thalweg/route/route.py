@@ -186,13 +186,13 @@ class Route:
 
     def waypoints(self) -> list[dict[str, Any]]:
         """Return one plain dictionary per waypoint, ready for JSON (None where unknown)."""
-        from thalweg.route.report import waypoint_rows
+        from thalweg.route.route_tables import waypoint_rows
 
         return waypoint_rows(self)
 
     def to_frame(self) -> pd.DataFrame:
         """Return a pandas table with one row per waypoint; ``time`` is datetime64 (UTC)."""
-        from thalweg.route.report import waypoint_frame
+        from thalweg.route.route_tables import waypoint_frame
 
         return waypoint_frame(self)
 

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
-from thalweg.sea import names as nm
-from thalweg.sea.fields import FloatArray, GridFields, IntArray, StationFields
-from thalweg.sea.layered import LayeredSea
+from thalweg.sea import standard_names as nm
+from thalweg.sea.frozen_fields import FloatArray, GridFields, IntArray, StationFields
+from thalweg.sea.layer_stack import LayeredSea
 
 Extra: TypeAlias = Callable[
     [Mapping[str, FloatArray], FloatArray, FloatArray, FloatArray], FloatArray

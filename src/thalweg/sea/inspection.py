@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.time import format_time
-from thalweg.sea.fields import Coverage
+from thalweg.sea.frozen_fields import Coverage
 
 if TYPE_CHECKING:
-    from thalweg.sea.gridded import GridLayer
+    from thalweg.sea.grids.gridded_layer import GridLayer
     from thalweg.sea.sea import Sea
 
 SAMPLED_LEVELS = 8  #: levels looked at for the share of missing values
@@ -110,7 +110,7 @@ def _text(time: float | None) -> str | None:
 
 def inspect(sea: Sea) -> Inspection:
     """Return what is known about the data behind a sea; reads a few levels of every file."""
-    from thalweg.sea.gridded import GridLayer
+    from thalweg.sea.grids.gridded_layer import GridLayer
 
     one = sea.member(0) if sea.members else sea
     layers = [layer for layer in one.layers if isinstance(layer, GridLayer)]
@@ -131,7 +131,7 @@ def inspect(sea: Sea) -> Inspection:
 
 def gaps_of(sea: Sea) -> tuple[Gap, ...]:
     """Return the stretches of time for which files have no data between data."""
-    from thalweg.sea.gridded import GridLayer
+    from thalweg.sea.grids.gridded_layer import GridLayer
 
     return tuple(
         gap for layer in sea.layers if isinstance(layer, GridLayer) for gap in _gaps(layer)
@@ -147,7 +147,7 @@ def _gaps(layer: GridLayer) -> list[Gap]:
 
 
 def _missing(layer: GridLayer) -> dict[str, float]:
-    from thalweg.sea.store import Window
+    from thalweg.sea.files.block_cache import Window
 
     rows, columns = layer.grid.shape
     count = max(1, layer.axis.times.size)

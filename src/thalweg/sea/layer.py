@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.sea.fields import Area, Coverage, FloatArray, Mesh
+from thalweg.sea.frozen_fields import Area, Coverage, FloatArray, Mesh
 
 Samples = dict[str, FloatArray]
 

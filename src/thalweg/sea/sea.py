@@ -12,20 +12,21 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.sea import functions as formulas
-from thalweg.sea import inspection, storm
-from thalweg.sea import names as nm
-from thalweg.sea.arguments import area_of, period_of, step_of
-from thalweg.sea.ensemble import together
+from thalweg.sea import inspection
+from thalweg.sea import standard_names as nm
+from thalweg.sea.argument_checks import area_of, period_of, step_of
+from thalweg.sea.ensemble_layer import together
+from thalweg.sea.fill_policies import CALM, policy_values
 from thalweg.sea.freeze import FreezableSea
 from thalweg.sea.inspection import Inspection
 from thalweg.sea.layer import Layer
-from thalweg.sea.policies import CALM, policy_values
-from thalweg.sea.wind_sea import WindSeaLayer
+from thalweg.sea.models import cyclone_layer
+from thalweg.sea.models import function_layer as formulas
+from thalweg.sea.models.wind_sea import WindSeaLayer
 
 if TYPE_CHECKING:
-    from thalweg.sea.constituents import Constituents
-    from thalweg.sea.tides import TideAnalysis
+    from thalweg.sea.tides.constituents import Constituents
+    from thalweg.sea.tides.harmonic_analysis import TideAnalysis
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +95,7 @@ class Sea(FreezableSea):
             If a file is damaged, cut, not data, ambiguous, in impossible units, or laid out in a
             way that cannot be sailed on (points, lines, climatologies); the message says why.
         """
-        from thalweg.sea.opening import open_layers
+        from thalweg.sea.files.file_opener import open_layers
 
         return cls(tuple(open_layers(paths, mapping, draught_m)))
 
@@ -197,11 +198,11 @@ class Sea(FreezableSea):
     @classmethod
     def storm(
         cls,
-        name: str = storm.DEFAULT_STORM,
+        name: str = cyclone_layer.DEFAULT_STORM,
         *,
         start: TimeLike | None = None,
-        ambient: storm.Ambient | None = None,
-        time_step: float = storm.TIME_STEP,
+        ambient: cyclone_layer.Ambient | None = None,
+        time_step: float = cyclone_layer.TIME_STEP,
     ) -> Sea:
         """Return wind and waves of a real cyclone, **modelled** from its best track.
 
@@ -226,7 +227,7 @@ class Sea(FreezableSea):
         time_step : float, optional
             Step [s] at which kernels get the storm, 1 or more; one hour by default.
         """
-        layer = storm.storm_layer(name, start=start, ambient=ambient, time_step=time_step)
+        layer = cyclone_layer.storm_layer(name, start=start, ambient=ambient, time_step=time_step)
         return cls((layer,))
 
     @classmethod
@@ -265,7 +266,7 @@ class Sea(FreezableSea):
             If the run is too short for the constituents (it says which need how long), or has no
             currents and levels over time; or if an area is given for more than one station.
         """
-        from thalweg.sea.tidal_layer import tidal_sea
+        from thalweg.sea.tides.tidal_layer import tidal_sea
 
         return tidal_sea(
             source,
@@ -293,8 +294,8 @@ class Sea(FreezableSea):
         **policies
             ``currents`` and ``wind``: 0.0 or (east, north) [m/s]; ``waves``: significant height
             [m] (0.0, or a height with direction north and period 8 s), or ``"wind"`` for the waves
-            that the known wind raises (`thalweg.sea.wind_sea.carter_1982`); ``water_level`` [m];
-            ``ice`` [fraction]. The value holds wherever and whenever no layer knows better.
+            that the known wind raises (`thalweg.sea.models.wind_sea.carter_1982`); ``water_level``
+            [m]; ``ice`` [fraction]. The value holds wherever and whenever no layer knows better.
 
         Returns
         -------
@@ -359,7 +360,7 @@ class Sea(FreezableSea):
         coastline : sequence of (lat, lon), optional
             Lines [deg] drawn on top.
         """
-        from thalweg.sea.draw import draw
+        from thalweg.sea.sea_maps import draw
 
         when = None if time is None else parse_time(time)
         box = None if area is None else area_of(area)

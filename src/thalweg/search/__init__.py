@@ -1,15 +1,15 @@
 """Exact searches on networks through time-dependent water."""
 
-from thalweg.search.bounds import Bound, direction_factor, lower_bound
-from thalweg.search.departure import best_departure
+from thalweg.search.departure_window import best_departure
 from thalweg.search.earliest_arrival import earliest_arrival
 from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
-from thalweg.search.front import front
-from thalweg.search.front_points import Front, FrontPoint, FrontWork, cheapest
-from thalweg.search.profile import Passage, Passages, Profile
-from thalweg.search.result import SearchResult, SearchWork
-from thalweg.search.table_extremes import extreme
-from thalweg.search.waters import Waters
+from thalweg.search.lower_bounds import Bound, direction_factor, lower_bound
+from thalweg.search.pareto.front_result import Front, FrontPoint, FrontWork, cheapest
+from thalweg.search.pareto.pareto_search import front
+from thalweg.search.prepared_network import Waters
+from thalweg.search.profile_search import Passage, Passages, Profile
+from thalweg.search.search_result import SearchResult, SearchWork
+from thalweg.ship.tables.table_bounds import extreme
 
 __all__ = [
     "Bound",

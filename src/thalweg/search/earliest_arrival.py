@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.kernels.codes import REASONS
-from thalweg.kernels.label_setting import (
+from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.kernels.search.label_setting import (
     RELAXED,
     SAILED,
     SETTLED,
@@ -21,15 +22,14 @@ from thalweg.kernels.label_setting import (
     new_labels,
     new_workspace,
 )
-from thalweg.kernels.tables import TableArrays
-from thalweg.search.arrays import SHRINK, Problem, canal_speed, distance_bounds, problem
-from thalweg.search.berths import berths_matter, earliest_from_berths
-from thalweg.search.result import SearchResult, SearchWork
+from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
+from thalweg.search.search_problem import SHRINK, Problem, canal_speed, distance_bounds, problem
+from thalweg.search.search_result import SearchResult, SearchWork
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
-    from thalweg.sea.fields import StationFields
-    from thalweg.ship.table import PerformanceTable
+    from thalweg.sea.frozen_fields import StationFields
+    from thalweg.ship.tables.performance_table import PerformanceTable
 
 Objective = Literal["time", "distance"]
 Method = Literal["astar", "dijkstra"]
@@ -92,14 +92,15 @@ def earliest_arrival(
     -----
     By time and with penalty factors of 1 the result is exact on the network as long as edges keep
     order (who departs later arrives later); waiting provides that where it is allowed, to within
-    the sampling of departures named in `thalweg.kernels.waiting.wait_for_edge`. Elsewhere
-    `thalweg.search.fifo.fifo_report` measures how far order is broken. By distance, or with other
-    penalty factors, one label per node is exact as long as the time of passage does not decide
-    which edges are open; ties go to the earlier arrival.
+    the sampling of departures named in `thalweg.kernels.search.edge_departure.wait_for_edge`.
+    Elsewhere `thalweg.search.fifo.fifo_report` measures how far order is broken. By distance, or
+    with other penalty factors, one label per node is exact as long as the time of passage does not
+    decide which edges are open; ties go to the earlier arrival.
 
     A ship waits only while it stays afloat at the required depth, except at the start; a node that
-    falls dry has a label for each time it is afloat (`thalweg.search.tides`). Where it may not wait
-    at every node, time is minimised by waves from where it may (`thalweg.search.berths`).
+    falls dry has a label for each time it is afloat (`thalweg.search.tidal_states`). Where it may
+    not wait at every node, time is minimised by waves from where it may
+    (`thalweg.search.limited_waiting`).
 
     A* uses a lower bound of the geodesic distance to the goal divided by the largest speed over
     ground (top speed plus largest current in the fields, or what a canal gives if that is more),

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.kernels.tables import TableArrays
-from thalweg.kernels.waiting import edge_arrivals
-from thalweg.search.arrays import problem
+from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.kernels.search.edge_departure import edge_arrivals
+from thalweg.search.search_problem import problem
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
-    from thalweg.sea.fields import StationFields
-    from thalweg.ship.table import PerformanceTable
+    from thalweg.sea.frozen_fields import StationFields
+    from thalweg.ship.tables.performance_table import PerformanceTable
 
 FloatArray = NDArray[np.float64]
 

@@ -5,14 +5,14 @@ In: ship files (YAML), functions, conditions as arrays in SI. Out: speeds, power
 """
 
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.contract import check_ship_model
-from thalweg.ship.limits import ShipLimits
+from thalweg.ship.file.ship_file import library_names
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.model_check import check_ship_model
+from thalweg.ship.model_protocol import Estimate, ShipModel
 from thalweg.ship.plugins import plugin_names
 from thalweg.ship.ship import Ship
-from thalweg.ship.ship_file import library_names
-from thalweg.ship.table import PerformanceTable, TableError, TablePart
+from thalweg.ship.ship_limits import ShipLimits
+from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
 
 __all__ = [
     "Conditions",

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, near_matches
-from thalweg.ship.variables import (
+from thalweg.ship.condition_variables import (
     BED_DEPTH,
     EASTWARD_CURRENT,
     EASTWARD_WIND,

@@ -21,9 +21,9 @@ def plugin_names() -> list[str]:
 def plugin(name: str) -> Any:
     """Return what another package offers under a name, or None.
 
-    It is a `Ship`, a mapping like a ship file, a model as in `thalweg.ship.model.ShipModel`, a
-    function of conditions that returns speeds, or a callable without arguments that returns one of
-    these.
+    It is a `Ship`, a mapping like a ship file, a model as in
+    `thalweg.ship.model_protocol.ShipModel`, a function of conditions that returns speeds, or a
+    callable without arguments that returns one of these.
 
     Raises
     ------

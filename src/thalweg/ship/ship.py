@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
-from thalweg.ship.answers import Answers
-from thalweg.ship.build import (
+from thalweg.ship.condition_variables import HEADING_DEPENDENT, needed_variables
+from thalweg.ship.file.ship_builder import (
     build_limits,
     build_loading,
     build_model,
@@ -25,18 +25,18 @@ from thalweg.ship.build import (
     simple_data,
     with_safety,
 )
-from thalweg.ship.fuel_of_power import hotel_fuel, hotel_power
-from thalweg.ship.fuel_terms import FuelTerms, fuel_terms
-from thalweg.ship.function_model import FunctionModel, SpeedFunction, model_of_function
-from thalweg.ship.hull import complete_hull
-from thalweg.ship.limits import ShipLimits
+from thalweg.ship.file.ship_file import library_names, read_ship
+from thalweg.ship.file.ship_schema import check_ship_data
+from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+from thalweg.ship.hull.hull import complete_hull
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.model import Estimate, ShipModel
+from thalweg.ship.model_protocol import Estimate, ShipModel
+from thalweg.ship.models.fuel_from_power import hotel_fuel, hotel_power
+from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.plugins import plugin
-from thalweg.ship.schema import check_ship_data
-from thalweg.ship.ship_file import library_names, read_ship
-from thalweg.ship.table import PerformanceTable
-from thalweg.ship.variables import HEADING_DEPENDENT, needed_variables
+from thalweg.ship.queries import Answers
+from thalweg.ship.ship_limits import ShipLimits
+from thalweg.ship.tables.performance_table import PerformanceTable
 
 FloatArray = NDArray[np.float64]
 _SINGLE_PRECISION = 2.0**-23
@@ -345,7 +345,7 @@ class Ship(Answers):
         InputError
             If the ship's fuel is unknown, or its speed is a field, which has no settings.
         """
-        from thalweg.ship.tabulate_fuel import fuel_table
+        from thalweg.ship.tables.tabulate_fuel import fuel_table
 
         return fuel_table(self, tolerance)
 
@@ -357,7 +357,7 @@ class Ship(Answers):
         InputError
             If the ship's brake power is unknown, or its speed is a field.
         """
-        from thalweg.ship.tabulate_fuel import power_table
+        from thalweg.ship.tables.tabulate_fuel import power_table
 
         return power_table(self, tolerance)
 

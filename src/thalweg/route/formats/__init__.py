@@ -10,7 +10,7 @@ from thalweg.core.time import TimeLike
 from thalweg.route.formats.csv_format import parse_csv, write_csv
 from thalweg.route.formats.geojson_format import parse_geojson, write_geojson
 from thalweg.route.formats.gpx_format import parse_gpx, write_gpx
-from thalweg.route.formats.parsed import ParsedTrack, track_of
+from thalweg.route.formats.parsed_track import ParsedTrack, track_of
 from thalweg.route.track import Track
 
 __all__ = ["LARGEST_FILE", "read_track", "write_csv", "write_geojson", "write_gpx"]

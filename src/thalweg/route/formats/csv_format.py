@@ -10,7 +10,7 @@ from pathlib import Path
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.route.formats.parsed import SPEEDS, WAITS, ParsedTrack, order_of, position_of
+from thalweg.route.formats.parsed_track import SPEEDS, WAITS, ParsedTrack, order_of, position_of
 from thalweg.route.route import Route
 
 _NAMES = {

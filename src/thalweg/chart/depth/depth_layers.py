@@ -1,0 +1,236 @@
+"""Charted depth from several layers, the first that knows a place counting."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.chart.coast.coast_index_builder import unit_vectors
+from thalweg.chart.depth.depth_grids import Float32Array, FunctionLayer, GridLayer
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, along
+from thalweg.kernels.geometry.cube_sphere import POLAR
+from thalweg.kernels.geometry.depth_sampling import DepthArrays, depth_points, least_depths
+
+MOST_CELLS: Final = 60_000_000  # soundings held in memory at once
+LONG: Final = 5.0  # legs wider than this are cut first [deg]
+DENSE: Final = 1.0 / 600.0  # legs are sampled this close on functions without a spacing [deg]
+ALL: Final = -1
+Box = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Depths:
+    """Layers of depth by priority; windows of them are read and kept when needed."""
+
+    layers: tuple[GridLayer | FunctionLayer, ...] = ()
+    _kept: dict[int, tuple[Box, DepthArrays]] = field(
+        default_factory=dict, compare=False, repr=False
+    )
+
+    def arrays(self, box: Box, only: int = ALL) -> DepthArrays:
+        """Return all layers (or one) in a box [deg] for kernels; longitudes count modulo 360.
+
+        Raises
+        ------
+        InputError
+            If that is too much to hold in memory.
+        """
+        kept = self._kept.get(only)
+        if kept is not None and _covers(kept[0], box):
+            return kept[1]
+        cells = self._cells(box, only)
+        if cells > MOST_CELLS:
+            raise InputError(
+                f"The depth of this box has {cells / 1e6:.0f} million soundings.",
+                f"At most {MOST_CELLS / 1e6:.0f} million are read at once.",
+                "Use a smaller box, or a coarser depth file.",
+            )
+        wider = _widened(box)
+        box = wider if self._cells(wider, only) <= MOST_CELLS else box
+        arrays = _packed([layer.window(*box) for layer in self._chosen(only)])
+        self._kept[only] = (box, arrays)
+        return arrays
+
+    def _chosen(self, only: int) -> tuple[GridLayer | FunctionLayer, ...]:
+        return self.layers if only == ALL else self.layers[only : only + 1]
+
+    def _cells(self, box: Box, only: int) -> float:
+        """Return roughly how many soundings a box holds."""
+        south, north, west, east = box
+        total = 0.0
+        for layer in self._chosen(only):
+            if isinstance(layer, GridLayer):
+                tall = min(north, layer.lat[-1]) - max(south, layer.lat[0])
+                share = min((east - west) / (layer.lon[-1] - layer.lon[0]), 1.0)
+                rows = max(tall, 0.0) / (layer.lat[-1] - layer.lat[0]) * len(layer.lat)
+                total += (rows + 3.0) * (share * len(layer.lon) + 3.0)
+            elif layer.spacing_deg:
+                total += (north - south) * (east - west) / layer.spacing_deg**2
+            else:
+                total += 1e6
+        return total
+
+    def at(self, lat: ArrayLike, lon: ArrayLike, *, least: bool = False) -> FloatArray:
+        """Return the depth [m] at positions [deg], NaN where no layer knows it.
+
+        Bilinear, or the least of the soundings round each position.
+        """
+        a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
+        y, x = np.ascontiguousarray(a).ravel(), np.ascontiguousarray(b).ravel()
+        depth = np.full(len(y), np.nan)
+        todo = np.isfinite(y) & np.isfinite(x)
+        for number, layer in enumerate(self.layers):
+            k = np.flatnonzero(todo)
+            if not len(k):
+                break
+            if isinstance(layer, FunctionLayer):
+                depth[k] = layer.at(y[k], x[k])
+            else:
+                depth[k] = self._points(y[k], x[k], number, least)
+            todo &= np.isnan(depth)
+        return depth.reshape(a.shape)
+
+    def _points(self, lat: FloatArray, lon: FloatArray, only: int, least: bool) -> FloatArray:
+        """Return depth from one grid at flat positions, in parts if they spread far."""
+        depth = np.empty(len(lat))
+        box = _box(lat, lon)
+        if len(lat) > 1 and self._cells(box, only) > MOST_CELLS:
+            left = _halves(lat, lon, box)
+            for part in (left, ~left):
+                depth[part] = self._points(lat[part], lon[part], only, least)
+            return depth
+        depth_points(self.arrays(box, only), lat, lon, least, depth)
+        return depth
+
+    def along(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> Float32Array:
+        """Return the least depth [m] on each leg [deg]; infinite without layers, NaN unknown."""
+        ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+        if not self.layers:
+            return np.full(ends[0].shape, np.inf, np.float32)
+        a, b, c, d = (np.ascontiguousarray(x).ravel() for x in ends)
+        d = b + (d - b + 180.0) % 360.0 - 180.0
+        return self._legs(a, b, c, d).reshape(ends[0].shape)
+
+    def _legs(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+    ) -> Float32Array:
+        depth = np.full(len(lat1), np.nan, np.float32)
+        width = np.maximum(np.abs(lon2 - lon1), np.abs(lat2 - lat1))
+        known = np.isfinite(width)
+        long = known & (width > LONG)
+        for k in np.flatnonzero(long):
+            depth[k] = self._long(lat1[k], lon1[k], lat2[k], lon2[k])
+        short = np.flatnonzero(known & ~long)
+        if not len(short):
+            return depth
+        a, b, c, d = (x[short] for x in (lat1, lon1, lat2, lon2))
+        sampled = any(isinstance(layer, FunctionLayer) for layer in self.layers)
+        box = _box(np.append(a, c), np.append(b, d))
+        crowded = len(short) * 65 > MOST_CELLS / 10 if sampled else False
+        if len(short) > 1 and (crowded or self._cells(box, ALL) > MOST_CELLS):
+            left = _halves(a, b, box)
+            for part in (left, ~left):
+                depth[short[part]] = self._legs(a[part], b[part], c[part], d[part])
+        elif sampled:
+            depth[short] = self._sampled(a, b, c, d)
+        else:
+            found = np.empty(len(short), np.float32)
+            least_depths(self.arrays(box), a, b, c, d, found)
+            depth[short] = found
+        return depth
+
+    def _sampled(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+    ) -> FloatArray:
+        """Return the least depth at samples of legs, for layers that are functions."""
+        steps = [x.spacing_deg or DENSE for x in self.layers if isinstance(x, FunctionLayer)]
+        for layer in self.layers:
+            if isinstance(layer, GridLayer):
+                steps += [np.diff(layer.lat).min() / 2.0, np.diff(layer.lon).min() / 2.0]
+        widest = float(np.maximum(np.abs(lon2 - lon1), np.abs(lat2 - lat1)).max())
+        count = min(max(math.ceil(widest / min(steps)), 8), 2048)
+        least = np.full(len(lat1), np.inf)
+        a, b = unit_vectors(lat1, lon1), unit_vectors(lat2, lon2)
+        for share in np.arange(count + 1) / count:
+            x, y, z = np.moveaxis(a + share * (b - a), -1, 0)
+            lat = np.degrees(np.arctan2(z, POLAR * np.hypot(x, y)))
+            least = np.minimum(least, self.at(lat, np.degrees(np.arctan2(y, x)), least=True))
+        return least
+
+    def _long(self, lat1: float, lon1: float, lat2: float, lon2: float) -> float:
+        """Return the least depth of a leg cut along its geodesic."""
+        wide = max(abs(lon2 - lon1), abs(lat2 - lat1))
+        lat, lon = along(lat1, lon1, lat2, lon2, np.linspace(0.0, 1.0, int(wide / 2.0) + 2))
+        lat[0], lat[-1] = lat1, lat2
+        return float(np.min(self.along(lat[:-1], lon[:-1], lat[1:], lon[1:])))  # NaN wins
+
+
+def _widened(box: Box) -> Box:
+    """Return a box a quarter wider each way, so that the next legs near by are on it too."""
+    south, north, west, east = box
+    tall, wide = 0.25 * (north - south) + 0.1, 0.25 * (east - west) + 0.1
+    return max(south - tall, -90.0), min(north + tall, 90.0), west - wide, east + wide
+
+
+def _packed(
+    windows: list[tuple[tuple[float, float, float, float], Float32Array] | None],
+) -> DepthArrays:
+    found = [w for w in windows if w is not None and min(w[1].shape) > 1]
+    grids = np.array([g for g, _ in found], float).reshape(-1, 4)
+    shapes = np.array([v.shape for _, v in found], np.int64).reshape(-1, 2)
+    sizes = shapes[:, 0] * shapes[:, 1]
+    if not found and windows:  # layers that do not reach here: unknown, not unchecked
+        nothing = np.full((2, 2), np.nan, np.float32)
+        return _packed([((0.0, 1.0, 0.0, 1.0), nothing)])
+    flat = [np.ascontiguousarray(v, np.float32).ravel() for _, v in found]
+    values = np.concatenate(flat) if flat else np.empty(0, np.float32)
+    return DepthArrays(grids, shapes, (np.cumsum(sizes) - sizes).astype(np.int64), values)
+
+
+def _box(lat: FloatArray, lon: FloatArray) -> Box:
+    return float(lat.min()), float(lat.max()), float(lon.min()), float(lon.max())
+
+
+def _covers(kept: Box, box: Box) -> bool:
+    return kept[0] <= box[0] and kept[1] >= box[1] and kept[2] <= box[2] and kept[3] >= box[3]
+
+
+def _halves(lat: FloatArray, lon: FloatArray, box: Box) -> NDArray[np.bool_]:
+    """Return a mask that parts places in two non-empty halves, across the longer side."""
+    line = lat if box[1] - box[0] > box[3] - box[2] else lon
+    order = np.argsort(line, kind="stable")
+    left = np.zeros(len(line), bool)
+    left[order[: len(line) // 2]] = True
+    return left
+
+
+@cache
+def _world() -> DepthArrays:
+    place = resources.files("thalweg.chart").joinpath("data/etopo1_30min.npz")
+    with place.open("rb") as file, np.load(file, allow_pickle=False) as data:
+        depth = -data["elevation"].astype(np.float32)
+        grid = (float(data["south"]), float(data["spacing"]), float(data["west"]))
+    depth = np.concatenate([depth, depth[:, :1]], 1)
+    return _packed([((grid[0], grid[1], grid[2], grid[1]), depth)])
+
+
+def warning_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+    """Return depth [m] from every 30th point of ETOPO1 (NOAA): a warning, never a proof.
+
+    Amante and Eakins (2009), doi:10.7289/V5C8276M; points, not means, so shoals between them are
+    not in it.
+    """
+    a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
+    depth = np.empty(a.size)
+    flat = [np.ascontiguousarray(x).ravel() for x in (a, b)]
+    depth_points(_world(), flat[0], flat[1], False, depth)
+    return depth.reshape(a.shape)

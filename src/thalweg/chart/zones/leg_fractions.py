@@ -1,0 +1,143 @@
+"""How much of a leg lies inside polygons: exact along the geodesic, quick where none is touched."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.chart.coast.coast_index_builder import empty_index
+from thalweg.chart.coast.rings import Rings
+from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.kernels.codes import LAND
+from thalweg.kernels.geometry.coast_index import CoastArrays, outlines_touched, point_codes
+from thalweg.kernels.geometry.cube_sphere import ALL_LAND, RADIUS, IndexArrays
+from thalweg.kernels.geometry.polygon_fractions import middles_inside, shares_by_halves
+
+FINEST: Final = 0.25  # pieces this short are taken whole [m]
+LONGEST: Final = 400_000.0  # longer legs are cut into such pieces first [m]
+IntArray = NDArray[np.int64]
+_WORLD: Final = np.array([-90.0, 90.0, -180.0, 360.0])
+
+
+def outlines_only(index: IndexArrays) -> IndexArrays:
+    """Return the index without its insides: legs within a polygon touch nothing."""
+    inside = index.cell == np.float32(ALL_LAND)
+    return index._replace(cell=np.where(inside, np.float32(0.0), index.cell))
+
+
+def points_inside(index: IndexArrays, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+    """Return which positions [deg] lie inside the polygons of an index; arrays of one dimension."""
+    code = np.empty(len(lat), np.int8)
+    flat = [np.require(x, float, ("C", "W")) for x in (lat, lon)]
+    point_codes(CoastArrays(index, empty_index(), _WORLD), flat[0], flat[1], code)
+    return np.asarray(code == LAND)
+
+
+def _middles(
+    index: IndexArrays, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> NDArray[np.bool_]:
+    within = np.empty(len(lat1), np.bool_)
+    legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
+    middles_inside(index, *legs, within)
+    return within
+
+
+def shares_inside(
+    index: IndexArrays,
+    outlines: IndexArrays,
+    lat1: FloatArray,
+    lon1: FloatArray,
+    lat2: FloatArray,
+    lon2: FloatArray,
+    *,
+    finest: float = FINEST,
+) -> FloatArray:
+    """Return the share of the length of each geodesic leg [deg] inside the polygons of an index.
+
+    ``outlines`` is `outlines_only` of the index.
+
+    Legs that touch no outline are told by their middle. The others are halved again and again where
+    they touch one, until pieces are shorter than ``finest`` [m]: each crossing is found to that.
+    NaN where a position is no number.
+    """
+    legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
+    known = (
+        np.isfinite(legs[0]) & np.isfinite(legs[1]) & np.isfinite(legs[2]) & np.isfinite(legs[3])
+    )
+    if not known.all():
+        share = np.full(len(known), np.nan)
+        share[known] = shares_inside(index, outlines, *(x[known] for x in legs), finest=finest)
+        return share
+    touched = np.empty(len(known), np.bool_)
+    outlines_touched(outlines, *legs, touched)
+    share = np.zeros(len(known))
+    whole = np.flatnonzero(~touched)
+    share[whole] = _middles(index, *(x[whole] for x in legs))
+    cut = np.flatnonzero(touched)
+    if len(cut):
+        share[cut] = _refined(index, outlines, *(x[cut] for x in legs), finest=finest)
+    return share
+
+
+def _refined(
+    index: IndexArrays,
+    outlines: IndexArrays,
+    lat1: FloatArray,
+    lon1: FloatArray,
+    lat2: FloatArray,
+    lon2: FloatArray,
+    *,
+    finest: float,
+) -> FloatArray:
+    """Return shares of legs that touch an outline."""
+    length, course, _ = inverse(lat1, lon1, lat2, lon2)
+    parts = np.maximum(np.ceil(length / LONGEST), 1.0).astype(np.int64)
+    leg = np.repeat(np.arange(len(parts)), parts)
+    number = np.arange(len(leg)) - np.repeat(np.cumsum(parts) - parts, parts)
+
+    def ends(share: FloatArray) -> tuple[FloatArray, FloatArray]:
+        lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
+        lat, lon = (np.where(share <= 0.0, x[leg], y) for x, y in ((lat1, lat), (lon1, lon)))
+        lat, lon = (np.where(share >= 1.0, x[leg], y) for x, y in ((lat2, lat), (lon2, lon)))
+        return lat, lon
+
+    low, high = ends(number / parts[leg]), ends((number + 1) / parts[leg])
+    share = np.empty(len(leg))
+    shares_by_halves(index, outlines, *low, *high, finest / RADIUS, share)
+    return np.minimum(np.bincount(leg, share / parts[leg], minlength=len(parts)), 1.0)
+
+
+def box_touched(
+    outlines: list[Rings], lat: FloatArray, lon: FloatArray, dlat: float, dlon: float
+) -> NDArray[np.bool_]:
+    """Return which equal boxes (south-west corners, sides [deg]) an outline may run through.
+
+    ``lat`` and ``lon`` are the corners of a full grid of boxes, row by row from its south-west
+    corner. Outlines are walked in steps of a quarter of a box, and every box within a quarter
+    of one of the points counts, so that none that is touched is missed.
+    """
+    south, west = lat[0], lon[0]
+    columns = round(float(lon[-1] - west) / dlon) + 1
+    rows = len(lat) // columns
+    touched = np.zeros((rows, columns), np.bool_)
+    for rings in outlines:
+        y0, y1, x0, x1 = rings.lat[:-1], rings.lat[1:], rings.lon[:-1], rings.lon[1:]
+        keep = np.ones(len(y0), bool)
+        keep[rings.start[1:-1] - 1] = False
+        y0, y1, x0, x1 = (v[keep] for v in (y0, y1, x0, x1))
+        parts = np.maximum(np.abs(y1 - y0) / dlat, np.abs(x1 - x0) / dlon)
+        count = np.ceil(4.0 * parts).astype(np.int64) + 1
+        edge = np.repeat(np.arange(len(count)), count)
+        share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
+        y = (y0[edge] + share * (y1 - y0)[edge] - south) / dlat
+        x = x0[edge] + share * (x1 - x0)[edge]
+        for turn in (-360.0, 0.0, 360.0):
+            for near_y in (-0.25, 0.25):
+                for near_x in (-0.25, 0.25):
+                    j = np.floor(y + near_y).astype(np.int64)
+                    i = np.floor((x + turn - west) / dlon + near_x).astype(np.int64)
+                    on = (j >= 0) & (j < rows) & (i >= 0) & (i < columns)
+                    touched[j[on], i[on]] = True
+    return touched.ravel()

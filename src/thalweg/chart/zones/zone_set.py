@@ -1,0 +1,335 @@
+"""Zones: where a ship may not go, where a mile counts for more, where fuel has another price.
+
+A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "eca") and, for
+penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
+zone without a factor is an emission control area: what fuel costs there is the ship's to say; with
+one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
+only, and nowhere in zones of the kind "no-waiting".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.chart.coast.coast_cache import stored
+from thalweg.chart.coast.coast_index_builder import build_index, empty_index
+from thalweg.chart.zones import geojson_zones
+from thalweg.chart.zones.emission_control_areas import EcaZone
+from thalweg.chart.zones.leg_fractions import FINEST, outlines_only, points_inside, shares_inside
+from thalweg.core.cache_folder import cache_folder
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, direct, inverse, wrap_longitude
+from thalweg.kernels.geometry.coast_index import outlines_touched
+from thalweg.kernels.geometry.cube_sphere import IndexArrays
+
+SIDE: Final = 128  # cells along a face of the index of no-go zones
+PIECE: Final = 50_000.0  # legs are cut into pieces of at most this for factors [m]
+KINDS: Final = {
+    "nogo": "no-go",
+    "forbidden": "no-go",
+    "avoid": "no-go",
+    "exclusion": "no-go",
+    "penalty": "penalty",
+    "price": "price",
+    "eca": "eca",
+    "emissioncontrol": "eca",
+    "seca": "eca",
+    "anchorage": "anchorage",
+    "nowaiting": "no-waiting",
+    "noanchoring": "no-waiting",
+}
+PLAIN: Final = ("no-go", "anchorage", "no-waiting")  # kinds without a factor
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Zones of one kind, each on three turns of longitude, their factors and their outlines."""
+
+    tree: Any
+    factors: FloatArray
+    outlines: IndexArrays
+
+    @classmethod
+    def of(cls, zones: tuple[tuple[Any, float], ...]) -> Group:
+        """Prepare (polygon, factor) pairs."""
+        import shapely.affinity
+
+        shapes = [
+            shapely.affinity.translate(shape, turn)
+            for shape, _ in zones
+            for turn in (-360.0, 0.0, 360.0)
+        ]
+        shapely.prepare(shapes)
+        parts = [part for shape, _ in zones for part in shapely.get_parts(shape)]
+        areas = [part for part in parts if part.geom_type == "Polygon"]
+        outlines = build_index(geojson_zones.rings_of(areas), SIDE)
+        factors = np.repeat([factor for _, factor in zones], 3)
+        return cls(shapely.STRtree(shapes), factors, outlines)
+
+    def at(self, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        """Return the excess (factor - 1) at positions [deg]."""
+        import shapely
+
+        which, zone = self.tree.query(shapely.points(lon, lat), predicate="intersects")
+        excess = np.zeros(len(lat))
+        excess[which] = self.factors[zone] - 1.0
+        return excess
+
+    def along(self, lines: Any) -> FloatArray:
+        """Return for each line the sum of (factor - 1) times the share of it inside."""
+        import shapely
+
+        which, zone = self.tree.query(lines, predicate="intersects")
+        if not len(which):
+            return np.zeros(len(lines))
+        whole = shapely.length(lines[which])
+        part = shapely.length(shapely.intersection(lines[which], self.tree.geometries[zone]))
+        share = np.where(whole > 0.0, part / np.where(whole > 0.0, whole, 1.0), 1.0)
+        excess = np.bincount(which, share * (self.factors[zone] - 1.0), minlength=len(lines))
+        return excess.astype(np.float64)
+
+
+@dataclass(frozen=True)
+class Zones:
+    """Zones of a chart.
+
+    Attributes
+    ----------
+    no_go : tuple of shapely polygons
+    penalty, price : tuple of (shapely polygon, factor)
+        They do not overlap.
+    eca : tuple of EcaZone
+        Emission control areas; they may overlap.
+    anchorages, no_waiting : tuple of shapely polygons
+        Where alone a ship may wait (anywhere if there are none), and where it may not.
+    """
+
+    no_go: tuple[Any, ...] = ()
+    penalty: tuple[tuple[Any, float], ...] = ()
+    price: tuple[tuple[Any, float], ...] = ()
+    eca: tuple[EcaZone, ...] = ()
+    anchorages: tuple[Any, ...] = ()
+    no_waiting: tuple[Any, ...] = ()
+
+    @classmethod
+    def read(cls, source: geojson_zones.Source) -> Zones:
+        """Read zones from a GeoJSON file or plain data.
+
+        Raises
+        ------
+        InputError
+            If it is not GeoJSON of areas, an outline crosses itself, or a kind or factor is
+            missing or makes no sense.
+        """
+        found: dict[str, list[tuple[Any, float]]] = {
+            kind: [] for kind in (*PLAIN, "penalty", "price")
+        }
+        eca: list[EcaZone] = []
+        for geometry, properties in geojson_zones.read(source, "zones"):
+            kind = _kind(properties)
+            shapes = geojson_zones.polygons(geometry, "zones", repair=False)
+            if kind == "eca":
+                eca.append(
+                    EcaZone(str(properties.get("name") or "eca"), geojson_zones.rings_of(shapes))
+                )
+                continue
+            factor = 1.0 if kind in PLAIN else _factor(kind, properties)
+            found[kind] += [(shape, factor) for shape in shapes]
+        no_go, anchorages, barred = (tuple(shape for shape, _ in found[kind]) for kind in PLAIN)
+        factors = _apart(found["penalty"]), _apart(found["price"])
+        return cls(no_go, *factors, tuple(eca), anchorages, barred)
+
+    def joined(self, other: Zones) -> Zones:
+        """Return these zones and another chart's."""
+        return Zones(
+            self.no_go + other.no_go,
+            _apart([*self.penalty, *other.penalty]),
+            _apart([*self.price, *other.price]),
+            self.eca + tuple(zone for zone in other.eca if zone not in self.eca),
+            self.anchorages + other.anchorages,
+            self.no_waiting + other.no_waiting,
+        )
+
+    @cached_property
+    def index(self) -> IndexArrays:
+        """The grid of the edges of the no-go zones."""
+        if not self.no_go:
+            return empty_index()
+        return build_index(geojson_zones.rings_of(list(self.no_go)), SIDE)
+
+    @cached_property
+    def eca_index(self) -> IndexArrays:
+        """The emission control areas for kernels: ``cube.inside(index, *unit_vector(lat, lon))``.
+
+        Kept on disk from run to run.
+        """
+        if not self.eca:
+            return empty_index()
+        rings = self.eca[0].rings
+        for zone in self.eca[1:]:
+            rings = rings.joined(zone.rings)
+        path = cache_folder("coast") / f"eca-{rings.fingerprint()}-{SIDE}-v1.npz"
+        return stored(path, lambda: build_index(rings, SIDE))
+
+    @cached_property
+    def _eca_outlines(self) -> IndexArrays:
+        return outlines_only(self.eca_index)
+
+    def eca_share(
+        self,
+        lat1: ArrayLike,
+        lon1: ArrayLike,
+        lat2: ArrayLike,
+        lon2: ArrayLike,
+        *,
+        finest: float = FINEST,
+    ) -> FloatArray:
+        """Return the share of the length of legs [deg] inside any emission control area.
+
+        Crossings of outlines are found to ``finest`` [m].
+        """
+        ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+        if not self.eca:
+            return np.where(np.isfinite(sum(ends)), 0.0, np.nan)
+        legs = [x.flatten() for x in ends]
+        lat1, lon1, lat2, lon2 = legs
+        found = shares_inside(
+            self.eca_index, self._eca_outlines, lat1, lon1, lat2, lon2, finest=finest
+        )
+        return found.reshape(ends[0].shape)
+
+    def in_eca(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
+        """Return which positions [deg] lie inside any emission control area."""
+        a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
+        if not self.eca:
+            return np.zeros(a.shape, np.bool_)
+        return points_inside(self.eca_index, a.flatten(), b.flatten()).reshape(a.shape)
+
+    @cached_property
+    def _groups(self) -> tuple[Group, Group]:
+        """Penalty and price zones ready for legs."""
+        return Group.of(self.penalty), Group.of(self.price)
+
+    def factors(
+        self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the penalty and the price factor of legs [deg], weighted by length.
+
+        NaN where a position is no number.
+        """
+        ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
+        shape = ends[0].shape
+        if not (self.penalty or self.price):
+            one = np.where(np.isfinite(sum(ends)), 1.0, np.nan)
+            return one, one.copy()
+        legs = np.stack([x.ravel() for x in ends])
+        known = np.isfinite(legs).all(axis=0)
+        penalty, price = np.full((2, known.size), np.nan)
+        whole = list(np.ascontiguousarray(legs[:, known]))
+        penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
+        return penalty.reshape(shape), price.reshape(shape)
+
+    def _weighted(self, legs: list[FloatArray], group: Group) -> FloatArray:
+        """Return the factors of legs of one group: at once where no outline is touched."""
+        excess = np.zeros(len(legs[0]))
+        if not len(group.factors):
+            return 1.0 + excess
+        touched = np.empty(len(excess), np.bool_)
+        outlines_touched(group.outlines, *legs, touched)
+        whole = np.flatnonzero(~touched)
+        excess[whole] = group.at(legs[0][whole], legs[1][whole])
+        cut = np.flatnonzero(touched)
+        if len(cut):
+            lines, leg, pieces = _lines(*(x[cut] for x in legs))
+            shares = np.bincount(leg, group.along(lines), minlength=len(cut))
+            excess[cut] = shares / pieces
+        return 1.0 + excess
+
+    def texts(self) -> list[str]:
+        """Return everything as text, for a fingerprint."""
+        pairs = [*self.penalty, ("price", 0.0), *self.price]
+        return (
+            [shape.wkb_hex for shape in self.no_go]
+            + [f"{getattr(shape, 'wkb_hex', shape)}*{factor}" for shape, factor in pairs]
+            + [f"eca {zone.name} {zone.rings.fingerprint()}" for zone in self.eca]
+            + [f"anchorage {shape.wkb_hex}" for shape in self.anchorages]
+            + [f"no waiting {shape.wkb_hex}" for shape in self.no_waiting]
+        )
+
+
+def _kind(properties: Mapping[str, Any]) -> str:
+    written = str(properties.get("kind") or properties.get("type") or "")
+    plain = "".join(c for c in written.casefold() if c.isalnum())
+    for ending in ("zone", "area", "factor"):
+        plain = plain.removesuffix(ending)
+    if plain == "eca" and {"factor", "eca_factor", "price_factor"} & properties.keys():
+        return "price"
+    if plain not in KINDS:
+        named = f" {str(properties['name'])[:60]!r}" if properties.get("name") else ""
+        raise InputError(
+            f"A zone{named} has " + (f"the kind {written!r}." if written else "no kind."),
+            "Kinds are 'no-go', 'penalty', 'price', 'eca', 'anchorage' and 'no-waiting'.",
+            "Give every feature the property kind.",
+            value=written,
+        )
+    return KINDS[plain]
+
+
+def _factor(kind: str, properties: Mapping[str, Any]) -> float:
+    written = properties.get("factor", properties.get(f"{kind}_factor"))
+    if written is None and kind == "price":
+        written = properties.get("eca_factor")
+    try:
+        factor = float(written)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        factor = float("nan")
+    least = "at least 1" if kind == "penalty" else "above 0"
+    if not (np.isfinite(factor) and factor > 0.0 and (kind == "price" or factor >= 1.0)):
+        raise InputError(
+            f"A {kind} zone has the factor {written!r}.",
+            f"The factor of a {kind} zone is a number {least}.",
+            "Give the feature such a property factor.",
+            value=written,
+        )
+    return factor
+
+
+def _apart(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float], ...]:
+    """Return zones cut so that none overlap; the largest factor keeps the common part."""
+    import shapely
+
+    kept: list[tuple[Any, float]] = []
+    for shape, factor in sorted(zones, key=lambda zone: -zone[1]):
+        rest = shape
+        for other, _ in kept:
+            if shapely.intersects(rest, other):
+                rest = shapely.difference(rest, other)
+        if not shapely.is_empty(rest):
+            kept.append((rest, factor))
+    return tuple(kept)
+
+
+def _lines(
+    lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> tuple[Any, NDArray[np.int64], FloatArray]:
+    """Return pieces of the geodesics as lines, the leg of each, and each leg's count."""
+    import shapely
+
+    length, course, _ = inverse(lat1, lon1, lat2, lon2)
+    pieces = np.maximum(np.ceil(length / PIECE), 1.0).astype(np.int64)
+    leg = np.repeat(np.arange(len(pieces)), pieces)
+    number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    sides = []
+    for share in (number / pieces[leg], (number + 1) / pieces[leg]):
+        lat, lon = direct(lat1[leg], lon1[leg], course[leg], share * length[leg])
+        sides.append((lon, lat))
+    (x0, y0), (x1, y1) = sides
+    x1 = x0 + wrap_longitude(x1 - x0)
+    ends = np.stack([np.stack([x0, y0], -1), np.stack([x1, y1], -1)], 1)
+    return shapely.linestrings(ends), leg, pieces.astype(float)

@@ -1,0 +1,98 @@
+"""What NSGA-II, SPEA2 and M-PAES have in common: asking for scores and being told them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Generator
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.evolution.variation import Habits, children
+from thalweg.route.refinement.population import IntArray, Population, joined
+from thalweg.route.refinement.population_evaluator import Evaluator
+
+LEAST_SIZE = 4  #: tracks in a population
+Steps = Generator[Population, FloatArray, None]
+
+
+class Strategy(ABC):
+    """A search by evolution, driven from outside.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+        For its chart and settings; it is not called.
+    first : Population
+        To begin with; the best of it are kept if it is larger than ``size``.
+    size : int
+        Tracks in the population (and the archive), at least 4.
+    habits : Habits
+    rng : numpy.random.Generator
+
+    Examples
+    --------
+    ``asked = strategy.ask()`` returns the tracks that are to be scored next,
+    ``strategy.tell(evaluator.score(asked))`` goes on.
+    """
+
+    def __init__(
+        self,
+        evaluator: Evaluator,
+        first: Population,
+        *,
+        size: int,
+        habits: Habits,
+        rng: np.random.Generator,
+    ) -> None:
+        check_size(size)
+        self.evaluator, self.size, self.habits, self.rng = evaluator, size, habits, rng
+        self.population, self.scores = first, np.empty((0, 3))
+        self._steps = self._search()
+        self._asked = next(self._steps)
+
+    def ask(self) -> Population:
+        """Return the tracks that are to be scored next."""
+        return self._asked
+
+    def tell(self, scores: FloatArray) -> None:
+        """Take the scores (N, 3) of the tracks asked for; see `Evaluator.score`."""
+        self._asked = self._steps.send(scores)
+
+    @abstractmethod
+    def _search(self) -> Steps:
+        """Yield populations, be sent their scores; keep ``population`` and ``scores`` current."""
+
+    def _children(self, pairs: IntArray, habits: Habits | None = None) -> Population:
+        return children(
+            self.population,
+            pairs,
+            evaluator=self.evaluator,
+            habits=habits or self.habits,
+            rng=self.rng,
+        )
+
+    def _keep(self, chosen: IntArray, young: Population, told: FloatArray) -> None:
+        """Keep some of the population and its young (counted on from it)."""
+        both = np.concatenate([self.scores, told])
+        self.population = joined(self.population, young).take(chosen)
+        self.scores = both[chosen]
+
+    def _tournament(self, better: IntArray, count: int) -> IntArray:
+        """Return winners (count,) of binary tournaments; ``better`` is each track's place."""
+        drawn = self.rng.integers(0, len(better), size=(count, 2))
+        first, second = better[drawn[:, 0]], better[drawn[:, 1]]
+        return np.where(first <= second, drawn[:, 0], drawn[:, 1])
+
+
+def check_size(size: int) -> None:
+    """Raise if a population is too small."""
+    if size < LEAST_SIZE:
+        raise InputError(
+            f"A population of {size} is too small.",
+            f"It has at least {LEAST_SIZE} tracks; 100 or more make a good front.",
+            "Ask for a larger one.",
+            field="size",
+            value=size,
+        )

@@ -1,0 +1,192 @@
+"""From seeds to a refined front: explored, polished for many prices of time, filled, evolved."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.interrupt import stoppable
+from thalweg.evolution.algorithm import check_size
+from thalweg.evolution.evolve import (
+    SETTLED,
+    Cancel,
+    Evolution,
+    Limits,
+    Progress,
+    Work,
+    evolution_of,
+    paused,
+    proved,
+    run,
+)
+from thalweg.evolution.initial_population import as_genomes, first_population, room_for
+from thalweg.evolution.nsga2 import Nsga2
+from thalweg.evolution.ranking import front_of, thinned
+from thalweg.evolution.scalarised_search import fill, polish, prepared
+from thalweg.evolution.variation import Habits
+from thalweg.route.refinement.population import Genome, Population, joined
+from thalweg.route.refinement.population_evaluator import Evaluator
+from thalweg.route.track import Track
+
+LINES = 48  #: prices of time that are polished for
+SIZE = 300  #: tracks on the front
+GENERATIONS = 50  #: of evolution after polishing, if no limit is given
+_POLISHING = 0.6  # share of the seconds that polishing may take
+CROWD = 200  #: tracks that explore before polishing, at most
+EXPLORING = 60  #: generations they do it for
+EXPLORED = 24  #: of their front that are polished
+
+
+@stoppable
+def refine_front(
+    evaluator: Evaluator,
+    seeds: Sequence[Genome | Track],
+    *,
+    size: int = SIZE,
+    lines: int = LINES,
+    generations: int | None = None,
+    seconds: float | None = None,
+    settled: float | None = SETTLED,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+    cancel: Cancel | None = None,
+    operators: Habits | None = None,
+) -> Evolution:
+    """Refine a front from tracks on it, such as those of an exact search on a network.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+    seeds : sequence of Genome or Track
+        With their settings; every way round that matters should be among them.
+    size : int
+        Tracks on the front, about.
+    lines : int
+        Prices of time for which a track is polished, besides every seed at its own.
+    generations : int, optional
+        Of NSGA-II after polishing; 50 by default if there is no limit of seconds. 0: none.
+    seconds : float, optional
+        Limit of the whole; polishing takes at most three fifths of it. A run that this ends is
+        not repeatable.
+    settled : float or None
+        As for `evolve`.
+    seed : int
+        Of the random numbers.
+    progress : callable, optional
+        Called after every stage of polishing and every generation.
+    cancel : callable, optional
+        Asked between steps; true ends the run with the best so far. Without it, Ctrl-C does so.
+    operators : Habits, optional
+
+    Returns
+    -------
+    Evolution
+        ``origin`` tells for each track whether it is a "seed", or from "polish" or "nsga2".
+
+    Notes
+    -----
+    First a short run of NSGA-II (200 tracks, 60 generations) explores round the seeds; then the
+    seeds and a part of what it found are polished.
+
+    A track that is best for some price of time lies on the lower convex hull of the front. For
+    one price the problem is smooth but for the settings: Newton's method bends the track (see
+    `thalweg.route.refinement.population_newton`), the setting of each leg is chosen anew, points
+    are left out or put between, and points at coasts and limits feel their way. Between two such
+    tracks the cheapest seconds are exchanged first, and the last leg in part, so the front can be
+    filled evenly. What that misses, tracks off the hull among them, is left to evolution. Of all
+    that was found the front is handed back, thinned where that loses the least area.
+    """
+    check_size(size)
+    begun = clock.perf_counter()
+    watch = _Watch(begun, seconds, cancel, progress)
+    habits, rng = operators or Habits(), np.random.default_rng(seed)
+    genomes = as_genomes(evaluator, seeds)
+    pool = _Pool(evaluator)
+    pool.add("seed", evaluator.population(genomes, room=room_for(genomes)))
+    first = first_population(evaluator, genomes, size=min(size, CROWD), habits=habits, rng=rng)
+    strategy = Nsga2(evaluator, first, size=min(size, CROWD), habits=paused(habits, first), rng=rng)
+    work = run(strategy, evaluator, Limits(EXPLORING), progress=progress, cancel=watch.stop)
+    pool.add("nsga2", strategy.population.take(thinned(strategy.scores, EXPLORED)))
+    if not watch.stop():
+        held = polish(prepared(evaluator, pool.population, count=lines), stop=watch.stop)
+        watch.tell(held.scores)
+        pool.add("polish", joined(held.population, fill(held, size)))
+    limits = _limits(generations, seconds, settled, begun)
+    work = Work(0, work.evaluations, "cancelled" if watch.cancelled else "generations")
+    if not watch.cancelled and limits.generations != 0:
+        whole = pool.population
+        whole = whole.with_room(room_for(whole.count))
+        strategy = Nsga2(evaluator, whole, size=size, habits=paused(habits, whole), rng=rng)
+        last = run(strategy, evaluator, limits, progress=progress, cancel=cancel)
+        work = Work(last.generations, work.evaluations + last.evaluations, last.stopped)
+        pool.add("nsga2", strategy.population)
+    population, scores, origin = proved(evaluator, pool.population, pool.scores, pool.origin)
+    return evolution_of(
+        population, scores, origin, work=work, seconds=clock.perf_counter() - begun, size=size
+    )
+
+
+class _Pool:
+    """All tracks worth keeping, with the stage they come from."""
+
+    def __init__(self, evaluator: Evaluator) -> None:
+        self._evaluator = evaluator
+        self._parts: list[Population] = []
+        self._scores: list[FloatArray] = []
+        self.origin: list[str] = []
+
+    def add(self, stage: str, population: Population) -> None:
+        """Score tracks and keep them."""
+        self._scores.append(self._evaluator.score(population))
+        self._parts.append(population)
+        self.origin += [stage] * len(population)
+
+    @property
+    def population(self) -> Population:
+        """All of them."""
+        return joined(*self._parts)
+
+    @property
+    def scores(self) -> FloatArray:
+        """Their scores (N, 3)."""
+        return np.concatenate(self._scores)
+
+
+class _Watch:
+    """Whether to go on polishing, and telling how far it is."""
+
+    def __init__(
+        self,
+        begun: float,
+        seconds: float | None,
+        cancel: Cancel | None,
+        progress: Callable[[Progress], None] | None,
+    ) -> None:
+        self.begun, self.seconds = begun, seconds
+        self.cancel, self.progress = cancel, progress
+        self.cancelled = False
+
+    def stop(self) -> bool:
+        """Return whether polishing is to end."""
+        self.cancelled = self.cancelled or (self.cancel is not None and bool(self.cancel()))
+        spent = clock.perf_counter() - self.begun
+        return self.cancelled or (self.seconds is not None and spent > _POLISHING * self.seconds)
+
+    def tell(self, scores: FloatArray) -> None:
+        """Tell the front of a stage."""
+        if self.progress is not None:
+            front = scores[front_of(scores)][:, :2]
+            spent = clock.perf_counter() - self.begun
+            self.progress(Progress(0, len(scores), spent, front))
+
+
+def _limits(
+    generations: int | None, seconds: float | None, settled: float | None, begun: float
+) -> Limits:
+    left = None if seconds is None else max(0.0, seconds - (clock.perf_counter() - begun))
+    if generations is None and seconds is None:
+        generations = GENERATIONS
+    return Limits(generations, None, left, settled)

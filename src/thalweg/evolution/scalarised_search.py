@@ -1,0 +1,262 @@
+"""Polishing: every seed made better for a price of time, and the front between them filled."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.evolution.ranking import front_of
+from thalweg.kernels.leg import population_sailing
+from thalweg.route.refinement.calm_water_rates import calm_speeds
+from thalweg.route.refinement.finite_differences import Lines, probe_delays
+from thalweg.route.refinement.population import IntArray, Population, joined
+from thalweg.route.refinement.population_evaluator import Evaluator
+from thalweg.route.refinement.population_moves import (
+    change_speeds,
+    drop,
+    feel,
+    halve,
+    points_between,
+    speed_probes,
+)
+from thalweg.route.refinement.population_newton import bend
+
+LEVELS = (12, 24, 40)  #: legs of a track, level by level
+_DROPS = 8  # passes that leave points out at first ...
+_BRING = 2e-4  # ... which bring less than this share of the value
+_RADII = (0.3, 0.08, 0.02)  # of points that feel their way, as shares of the legs beside
+_WIDER = 4.0  # prices of time reach so far beyond those that calm water suggests
+
+
+def polish(
+    lines: Lines, *, stop: Callable[[], bool] = lambda: False, levels: tuple[int, ...] = LEVELS
+) -> Lines:
+    """Return better tracks: fewer points first, then bent at ever more of them, and re-timed.
+
+    ``stop`` is asked between steps.
+    """
+    lines = change_speeds(lines)
+    for _ in range(_DROPS):
+        before = lines.population.count.sum()
+        lines = drop(lines, allowance=_BRING)
+        if stop() or lines.population.count.sum() == before:
+            break
+    for level in levels:
+        if stop():
+            return lines
+        lines = halve(lines, legs=level)
+        lines = change_speeds(bend(lines, rounds=4), rounds=2)
+        for radius in _RADII:
+            lines = feel(lines, radius=radius)
+        lines = change_speeds(bend(lines, rounds=3), rounds=2)
+    return lines
+
+
+def time_prices(evaluator: Evaluator, count: int) -> FloatArray:
+    """Return prices of time that lead from the thriftiest to the fastest passage.
+
+    Those at which the ship would change its setting in calm water, with room on both sides;
+    spread evenly in the logarithm.
+    """
+    speeds, prices = calm_speeds(evaluator.world.table), evaluator.prices
+    cost = calm_speeds(evaluator.world.fuel) * prices.outside + prices.time
+    with np.errstate(invalid="ignore", divide="ignore"):
+        points = np.column_stack([1.0 / speeds, cost / speeds])
+    points = points[np.isfinite(points).all(axis=1)]
+    slopes = -np.array([slope for slope in hull_slopes(points) if slope < 0.0])
+    if not len(slopes):
+        return np.full(1, float(np.nanmax(np.append(cost, 0.0))) or 1.0)
+    low, high = slopes.min() / _WIDER, slopes.max() * _WIDER
+    return np.geomspace(low, high, count)
+
+
+def hull_slopes(points: FloatArray) -> list[float]:
+    """Return the slopes of the lower convex hull of points (n, 2), ascending in the first."""
+    hull = lower_hull(points)
+    a, b = points[hull[:-1]], points[hull[1:]]
+    return ((b[:, 1] - a[:, 1]) / (b[:, 0] - a[:, 0])).tolist()
+
+
+def lower_hull(points: FloatArray) -> IntArray:
+    """Return the lower convex hull of points (n, 2) by ascending first coordinate."""
+    hull: list[int] = []
+    for i in np.lexsort((points[:, 1], points[:, 0])):
+        x, y = points[i]
+        if hull and points[hull[-1], 0] == x:
+            continue
+        while len(hull) > 1:
+            (x1, y1), (x2, y2) = points[hull[-2]], points[hull[-1]]
+            if (x2 - x1) * (y - y1) > (y2 - y1) * (x - x1):
+                break
+            hull.pop()
+        hull.append(int(i))
+    return np.array(hull, dtype=np.int64)
+
+
+def prepared(evaluator: Evaluator, seeds: Population, *, count: int) -> Lines:
+    """Return what to polish: each seed at the price of time its neighbours on the front suggest,
+    and for each of ``count`` prices the seed that is best at it.
+    """
+    scores = evaluator.score(seeds)
+    good = np.flatnonzero(scores[:, 2] == 0.0)
+    prices = time_prices(evaluator, count)
+    if not len(good):
+        return Lines.of(evaluator, seeds, np.full(len(seeds), float(np.median(prices))))
+    table = scores[good, 1] + prices[:, None] * scores[good, 0]
+    best = good[np.argmin(table, axis=1)]
+    own = _own_prices(scores[good], prices)
+    rows = np.concatenate([good, best])
+    return Lines.of(evaluator, seeds.take(rows), np.concatenate([own, prices]))
+
+
+def _own_prices(scores: FloatArray, prices: FloatArray) -> FloatArray:
+    """Return the price of time at which each of several tracks would be the best."""
+    order = np.argsort(scores[:, 0], kind="stable")
+    time, cost = scores[order, 0], scores[order, 1]
+    own = np.full(len(order), float(np.median(prices)))
+    if len(order) > 2:
+        span = time[2:] - time[:-2]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            slope = -(cost[2:] - cost[:-2]) / span
+        own[1:-1] = np.where(np.isfinite(slope) & (slope > 0.0), slope, own[1:-1])
+        own[0], own[-1] = own[1], own[-2]
+    out = np.empty(len(order))
+    out[order] = np.clip(own, prices.min(), prices.max())
+    return out
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """What a leg's next setting on its hull brings, by ascending price.
+
+    Attributes
+    ----------
+    place, setting : int64 array (n,)
+    time, cost : float64 array (n,)
+        Changes at the goal; time is positive.
+    """
+
+    place: IntArray
+    setting: IntArray
+    time: FloatArray
+    cost: FloatArray
+
+
+def fill(lines: Lines, size: int) -> Population:
+    """Return tracks between those of a front, each from its nearest one by changing speeds.
+
+    About ``size`` tracks, spread evenly over the front. On one geometry the cheapest way to gain
+    or lose time is to change settings in the order of what a second costs, and the last leg in
+    part.
+    """
+    front = front_of(lines.scores)
+    if len(front) < 2:
+        return lines.population.take(front)
+    scores = lines.scores[front]
+    width = np.ptp(scores, axis=0)
+    step = np.hypot(*(np.diff(scores[:, :2], axis=0) / np.where(width > 0, width, 1.0)[:2]).T)
+    along = np.concatenate([[0.0], np.cumsum(step)])
+    targets = np.interp(np.linspace(0.0, along[-1], size), along, scores[:, 0])
+    chosen = Lines(
+        lines.evaluator,
+        lines.population.take(front),
+        lines.price[front],
+        scores,
+        lines.arrive[front],
+    )
+    exchanges = _exchanges(chosen)
+    made = []
+    for side in (0, 1):
+        nearest = np.searchsorted(scores[:, 0], targets) - side
+        for target, k in zip(targets, np.clip(nearest, 0, len(front) - 1)):
+            made.append(_retimed(chosen, int(k), exchanges[k], target - scores[k, 0]))
+    return joined(*made)
+
+
+def _exchanges(lines: Lines) -> list[tuple[Exchange, Exchange]]:
+    """Return for every track what it can exchange to become (faster, slower)."""
+    row, place = lines.legs
+    time, cost = speed_probes(lines, row, place)
+    delays = probe_delays(lines)
+    ahead, dearer = delays.time[row, place + 1], delays.cost[row, place + 1]
+    with np.errstate(invalid="ignore"):
+        at_goal, paid = ahead[:, None] * time, cost + dearer[:, None] * time
+    now = lines.population.genes[row, place, population_sailing.SETTING].astype(np.int64)
+    out = []
+    for k in range(len(lines)):
+        legs = np.flatnonzero(row == k)
+        steps = [_steps(at_goal[i], paid[i], int(now[i]), int(place[i])) for i in legs]
+        faster = _sorted([s for a, _ in steps for s in a], cheapest=True)
+        slower = _sorted([s for _, b in steps for s in b], cheapest=False)
+        out.append((faster, slower))
+    return out
+
+
+Step = tuple[float, int, int, float, float]
+
+
+def _steps(
+    time: FloatArray, cost: FloatArray, now: int, place: int
+) -> tuple[list[Step], list[Step]]:
+    """Return one leg's steps along its hull to faster and slower settings: (price, ...)."""
+    finite = np.flatnonzero(np.isfinite(time) & np.isfinite(cost))
+    if now not in finite:
+        return [], []
+    hull = finite[lower_hull(np.column_stack([time[finite], cost[finite]]))]
+    if now not in hull:
+        return [], []
+    at = int(np.flatnonzero(hull == now)[0])
+    found: tuple[list[Step], list[Step]] = ([], [])
+    for side, way in ((0, hull[at::-1]), (1, hull[at:])):
+        for a, b in itertools.pairwise(way):
+            dt, dc = float(time[b] - time[a]), float(cost[b] - cost[a])
+            found[side].append((-dc / dt if dt else math.inf, place, int(b), dt, dc))
+    return found
+
+
+def _sorted(steps: list[Step], *, cheapest: bool) -> Exchange:
+    """Return steps in the order to take them: cheap seconds gained first, dear ones saved first."""
+    steps = sorted(steps, key=lambda step: step[0] if cheapest else -step[0])
+    table = np.array(steps, dtype=float).reshape(-1, 5)
+    return Exchange(
+        table[:, 1].astype(np.int64), table[:, 2].astype(np.int64), table[:, 3], table[:, 4]
+    )
+
+
+def _retimed(
+    lines: Lines, k: int, exchange: tuple[Exchange, Exchange], change: float
+) -> Population:
+    """Return one track made longer or shorter by ``change`` seconds."""
+    steps = exchange[0] if change < 0.0 else exchange[1]
+    one = lines.population.take([k])
+    total = np.cumsum(np.abs(steps.time))
+    full = int(np.searchsorted(total, abs(change)))
+    for place, setting in zip(steps.place[:full], steps.setting[:full]):
+        one.genes[0, place, population_sailing.SETTING] = setting
+    if full >= len(total):
+        return one
+    before = total[full - 1] if full else 0.0
+    share = (abs(change) - before) / (total[full] - before)
+    if not 0.05 < share < 0.95:
+        return one
+    place = int(steps.place[full])
+    return _cut(one, place, share, int(steps.setting[full]))
+
+
+def _cut(one: Population, place: int, share: float, setting: int) -> Population:
+    """Return a track with the first share of a leg sailed at another setting."""
+    n = int(one.count[0])
+    wide = one.with_room(max(one.room, n + 1))
+    genes = wide.genes
+    point = points_between(genes[0, [place]], genes[0, [place + 1]], np.array([share]))
+    genes[0, place + 1 : n + 1] = np.insert(genes[0, place + 1 : n], 0, point[0], axis=0)
+    genes[0, place, population_sailing.SETTING], genes[0, place, population_sailing.KNOWN] = (
+        setting,
+        0.0,
+    )
+    return Population(wide.count + 1, genes)

@@ -1,0 +1,171 @@
+"""How children are made: the habits of breeding, and breeding a whole population at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.kernels.evolution import mutation, random_numbers
+from thalweg.kernels.evolution.crossover import breed
+from thalweg.kernels.geometry.coast_index import CoastArrays
+from thalweg.kernels.leg.population_sailing import COLUMNS
+from thalweg.route.refinement.population import IntArray, Population
+from thalweg.route.refinement.population_evaluator import Evaluator, in_threads
+
+SHAPES = {
+    "rhombus": random_numbers.RHOMBUS,
+    "ellipse": random_numbers.ELLIPSE,
+    "gaussian": random_numbers.GAUSSIAN,
+}
+
+
+@dataclass(frozen=True)
+class Mix:
+    """Weights of the operators that change a track.
+
+    Attributes
+    ----------
+    insert, translate, delete, speed, split, merge : float
+        Chance of each, in proportion. Inserted points lie beside legs drawn by length, moved
+        ones are drawn by how the track turns, deleted ones evenly; a run of legs gets a new
+        speed; a leg is split in two speeds; a point where the track turns little is merged away.
+    pause : float
+        Of changing one of the waits; only where there are any.
+    """
+
+    insert: float = 1.0
+    translate: float = 1.0
+    delete: float = 0.5
+    speed: float = 1.0
+    split: float = 0.5
+    merge: float = 0.5
+    pause: float = 0.0
+
+
+#: What the first mutants are made with (Seuren 2020): tracks from networks have too many points.
+FIRST_MIX = Mix(insert=1.0, translate=1.0, delete=3.0, speed=1.0, split=0.0, merge=0.0)
+
+
+@dataclass(frozen=True)
+class Habits:
+    """How children are made.
+
+    Attributes
+    ----------
+    mix : Mix
+    changes : float
+        The number k of changed places of one mutation has P(k) ~ exp(-k / scale), the scale being
+        this over the number of legs.
+    shape : {"ellipse", "rhombus", "gaussian"}
+        Region of inserted points, as long as the leg.
+    insert_width : float
+        Its width over its length.
+    radius : (float, float)
+        Least and largest radius of translations, as a share of the mean length of the two legs
+        beside; drawn between them evenly in the logarithm.
+    crossover, mutation : float
+        Chances of a crossover and of a mutation after it; a child without crossover is always
+        mutated.
+    """
+
+    mix: Mix = Mix()
+    changes: float = 10.0
+    shape: str = "ellipse"
+    insert_width: float = 0.1
+    radius: tuple[float, float] = (0.002, 0.5)
+    crossover: float = 0.3
+    mutation: float = 0.5
+
+    def __post_init__(self) -> None:
+        if self.shape not in SHAPES:
+            raise InputError(
+                f"Points cannot be inserted in a {self.shape!r}.",
+                f"Shapes: {', '.join(SHAPES)}.",
+                "Choose one.",
+                field="shape",
+            )
+        weights = [getattr(self.mix, field.name) for field in fields(Mix)]
+        low, high = self.radius
+        chances = all(0.0 <= chance <= 1.0 for chance in (self.crossover, self.mutation))
+        right = min(weights) >= 0.0 and sum(weights) > 0.0 and 0.0 < low <= high and chances
+        if not (right and self.changes > 0.0 and self.insert_width >= 0.0):
+            raise InputError(
+                f"These habits cannot be bred with: {self}.",
+                "Weights are zero or more and not all zero, radii ascend from above zero, "
+                "chances lie between 0 and 1.",
+                "Correct them.",
+            )
+
+    def array(self) -> FloatArray:
+        """Return them as the kernel takes them."""
+        out = np.empty(mutation.HABITS)
+        weights = [getattr(self.mix, field.name) for field in fields(Mix)]
+        out[: mutation.OPERATORS] = weights
+        out[mutation.CHANGES], out[mutation.SHAPE] = self.changes, SHAPES[self.shape]
+        out[mutation.INSERT_WIDTH] = self.insert_width
+        out[mutation.RADIUS_LEAST], out[mutation.RADIUS_MOST] = self.radius
+        out[mutation.CROSSOVER], out[mutation.MUTATION] = self.crossover, self.mutation
+        return out
+
+
+def children(
+    population: Population,
+    pairs: IntArray,
+    *,
+    evaluator: Evaluator,
+    habits: Habits,
+    rng: np.random.Generator,
+) -> Population:
+    """Return two children of each pair of parents, not scored yet.
+
+    Parameters
+    ----------
+    population : Population
+    pairs : int64 array (K, 2)
+        Indices of the parents.
+    evaluator : Evaluator
+        For its chart and number of settings.
+    habits : Habits
+    rng : numpy.random.Generator
+        Gives each pair a seed of its own, so that threads do not matter.
+    """
+    n, room = len(pairs), population.room
+    states: NDArray[np.uint64] = rng.integers(0, 2**64, size=(n, 1), dtype=np.uint64)
+    born = np.empty((n, 2), dtype=np.int64)
+    young = np.zeros((n, 2, room, COLUMNS))
+    work, weights = np.empty((n, room, COLUMNS)), np.empty((n, 2 * room))
+    given = (evaluator.settings, habits.array())
+    count = np.ascontiguousarray(population.count)
+    genes = np.ascontiguousarray(population.genes)
+    coast = evaluator.chart.kernel() if evaluator.chart is not None else open_coast()
+    chosen = np.ascontiguousarray(pairs, dtype=np.int64)
+
+    def part(piece: slice) -> None:
+        breed(
+            count,
+            genes,
+            chosen[piece],
+            coast,
+            *given,
+            states[piece],
+            born[piece],
+            young[piece],
+            work[piece],
+            weights[piece],
+        )
+
+    in_threads(part, n)
+    return Population(born.reshape(-1), young.reshape(2 * n, room, COLUMNS))
+
+
+@cache
+def open_coast() -> CoastArrays:
+    """Return the coast of a world without land."""
+    from thalweg.chart import Chart
+
+    return Chart.open_water().kernel()

@@ -1,0 +1,44 @@
+"""Compiling kernels that neither allocate nor keep arrays: no reference counts.
+
+Taking an array out of a named tuple costs two atomic counts; in the land test of a leg they were
+more than half of the time, in the leg formula nine tenths. numba has an option without them, not
+part of its public interface, so it is left out where numba does not know it.
+"""
+
+from thalweg.kernels.compilation.jit import jit
+
+_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def _compile(function, **options):
+    try:
+        return jit(_nrt=False, **options)(function)
+    except (KeyError, TypeError):
+        return jit(**options)(function)
+
+
+def bare(function):
+    """Compile a kernel without reference counting; it must not create or return arrays."""
+    return _compile(function)
+
+
+def inner(function):
+    """Compile as `bare` does, for callers in kernels only: without the door to Python."""
+    return _compile(function, **_INNER)
+
+
+def inlined(function):
+    """Compile as `inner` does, into the caller: for small functions and those called in one place.
+
+    Tuples of arrays are handed over by value, some hundred machine words at every call.
+    """
+    return _compile(function, forceinline=True, **_INNER)
+
+
+def woven(function):
+    """Compile as part of the caller from the start: for thin layers over large inlined functions.
+
+    Each layer of `inlined` functions is optimised anew; woven ones cost nothing. Do not weave large
+    functions or many: the time of type inference grows fast.
+    """
+    return _compile(function, inline="always", **_INNER)

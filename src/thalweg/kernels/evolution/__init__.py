@@ -1,0 +1,1 @@
+"""Kernels of evolutionary search: dominance, crossover, mutation, random numbers."""

@@ -1,0 +1,1 @@
+"""Kernels of geometry: coastline, polygons, depth grids, interpolation of fields."""

@@ -1,0 +1,49 @@
+"""Which cells of a coast index lie inside: winding numbers carried from cell to cell."""
+
+from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.geometry.cube_sphere import ALL_LAND, FIRST_ROW, cell_middle, winding_from
+
+SEA = 1.0e-9  # a cell value: outside the polygons, distance to them not known yet
+
+
+@bare
+def _carry(index, face, i, j, from_i, from_j, to_i, to_j, winding):
+    """Carry a winding number between two places of one cell (halves are its borders)."""
+    value = index.cell[(face * index.side + j) * index.side + i]
+    if value > FIRST_ROW:
+        return winding
+    ax, ay, az = cell_middle(face, to_i, to_j, index.side)
+    bx, by, bz = cell_middle(face, from_i, from_j, index.side)
+    row = int(FIRST_ROW - value)
+    return winding_from(index, row, ax, ay, az, bx, by, bz, winding, False)
+
+
+@bare
+def carry_windings(index, seeds):
+    """Fill in the winding number of every row and whether empty cells are inside.
+
+    Parameters
+    ----------
+    index : IndexArrays
+        ``cell`` holds rows (-2 - row) and zeros; zeros become -1 (inside) or ``SEA``; ``winding``
+        is filled.
+    seeds : int64[6]
+        Winding number at the middle of the first cell of each face.
+    """
+    side, cell = index.side, index.cell
+    for face in range(6):
+        first = seeds[face]
+        for j in range(side):
+            if j > 0:
+                first = _carry(index, face, 0, j - 1, 0.0, j - 1.0, 0.0, j - 0.5, first)
+                first = _carry(index, face, 0, j, 0.0, j - 0.5, 0.0, j + 0.0, first)
+            winding = first
+            for i in range(side):
+                if i > 0:
+                    winding = _carry(index, face, i - 1, j, i - 1.0, j, i - 0.5, j, winding)
+                    winding = _carry(index, face, i, j, i - 0.5, j, i + 0.0, j, winding)
+                k = (face * side + j) * side + i
+                if cell[k] <= FIRST_ROW:
+                    index.winding[int(FIRST_ROW - cell[k])] = winding
+                else:
+                    cell[k] = ALL_LAND if winding != 0 else SEA

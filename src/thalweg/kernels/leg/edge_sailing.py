@@ -1,0 +1,266 @@
+"""Sailing one edge of a network through frozen, time-dependent fields."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from thalweg.kernels.codes import (
+    DEPTH,
+    OK,
+    OUTSIDE_PERIOD,
+)
+from thalweg.kernels.compilation.decorators import inlined, inner
+from thalweg.kernels.leg.point_speed import guided_point_speed
+from thalweg.kernels.leg.table_lookup import TableArrays
+
+
+class NetworkArrays(NamedTuple):
+    """The arrays of a network that searches read (meanings as in `thalweg.network.Network`).
+
+    A node that falls dry between tides is several states here, one for each time it is afloat: the
+    indices of ``indptr``, ``target``, ``can_wait`` and of the following are states.
+
+    Attributes
+    ----------
+    station : int32[M]
+        Station (and node) of each state.
+    opens, closes : float64[M]
+        An arrival belongs to the state if ``opens <= arrival < closes`` [s].
+    until : float64[M]
+        A ship may wait until then [s].
+    fixed_time : float64[E]
+        Time of edges that do not depend on the sea [s]; NaN for those that are sailed.
+    """
+
+    indptr: np.ndarray
+    target: np.ndarray
+    length: np.ndarray
+    course: np.ndarray
+    depth: np.ndarray
+    factor: np.ndarray
+    via_ptr: np.ndarray
+    via_a: np.ndarray
+    via_b: np.ndarray
+    via_w: np.ndarray
+    via_s: np.ndarray
+    can_wait: np.ndarray
+    station: np.ndarray
+    opens: np.ndarray
+    closes: np.ndarray
+    until: np.ndarray
+    fixed_time: np.ndarray
+
+
+class SeaArrays(NamedTuple):
+    """Fields at stations.
+
+    Attributes
+    ----------
+    times : float64[T]
+        Strictly increasing, at least two [s].
+    values : float32[S, T, K]
+        NaN where unknown.
+    channel_index : int64[CHANNELS]
+        Column of each channel, -1 if absent.
+    channels : int64[K]
+        Channel of each column.
+    highest, deepest : float32[S]
+        Highest water level and greatest depth (bed plus level) ever, see `tidal_extremes`; may be
+        empty when no depth is required.
+    """
+
+    times: np.ndarray
+    values: np.ndarray
+    channel_index: np.ndarray
+    channels: np.ndarray
+    highest: np.ndarray
+    deepest: np.ndarray
+
+
+class ShipArrays(NamedTuple):
+    """A ship at one setting, with its limits and the axes its table needs."""
+
+    table: TableArrays
+    setting: int
+    limits: np.ndarray
+    needs: int
+
+
+@inlined
+def course_vector(course):
+    """Return the unit vector (east, north) of a course [rad], |course| < 100, within 3e-9."""
+    quarter = math.floor(course * (2.0 / math.pi) + 0.5)
+    r = course - quarter * (0.5 * math.pi)
+    s = r * r
+    sine = 1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s / 362880.0)))
+    sine *= r
+    cosine = -1.0 / 720.0 + s * (1.0 / 40320.0 - s / 3628800.0)
+    cosine = 1.0 + s * (-0.5 + s * (1.0 / 24.0 + s * cosine))
+    turn = int(quarter) & 3
+    if turn == 0:
+        return sine, cosine
+    if turn == 1:
+        return cosine, -sine
+    if turn == 2:
+        return -sine, -cosine
+    return -cosine, sine
+
+
+@inner
+def interval_of(times, t):
+    """Return k with ``times[k] <= t <= times[k + 1]``, or -1 outside the period (or NaN)."""
+    if not times[0] <= t <= times[-1]:
+        return -1
+    low, high = 0, times.shape[0] - 1
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if times[middle] <= t:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@inlined
+def interval_near(times, k, t):
+    """Do as `interval_of`, for a time near interval k."""
+    last = times.shape[0] - 1
+    if not times[0] <= t <= times[last]:
+        return -1
+    while k < last - 1 and times[k + 1] <= t:
+        k += 1
+    while times[k] > t:
+        k -= 1
+    return k
+
+
+@inlined
+def sample_station(sea, station, k, t, out):
+    """Interpolate a station's channels linearly at time t of interval k, into ``out``."""
+    start = sea.times[k]
+    f = (t - start) / (sea.times[k + 1] - start)
+    values = sea.values
+    channels = sea.channels
+    if f <= 0.0:
+        for j in range(channels.shape[0]):
+            out[channels[j]] = values[station, k, j]
+    elif f >= 1.0:
+        for j in range(channels.shape[0]):
+            out[channels[j]] = values[station, k + 1, j]
+    else:
+        for j in range(channels.shape[0]):
+            low = values[station, k, j]
+            out[channels[j]] = low + f * (values[station, k + 1, j] - low)
+
+
+@inlined
+def sample_between(sea, a, b, weight, k, t, out, spare):
+    """Interpolate between two stations: ``(1 - weight) * a + weight * b``, into ``out``."""
+    if weight >= 1.0:
+        sample_station(sea, b, k, t, out)
+        return
+    sample_station(sea, a, k, t, out)
+    if weight <= 0.0:
+        return
+    sample_station(sea, b, k, t, spare)
+    for channel in sea.channels:
+        out[channel] += weight * (spare[channel] - out[channel])
+
+
+@inlined
+def pass_canal(network, edge, t, last_time):
+    """Pass an edge of fixed time, departing at t: return (arrival, status)."""
+    t += network.fixed_time[edge]
+    if t > last_time:
+        return math.inf, OUTSIDE_PERIOD
+    head = network.target[edge]
+    if not network.opens[head] <= t < network.closes[head]:
+        return t, DEPTH
+    return t, OK
+
+
+@inlined
+def least_time(network, edge, slowness):
+    """Return a lower bound of the time of an edge [s], given that of a metre under way [s/m]."""
+    fixed = network.fixed_time[edge]
+    return fixed if fixed == fixed else network.length[edge] * slowness
+
+
+@inlined
+def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least):
+    """Sail one edge: return (arrival, status).
+
+    Parameters
+    ----------
+    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    edge : int
+    k : int
+        Interval of the times that holds the departure.
+    t : float
+        Departure [s].
+    tail : float64[CHANNELS]
+        The sea at the tail of the edge at that time.
+    sample, spare : float64[CHANNELS]
+        Work space.
+    latest : float
+        An arrival from this time on is of no use [s].
+    least : float
+        Lower bound of the time per metre [s/m].
+
+    Returns
+    -------
+    arrival : float
+        [s]; inf when it is of no use. When the status is not `OK`: when the ship was to pass the
+        sample that blocks the edge.
+    status : int
+
+    Notes
+    -----
+    The edge is marched over its samples. A piece of length d between two samples takes
+    ``d (1/G0 + 1/G1) / 2`` with the speeds over ground G0 at its start and G1 at its end, that
+    at the time predicted with G0 (Heun's method: second order in the piece). Any blocked sample
+    blocks the edge. An edge of fixed time is passed in that time, whatever the sea is.
+    """
+    fixed = network.fixed_time[edge]
+    if fixed == fixed:
+        return pass_canal(network, edge, t, sea.times[-1])
+    east, north = course_vector(float(network.course[edge]))
+    depth = np.float64(network.depth[edge])  # single precision would be another leg to compile
+    table, setting, limits, needs = ship
+    index = sea.channel_index
+    slowness, at, here, guess, then = 0.0, 0.0, tail, math.inf, t
+    first, last = network.via_ptr[edge], network.via_ptr[edge + 1]
+    for p in range(first - 1, last + 1):
+        piece = 0.0
+        if p >= first:
+            to = float(network.via_s[p]) if p < last else 1.0
+            piece = network.length[edge] * (to - at)
+            at = to
+            soonest = 0.5 * piece * (slowness + least) + network.length[edge] * (1.0 - to) * least
+            if t + soonest >= latest:
+                return math.inf, OK
+            then = t + piece * slowness
+            k = interval_near(sea.times, k, then)
+            if k < 0:
+                return math.inf, OUTSIDE_PERIOD
+            a = b = network.station[network.target[edge]]
+            weight = 0.0
+            if p < last:
+                a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
+            sample_between(sea, a, b, weight, k, then, sample, spare)
+            here = sample
+        speed, status, guess = guided_point_speed(
+            here, index, east, north, table, setting, depth, limits, needs, guess
+        )
+        if status != OK:
+            return then, status
+        before = slowness
+        slowness = 1.0 / speed
+        t += 0.5 * piece * (before + slowness)
+    if t > sea.times[-1]:
+        return math.inf, OUTSIDE_PERIOD
+    head = network.target[edge]
+    if not network.opens[head] <= t < network.closes[head]:
+        return t, DEPTH  # afloat there, but at another tide
+    return t, OK

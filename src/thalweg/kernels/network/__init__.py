@@ -1,0 +1,1 @@
+"""Kernels that build networks and find static shortest paths."""

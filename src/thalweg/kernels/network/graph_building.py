@@ -1,0 +1,364 @@
+"""Kernels that build networks: lattice neighbours, lengths and courses, CSR, static distances."""
+
+import math
+
+import numpy as np
+
+from thalweg.kernels.compilation.jit import jit
+
+_A = 6378137.0
+_F = 1.0 / 298.257223563
+_B = _A * (1.0 - _F)
+_EP2 = (_A * _A - _B * _B) / (_B * _B)
+
+
+@jit(inline="always")
+def find_point(i, j, i0, row_ptr, col, wrap):
+    """Return the index of lattice point (i, j) in rows sorted by column, or -1."""
+    if wrap > 0:
+        i = i0 + (i - i0) % wrap
+    r = i - i0
+    if r < 0 or r >= row_ptr.shape[0] - 1:
+        return -1
+    lo = row_ptr[r]
+    hi = row_ptr[r + 1]
+    if lo == hi:
+        return -1
+    guess = lo + j - col[lo]
+    if guess < lo:
+        return -1
+    if guess < hi and col[guess] == j:
+        return guess
+    hi = min(hi, guess + 1)
+    while lo < hi:
+        middle = (lo + hi) >> 1
+        if col[middle] < j:
+            lo = middle + 1
+        else:
+            hi = middle
+    if lo < row_ptr[r + 1] and col[lo] == j:
+        return lo
+    return -1
+
+
+@jit
+def lattice_pairs(i0, row_ptr, col, wrap, di, dj, first, second, offset):
+    """List the pairs of points one offset apart; with empty outputs only count them.
+
+    Parameters
+    ----------
+    i0, row_ptr, col, wrap
+        Rows of the lattice: row ``i0 + r`` holds columns ``col[row_ptr[r]:row_ptr[r + 1]]``
+        in ascending order; ``wrap`` rows go round the globe (0: no wrapping).
+    di, dj : int64[M]
+        Offsets, one of each opposite pair.
+    first, second : int32[P], offset : int8[P]
+        Filled with the pairs and the number of their offset.
+
+    Returns
+    -------
+    int
+        Number of pairs.
+    """
+    fill = first.shape[0] > 0
+    count = 0
+    for r in range(row_ptr.shape[0] - 1):
+        for p in range(row_ptr[r], row_ptr[r + 1]):
+            for k in range(di.shape[0]):
+                q = find_point(i0 + r + di[k], col[p] + dj[k], i0, row_ptr, col, wrap)
+                if q >= 0 and q != p:
+                    if fill:
+                        first[count] = p
+                        second[count] = q
+                        offset[count] = k
+                    count += 1
+    return count
+
+
+@jit
+def lattice_vias(i0, row_ptr, col, wrap, node, di, dj, row, point, offset, via_ptr, a, b, w, s):
+    """Fill the samples of pairs where they cross lattice lines (``a = -1``: a point is missing).
+
+    A pair with offset (x, y) crosses ``max(|x|, |y|) - 1`` lattice lines between its ends, each
+    between two neighbouring points of the line.
+    """
+    for e in range(point.shape[0]):
+        x = di[offset[e]]
+        y = dj[offset[e]]
+        m = max(abs(x), abs(y))
+        i = row[point[e]]
+        j = col[point[e]]
+        for k in range(1, m):
+            v = via_ptr[e] + k - 1
+            s[v] = k / m
+            if abs(x) >= abs(y):
+                i1 = i + (k if x > 0 else -k)
+                low = (k * y) // m
+                weight = (k * y - low * m) / m
+                p = find_point(i1, j + low, i0, row_ptr, col, wrap)
+                q = find_point(i1, j + low + 1, i0, row_ptr, col, wrap)
+            else:
+                j1 = j + (k if y > 0 else -k)
+                low = (k * x) // m
+                weight = (k * x - low * m) / m
+                p = find_point(i + low, j1, i0, row_ptr, col, wrap)
+                q = find_point(i + low + 1, j1, i0, row_ptr, col, wrap)
+            if p < 0 or q < 0:
+                a[v] = -1
+                b[v] = -1
+                w[v] = 0.0
+            else:
+                a[v] = node[p]
+                b[v] = node[q]
+                w[v] = weight
+
+
+@jit
+def measure(lat, lon, first, second, length, course):
+    """Fill geodesic length [m] and course at mid-edge [rad] of pairs of positions [deg].
+
+    Vincenty (1975), "Direct and inverse solutions of geodesics on the ellipsoid", Survey Review
+    23(176); the mid-edge course is exact on the auxiliary sphere. NaN where the iteration does
+    not settle (nearly antipodal ends).
+    """
+    n = lat.shape[0]
+    su = np.empty(n)
+    cu = np.empty(n)
+    for i in range(n):
+        t = (1.0 - _F) * math.tan(math.radians(lat[i]))
+        cu[i] = 1.0 / math.sqrt(1.0 + t * t)
+        su[i] = t * cu[i]
+    for e in range(first.shape[0]):
+        p = first[e]
+        q = second[e]
+        delta = lon[q] - lon[p]
+        delta -= 360.0 * math.floor((delta + 180.0) / 360.0)
+        length[e], course[e] = _vincenty(su[p], cu[p], su[q], cu[q], math.radians(delta))
+
+
+@jit
+def _vincenty(su1, cu1, su2, cu2, delta):
+    lam = delta
+    settled = False
+    sin_s = cos_s = sigma = cos2_a = c2m = 0.0
+    for _ in range(30):
+        sl = math.sin(lam)
+        cl = math.cos(lam)
+        x = cu2 * sl
+        y = cu1 * su2 - su1 * cu2 * cl
+        sin_s = math.sqrt(x * x + y * y)
+        if sin_s == 0.0:
+            return 0.0, 0.0
+        cos_s = su1 * su2 + cu1 * cu2 * cl
+        sigma = math.atan2(sin_s, cos_s)
+        sin_a = cu1 * cu2 * sl / sin_s
+        cos2_a = 1.0 - sin_a * sin_a
+        c2m = cos_s - 2.0 * su1 * su2 / cos2_a if cos2_a > 1e-14 else 0.0
+        c = _F / 16.0 * cos2_a * (4.0 + _F * (4.0 - 3.0 * cos2_a))
+        series = sigma + c * sin_s * (c2m + c * cos_s * (2.0 * c2m * c2m - 1.0))
+        before = lam
+        lam = delta + (1.0 - c) * _F * sin_a * series
+        if abs(lam - before) < 1e-13:
+            settled = True
+            break
+    if not settled:
+        return math.nan, math.nan
+    u2 = cos2_a * _EP2
+    big_a = 1.0 + u2 / 16384.0 * (4096.0 + u2 * (-768.0 + u2 * (320.0 - 175.0 * u2)))
+    big_b = u2 / 1024.0 * (256.0 + u2 * (-128.0 + u2 * (74.0 - 47.0 * u2)))
+    inner = cos_s * (2.0 * c2m * c2m - 1.0) - big_b / 6.0 * c2m * (4.0 * sin_s * sin_s - 3.0) * (
+        4.0 * c2m * c2m - 3.0
+    )
+    correction = big_b * sin_s * (c2m + big_b / 4.0 * inner)
+    return _B * big_a * (sigma - correction), _mid_course(su1, cu1, su2, cu2, lam)
+
+
+@jit(inline="always")
+def _mid_course(su1, cu1, su2, cu2, lam):
+    ch = math.cos(0.5 * lam)
+    sh = math.sin(0.5 * lam)
+    mx = (cu1 + cu2) * ch
+    my = (cu2 - cu1) * sh
+    mz = su1 + su2
+    dx = (cu2 - cu1) * ch
+    dy = (cu1 + cu2) * sh
+    dz = su2 - su1
+    rho2 = mx * mx + my * my
+    east = (mx * dy - my * dx) * math.sqrt(rho2 + mz * mz)
+    north = rho2 * dz - mz * (mx * dx + my * dy)
+    course = math.atan2(east, north)
+    return course if course >= 0.0 else course + 2.0 * math.pi
+
+
+@jit
+def mirror_pairs(n, first, second):
+    """Return the CSR of a symmetric graph given one pair per edge and its opposite.
+
+    Returns
+    -------
+    indptr : int64[n + 1], target : int32[2 P]
+        The directed edges by tail.
+    pair : int32[2 P], back : bool[2 P]
+        The pair each edge comes from and whether it runs from ``second`` to ``first``.
+    """
+    count = first.shape[0]
+    indptr = np.zeros(n + 1, np.int64)
+    for e in range(count):
+        indptr[first[e] + 1] += 1
+        indptr[second[e] + 1] += 1
+    for i in range(n):
+        indptr[i + 1] += indptr[i]
+    at = indptr[:-1].copy()
+    target = np.empty(2 * count, np.int32)
+    pair = np.empty(2 * count, np.int32)
+    back = np.empty(2 * count, np.bool_)
+    for e in range(count):
+        p = first[e]
+        q = second[e]
+        k = at[p]
+        target[k] = q
+        pair[k] = e
+        back[k] = False
+        at[p] += 1
+        k = at[q]
+        target[k] = p
+        pair[k] = e
+        back[k] = True
+        at[q] += 1
+    return indptr, target, pair, back
+
+
+@jit
+def mirror_vias(pair, back, ptr, a, b, w, s):
+    """Return the samples of directed edges from those of pairs, reversed where edges run back."""
+    count = pair.shape[0]
+    out_ptr = np.empty(count + 1, np.int64)
+    out_ptr[0] = 0
+    for e in range(count):
+        h = pair[e]
+        out_ptr[e + 1] = out_ptr[e] + ptr[h + 1] - ptr[h]
+    total = out_ptr[count]
+    out_a = np.empty(total, np.int32)
+    out_b = np.empty(total, np.int32)
+    out_w = np.empty(total, np.float32)
+    out_s = np.empty(total, np.float32)
+    for e in range(count):
+        h = pair[e]
+        size = ptr[h + 1] - ptr[h]
+        for k in range(size):
+            source = ptr[h] + (size - 1 - k if back[e] else k)
+            v = out_ptr[e] + k
+            out_a[v] = a[source]
+            out_b[v] = b[source]
+            out_w[v] = w[source]
+            out_s[v] = np.float32(1.0) - s[source] if back[e] else s[source]
+    return out_ptr, out_a, out_b, out_w, out_s
+
+
+@jit
+def static_distances(indptr, target, weight, start, goal, distance, parent):
+    """Fill least sums of weights from ``start`` (Dijkstra); stops at ``goal`` unless it is -1.
+
+    ``weight`` holds one entry per edge; ``distance`` is inf and ``parent`` -1 where unreached.
+    """
+    n = indptr.shape[0] - 1
+    heap = np.empty(n, np.int64)
+    place = np.full(n, -1, np.int64)
+    distance[:] = np.inf
+    parent[:] = -1
+    distance[start] = 0.0
+    heap[0] = start
+    place[start] = 0
+    size = 1
+    while size > 0:
+        node = heap[0]
+        place[node] = -2
+        size -= 1
+        if size > 0:
+            _sift_down(heap, place, distance, size, heap[size])
+        if node == goal:
+            return
+        for e in range(indptr[node], indptr[node + 1]):
+            other = target[e]
+            reach = distance[node] + weight[e]
+            if reach < distance[other]:
+                distance[other] = reach
+                parent[other] = node
+                if place[other] == -1:
+                    place[other] = size
+                    heap[size] = other
+                    size += 1
+                _sift_up(heap, place, distance, other)
+
+
+@jit
+def _sift_up(heap, place, distance, node):
+    at = place[node]
+    while at > 0:
+        above = (at - 1) >> 1
+        if distance[heap[above]] <= distance[node]:
+            break
+        heap[at] = heap[above]
+        place[heap[at]] = at
+        at = above
+    heap[at] = node
+    place[node] = at
+
+
+@jit
+def _sift_down(heap, place, distance, size, node):
+    at = 0
+    while True:
+        below = 2 * at + 1
+        if below >= size:
+            break
+        if below + 1 < size and distance[heap[below + 1]] < distance[heap[below]]:
+            below += 1
+        if distance[heap[below]] >= distance[node]:
+            break
+        heap[at] = heap[below]
+        place[heap[at]] = at
+        at = below
+    heap[at] = node
+    place[node] = at
+
+
+@jit
+def thin_points(x, y, spacing, keep):
+    """Keep points in order when they lie farther than their spacing from every point kept before.
+
+    Parameters
+    ----------
+    x, y : float64[N]
+        Positions in a plane.
+    spacing : float64[N]
+        A point is kept if and only if its nearest kept point is farther away (strictly).
+    keep : bool[N]
+        Filled.
+    """
+    n = x.shape[0]
+    x0 = x.min()
+    y0 = y.min()
+    extent = max(x.max() - x0, y.max() - y0)
+    cell = max(spacing.max(), extent / (2.0 * math.sqrt(n) + 8.0))
+    if cell == 0.0:
+        cell = 1.0
+    wide = np.int64((x.max() - x0) / cell) + 1
+    high = np.int64((y.max() - y0) / cell) + 1
+    last = np.full(wide * high, -1, np.int64)
+    before = np.full(n, -1, np.int64)
+    for p in range(n):
+        i = np.int64((x[p] - x0) / cell)
+        j = np.int64((y[p] - y0) / cell)
+        limit = spacing[p] * spacing[p]
+        keep[p] = True
+        for ci in range(max(0, i - 1), min(wide, i + 2)):
+            for cj in range(max(0, j - 1), min(high, j + 2)):
+                q = last[ci * high + cj]
+                while q >= 0 and keep[p]:
+                    if (x[q] - x[p]) ** 2 + (y[q] - y[p]) ** 2 <= limit:
+                        keep[p] = False
+                    q = before[q]
+        if keep[p]:
+            before[p] = last[i * high + j]
+            last[i * high + j] = p

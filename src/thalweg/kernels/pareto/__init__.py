@@ -1,0 +1,1 @@
+"""Kernels of the exact Pareto front on a network and of its lower bound."""

@@ -1,0 +1,1 @@
+"""Kernels of the earliest-arrival search: label setting, waiting, bounds."""

@@ -1,0 +1,235 @@
+"""Time-dependent label setting on a network: earliest arrival or least distance."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from thalweg.kernels.codes import (
+    ARRIVE_BY,
+    CHANNELS,
+    COUNT,
+    LIMIT_REQUIRED_DEPTH,
+    OK,
+    OUTSIDE_PERIOD,
+)
+from thalweg.kernels.compilation.decorators import bare, woven
+from thalweg.kernels.leg.edge_sailing import (
+    interval_of,
+    least_time,
+    sail_edge,
+    sample_station,
+)
+from thalweg.kernels.search import heap
+from thalweg.kernels.search.edge_departure import wait_for_edge
+from thalweg.kernels.search.field_bounds import never_deep_enough
+
+
+class Query(NamedTuple):
+    """One question to a network.
+
+    Attributes
+    ----------
+    start, goal : int
+        States; goal -1 reaches everything.
+    depart : float
+        [s].
+    horizon : float
+        Latest arrival anywhere [s]; inf for none.
+    by_distance : bool
+        Cost is length times penalty factor [m], not time times penalty factor [s].
+    wait : bool
+        Whether waiting is allowed at all (nodes must allow it too).
+    slowness : float
+        Lower bound of the time per metre under way [s/m].
+    per_metre : float
+        Lower bound of the cost per metre of geodesic distance to the goal.
+    """
+
+    start: int
+    goal: int
+    depart: float
+    horizon: float
+    by_distance: bool
+    wait: bool
+    slowness: float
+    per_metre: float
+
+
+class Labels(NamedTuple):
+    """What a search found for every node; the unsettled ones hold upper bounds."""
+
+    cost: np.ndarray
+    time: np.ndarray
+    before: np.ndarray
+    departed: np.ndarray
+    settled: np.ndarray
+
+
+class Workspace(NamedTuple):
+    """Memory of one search: the heap, samples of the sea, and counts (`SETTLED`, ...)."""
+
+    nodes: np.ndarray
+    keys: np.ndarray
+    place: np.ndarray
+    samples: np.ndarray
+    counts: np.ndarray
+    refused: np.ndarray
+
+
+SETTLED, RELAXED, SAILED = 0, 1, 2  # entries of `Workspace.counts`
+
+
+def new_labels(n_nodes):
+    """Return labels of nodes none of which is reached."""
+    return Labels(
+        np.full(n_nodes, math.inf),
+        np.full(n_nodes, math.inf),
+        np.full(n_nodes, -1, np.int32),
+        np.full(n_nodes, math.nan),
+        np.zeros(n_nodes, np.bool_),
+    )
+
+
+def new_workspace(n_nodes):
+    """Return the memory of one search."""
+    return Workspace(
+        np.empty(n_nodes, np.int32),
+        np.empty(n_nodes),
+        np.full(n_nodes, -1, np.int32),
+        np.full((4, CHANNELS), math.nan),
+        np.zeros(3, np.int64),
+        np.zeros(COUNT, np.int64),
+    )
+
+
+@woven
+def _worth(query, cost, time, length, quickest, factor, goal_distance, labels, node):
+    """Return how much waiting plus weighted sailing [s] may at most be; not positive: no use."""
+    if query.by_distance:
+        here = cost + length * factor
+        known = labels.cost[node]
+        if here > known or (here == known and time + quickest >= labels.time[node]):
+            return -1.0
+        if query.goal >= 0 and here + goal_distance * query.per_metre > labels.cost[query.goal]:
+            return -1.0
+        latest = query.horizon - time
+        return min(latest, labels.time[node] - time) if here == known else latest
+    enough = labels.cost[node] - cost
+    if query.goal >= 0:
+        rest = goal_distance * query.per_metre
+        enough = min(enough, labels.cost[query.goal] - cost - rest)
+    return enough if quickest * factor < enough else -1.0
+
+
+@woven
+def _sail(network, sea, ship, query, node, edge, k, time, enough, work):
+    """Return (departure, arrival, status) of the best use of an edge from a node since a time."""
+    factor = 1.0 if query.by_distance else float(network.factor[edge])
+    latest = math.inf if query.by_distance else time + enough / factor
+    least, quickest = query.slowness, least_time(network, edge, query.slowness)
+    arrival, status = sail_edge(
+        network, sea, ship, edge, k, time, work[0], work[2], work[3], latest, least
+    )
+    if not (query.wait and network.can_wait[node]):
+        return time, arrival, status
+    pause = sea.times[k + 1] - time  # until the next time of the data
+    useful = min(enough, factor * (arrival - time))
+    if status == OK and pause + factor * quickest >= useful:
+        return time, arrival, status
+    station, until = network.station[node], network.until[node]
+    return wait_for_edge(
+        network, sea, ship, edge, station, k, time, until,
+        arrival, status, factor, quickest, enough, work,
+    )  # fmt: skip
+
+
+@woven
+def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, size):
+    """Improve the label of an edge's head if the edge can; return the size of the heap."""
+    to = network.target[edge]
+    if labels.settled[to]:
+        return size
+    cost, time = labels.cost[node], labels.time[node]
+    length, factor, left = network.length[edge], float(network.factor[edge]), distances[to]
+    quickest = least_time(network, edge, query.slowness)
+    enough = _worth(query, cost, time, length, quickest, factor, left, labels, to)
+    if enough <= 0.0:
+        return size
+    memory.counts[SAILED] += 1
+    required = ship.limits[LIMIT_REQUIRED_DEPTH]
+    status = OK
+    departure, arrival = time, math.inf
+    if required > -math.inf:
+        status = never_deep_enough(network, sea, edge, required)
+    if status == OK:
+        departure, arrival, status = _sail(
+            network, sea, ship, query, node, edge, k, time, enough, memory.samples
+        )
+    if status != OK:
+        memory.refused[status] += 1
+        return size
+    if arrival == math.inf:  # of no use
+        return size
+    if arrival > query.horizon:
+        memory.refused[ARRIVE_BY] += 1
+        return size
+    new = cost + length * factor
+    if not query.by_distance:
+        new = cost + (departure - time) + factor * (arrival - departure)
+    known = labels.cost[to]
+    if new < known or (new == known and arrival < labels.time[to]):
+        labels.cost[to], labels.time[to] = new, arrival
+        labels.before[to], labels.departed[to] = node, departure
+        key = new + left * query.per_metre
+        size = heap.put(memory.nodes, memory.keys, memory.place, size, to, key)
+    return size
+
+
+@bare
+def label_setting(network, sea, ship, query, distances, labels, memory):
+    """Settle nodes in order of cost, from one start, until the goal is settled.
+
+    Parameters
+    ----------
+    network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    query : Query
+    distances : float64[M]
+        Lower bound of the distance from each state to the goal [m], obeying the triangle
+        inequality with the edge lengths; zeros make the search Dijkstra's.
+    labels : Labels
+        Filled; nothing may be reached before.
+    memory : Workspace
+        Work space; its counts are filled: how many nodes were settled, how many edges left them,
+        how many of these were sailed because they could be of use, and how many of these were
+        refused for each reason.
+
+    Notes
+    -----
+    Cost by time is exact when every edge keeps order (later departure, later arrival), which
+    waiting provides, and every penalty factor is 1. With other factors, and for cost by distance,
+    one label per node is exact only as far as being there earlier is never worse and the time
+    does not change which edges are open; ties of cost go to the earlier time.
+
+    A ship waits only while it stays afloat; a node that falls dry is one state for each time it is
+    afloat, so that arriving at a later tide is not lost to arriving at an earlier one.
+    """
+    nodes, keys, place, counts = memory.nodes, memory.keys, memory.place, memory.counts
+    labels.cost[query.start], labels.time[query.start] = 0.0, query.depart
+    size = heap.put(nodes, keys, place, 0, query.start, 0.0)
+    while size > 0:
+        node, _, size = heap.take(nodes, keys, place, size)
+        labels.settled[node] = True
+        counts[SETTLED] += 1
+        if node == query.goal:
+            break
+        first, last = network.indptr[node], network.indptr[node + 1]
+        counts[RELAXED] += last - first
+        time = labels.time[node]
+        k = interval_of(sea.times, time)
+        if k < 0:
+            memory.refused[OUTSIDE_PERIOD] += last - first
+            continue
+        sample_station(sea, network.station[node], k, time, memory.samples[0])
+        for edge in range(first, last):
+            size = _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, size)

@@ -1,0 +1,362 @@
+"""The same two places over and over: one departure at a time, with all that never changes kept.
+
+Against `thalweg.kernels.search.label_setting` nothing differs in what is found. Bounds of the time
+still to go come from a search backwards at the greatest speeds the water ever allows, a departure
+already known bounds the arrival from above, and nodes that fall dry keep the list of their times
+afloat in place of a copy of their edges for each of them.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from thalweg.kernels.codes import (
+    CHANNELS,
+    CURRENT_EAST,
+    CURRENT_NORTH,
+    OK,
+)
+from thalweg.kernels.compilation.decorators import bare, woven
+from thalweg.kernels.leg.edge_sailing import interval_of, sail_edge, sample_station
+from thalweg.kernels.search import heap
+from thalweg.kernels.search.edge_departure import wait_for_edge
+
+SECTORS = 16  # directions for which the strongest current is kept
+_SHRINK = 1.0 - 1e-7  # keeps bounds below the truth in single precision
+_SPARE = 1e-3  # depth that rounding may hide [m]
+
+
+class Ahead(NamedTuple):
+    """Lower bounds: time to the goal from every node, and of every edge [s]; inf: no way."""
+
+    node: np.ndarray
+    edge: np.ndarray
+
+
+class Trip(NamedTuple):
+    """One departure.
+
+    Attributes
+    ----------
+    start, goal : int
+        States.
+    depart : float
+        [s].
+    limit : float
+        Costs above this are of no use [s].
+    latest : float
+        So are later arrivals [s].
+    slowness : float
+        Lower bound of the time per metre anywhere [s/m].
+    wait : bool
+        Whether waiting is allowed at all.
+    eager : float
+        Weight of the bounds of the time to go: 1 finds the best way; more finds some way, sooner.
+    most : int
+        The search gives up after settling so many nodes.
+    """
+
+    start: int
+    goal: int
+    depart: float
+    limit: float
+    latest: float
+    slowness: float
+    wait: bool
+    eager: float
+    most: int
+
+
+class Marks(NamedTuple):
+    """Labels by state, and the memory of searches; `touched` lists what must be reset."""
+
+    cost: np.ndarray
+    time: np.ndarray
+    before: np.ndarray
+    departed: np.ndarray
+    settled: np.ndarray
+    nodes: np.ndarray
+    keys: np.ndarray
+    place: np.ndarray
+    touched: np.ndarray
+    counts: np.ndarray
+    samples: np.ndarray
+
+
+TOUCHED, SETTLED, SAILED = 0, 1, 2  # entries of `Marks.counts`
+
+
+def new_marks(count):
+    """Return the memory of searches over a number of states."""
+    return Marks(
+        np.full(count, math.inf),
+        np.full(count, math.inf),
+        np.full(count, -1, np.int32),
+        np.full(count, math.nan),
+        np.zeros(count, np.bool_),
+        np.empty(count, np.int32),
+        np.empty(count),
+        np.full(count, -1, np.int32),
+        np.empty(count, np.int32),
+        np.zeros(3, np.int64),
+        np.full((4, CHANNELS), math.nan),
+    )
+
+
+@bare
+def strongest_currents(sea, strongest):
+    """Fill the strongest current [m/s] of every station towards each of `SECTORS` directions.
+
+    NaN is passed over; without a current they are 0.
+    """
+    i, j = sea.channel_index[CURRENT_EAST], sea.channel_index[CURRENT_NORTH]
+    values = sea.values
+    for s in range(strongest.shape[0]):
+        for d in range(SECTORS):
+            strongest[s, d] = -math.inf if i >= 0 and j >= 0 else 0.0
+        if i < 0 or j < 0:
+            continue
+        for d in range(SECTORS // 2):
+            angle = 2.0 * math.pi * d / SECTORS
+            east, north = np.float32(math.sin(angle)), np.float32(math.cos(angle))
+            high, low = np.float32(-math.inf), np.float32(math.inf)
+            for t in range(values.shape[1]):
+                along = values[s, t, i] * east + values[s, t, j] * north
+                high = max(high, along) if along == along else high
+                low = min(low, along) if along == along else low
+            strongest[s, d] = high + 1e-5
+            strongest[s, d + SECTORS // 2] = -low + 1e-5
+
+
+@woven
+def _most_at(network, sea, strongest, station, edge, course, required):
+    """Return (greatest depth, strongest current along the course) ever at a station on an edge."""
+    depth = math.inf
+    if required > -math.inf:
+        depth = min(float(network.depth[edge]) + sea.highest[station], float(sea.deepest[station]))
+    sector = course * (SECTORS / (2.0 * math.pi))
+    low = math.floor(sector)
+    share, gap = (sector - low) * (2.0 * math.pi / SECTORS), 2.0 * math.pi / SECTORS
+    k = int(low) % SECTORS
+    along = math.sin(gap - share) * strongest[station, k]
+    along = (along + math.sin(share) * strongest[station, (k + 1) % SECTORS]) / math.sin(gap)
+    return depth, along if along == along else -math.inf
+
+
+@woven
+def _least_slowness(caps, most, required):
+    """Return the least time per metre with that depth and current [s/m]; inf if too shallow."""
+    depth, along = most
+    last = caps.shape[0] - 1
+    speed = caps[last]
+    if required > -math.inf:
+        if not depth >= required - _SPARE:
+            return math.inf
+        if depth + _SPARE < last * CAP_STEP:
+            speed = caps[int(max(depth + _SPARE, 0.0) / CAP_STEP)]
+    speed = (speed + along) * (1.0 + 1e-6)
+    return 1.0 / speed if speed > 0.0 else math.inf
+
+
+@woven
+def _larger(first, second):
+    """Return the larger of each: what bounds every mixture of the two."""
+    return max(first[0], second[0]), max(first[1], second[1])
+
+
+CAP_STEP = 0.25  # of the depths for which the greatest speed is kept [m]
+
+
+@bare
+def least_times(network, tails, sea, strongest, caps, required, times):
+    """Fill lower bounds of the weighted time of every edge at any time [s]; inf if none opens it.
+
+    Parameters
+    ----------
+    network, sea : NetworkArrays, SeaArrays
+    tails : int32[E]
+    strongest : float32[S, SECTORS]
+        From `strongest_currents`.
+    caps : float64[C]
+        Greatest speed through water in depths up to ``(i + 1) * CAP_STEP`` [m/s]; the last one
+        anywhere.
+    required : float
+        Depth [m]; -inf if none.
+    times : float64[E]
+    """
+    for e in range(times.shape[0]):
+        if network.fixed_time[e] == network.fixed_time[e]:
+            times[e] = network.fixed_time[e] * float(network.factor[e]) * _SHRINK
+            continue
+        course, length = float(network.course[e]), network.length[e]
+        most = _most_at(network, sea, strongest, tails[e], e, course, required)
+        before = _least_slowness(caps, most, required)
+        at, total = 0.0, 0.0
+        for p in range(network.via_ptr[e], network.via_ptr[e + 1] + 1):
+            a = b = network.target[e]
+            to = 1.0
+            if p < network.via_ptr[e + 1]:
+                a, b, to = network.via_a[p], network.via_b[p], float(network.via_s[p])
+            most = _most_at(network, sea, strongest, a, e, course, required)
+            if b != a:  # a mixture may have the depth of the one and the current of the other
+                other = _most_at(network, sea, strongest, b, e, course, required)
+                most = _larger(most, other)
+            now = _least_slowness(caps, most, required)
+            total += 0.5 * (to - at) * length * (before + now)
+            before, at = now, to
+        times[e] = total * float(network.factor[e]) * _SHRINK
+
+
+@bare
+def backward_bounds(reverse_ptr, reverse_edge, tails, times, goal, ahead, memory):
+    """Fill the least sums of edge times to the goal from every node (Dijkstra backwards).
+
+    Parameters
+    ----------
+    reverse_ptr, reverse_edge : int64[N + 1], int32[E]
+        The edges that arrive at each node.
+    tails : int32[E]
+    times : float64[E]
+    goal : int
+    ahead : float64[N]
+        Filled; inf where there is no way.
+    memory : tuple of int32[N], float64[N], int32[N]
+        Heap; its places are -1.
+    """
+    nodes, keys, place = memory
+    for n in range(ahead.shape[0]):
+        ahead[n] = math.inf
+    ahead[goal] = 0.0
+    size = heap.put(nodes, keys, place, 0, goal, 0.0)
+    while size > 0:
+        node, reached, size = heap.take(nodes, keys, place, size)
+        for k in range(reverse_ptr[node], reverse_ptr[node + 1]):
+            edge = reverse_edge[k]
+            away = reached + times[edge]
+            tail = tails[edge]
+            if away < ahead[tail]:
+                ahead[tail] = away
+                size = heap.put(nodes, keys, place, size, tail, away)
+
+
+@woven
+def _best_use(network, sea, ship, trip, node, edge, k, time, until, enough, quickest, work):
+    """Return (departure, arrival, status) of the best use of an edge since a time."""
+    factor = float(network.factor[edge])
+    arrival, status = sail_edge(
+        network, sea, ship, edge, k, time, work[0], work[2], work[3],
+        time + enough / factor, trip.slowness,
+    )  # fmt: skip
+    if not (trip.wait and network.can_wait[node]):
+        return time, arrival, status
+    pause = sea.times[k + 1] - time  # until the next time of the data
+    useful = min(enough, factor * (arrival - time))
+    if status == OK and pause + quickest >= useful:
+        return time, arrival, status
+    return wait_for_edge(
+        network, sea, ship, edge, node, k, time, until,
+        arrival, status, factor, quickest / factor, enough, work,
+    )  # fmt: skip
+
+
+@woven
+def _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, size):
+    """Improve the labels of an edge's head if the edge can; return the size of the heap."""
+    head, node = network.target[edge], states.node[state]
+    cost, time = marks.cost[state], marks.time[state]
+    left, quickest = ahead.node[head], ahead.edge[edge]
+    reach = min(trip.limit, marks.cost[trip.goal]) - cost - left
+    for s in range(states.ptr[head], states.ptr[head + 1]):
+        if not quickest < reach or states.opens[s] - time >= reach:
+            break
+        enough = min(reach, marks.cost[s] - cost)
+        if states.closes[s] <= time or marks.settled[s] or not quickest < enough:
+            continue
+        marks.counts[SAILED] += 1
+        network.opens[head], network.closes[head] = states.opens[s], states.closes[s]
+        departure, arrival, status = _best_use(
+            network, sea, ship, trip, node, edge, k, time, states.until[state],
+            enough, quickest, marks.samples,
+        )  # fmt: skip
+        if status != OK or arrival == math.inf or arrival > trip.latest:
+            continue
+        new = cost + (departure - time) + float(network.factor[edge]) * (arrival - departure)
+        known = marks.cost[s]
+        if new < known or (new == known and arrival < marks.time[s]):
+            if known == math.inf:
+                marks.touched[marks.counts[TOUCHED]] = s
+                marks.counts[TOUCHED] += 1
+            marks.cost[s], marks.time[s] = new, arrival
+            marks.before[s], marks.departed[s] = state, departure
+            key = new + trip.eager * left
+            size = heap.put(marks.nodes, marks.keys, marks.place, size, s, key)
+    return size
+
+
+@bare
+def forget(marks):
+    """Reset what the last search touched."""
+    for i in range(marks.counts[TOUCHED]):
+        s = marks.touched[i]
+        marks.cost[s], marks.time[s] = math.inf, math.inf
+        marks.before[s], marks.place[s] = -1, -1
+        marks.settled[s] = False
+    marks.counts[TOUCHED] = 0
+
+
+@bare
+def sail_once(network, states, sea, ship, trip, ahead, marks):
+    """Search one departure; return its cost [s], inf if the goal is not reached within the limit.
+
+    Parameters
+    ----------
+    network : NetworkArrays
+        One state per node; its ``opens`` and ``closes`` are written to.
+    states : States
+    sea, ship : SeaArrays, ShipArrays
+    trip : Trip
+    ahead : Ahead
+        Bounds that obey the triangle inequality with the times of edges.
+    marks : Marks
+        Holds the labels until the next `forget`, which must have been called before.
+    """
+    nodes, keys, place, counts = marks.nodes, marks.keys, marks.place, marks.counts
+    counts[SETTLED] = counts[SAILED] = 0
+    if not ahead.node[states.node[trip.start]] <= trip.limit:
+        return math.inf
+    marks.touched[0], counts[TOUCHED] = trip.start, 1
+    marks.cost[trip.start], marks.time[trip.start] = 0.0, trip.depart
+    size = heap.put(nodes, keys, place, 0, trip.start, ahead.node[states.node[trip.start]])
+    while size > 0 and counts[SETTLED] < trip.most:
+        state, _, size = heap.take(nodes, keys, place, size)
+        marks.settled[state] = True
+        counts[SETTLED] += 1
+        if state == trip.goal:
+            return marks.cost[state]
+        node, time = states.node[state], marks.time[state]
+        k = interval_of(sea.times, time)
+        if k < 0:
+            continue
+        sample_station(sea, node, k, time, marks.samples[0])
+        for edge in range(network.indptr[node], network.indptr[node + 1]):
+            size = _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, size)
+    return math.inf
+
+
+@bare
+def trace(states, marks, trip, nodes, arrive, leave):
+    """Fill the path of the last search from its end; return how many nodes it has.
+
+    The last ``count`` entries of the outputs are filled; 0 if they are too short.
+    """
+    at, state = nodes.shape[0], trip.goal
+    out = marks.time[state]
+    while at > 0:
+        at -= 1
+        nodes[at], arrive[at], leave[at] = states.node[state], marks.time[state], out
+        if state == trip.start:
+            return nodes.shape[0] - at
+        out = marks.departed[state]
+        state = marks.before[state]
+    return 0

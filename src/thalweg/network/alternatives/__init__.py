@@ -1,0 +1,1 @@
+"""Alternative paths round land: homotopy classes, their shortest paths, string pulling."""

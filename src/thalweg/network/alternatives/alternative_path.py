@@ -1,0 +1,188 @@
+"""A way between the ends of a network, what it costs, and how it is drawn taut."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.network.alternatives.path_shortening import (
+    LegCost,
+    Sides,
+    leg_lengths,
+    pulled,
+    total_cost,
+)
+from thalweg.network.network import IntArray, Network
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+
+_FINEST = 25.0  # [m] to which edges are cut at borders of control areas
+
+
+@dataclass(frozen=True)
+class Weighing:
+    """What a way costs.
+
+    Attributes
+    ----------
+    weight : float64[E], optional
+        Weight of every edge; by default its length [m].
+    leg_cost : callable, optional
+        The same for legs (lat1, lon1, lat2, lon2) [deg], for pulling ways taut; without it they
+        are pulled by their length.
+    """
+
+    weight: FloatArray | None = None
+    leg_cost: LegCost | None = None
+
+    @classmethod
+    def priced(cls, network: Network, chart: Chart, factor: float = 1.0) -> Weighing:
+        """Return lengths times the factors of zones, and another inside emission control areas.
+
+        Parameters
+        ----------
+        network : Network
+        chart : Chart
+            With the zones.
+        factor : float, optional
+            What a mile inside an emission control area costs over one outside.
+
+        Raises
+        ------
+        InputError
+            If the factor is not above 0.
+        """
+        if not 0.0 < factor < np.inf:
+            raise InputError(
+                f"A mile cannot cost {factor!r} times another.",
+                "A factor above 0.",
+                "Give 1.5, say.",
+            )
+
+        def leg_cost(*ends: FloatArray) -> FloatArray:
+            penalty, price = chart.zone_factor(*ends)
+            share = chart.eca_share(*ends, finest=_FINEST)
+            return np.asarray(leg_lengths(*ends) * penalty * price * (1.0 + (factor - 1.0) * share))
+
+        weight = network.length * network.factor * network.price
+        return cls(weight * (1.0 + (factor - 1.0) * eca_shares(network, chart)), leg_cost)
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """One of several ways between the ends of a network.
+
+    Attributes
+    ----------
+    lat, lon : float64[P]
+        Waypoints [deg], pulled taut over the chart.
+    length : float
+        Length [m]; a canal counts with its own.
+    cost : float
+        Cost by the weighing that favours this way most: as pulled, where it tells what legs cost
+        (canals count with the weight of their edges), else as found on the network.
+    ratio : float
+        Cost on the network over that of the best way by the same weighing; 1 for the best.
+    canals : tuple of str
+        Names of the canals it passes, in order.
+    path : int64[K]
+        Nodes of the network it was found on.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    length: float
+    cost: float
+    ratio: float
+    canals: tuple[str, ...]
+    path: IntArray
+
+    @property
+    def waypoints(self) -> list[tuple[float, float]]:
+        """The waypoints as (lat, lon) [deg]."""
+        return list(zip(self.lat.tolist(), self.lon.tolist()))
+
+
+def eca_shares(network: Network, chart: Chart) -> FloatArray:
+    """Return the share (0 to 1) of every edge inside emission control areas; 0 of canals."""
+    share = np.zeros(network.n_edges)
+    if not chart.zones.eca:
+        return share
+    sailed = np.flatnonzero(np.isnan(network.fixed_time))
+    a, b = network.tails()[sailed].astype(np.int64), network.target[sailed].astype(np.int64)
+    key = np.minimum(a, b) * network.n_nodes + np.maximum(a, b)  # each pair is looked at once
+    keys, back = np.unique(key, return_inverse=True)
+    a, b = keys // network.n_nodes, keys % network.n_nodes
+    lat, lon = network.lat, network.lon
+    found = chart.eca_share(lat[a], lon[a], lat[b], lon[b], finest=_FINEST)
+    share[sailed] = np.asarray(found)[back]
+    return share
+
+
+def weights_of(network: Network, weighing: Weighing) -> FloatArray:
+    """Return the weight of every edge; `InputError` if they make no sense."""
+    if weighing.weight is None:
+        return network.length
+    weight = np.ascontiguousarray(weighing.weight, float)
+    if weight.shape != (network.n_edges,) or not np.all(weight >= 0.0):
+        raise InputError(
+            f"Weights of shape {weight.shape} do not weigh {network.n_edges} edges.",
+            "One number of 0 or more for each edge.",
+            "Build them from the network's length.",
+        )
+    return weight
+
+
+def drawn_way(
+    network: Network, chart: Chart, path: IntArray, ratio: float, weighing: Weighing,
+    sides: Sides | None = None,
+) -> Way:  # fmt: skip
+    """Return the way along nodes of a network, pulled taut; ``ratio`` as in `Way`."""
+    lat, lon = network.lat[path], network.lon[path]
+    lat, lon = pulled(chart, lat, lon, leg_cost=weighing.leg_cost, sides=sides)
+    weight = weights_of(network, weighing)
+    length, cost = total_cost((lat, lon)), total_cost((lat, lon), weighing.leg_cost)
+    names: list[str] = []
+    if chart.canals:
+        through = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        edges = {int(c): e for e, c in _canal_steps(network, chart, path)}
+        for k in np.flatnonzero(through >= 0):
+            canal, leg = chart.canals[through[k]], (lat[k : k + 2], lon[k : k + 2])
+            names.append(canal.name)
+            length += canal.length - total_cost(leg)
+            cost += float(weight[edges[int(through[k])]]) - total_cost(leg, weighing.leg_cost)
+    if weighing.weight is not None and weighing.leg_cost is None:
+        cost = float(weight[edges_of(network, path)].sum())
+    return Way(lat, lon, length, cost, ratio, tuple(names), path)
+
+
+def canal_edges(network: Network, chart: Chart) -> IntArray:
+    """Return the index in ``chart.canals`` of every edge of a network, -1 for those at sea."""
+    answer = np.full(network.n_edges, -1, np.int64)
+    edge = np.flatnonzero(~np.isnan(network.fixed_time))
+    tail, head = network.tails()[edge], network.target[edge]
+    lat, lon = network.lat, network.lon
+    answer[edge] = chart.canal_of_legs(lat[tail], lon[tail], lat[head], lon[head])
+    return answer
+
+
+def _canal_steps(network: Network, chart: Chart, path: IntArray) -> list[tuple[int, int]]:
+    canal = canal_edges(network, chart)
+    return [(e, int(canal[e])) for e in edges_of(network, path) if canal[e] >= 0]
+
+
+def edges_of(network: Network, path: Sequence[int] | IntArray) -> IntArray:
+    """Return the edges along a path of nodes."""
+    edges = []
+    for a, b in pairwise(path):
+        first, last = network.indptr[a], network.indptr[a + 1]
+        edges.append(first + int(np.argmax(network.target[first:last] == b)))
+    return np.array(edges, np.int64)

@@ -1,0 +1,284 @@
+"""Ways that differ in kind: through other canals, round other islands, cheaper at other prices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import FloatArray, distance, format_position
+from thalweg.kernels.network.graph_building import static_distances
+from thalweg.kernels.network.static_paths import tree_sums
+from thalweg.network.alternatives.alternative_path import (
+    Way,
+    Weighing,
+    canal_edges,
+    drawn_way,
+    edges_of,
+    weights_of,
+)
+from thalweg.network.alternatives.homotopy import Obstacles, obstacles
+from thalweg.network.alternatives.path_shortening import total_cost
+from thalweg.network.network import IntArray, Network
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_SMALLEST: Final = 0.02  # islands narrower than this share of the distance do not count
+_TRIED: Final = 3  # kinds of way looked at for each that is asked for
+_ALIKE: Final = 0.005  # ways round the same islands differ when one costs more than this more
+
+
+def ways_round(
+    network: Network,
+    chart: Chart,
+    *,
+    weighings: Sequence[Weighing] = (Weighing(),),
+    most: int = 4,
+    stretch: float = 0.3,
+    island: float | None = None,
+) -> tuple[Way, ...]:
+    """Return ways that pass land on different sides, or other canals, best first.
+
+    Parameters
+    ----------
+    network : Network
+        With start and goal, as the builders make it. It needs slack for what is to be found.
+    chart : Chart
+        The chart it was built for.
+    weighings : sequence of Weighing, optional
+        What ways cost: lengths by default; several when prices differ from place to place, such as
+        lengths times factors of 1, 1.2 and 1.56 inside emission control areas.
+    most : int, optional
+        How many ways at most.
+    stretch : float, optional
+        Ways more than ``1 + stretch`` times as costly as the best, by every weighing, are left out.
+    island : float, optional
+        Land narrower than this [m] (square root of its area) may be passed on either side without
+        making another way; by default 2 % of the distance.
+
+    Returns
+    -------
+    tuple of Way
+        First those that are the best by some weighing in the order given, then the others by how
+        much more they cost. Each is the best of its kind by the weighing that favours it most. Of
+        two ways round the same islands the second is given only if it is the best by a weighing,
+        and the first costs over 0.5 % more by that: it goes round a zone, say.
+
+    Raises
+    ------
+    NoRouteError
+        If there is no way at all.
+    InputError
+        If the network has no ends, or a weight makes no sense.
+
+    Notes
+    -----
+    Every node has a least way from start to goal by way of it: two shortest-path trees give all of
+    them at once (the plateau method; Abraham et al. 2013, "Alternative routes in road networks").
+    Each is told apart by how often, and in which sense, it crosses the meridians north of every
+    island that counts, all the way round the globe, and which canals it passes: equal counts mean
+    that one way can be moved into the other over water (for ways that do not cross themselves).
+    """
+    _check(network, most, stretch)
+    start, goal = network.meta.start, network.meta.goal
+    ends = [(float(network.lat[k]), float(network.lon[k])) for k in (start, goal)]
+    if island is None:
+        island = _SMALLEST * float(distance(*ends[0], *ends[1]))
+    seen = obstacles(network, chart, island)
+    found: list[_Kind] = []
+    for order, weighing in enumerate(weighings):
+        found += _kinds(network, seen, weighing, order, stretch)[: _TRIED * most]
+    found.sort(key=lambda kind: (kind.ratio, kind.order))
+    return _drawn(network, chart, seen, found, weighings, most)
+
+
+def alternatives(
+    network: Network,
+    chart: Chart,
+    *,
+    weighing: Weighing | None = None,
+    threshold: float = 0.5,
+) -> tuple[Way, ...]:
+    """Return the best way, and the best ones without some of the canals that it passes.
+
+    Parameters
+    ----------
+    network : Network
+        With start and goal, and a ``slack`` of at least the threshold.
+    chart : Chart
+        The chart it was built for.
+    weighing : Weighing, optional
+        What ways cost; by default their length.
+    threshold : float, optional
+        Ways more than ``1 + threshold`` times as costly as the best are left out.
+
+    Returns
+    -------
+    tuple of Way
+        The best way first. Where it passes n canals there are ``2**n - 1`` further runs, one for
+        each proper subset of them that stays open; equal ways are given once.
+
+    Raises
+    ------
+    NoRouteError
+        If there is no way at all.
+    InputError
+        If the network has no ends, or a value makes no sense.
+    """
+    _check(network, 1, threshold)
+    weighing = weighing or Weighing()
+    weight = weights_of(network, weighing)
+    canal = canal_edges(network, chart)
+    first = _least(network, weight)
+    if first is None:
+        raise _no_way(network)
+    passed = sorted({int(canal[e]) for e in edges_of(network, first[1]) if canal[e] >= 0})
+    found = {tuple(first[1]): first}
+    for count in range(1, len(passed) + 1):
+        for closed in combinations(passed, count):
+            shut = np.where(np.isin(canal, closed), np.inf, weight)
+            other = _least(network, shut)
+            if other is not None and other[0] <= (1.0 + threshold) * first[0]:
+                found.setdefault(tuple(other[1]), other)
+    ways = sorted(found.values(), key=lambda pair: pair[0])
+    return tuple(
+        drawn_way(network, chart, np.array(path), cost / first[0], weighing) for cost, path in ways
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """The best way of a kind by one weighing: its cost over the best, and its nodes."""
+
+    signature: bytes
+    ratio: float
+    order: int
+    path: IntArray
+
+
+def _check(network: Network, most: int, stretch: float) -> None:
+    if network.meta.start < 0 or network.meta.goal < 0:
+        raise InputError(
+            "The network has no start and goal.",
+            "Ways lead from meta.start to meta.goal.",
+            "Add them with thalweg.network.with_endpoints.",
+        )
+    if not (most >= 1 and stretch >= 0.0):
+        raise InputError(
+            f"{most!r} ways, at most {stretch!r} costlier, cannot be looked for.",
+            "One way or more, and a share of 0 or more.",
+            "Give 4 ways and 0.3, say.",
+        )
+
+
+def _no_way(network: Network) -> NoRouteError:
+    ends = [
+        format_position(float(network.lat[k]), float(network.lon[k]))
+        for k in (network.meta.start, network.meta.goal)
+    ]
+    return NoRouteError(
+        f"There is no way from {ends[0]} to {ends[1]} on this network.",
+        "",
+        "Build it with more slack, or allow more canals.",
+    )
+
+
+def _tree(
+    network: Network, weight: FloatArray, root: int, backward: bool
+) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray]:
+    """Return least costs and parents, and the graph (indptr, target, edge) they were found on."""
+    n = network.n_nodes
+    indptr, target = network.indptr, network.target
+    edge = np.arange(network.n_edges)
+    if backward:
+        edge = np.argsort(target, kind="stable")
+        indptr = np.searchsorted(target[edge], np.arange(n + 1)).astype(np.int64)
+        target = network.tails()[edge]
+    cost, parent = np.empty(n), np.empty(n, np.int64)
+    static_distances(indptr, target, weight[edge], root, -1, cost, parent)
+    return cost, parent, indptr, target.astype(np.int32), edge
+
+
+def _kinds(
+    network: Network, seen: Obstacles, weighing: Weighing, order: int, stretch: float
+) -> list[_Kind]:
+    """Return the best way of every kind, by way of any node, up to the stretch."""
+    weight = weights_of(network, weighing)
+    sides = []
+    for root, backward in ((network.meta.start, False), (network.meta.goal, True)):
+        cost, parent, indptr, target, edge = _tree(network, weight, root, backward)
+        sums = np.zeros((network.n_nodes, seen.crossings.shape[1]), np.int16)
+        ranks = np.argsort(cost, kind="stable")
+        ranks = ranks[: int(np.isfinite(cost).sum())]
+        tree_sums(indptr, target, weight[edge], seen.crossings[edge], cost, parent, ranks, sums)
+        sides.append((cost, parent, sums))
+    (there, came, past), (back, goes, ahead) = sides
+    total = there + back
+    best = float(total[network.meta.start])
+    if not np.isfinite(best):
+        raise _no_way(network)
+    best = float(total.min())  # the same but for rounding
+    nodes = np.flatnonzero(total <= (1.0 + stretch) * best)
+    nodes = nodes[np.argsort(total[nodes], kind="stable")]
+    signature = past[nodes] + ahead[nodes]
+    _, first = np.unique(signature, axis=0, return_index=True)
+    kinds = []
+    for k in np.sort(first):
+        path = _joined(came, goes, int(nodes[k]))
+        if len(set(path)) == len(path):  # ways that turn back on themselves are no kind
+            ratio = float(total[nodes[k]] / best)
+            kinds.append(_Kind(signature[k].tobytes(), ratio, order, np.array(path)))
+    return kinds
+
+
+def _joined(came: IntArray, goes: IntArray, node: int) -> list[int]:
+    """Return the nodes from start to goal by way of one, given both trees."""
+    path = [node]
+    while came[path[-1]] >= 0:
+        path.append(int(came[path[-1]]))
+    path.reverse()
+    while goes[path[-1]] >= 0:
+        path.append(int(goes[path[-1]]))
+    return path
+
+
+def _drawn(
+    network: Network, chart: Chart, seen: Obstacles, kinds: list[_Kind],
+    weighings: Sequence[Weighing], most: int,
+) -> tuple[Way, ...]:  # fmt: skip
+    """Return ways pulled taut, each kind once."""
+    ways: list[tuple[bytes, Way]] = []
+    known: set[bytes] = set()
+    for kind in kinds:
+        if len(ways) == most:
+            break
+        if kind.ratio > 1.0 and kind.signature in known:
+            continue
+        known.add(kind.signature)
+        weighing = weighings[kind.order]
+        way = drawn_way(network, chart, kind.path, kind.ratio, weighing, seen.sides)
+        signature = seen.along(chart, way.lat, way.lon)
+        alike = [other for mark, other in ways if mark == signature]
+        if kind.ratio > 1.0 and alike:
+            continue
+        limit = (1.0 + _ALIKE) * total_cost((way.lat, way.lon), weighing.leg_cost)
+        if all(total_cost((o.lat, o.lon), weighing.leg_cost) > limit for o in alike):
+            ways.append((signature, way))
+    return tuple(way for _, way in ways)
+
+
+def _least(network: Network, weight: FloatArray) -> tuple[float, list[int]] | None:
+    """Return the cost and nodes of the best way, or None."""
+    cost, parent, *_ = _tree(network, weight, network.meta.start, False)
+    goal = network.meta.goal
+    if not np.isfinite(cost[goal]):
+        return None
+    path = [goal]
+    while path[-1] != network.meta.start:
+        path.append(int(parent[path[-1]]))
+    return float(cost[goal]), path[::-1]

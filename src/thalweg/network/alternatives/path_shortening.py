@@ -1,0 +1,264 @@
+"""String pulling over a chart: the taut, or the cheapest, line near a way, by tested legs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core import geodesy
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.network.assembly import measure
+from thalweg.network.network import BoolArray, FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+#: Cost of legs (lat1, lon1, lat2, lon2) [deg]; by default their length [m].
+LegCost: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
+#: Counts (n, K) that tell on which side of islands legs [deg] pass; equal sums are equal sides.
+Sides: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], NDArray[np.int8]]
+Line: TypeAlias = tuple[FloatArray, FloatArray]
+
+_WINDOW: Final = 48  # waypoints a leg may skip at once
+_BISECTIONS: Final = 7
+_LONGEST: Final = 60.0 * NAUTICAL_MILE  # legs are cut to this while waypoints are moved
+_STEPS: Final = tuple(NAUTICAL_MILE * s for s in (24.0, 12.0, 6.0, 3.0, 1.5, 0.75, 0.3))
+_SWEEPS: Final = 6
+_COURSES: Final = np.radians(np.arange(0.0, 360.0, 45.0))
+_GAIN: Final = 1e-5  # a round that gains a smaller share is the last
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """What legs are allowed and cost."""
+
+    chart: Chart
+    cost: LegCost
+    sides: Sides | None
+
+    def allowed(self, start: Line, end: Line) -> BoolArray:
+        """Return which legs touch nothing."""
+        return ~np.asarray(self.chart.legs_blocked(*start, *end))
+
+    def same_side(self, start: Line, by: Line, end: Line) -> BoolArray:
+        """Return which legs pass islands on the side that the way by a third position does."""
+        if self.sides is None:
+            return np.ones(len(start[0]), bool)
+        round_it = self.sides(*start, *by) + self.sides(*by, *end)
+        return np.asarray((self.sides(*start, *end) == round_it).all(axis=1))
+
+
+def pulled(
+    chart: Chart,
+    lat: FloatArray,
+    lon: FloatArray,
+    *,
+    leg_cost: LegCost | None = None,
+    sides: Sides | None = None,
+    rounds: int = 12,
+) -> Line:
+    """Return a way pulled taut: waypoints left out and corners cut while all legs stay allowed.
+
+    Parameters
+    ----------
+    chart : Chart
+        Tests the legs; those through canals stay.
+    lat, lon : ndarray
+        Way [deg] of allowed legs.
+    leg_cost : callable, optional
+        What legs cost; by default their length. With a cost waypoints are moved sideways as well,
+        in the ways that cost changes from place to place.
+    sides : callable, optional
+        Tells the sides on which islands are passed, to keep them (see
+        `thalweg.network.alternatives.homotopy`).
+    rounds : int
+        How often corners are cut at most; 0 only leaves waypoints out.
+
+    Returns
+    -------
+    lat, lon : ndarray
+        The way [deg]; it costs no more than the one given.
+
+    Notes
+    -----
+    Local. Without ``sides`` a leg between two waypoints may pass a small island the other way
+    round where that is cheaper.
+    """
+    rules = _Rules(chart, leg_cost or leg_lengths, sides)
+    move = leg_cost is not None
+    line = np.asarray(lat, float), geodesy.wrap_longitude(lon)
+    if chart.canals:
+        canal = chart.canal_of_legs(line[0][:-1], line[1][:-1], line[0][1:], line[1][1:])
+        k = np.flatnonzero(canal >= 0)
+        if len(k):
+            parts = np.split(np.arange(len(line[0])), k + 1)
+            drawn = [_taut(rules, (line[0][p], line[1][p]), move, rounds) for p in parts]
+            return np.concatenate([d[0] for d in drawn]), np.concatenate([d[1] for d in drawn])
+    return _taut(rules, line, move, rounds)
+
+
+def total_cost(line: Line, leg_cost: LegCost | None = None) -> float:
+    """Return what a way costs; by default its length [m]."""
+    lat, lon = line
+    return float(np.sum((leg_cost or leg_lengths)(lat[:-1], lon[:-1], lat[1:], lon[1:])))
+
+
+def _taut(rules: _Rules, line: Line, move: bool, rounds: int) -> Line:
+    line = _fewest(rules, line)
+    before = total_cost(line, rules.cost)
+    for _ in range(rounds):
+        line = _fewest(rules, _cut(rules, line))
+        now = total_cost(line, rules.cost)
+        if before - now <= _GAIN * before:
+            break
+        before = now
+    if move and rounds:
+        line = _fewest(rules, _moved(rules, line))
+        line = _fewest(rules, _cut(rules, line))
+    return line
+
+
+def leg_lengths(
+    lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+) -> FloatArray:
+    """Return the lengths [m] of legs [deg]."""
+    count = len(lat1)
+    ends = np.arange(2 * count, dtype=np.int32)
+    lat, lon = np.concatenate([lat1, lat2]), np.concatenate([lon1, lon2])
+    return measure(lat, lon, ends[:count], ends[count:]).length
+
+
+def _fewest(rules: _Rules, line: Line) -> Line:
+    """Return the cheapest way over some of the waypoints, in their order."""
+    while True:
+        keep = _subset(rules, line)
+        count = len(line[0])
+        line = line[0][keep], line[1][keep]
+        if len(keep) == count or count <= _WINDOW:
+            return line
+
+
+def _subset(rules: _Rules, line: Line) -> IntArray:
+    lat, lon = line
+    count = len(lat)
+    first, second = np.triu_indices(count, 1)
+    near = second - first <= _WINDOW
+    first, second = first[near], second[near]
+    price = rules.cost(lat[first], lon[first], lat[second], lon[second])
+    hop = np.flatnonzero(second - first > 1)  # neighbours are known to be joined
+    a, b = first[hop], second[hop]
+    free = rules.allowed((lat[a], lon[a]), (lat[b], lon[b]))
+    if rules.sides is not None and count > 1:
+        passed = rules.sides(lat[:-1], lon[:-1], lat[1:], lon[1:]).astype(np.int16)
+        past = np.concatenate([np.zeros((1, passed.shape[1]), np.int16), passed.cumsum(axis=0)])
+        own = rules.sides(lat[a], lon[a], lat[b], lon[b])
+        free &= (own == past[b] - past[a]).all(axis=1)
+    price[hop[~free]] = np.inf
+    return _cheapest_chain(count, first, second, price)
+
+
+def _cheapest_chain(count: int, first: IntArray, second: IntArray, price: FloatArray) -> IntArray:
+    """Return the cheapest way from the first to the last of some numbers, over ascending hops."""
+    best, came = np.full(count, np.inf), np.zeros(count, np.int64)
+    best[0] = 0.0
+    rows = np.searchsorted(first, np.arange(count + 1))
+    for here in range(count - 1):
+        row = slice(rows[here], rows[here + 1])
+        reach = best[here] + price[row] * (1.0 + 1e-12)  # fewer waypoints of equal ways
+        better = reach < best[second[row]]
+        best[second[row][better]] = reach[better]
+        came[second[row][better]] = here
+    chain = [count - 1]
+    while chain[-1] > 0:
+        chain.append(int(came[chain[-1]]))
+    return np.array(chain[::-1], np.int64)
+
+
+def _cut(rules: _Rules, line: Line) -> Line:
+    """Cut every corner as far as legs allow and cost falls: two waypoints in the place of one."""
+    count = len(line[0])
+    if count < 3:
+        return line
+    corner = np.arange(1, count - 1)
+    low, high = np.zeros(len(corner)), np.full(len(corner), 0.5)
+    share = high.copy()
+    for _ in range(_BISECTIONS):
+        fine = _cut_is_better(rules, line, corner, share)
+        low, high = np.where(fine, share, low), np.where(fine, high, share)
+        if low.min() >= 0.5:
+            break
+        share = np.where(low >= 0.5, 0.5, 0.5 * (low + high))
+    before, after = _cut_points(line, corner, low)
+    cut = low > 0.0
+    order = np.concatenate([corner[cut] - 0.25, corner[cut] + 0.25, corner[~cut], [0, count - 1]])
+    rest = np.concatenate([corner[~cut], [0, count - 1]])
+    mixed = [
+        np.concatenate([before[k][cut], after[k][cut], line[k][rest]])[np.argsort(order)]
+        for k in (0, 1)
+    ]
+    return mixed[0], mixed[1]
+
+
+def _cut_points(line: Line, corner: IntArray, share: FloatArray) -> tuple[Line, Line]:
+    """Return positions on the legs before and after corners, at a share of the leg from it."""
+    lat, lon = line
+    points = []
+    for other in (corner - 1, corner + 1):
+        length, course, _ = geodesy.inverse(lat[corner], lon[corner], lat[other], lon[other])
+        points.append(geodesy.direct(lat[corner], lon[corner], course, 0.999 * share * length))
+    return points[0], points[1]
+
+
+def _cut_is_better(rules: _Rules, line: Line, corner: IntArray, share: FloatArray) -> BoolArray:
+    lat, lon = line
+    before, after = _cut_points(line, corner, share)
+    here = lat[corner], lon[corner]
+    ends = (lat[corner - 1], lon[corner - 1]), (lat[corner + 1], lon[corner + 1])
+    cost = rules.cost
+    fine = cost(*before, *after) < cost(*before, *here) + cost(*here, *after)
+    fine &= rules.allowed(before, after) & rules.same_side(before, here, after)
+    return fine & rules.allowed(ends[0], before) & rules.allowed(after, ends[1])
+
+
+def _moved(rules: _Rules, line: Line) -> Line:
+    """Move the waypoints of a line cut into short legs to where it costs less."""
+    lat, lon, _ = geodesy.densify(*line, _LONGEST)
+    for step in _STEPS:
+        for _ in range(_SWEEPS):
+            gained = sum(_move_some(rules, lat, lon, step, odd) for odd in (1, 2))
+            if gained <= _GAIN * total_cost((lat, lon), rules.cost):
+                break
+    return lat, lon
+
+
+def _move_some(rules: _Rules, lat: FloatArray, lon: FloatArray, step: float, first: int) -> float:
+    """Move every other waypoint one step in its best direction, in place; return the gain."""
+    k = np.arange(first, len(lat) - 1, 2)
+    if not len(k):
+        return 0.0
+    cost, size = rules.cost, len(_COURSES)
+    back, here, on = ((lat[k + i], lon[k + i]) for i in (-1, 0, 1))
+    old = cost(*back, *here) + cost(*here, *on)
+    many = np.repeat(np.arange(len(k)), size)
+    new = geodesy.direct(here[0][many], here[1][many], np.tile(_COURSES, len(k)), step)
+    price = cost(*_take(back, many), *new) + cost(*new, *_take(on, many))
+    better = np.flatnonzero(price < old[many] * (1.0 - 1e-9))
+    ends = _take(back, many[better]), _take(new, better), _take(on, many[better])
+    free = rules.allowed(ends[0], ends[1]) & rules.allowed(ends[1], ends[2])
+    beside = _take(here, many[better])
+    free &= rules.same_side(ends[0], beside, ends[1]) & rules.same_side(ends[1], beside, ends[2])
+    price[np.setdiff1d(np.arange(len(many)), better[free])] = np.inf
+    price = price.reshape(len(k), size)
+    best = price.argmin(axis=1)
+    moved = np.flatnonzero(np.isfinite(price[np.arange(len(k)), best]))
+    take = moved * size + best[moved]
+    lat[k[moved]], lon[k[moved]] = new[0][take], new[1][take]
+    return float(np.sum(old[moved] - price[moved, best[moved]]))
+
+
+def _take(line: Line, index: IntArray) -> Line:
+    return line[0][index], line[1][index]

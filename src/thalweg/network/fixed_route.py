@@ -1,0 +1,87 @@
+"""A network of one way: its waypoints and places between them, one behind the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.core import geodesy
+from thalweg.core.geodesy import Position
+from thalweg.network.assembly import Pairs, Stations, assemble, even_samples, measure
+from thalweg.network.network import FloatArray, Network, NetworkMeta
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+_SAMPLES: Final = 2  # pieces in which every edge is sampled
+
+
+def line(chart: Chart, way: Sequence[Position], *, spacing: float) -> Network:
+    """Return the network of a way that is given: a ship on it only chooses its speeds.
+
+    Parameters
+    ----------
+    chart : Chart
+        The legs of the way must be allowed on it; those through canals stay whole.
+    way : sequence of (lat, lon)
+        Waypoints [deg], at least two.
+    spacing : float
+        Longest edge [m], above 0. Edges end where an emission control area begins or ends too.
+
+    Returns
+    -------
+    Network
+        Its start is the first node, its goal the last.
+    """
+    lat, lon = np.asarray(way, float).T
+    canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])) >= 0
+    length = np.asarray(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    parts = np.where(canal, 1, np.maximum(1, np.ceil(length / spacing))).astype(int)
+    cuts = [np.arange(n) / n for n in parts]
+    lat, lon = _cut(lat, lon, cuts)
+    lat, lon = _cut(lat, lon, _borders(chart, lat, lon))
+    canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])) >= 0
+    stations = Stations(lat, lon, len(lat))
+    first = np.arange(len(lat) - 1, dtype=np.int32)
+    pairs = measure(lat, lon, first, first + np.int32(1))
+    stations, samples = even_samples(
+        stations, pairs, np.where(canal, np.inf, np.maximum(pairs.length, 1.0) / _SAMPLES)
+    )
+    which = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    through = np.array([chart.canals[i].length if i >= 0 else np.nan for i in which])
+    pairs = Pairs(
+        pairs.first,
+        pairs.second,
+        np.where(canal, through, pairs.length),
+        np.where(canal, np.nan, pairs.course).astype(np.float32),
+    )
+    meta = NetworkMeta(
+        kind="line", spacing_m=spacing, directions=1, gap_rad=2.0 * np.pi, start=0,
+        goal=len(lat) - 1,
+    )  # fmt: skip
+    return assemble(chart, stations, pairs, samples, meta=meta)
+
+
+def _borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[FloatArray]:
+    """Return where every leg is cut: at its beginning, and where it crosses a border once."""
+    share = np.asarray(chart.eca_share(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    inside = np.asarray(chart.in_eca(lat[:-1], lon[:-1]))
+    crosses = (share > 1e-6) & (share < 1.0 - 1e-6)
+    at = np.where(inside, share, 1.0 - share)
+    return [np.array([0.0, x] if c else [0.0]) for c, x in zip(crosses, at)]
+
+
+def _cut(
+    lat: FloatArray, lon: FloatArray, cuts: Sequence[FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Return a way with its legs cut at shares of their length; 0 is their beginning."""
+    leg = np.repeat(np.arange(len(cuts)), [len(c) for c in cuts])
+    share = np.concatenate(cuts)
+    length, course, _ = geodesy.inverse(lat[leg], lon[leg], lat[leg + 1], lon[leg + 1])
+    new_lat, new_lon = geodesy.direct(lat[leg], lon[leg], course, share * length)
+    whole = share == 0.0
+    new_lat = np.where(whole, lat[leg], new_lat)
+    new_lon = np.where(whole, lon[leg], new_lon)
+    return np.append(new_lat, lat[-1]), np.append(new_lon, lon[-1])

@@ -1,0 +1,1 @@
+"""The global network: a geodesic grid refined at coasts and straits."""

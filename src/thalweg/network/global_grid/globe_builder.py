@@ -1,0 +1,359 @@
+"""The globe builder: a geodesic grid of the whole sea, finer along coasts, with its ship canals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.chart.canals import CANALS, Canal
+from thalweg.core import geodesy
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import Position
+from thalweg.core.units import NAUTICAL_MILE
+from thalweg.kernels.network import graph_building
+from thalweg.kernels.network.static_paths import connected_waters
+from thalweg.network.assembly import (
+    Pairs,
+    Stations,
+    assemble,
+    even_samples,
+    free_legs,
+    measure,
+    mirrored,
+)
+from thalweg.network.endpoints import check_ends, direct_pairs, join_pairs
+from thalweg.network.global_grid.endpoint_attachment import Joint, Waters, join
+from thalweg.network.global_grid.grid import Fineness, GlobeGrid, globe_grid
+from thalweg.network.network import BoolArray, FloatArray, Network, NetworkMeta
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+NORTH: Final = 72.0
+SOUTH: Final = -70.0
+_BEYOND: Final = 1.0  # limits are moved this far beyond start and goal [deg]
+_REACH: Final = 2.2  # positions are joined to nodes within this many legs of the uniform grid
+_LARGEST_LEVEL: Final = 8
+_FINEST_LEVEL: Final = 14
+
+
+@dataclass(frozen=True)
+class _Options:
+    fineness: Fineness
+    south: float
+    north: float
+
+
+@dataclass(frozen=True)
+class _Sheet:
+    """All nodes (those of the grid, start, goal, canal ends, approaches), legs and canals."""
+
+    stations: Stations
+    pairs: Pairs
+    through: Pairs
+    canals: tuple[Canal, ...]
+    start: int
+    grid: GlobeGrid
+
+    def distances(self, node: int) -> FloatArray:
+        """Return the static distance [m] of every node from one; inf where unreached."""
+        n = self.stations.n_nodes
+        every = join_pairs([self.pairs, self.through])
+        edges = mirrored(n, every)
+        distance, parent = np.empty(n), np.empty(n, np.int64)
+        weight = every.length[edges.pair]
+        graph_building.static_distances(
+            edges.indptr, edges.target, weight, node, -1, distance, parent
+        )
+        return distance
+
+
+def globe(
+    chart: Chart,
+    start: Position,
+    goal: Position,
+    *,
+    level: int = 4,
+    coast_levels: int = 6,
+    border_levels: int = 4,
+    directions: int = 12,
+    north: float = NORTH,
+    south: float = SOUTH,
+    slack: float | None = None,
+    sample_spacing: float = 60.0 * NAUTICAL_MILE,
+) -> Network:
+    """Build a geodesic grid with two positions as nodes, and the chart's canals as edges.
+
+    Parameters
+    ----------
+    chart : Chart
+        Land, zones, depth and canals.
+    start, goal : (lat, lon)
+        Exact positions [deg] on navigable water.
+    level : int, optional
+        How often the icosahedron is halved everywhere, 0 to 8: legs are at most 285 nautical miles
+        long at level 4, half that for every further level.
+    coast_levels : int, optional
+        How often faces along coasts are halved beyond that. Narrow straits with traffic
+        (`thalweg.network.global_grid.straits`) are halved further still, unless this is 0.
+    border_levels : int, optional
+        How often faces along the borders of zones with prices (emission control, penalty and price
+        zones) are halved: what lies beyond a border is worth going round it only if there are
+        nodes near it.
+    directions : {12, 6}, optional
+        Legs along the edges of faces (6), or across them as well: ways in open water are then at
+        most 5 % longer than the shortest, not 24 %.
+    north, south : float, optional
+        Nodes beyond these latitudes [deg] are left out: charts know no ice, and without a limit
+        ways lead through the Arctic. The default of 72 N closes the Northwest and Northeast
+        Passages and leaves the North Cape open. Start and goal may lie beyond a limit, which then
+        gives way as far as 1 degree past them.
+    slack : float, optional
+        Nodes are kept when the shortest way start-node-goal is at most ``1 + slack`` times the
+        shortest way from start to goal; by default 1 under 100 nautical miles falling to 0.35 over
+        1,000 and 0.15 over 5,000. ``math.inf`` keeps the whole sea.
+    sample_spacing : float, optional
+        Fields are sampled along edges at least this often [m].
+
+    Returns
+    -------
+    Network
+        ``meta.start`` and ``meta.goal`` are the nodes at the exact positions; edges of canals have
+        a ``fixed_time`` and a ``fee``.
+
+    Raises
+    ------
+    InputError
+        For values out of range, start or goal not on navigable water, or both the same.
+    NoRouteError
+        If start and goal do not connect; it says when a canal that the chart has not would do.
+
+    Notes
+    -----
+    Seuren (2020), section 4.2.1, with leaf faces closed over their hanging vertices and every leg
+    tested against the coast along the geodesic. The grid of a coastline is made once and kept on
+    disk (`thalweg.network.global_grid.grid`).
+    """
+    start, goal = check_ends(chart, start, goal)
+    fineness = Fineness(level, coast_levels, border_levels, directions)
+    options = _checked(fineness, south, north, slack, sample_spacing)
+    options = _stretched(options, start, goal)
+    sheet = _sheet(chart, options, start, goal)
+    to_start = sheet.distances(sheet.start)
+    length = float(to_start[sheet.start + 1])
+    if not math.isfinite(length):
+        raise _no_route(chart, options, (start, goal), sheet, to_start)
+    slack = _default_slack(length) if slack is None else slack
+    if math.isfinite(slack):
+        total = to_start + sheet.distances(sheet.start + 1)
+        sheet = _where(sheet, total <= (1.0 + slack) * length + sheet.grid.spacing)
+    return _network(chart, sheet, options, sample_spacing)
+
+
+def _default_slack(distance: float) -> float:
+    miles = max(distance / NAUTICAL_MILE, 1.0)
+    sizes, slacks = np.log([100.0, 1000.0, 5000.0]), [1.0, 0.35, 0.15]
+    return float(np.interp(math.log(miles), sizes, slacks))
+
+
+def _checked(
+    fineness: Fineness, south: float, north: float, slack: float | None, spacing: float
+) -> _Options:
+    level, coast, border = fineness.level, fineness.coast_levels, fineness.border_levels
+    directions = fineness.directions
+    fine = 0 <= level <= _LARGEST_LEVEL and coast >= 0 and border >= 0
+    if not (fine and level + max(coast, border) <= _FINEST_LEVEL):
+        raise InputError(
+            f"A globe network cannot have level {level!r} with {coast!r} coast levels and "
+            f"{border!r} border levels.",
+            f"The level is 0 to {_LARGEST_LEVEL}, both together at most {_FINEST_LEVEL}.",
+            "Level 4 with 6 coast levels suits ocean passages.",
+        )
+    if directions not in (6, 12):
+        raise InputError(
+            f"A globe network cannot have {directions!r} directions.", "Possible: 6, 12.",
+            "Choose one of these.",
+        )  # fmt: skip
+    if not -90.0 <= south < north <= 90.0:
+        raise InputError(
+            f"There is no sea between the latitudes {south!r} and {north!r}.",
+            "The southern limit lies below the northern one, both within 90 degrees.",
+            "Give degrees north, southern latitudes negative.",
+        )
+    if slack is not None and not slack >= 0.0:
+        raise InputError(f"A slack of {slack!r} makes no sense.", "0 or more.", "Give 0.35, say.")
+    if not spacing >= 1000.0:
+        raise InputError(
+            f"Samples {spacing!r} m apart are too many.", "At least 1000 m.", "Give metres."
+        )
+    return _Options(fineness, float(south), float(north))
+
+
+def _stretched(options: _Options, start: Position, goal: Position) -> _Options:
+    """Return options whose limits lie beyond start and goal."""
+    lowest, highest = min(start[0], goal[0]), max(start[0], goal[0])
+    return replace(
+        options,
+        south=min(options.south, lowest - _BEYOND) if lowest < options.south else options.south,
+        north=max(options.north, highest + _BEYOND) if highest > options.north else options.north,
+    )
+
+
+def _sheet(chart: Chart, options: _Options, start: Position, goal: Position) -> _Sheet:
+    """Draw the grid's open sea, and join start, goal and the ends of the canals to it."""
+    grid = globe_grid(chart, options.fineness)
+    closed = chart.without_canals("all")
+    pairs, usable = _open_sea(closed, grid, options)
+    waters = _waters(grid, pairs, usable, _REACH * grid.spacing)
+    joints = [
+        join(closed, waters, place, what=what) for place, what in ((start, "start"), (goal, "goal"))
+    ]
+    canals: list[Canal] = []
+    for canal in chart.canals:
+        ends = _joined_canal(closed, waters, canal, options)
+        if ends:
+            canals.append(canal)
+            joints += ends
+    stations, more = _attached(closed, grid, joints)
+    ends_at = np.arange(len(grid.lat) + 2, len(grid.lat) + len(joints), 2, dtype=np.int32)
+    through = measure(stations.lat, stations.lon, ends_at, ends_at + np.int32(1))
+    through = replace(through, length=np.array([canal.length for canal in canals], float))
+    start_node = len(grid.lat)
+    return _Sheet(stations, join_pairs([pairs, more]), through, tuple(canals), start_node, grid)
+
+
+def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, BoolArray]:
+    """Return the grid's legs within limits, area and zones, and which nodes are usable."""
+    usable = (grid.lat >= options.south) & (grid.lat <= options.north)
+    no_land = replace(chart, land=type(chart).open_water().land)
+    bounded = chart.zones.no_go or chart.area.array().tolist() != [-90.0, 90.0, -180.0, 360.0]
+    if bounded:
+        usable &= no_land.is_navigable(grid.lat, grid.lon)
+    pairs = grid.pairs.where(usable[grid.pairs.first] & usable[grid.pairs.second])
+    if bounded:
+        pairs = pairs.where(free_legs(no_land, grid.lat, grid.lon, pairs.first, pairs.second)[0])
+    return pairs, usable
+
+
+def _waters(grid: GlobeGrid, pairs: Pairs, usable: BoolArray, reach: float) -> Waters:
+    root = connected_waters(len(grid.lat), pairs.first, pairs.second)
+    size = np.bincount(root, minlength=len(root))[root]
+    size[~usable] = 0
+    return Waters(grid.lat, grid.lon, root, size, reach)
+
+
+def _joined_canal(
+    chart: Chart, waters: Waters, canal: Canal, options: _Options
+) -> list[Joint] | None:
+    """Return both ends of a canal joined to the grid; None where the grid is too coarse for it."""
+    lat, lon = np.array(canal.ends).T
+    inside = (lat >= options.south).all() and (lat <= options.north).all()
+    if not (inside and bool(np.all(chart.is_navigable(lat, lon)))):
+        return None
+    try:
+        what = f"end of the {canal.title}"
+        return [join(chart, waters, end, what=what, approach=False) for end in canal.ends]
+    except NoRouteError:
+        return None
+
+
+def _attached(chart: Chart, grid: GlobeGrid, joints: list[Joint]) -> tuple[Stations, Pairs]:
+    """Return the grid's nodes, the positions and their approaches; and the legs that join them."""
+    n, places = len(grid.lat), len(joints)
+    lat = np.concatenate([grid.lat, [j.lat[0] for j in joints], *(j.lat[1:] for j in joints)])
+    lon = np.concatenate([grid.lon, [j.lon[0] for j in joints], *(j.lon[1:] for j in joints)])
+    first, second = [], []
+    at = n + places
+    for k, joint in enumerate(joints):
+        own = np.append(n + k, at + np.arange(len(joint.lat) - 1))
+        at += len(joint.lat) - 1
+        first.append(own[joint.link_from])
+        second.append(joint.link_to)
+    stations = Stations(lat, lon, len(lat))
+    links = measure(
+        lat, lon, np.concatenate(first).astype(np.int32), np.concatenate(second).astype(np.int32)
+    )
+    between = direct_pairs(chart, stations, n, reach=_REACH * grid.spacing)
+    return stations, join_pairs([links, between])
+
+
+def _where(sheet: _Sheet, keep: BoolArray) -> _Sheet:
+    """Return the sheet with only the nodes that are kept; start and goal always are."""
+    keep = keep.copy()
+    keep[sheet.start : sheet.start + 2] = True
+    new = (np.cumsum(keep) - 1).astype(np.int32)
+    stations = Stations(sheet.stations.lat[keep], sheet.stations.lon[keep], int(keep.sum()))
+    whole = keep[sheet.through.first] & keep[sheet.through.second]
+    return replace(
+        sheet,
+        stations=stations,
+        pairs=_renumbered(sheet.pairs, keep, new),
+        through=_renumbered(sheet.through, keep, new),
+        canals=tuple(canal for canal, kept in zip(sheet.canals, whole) if kept),
+        start=int(new[sheet.start]),
+    )
+
+
+def _renumbered(pairs: Pairs, keep: BoolArray, new: np.ndarray) -> Pairs:
+    kept = pairs.where(keep[pairs.first] & keep[pairs.second])
+    return replace(kept, first=new[kept.first], second=new[kept.second])
+
+
+def _network(chart: Chart, sheet: _Sheet, options: _Options, spacing: float) -> Network:
+    """Sample the legs along their length, assemble the network and set what canals take."""
+    pairs = join_pairs([sheet.pairs, sheet.through])
+    apart = np.full(len(pairs.first), spacing)
+    apart[len(sheet.pairs.first) :] = np.inf  # canals need no weather
+    stations, samples = even_samples(sheet.stations, pairs, apart)
+    meta = NetworkMeta(
+        kind=f"globe/{options.fineness.level}+{options.fineness.coast_levels}",
+        spacing_m=sheet.grid.spacing,
+        directions=options.fineness.directions,
+        gap_rad=sheet.grid.gap,
+        rejected={"land": sheet.grid.rejected},
+        start=sheet.start,
+        goal=sheet.start + 1,
+        notes=tuple(f"may pass the {canal.title}" for canal in sheet.canals),
+    )
+    edges = mirrored(stations.n_nodes, pairs)
+    network = assemble(chart, stations, pairs, samples, meta=meta, edges=edges)
+    edge = np.flatnonzero(edges.pair >= len(sheet.pairs.first))
+    which = edges.pair[edge] - len(sheet.pairs.first)
+    for column, value in (("depth", np.inf), ("factor", 1.0), ("price", 1.0)):
+        getattr(network, column)[edge] = value
+    network.fixed_time[edge] = np.array([c.transit_time for c in sheet.canals], float)[which]
+    network.fee[edge] = np.array([c.fee for c in sheet.canals], float)[which]
+    return network
+
+
+def _no_route(
+    chart: Chart, options: _Options, ends: tuple[Position, Position], sheet: _Sheet,
+    to_start: FloatArray,
+) -> NoRouteError:  # fmt: skip
+    reached = np.flatnonzero(np.isfinite(to_start))
+    lat, lon = sheet.stations.lat[reached], sheet.stations.lon[reached]
+    away = geodesy.distance(lat, lon, *ends[1])
+    best = int(np.argmin(away))
+    nearest = float(lat[best]), float(lon[best])
+    names = [geodesy.format_position(*place) for place in (*ends, nearest)]
+    remedy = "Choose another start or goal, a finer chart, or more coast levels."
+    missing = [canal for canal in CANALS if canal not in chart.canals]
+    if missing and math.isfinite(_length(replace(chart, canals=CANALS), options, ends)):
+        titles = " and the ".join(canal.title for canal in missing)
+        remedy = f"Allow the {titles}: with all canals there is a way."
+    return NoRouteError(
+        f"There is no way by water from {names[0]} to {names[1]} on this chart.",
+        f"The way ends at {names[2]}, {away[best] / NAUTICAL_MILE:.1f} nm from the goal.",
+        remedy,
+        reasons={"land": sheet.grid.rejected},
+        nearest=nearest,
+    )
+
+
+def _length(chart: Chart, options: _Options, ends: tuple[Position, Position]) -> float:
+    """Return the length of the shortest way between two ends [m]; inf where there is none."""
+    sheet = _sheet(chart, options, *ends)
+    return float(sheet.distances(sheet.start)[sheet.start + 1])

@@ -1,0 +1,268 @@
+"""The geodesic grid of a coastline: nodes and legs that touch no land, kept on disk."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+import zipfile
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from thalweg.chart.coast.coast_index_builder import build_index
+from thalweg.chart.zones.geojson_zones import rings_of
+from thalweg.core.cache_folder import cache_folder
+from thalweg.kernels.geometry.cube_sphere import IndexArrays
+from thalweg.kernels.geometry.triangle_subdivision import coast_crossed
+from thalweg.kernels.network.graph_building import mirror_pairs
+from thalweg.network.assembly import Pairs, free_legs, measure
+from thalweg.network.global_grid.icosphere import (
+    Crossed,
+    Icosphere,
+    Rule,
+    distinct,
+    icosphere,
+    keyed,
+    unkeyed,
+)
+from thalweg.network.global_grid.straits import FINEST, STRAITS, deeper
+from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+
+FORMAT: Final = 2  # raise when the arrays or the way they are made change
+_BORDER_SIDE: Final = 128
+_KEPT: Final = 8  # grids kept on disk, the newest ones
+
+
+@dataclass(frozen=True)
+class GlobeGrid:
+    """A geodesic grid of the whole sea of a coastline, without canals.
+
+    Attributes
+    ----------
+    lat, lon : float64[N]
+        Nodes [deg].
+    pairs : Pairs
+        Legs that touch no land, one for both directions.
+    rejected : int
+        Legs that touch land and were left out.
+    spacing : float
+        Longest leg of the uniform grid [m].
+    gap : float
+        Largest angle between neighbouring directions of a node in open water [rad].
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    pairs: Pairs
+    rejected: int
+    spacing: float
+    gap: float
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """How fine a grid is.
+
+    Attributes
+    ----------
+    level, coast_levels, border_levels : int
+        Halvings of the icosahedron everywhere; further ones of faces an edge of which crosses the
+        coast, and of those crossed by the border of a zone with prices.
+    directions : {6, 12}
+        Along the edges of faces, or across them as well.
+    """
+
+    level: int = 4
+    coast_levels: int = 6
+    border_levels: int = 4
+    directions: int = 12
+
+
+def globe_grid(chart: Chart, fineness: Fineness) -> GlobeGrid:
+    """Return the grid of a chart's coastline, from memory or disk if it was made before.
+
+    Parameters
+    ----------
+    chart : Chart
+        Only its land and the borders of its zones with prices count.
+    fineness : Fineness
+    """
+    zones = type(chart.zones)(
+        penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca
+    )
+    bare = type(chart)(chart.land, zones=zones)
+    facts = (FORMAT, bare.fingerprint(), fineness, FINEST, STRAITS)
+    name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
+    path = cache_folder("globe") / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
+    return _kept_or_made(_Order(bare, fineness, path))
+
+
+@dataclass(frozen=True)
+class _Order:
+    """What to make, and where it is kept; two orders for one file are the same."""
+
+    chart: Chart
+    fineness: Fineness
+    path: Path
+
+    def __hash__(self) -> int:
+        return hash(self.path)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Order) and other.path == self.path
+
+
+@lru_cache(maxsize=2)
+def _kept_or_made(order: _Order) -> GlobeGrid:
+    try:
+        return _load(order.path)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        grid = make_grid(order.chart, order.fineness)
+    with contextlib.suppress(OSError):
+        _save(order.path, grid)
+        _forget_old(order.path.parent)
+    return grid
+
+
+def make_grid(chart: Chart, fineness: Fineness) -> GlobeGrid:
+    """Make the grid of a chart's coastline (see `globe_grid`)."""
+    sphere = _sphere(chart, fineness)
+    first, second = sphere.pairs()
+    if fineness.directions > 6:
+        first, second = _joined((first, second), sphere.across())
+    lat, lon = positions(sphere.vertices)
+    free, _ = free_legs(chart, lat, lon, first, second)
+    gap = _largest_open_gap(sphere.vertices, first, second, free)
+    first, second = first[free], second[free]
+    used = np.zeros(len(lat), bool)
+    used[first] = used[second] = True
+    number = (np.cumsum(used) - 1).astype(np.int32)
+    pairs = measure(lat[used], lon[used], number[first], number[second])
+    spacing = _longest_leg(fineness.level)
+    return GlobeGrid(lat[used], lon[used], pairs, int((~free).sum()), spacing, gap)
+
+
+def _longest_leg(level: int) -> float:
+    """Return the longest leg [m] of the uniform grid; every halving of a level halves it nearly."""
+    known = min(level, 5)
+    sphere = icosphere(known)
+    first, second = sphere.pairs()
+    length = measure(*positions(sphere.vertices), first, second).length
+    return float(length.max()) / 2 ** (level - known)
+
+
+def _sphere(chart: Chart, fineness: Fineness) -> Icosphere:
+    """Return the geodesic grid of a coastline, land and all."""
+    level, coast = fineness.level, fineness.coast_levels
+    narrow = max(FINEST - level - coast, 0) if coast else 0
+    rules = [Rule(_crossing(chart.land.index), coast, lambda m: deeper(m, narrow))]
+    rules += [Rule(_crossing(outlines), fineness.border_levels) for outlines in _borders(chart)]
+    return icosphere(level, *rules)
+
+
+def _borders(chart: Chart) -> list[IndexArrays]:
+    """Return the outlines of the zones with prices."""
+    zones = chart.zones
+    found = [zones.eca_index] if zones.eca else []
+    priced = [shape for shape, _ in (*zones.penalty, *zones.price)]
+    if priced:
+        found.append(build_index(rings_of(priced), _BORDER_SIDE))
+    return found
+
+
+def _crossing(index: IndexArrays) -> Crossed:
+    """Return the test of edges against outlines."""
+
+    def crossed(first: FloatArray, second: FloatArray) -> BoolArray:
+        answer = np.empty(len(first), np.bool_)
+        coast_crossed(index, *positions(first), *positions(second), answer)
+        return answer
+
+    return crossed
+
+
+def positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return latitude and longitude [deg] of unit vectors (n, 3), taken for a sphere's.
+
+    The grid's shape is that of the sphere; its lengths are those of the ellipsoid.
+    """
+    x, y, z = vectors.T
+    return np.degrees(np.arctan2(z, np.hypot(x, y))), np.degrees(np.arctan2(y, x))
+
+
+def _joined(
+    some: tuple[Int32Array, Int32Array], more: tuple[Int32Array, Int32Array]
+) -> tuple[Int32Array, Int32Array]:
+    """Return two lots of pairs as one without repeats."""
+    return unkeyed(distinct(np.concatenate([keyed(*some), keyed(*more)])))
+
+
+def _largest_open_gap(
+    vectors: FloatArray, first: Int32Array, second: Int32Array, free: BoolArray
+) -> float:
+    """Return the largest angle [rad] between directions of nodes none of whose legs is refused."""
+    open_ = np.ones(len(vectors), bool)
+    open_[first[~free]] = open_[second[~free]] = False
+    indptr, head, _, _ = mirror_pairs(len(vectors), first, second)
+    tail = np.repeat(np.arange(len(vectors)), np.diff(indptr))
+    inside = open_[tail]
+    tail, head = tail[inside], head[inside]
+    if not len(tail):
+        return float(2.0 * np.pi)
+    east = np.cross([0.0, 0.0, 1.0], vectors[tail] + [1e-9, 0.0, 0.0])
+    north = np.cross(vectors[tail], east)
+    away = vectors[head] - vectors[tail]
+    angle = np.arctan2(np.einsum("ij,ij->i", away, east), np.einsum("ij,ij->i", away, north))
+    return float(_gaps(tail, angle).max())
+
+
+def _gaps(tail: IntArray, angle: FloatArray) -> FloatArray:
+    """Return the angle from each direction to the next one round its node; tails ascend."""
+    order = np.lexsort((angle, tail))
+    angle = angle[order]
+    begins = np.flatnonzero(np.append(True, np.diff(tail) != 0))
+    ends = np.append(begins[1:], len(tail)) - 1
+    gap = np.empty(len(angle))
+    gap[:-1] = np.diff(angle)
+    gap[ends] = angle[begins] + 2.0 * np.pi - angle[ends]
+    return gap
+
+
+def _load(path: Path) -> GlobeGrid:
+    with np.load(path, allow_pickle=False) as file:
+        pairs = Pairs(*(file[name] for name in ("first", "second", "length", "course")))
+        rejected, spacing, gap = file["facts"]
+        grid = GlobeGrid(file["lat"], file["lon"], pairs, int(rejected), float(spacing), float(gap))
+    sizes = {len(grid.lat), len(grid.lon)}, {len(x) for x in vars(pairs).values()}
+    if len(sizes[0]) > 1 or len(sizes[1]) > 1 or not len(pairs.first):
+        raise ValueError("the arrays do not fit together")
+    if max(int(pairs.first.max()), int(pairs.second.max())) >= len(grid.lat):
+        raise ValueError("a leg ends at no node")
+    return grid
+
+
+def _save(path: Path, grid: GlobeGrid) -> None:
+    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    facts = np.array([grid.rejected, grid.spacing, grid.gap])
+    try:
+        with os.fdopen(handle, "wb") as file:
+            np.savez(file, allow_pickle=False, lat=grid.lat, lon=grid.lon, facts=facts,
+                     **vars(grid.pairs))  # fmt: skip
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def _forget_old(folder: Path) -> None:
+    grids = sorted(folder.glob("grid-*.npz"), key=lambda p: p.stat().st_mtime, reverse=True)
+    for path in grids[_KEPT:]:
+        path.unlink(missing_ok=True)

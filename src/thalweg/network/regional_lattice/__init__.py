@@ -1,0 +1,1 @@
+"""The regional network: a lattice on a conformal projection, refined at coasts."""

@@ -1,0 +1,167 @@
+"""Channels between two pieces of land, too narrow for the points of a lattice: nodes amid them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+
+from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.network.alternatives.homotopy import ring_areas
+from thalweg.network.assembly import Pairs, Stations, free_legs, measure
+from thalweg.network.endpoints import join_pairs
+from thalweg.network.network import FloatArray, IntArray
+from thalweg.network.regional_lattice.conformal_projection import positions, unit_vectors
+
+Edges: TypeAlias = tuple[FloatArray, FloatArray]
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.network.regional_lattice.refinement_levels import Ground
+
+_WIDEST: Final = 2.0  # spacings: wider channels hold points of the lattice itself
+_NARROWEST: Final = 50.0  # [m] channels are told apart by their width down to this
+_ISLAND: Final = 0.5  # open-sea spacings: smaller land is passed on its other side
+_MOST_NODES: Final = 2000
+_APART: Final = 0.25  # widths: between places along a shore
+_CELL: Final = 0.5  # widths: of which one place each is kept
+_FELLOWS: Final = 16  # places looked at round each for one on another shore
+_NEIGHBOURS: Final = 24
+_REACH: Final = 3.0  # spacings
+_MOST_PARTS: Final = 2000  # of one edge of a coastline
+
+
+def channel_nodes(ground: Ground) -> tuple[FloatArray, FloatArray]:
+    """Return positions [deg] midway between different pieces of land that lie close together.
+
+    Parameters
+    ----------
+    ground : Ground
+        Only land larger than half its open-sea spacing counts, or larger land if there would be
+        too many nodes, in channels narrower than twice its spacing at coasts.
+
+    Returns
+    -------
+    lat, lon : ndarray
+        On navigable water in the region, about as far apart as the channel is wide.
+    """
+    widest = _WIDEST * ground.frame.largest_unit * ground.step(ground.coast_levels)
+    island = _ISLAND * ground.frame.largest_unit * ground.step(0)
+    while True:
+        middles = _middles(*_shores(ground, island, _APART * widest), widest)
+        lat, lon = positions(middles)
+        keep = ground.region.contains(middles) & ground.region.in_box(lat, lon)
+        keep &= np.asarray(ground.chart.is_navigable(lat, lon), bool)
+        if keep.sum() <= _MOST_NODES:
+            return lat[keep], lon[keep]
+        island *= 1.4 if keep.sum() < 2 * _MOST_NODES else 2.0
+
+
+def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near: float) -> Pairs:
+    """Return allowed pairs of the nodes from ``first`` to before ``last`` with those around them.
+
+    Parameters
+    ----------
+    chart : Chart
+        Tests them.
+    stations : Stations
+        The nodes before ``first`` are those of the grid.
+    first, last : int
+    near : float
+        Spacing of the grid at coasts [m].
+    """
+    from scipy.spatial import cKDTree
+
+    own = np.arange(first, last)
+    lat, lon = stations.lat[:last], stations.lon[:last]
+    vectors = unit_vectors(lat, lon)
+    reach = _REACH * near / MEAN_RADIUS
+    parts = []
+    for others in (np.arange(first), own):
+        if not len(others) or not len(own):
+            continue
+        count = min(_NEIGHBOURS, len(others))
+        away, found = cKDTree(vectors[others]).query(
+            vectors[own], k=np.arange(1, count + 1), distance_upper_bound=reach
+        )
+        row, column = np.nonzero(np.isfinite(away))
+        a, b = own[row], others[found[row, column]]
+        once = (b < first) | (a < b)
+        parts.append(measure(lat, lon, a[once].astype(np.int32), b[once].astype(np.int32)))
+    pairs = join_pairs(parts) if parts else measure(lat, lon, *np.empty((2, 0), np.int32))
+    pairs = pairs.where(pairs.length > 1.0)
+    return pairs.where(free_legs(chart, lat, lon, pairs.first, pairs.second)[0])
+
+
+def _shores(ground: Ground, island: float, apart: float) -> tuple[Edges, IntArray]:
+    """Return the shores of large land in the region, in short edges, and of which land."""
+    none = np.empty((0, 3))
+    rings = ground.chart.land.rings
+    if not len(rings):
+        return (none, none), np.empty(0, np.int64)
+    vectors = unit_vectors(rings.lat, rings.lon)
+    land = np.repeat(np.arange(len(rings)), np.diff(rings.start))
+    inside = ground.region.contains(vectors) & (ring_areas(rings) >= island**2)[land]
+    first = np.flatnonzero((inside[:-1] | inside[1:]) & (land[:-1] == land[1:]))
+    edges, edge = _cut((vectors[first], vectors[first + 1]), apart)
+    return edges, land[first][edge]
+
+
+def _cut(edges: Edges, apart: float) -> tuple[Edges, IntArray]:
+    """Cut edges into parts at most ``apart`` [m] long; return also of which edge each part is."""
+    a, b = edges
+    parts = np.ceil(np.linalg.norm(b - a, axis=1) * MEAN_RADIUS / apart).astype(np.int64)
+    parts = np.clip(parts, 1, _MOST_PARTS)
+    edge = np.repeat(np.arange(len(a)), parts)
+    number = np.arange(len(edge)) - np.repeat(np.cumsum(parts) - parts, parts)
+    along = (b - a)[edge] / parts[edge, None]
+    return (a[edge] + number[:, None] * along, a[edge] + (number[:, None] + 1) * along), edge
+
+
+def _middles(shores: Edges, land: IntArray, widest: float) -> FloatArray:
+    """Return the middles between facing shores, from wide channels to narrow ones.
+
+    Shores are looked at ever closer where others are near, so that places along them stay closer
+    together than the channel is wide.
+    """
+    found, width = [np.empty((0, 3))], widest
+    while len(land):
+        places = _unit(shores[0])
+        away, middle = _opposite(places, land, width)
+        last = width <= _NARROWEST
+        here = (away <= width) & (last | (away > 0.5 * width))
+        found.append(_thinned(middle[here], _CELL * width))
+        if last:
+            break
+        width *= 0.5
+        near = away <= (1.0 + 2.0 * _APART) * width
+        shores, edge = _cut((shores[0][near], shores[1][near]), _APART * width)
+        land = land[near][edge]
+    return np.concatenate(found)
+
+
+def _opposite(places: FloatArray, land: IntArray, within: float) -> tuple[FloatArray, FloatArray]:
+    """Return how far other land is from places [m], inf if not near, and the middles."""
+    from scipy.spatial import cKDTree
+
+    count = min(_FELLOWS, len(places))
+    away, found = cKDTree(places).query(
+        places, k=np.arange(1, count + 1), distance_upper_bound=within / MEAN_RADIUS
+    )
+    other = np.isfinite(away) & (land[np.minimum(found, len(land) - 1)] != land[:, None])
+    first = other.argmax(axis=1)
+    row = np.arange(len(places))
+    nearest = np.where(other[row, first], found[row, first], row)
+    apart = np.where(nearest != row, away[row, first] * MEAN_RADIUS, np.inf)
+    return apart, _unit(places + places[nearest])
+
+
+def _thinned(places: FloatArray, apart: float) -> FloatArray:
+    """Return one of all places in each cell of a size [m]."""
+    cells = np.floor(places * (MEAN_RADIUS / apart)).astype(np.int64)
+    _, first = np.unique(cells, axis=0, return_index=True)
+    return np.asarray(places[np.sort(first)])
+
+
+def _unit(places: FloatArray) -> FloatArray:
+    return np.asarray(places / np.linalg.norm(places, axis=1, keepdims=True))

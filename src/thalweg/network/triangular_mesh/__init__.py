@@ -1,0 +1,1 @@
+"""The network on the triangles of a hydrodynamic model."""

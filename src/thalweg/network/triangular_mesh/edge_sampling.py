@@ -1,0 +1,81 @@
+"""Networks on a model's nodes, sampled where their edges cross the sides of its triangles.
+
+Between nodes a model's fields are linear in each triangle, so the values where an edge crosses the
+sides tell all there is to know along it, and no other place need be held in memory than the nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from thalweg.kernels.geometry.triangle_crossings import crossed_sides
+from thalweg.network.network import FloatArray, IntArray, Network
+from thalweg.network.regional_lattice.conformal_projection import mercator_frame
+
+
+def sampled_on_sides(network: Network) -> Network:
+    """Return the network with its samples on the sides of the Delaunay triangles of its nodes.
+
+    Parameters
+    ----------
+    network : Network
+        Its nodes; edges are straight lines between them.
+
+    Returns
+    -------
+    Network
+        The same nodes and edges; its stations are its nodes.
+
+    """
+    from scipy.spatial import Delaunay
+
+    lat, lon = network.lat, network.lon
+    middle = (float(lat.mean()), float(lon[0]))
+    x, y = mercator_frame(middle, 1.0, latitude=middle[0]).from_positions(lat, lon)
+    mesh = Delaunay(np.column_stack([x, y]))
+    triangles = np.ascontiguousarray(mesh.simplices, np.int32)
+    neighbours = np.ascontiguousarray(mesh.neighbors, np.int32)
+    around_ptr, around = _around(triangles, len(lat))
+    lines = network.tails(), np.ascontiguousarray(network.target, np.int32)
+    mesh_arrays = (x, y, triangles, neighbours, around_ptr, around)
+    ptr = np.zeros(len(network.target) + 1, np.int64)
+    out = _room(0)
+    for _ in range(2):
+        crossed_sides(*mesh_arrays, *lines, out, ptr)
+        if out[0].size or ptr[-1] == 0:
+            break
+        out = _room(int(ptr[-1]))
+    a, b, w, s = out
+    return replace(
+        network, station_lat=lat, station_lon=lon, via_ptr=ptr, via_a=a, via_b=b, via_w=w, via_s=s
+    )
+
+
+def _room(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    whole, real = np.int32, np.float32
+    return (
+        np.empty(count, whole),
+        np.empty(count, whole),
+        np.empty(count, real),
+        np.empty(count, real),
+    )
+
+
+def _around(triangles: np.ndarray, count: int) -> tuple[IntArray, np.ndarray]:
+    """Return the triangles around each node."""
+    node = triangles.ravel()
+    order = np.argsort(node, kind="stable")
+    ptr = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=count))])
+    return ptr.astype(np.int64), (order // 3).astype(np.int32)
+
+
+def least_over(network: Network, values: FloatArray) -> FloatArray:
+    """Return the least of a field given at the nodes along every edge, as its samples tell it."""
+    least = np.minimum(values[network.tails()], values[network.target])
+    w = network.via_w.astype(float)
+    inside = (1.0 - w) * values[network.via_a] + w * values[network.via_b]
+    of = np.repeat(np.arange(network.n_edges), np.diff(network.via_ptr))
+    np.minimum.at(least, of, inside)
+    return np.asarray(least)

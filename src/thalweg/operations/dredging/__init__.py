@@ -1,0 +1,1 @@
+"""Dredging projects: cycles of loading, sailing and dumping, planned and simulated."""

@@ -1,0 +1,223 @@
+"""Simulating a project: cycle after cycle, each with the load that produces most."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from thalweg.core.errors import OutsidePeriodError
+from thalweg.core.time import format_time
+from thalweg.operations.dredging.cycles import Cycle
+from thalweg.operations.dredging.project import Project
+from thalweg.operations.dredging.project_environment import Tell, Ways, World
+from thalweg.operations.dredging.verified_legs import LegSailor
+from thalweg.sea import standard_names as nm
+from thalweg.sea.inspection import gaps_of
+from thalweg.search import Passage, Passages
+
+_LEAST = 1e-6  # share of a hopper that is still worth a cycle
+
+
+@dataclass(frozen=True, eq=False)
+class Both:
+    """The passages of one load: from the loading site with it, and back empty."""
+
+    load_factor: float
+    full: Passages
+    empty: Passages
+    lasted: dict[str, float] = field(default_factory=dict)
+
+    def sail(self, which: str, depart: float, arrive_by: float) -> Passage:
+        """Search a passage, "full" or "empty"; the last one's time is the first guess."""
+        passages: Passages = getattr(self, which)
+        guess = self.lasted.get(which, math.inf)
+        found = passages.sail(depart, known=depart + 1.15 * guess + 300.0, arrive_by=arrive_by)
+        if found.found:
+            self.lasted[which] = found.arrive - depart
+        return found
+
+
+class Option(NamedTuple):
+    """One load for the next cycle, and the most it could produce [m3/s]."""
+
+    bound: float
+    volume: float
+    share: float
+    both: Both
+
+
+class Choice(NamedTuple):
+    """A load that was looked at: production [m3/s], its option, the passage with it."""
+
+    production: float
+    option: Option
+    full: Passage
+
+
+class Simulator:
+    """Sails a project cycle by cycle over one set of ways.
+
+    Parameters
+    ----------
+    project : Project
+    world : World
+    ways : Ways
+    factors : sequence of float, optional
+        Loads to choose from; those of the project when not given.
+    tell : callable, optional
+        Called with a short text now and then.
+    name : str, optional
+        What errors call it.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        world: World,
+        ways: Ways,
+        *,
+        factors: Sequence[float] | None = None,
+        tell: Tell = lambda text: None,
+        name: str = "",
+    ) -> None:
+        self.project, self.tell, self.name = project, tell, name
+        self.sailor = LegSailor(world, ways)
+        back = self.sailor.passages(0.0, outward=False)
+        chosen = project.work.load_factors if factors is None else factors
+        self.both = [
+            Both(x, self.sailor.passages(x, outward=True), replace(back))
+            for x in sorted(set(chosen))
+            if x > 0.0
+        ]
+        self.workers = max(1, min(os.cpu_count() or 1, len(self.both)))
+
+    @property
+    def possible(self) -> list[float]:
+        """Loads that have a way at some tide."""
+        return [
+            b.load_factor for b in self.both if max(b.full.shortest, b.empty.shortest) < math.inf
+        ]
+
+    def run(self) -> list[Cycle]:
+        """Sail until the volume is moved.
+
+        Raises
+        ------
+        OutsidePeriodError
+            If it is not moved by the end of the period looked at.
+        """
+        project, work = self.project, self.project.work
+        cycles: list[Cycle] = []
+        time, left = project.start, work.volume
+        with ThreadPoolExecutor(self.workers) as pool:
+            while left > _LEAST * work.hopper:
+                choice = self._choose(pool, time, left)
+                cycle = None if choice is None else self._sail(len(cycles) + 1, time, choice)
+                if cycle is None:
+                    raise self._too_short(work.volume - left, time)
+                cycles.append(cycle)
+                time, left = cycle.end, left - cycle.volume
+                if len(cycles) % 10 == 0:
+                    self.tell(f"{len(cycles)} cycles, {work.volume - left:,.0f} m3 moved")
+        return cycles
+
+    def _options(self, left: float) -> list[Option]:
+        """Return the loads for the next cycle, the most promising first."""
+        work = self.project.work
+        found = []
+        for both in self.both:
+            volume = min(left, both.load_factor * work.hopper)
+            share = volume / work.hopper
+            fastest = both.full.shortest + both.empty.shortest
+            fastest += work.loading.time(share) + work.unloading.time(share)
+            if fastest < math.inf:
+                found.append(Option(volume / fastest, volume, share, both))
+        # of loads that all hold what is left, the lightest
+        enough = [o for o in found if o.volume >= left]
+        found = [o for o in found if o.volume < left] + enough[:1]
+        return sorted(found, key=lambda o: -o.bound)
+
+    def _choose(self, pool: ThreadPoolExecutor, time: float, left: float) -> Choice | None:
+        """Return the load with the highest production of its whole cycle."""
+        best: Choice | None = None
+        for lot in _lots(self._options(left), self.workers):
+            least = 0.0 if best is None else best.production
+            live = [option for option in lot if option.bound > least]
+            count = len(live)
+            for choice in pool.map(self._look, [time] * count, live, [least] * count):
+                if choice is not None and (best is None or choice.production > best.production):
+                    best = choice
+        return best
+
+    def _look(self, time: float, option: Option, least: float) -> Choice | None:
+        """Search a cycle; None if it does not produce more than ``least`` [m3/s]."""
+        work, both = self.project.work, option.both
+        longest = option.volume / least if least > 0.0 else math.inf
+        unloading = work.unloading.time(option.share)
+        depart = time + work.loading.time(option.share)
+        by = time + longest - unloading - both.empty.shortest
+        full = both.sail("full", depart, by)
+        if not full.found:
+            return None
+        empty = both.sail("empty", full.arrive + unloading, time + longest)
+        if not empty.found:
+            return None
+        return Choice(option.volume / (empty.arrive - time), option, full)
+
+    def _sail(self, number: int, time: float, choice: Choice) -> Cycle | None:
+        """Let the referee sail both legs of a cycle; None if the data end before."""
+        work, option = self.project.work, choice.option
+        loading, unloading = work.loading.time(option.share), work.unloading.time(option.share)
+        load_factor = option.both.load_factor
+        sailor = self.sailor
+        out = sailor.sail(load_factor, time + loading, outward=True, passage=choice.full)
+        if out is None:
+            return None
+        back = sailor.sail(0.0, out.arrive + unloading, outward=False)
+        if back is None:
+            return None
+        return Cycle(
+            number=number,
+            start=time,
+            load_factor=load_factor,
+            volume=option.volume,
+            loading=loading,
+            unloading=unloading,
+            out=out,
+            back=back,
+        )
+
+    def _too_short(self, moved: float, time: float) -> OutsidePeriodError:
+        project, which = self.project, f" ({self.name})" if self.name else ""
+        return OutsidePeriodError(
+            f"By {format_time(project.end)} only {moved:,.0f} of {project.work.volume:,.0f} m3 "
+            f"can be moved{which}.",
+            f"The last cycle that is sailed out ends {format_time(time)}."
+            + lacking_data(self.sailor.world, (project.start, project.end)),
+            "Give more days (and data for them), or a smaller volume.",
+            moved_m3=moved,
+        )
+
+
+def lacking_data(world: World, period: tuple[float, float]) -> str:
+    """Return sentences on what a period lacks: the end of the data, gaps in them; maybe none."""
+    sea = world.sea
+    needed = {nm.CHANNEL_VARIABLES[channel] for channel in world.needs.channels}
+    ends = [r.end for r in sea.coverage() if r.end is not None and r.variable in needed]
+    last = min(ends, default=math.inf)
+    told = [f" The data end {format_time(last)}."] if last < period[1] else []
+    told += [
+        f" They tell nothing from {format_time(gap.after)} to {format_time(gap.before)}."
+        for gap in gaps_of(sea)
+        if gap.before > period[0] and gap.after < period[1]
+    ]
+    return "".join(told)
+
+
+def _lots(options: list[Option], size: int) -> Iterator[list[Option]]:
+    for first in range(0, len(options), size):
+        yield options[first : first + size]

@@ -1,0 +1,347 @@
+"""`Project`: a dredging project in plain data that a YAML file can hold."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.geodesy import Position, distance
+from thalweg.core.time import format_time
+from thalweg.core.units import DAY
+from thalweg.operations.dredging.loading_curves import Pumping
+from thalweg.operations.dredging.project_validation import (
+    check_clearance,
+    days_of,
+    factors_of,
+    place_of,
+    positive,
+    start_of,
+)
+
+LARGEST_FILE = 1_000_000  #: bytes
+BEST = "best"
+_AT_SITE = 250.0  # how far from the sites the route of the base case may start and end [m]
+
+
+@dataclass(frozen=True)
+class Sites:
+    """Where a dredger loads and unloads, and how the water between is divided.
+
+    Attributes
+    ----------
+    load, unload : (lat, lon)
+        [deg].
+    min_ukc : float or None
+        Least under-keel clearance [m]; None: that of the ship file (0 if it states none), and no
+        clearance is looked at if no data tell any depth.
+    margin : float
+        Clearance planned beyond it [m], for what the network does not see between its nodes.
+    spacing : float or None
+        Spacing of the network [m]; that of the sea's own mesh when None.
+    rings : int
+        Neighbours a node is joined to: 1, 2 or 3 rings of triangles.
+    detour : float
+        Water is looked at where the way over it is at most so many times the direct distance.
+
+    Raises
+    ------
+    InputError
+        For a clearance, margin, spacing, number of rings or detour that cannot be.
+    """
+
+    load: Position
+    unload: Position
+    min_ukc: float | None = None
+    margin: float = 0.01
+    spacing: float | None = None
+    rings: int = 3
+    detour: float = 3.0
+
+    def __post_init__(self) -> None:
+        if self.min_ukc is not None:
+            check_clearance("min_ukc_m", self.min_ukc)
+        check_clearance("margin_m", self.margin)
+        if self.spacing is not None:
+            positive({"spacing_m": self.spacing}, "spacing_m")
+        if type(self.rings) is not int or self.rings not in (1, 2, 3):
+            raise InputError(
+                f"rings is {self.rings!r}.", "1, 2 or 3.", "Choose one.", field="rings"
+            )
+        if positive({"detour": self.detour}, "detour") < 1.2:
+            raise InputError(
+                f"detour is {self.detour:g}.", "It is at least 1.2.", "Give 3.", field="detour"
+            )
+
+
+@dataclass(frozen=True)
+class Work:
+    """What is moved, and how fast.
+
+    Attributes
+    ----------
+    volume : float
+        To be moved in all [m3].
+    hopper : float
+        Volume of a full load [m3].
+    loading, unloading : Pumping
+    load_factors : tuple of float
+        Shares of a full load to choose from, ascending, 0 to 1.
+    """
+
+    volume: float
+    hopper: float
+    loading: Pumping
+    unloading: Pumping
+    load_factors: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class BaseCase:
+    """The project without planning: one charted way, waiting for its shallowest place.
+
+    Attributes
+    ----------
+    route : tuple of (lat, lon)
+        From the loading site to the unloading site [deg].
+    load_factor : float or "best"
+        One load throughout, or in every cycle the one that produces most.
+    """
+
+    route: tuple[Position, ...]
+    load_factor: float | str = 1.0
+
+
+@dataclass(frozen=True)
+class Project:
+    """A dredging project: load, sail full, unload, sail empty, until a volume is moved.
+
+    Attributes
+    ----------
+    name : str
+    sites : Sites
+    work : Work
+    start, days : float
+        When it begins [s since 1970-01-01T00:00Z] and for how long it is looked ahead [days].
+    ship : str or mapping
+        A ship of the library, a ship file, or what such a file holds.
+    world : mapping
+        Where the sea and the chart come from: ``sea`` (files, or "synthetic-estuary"), ``tides``
+        (predict from the tides of the files), ``map``, ``depth``, ``zones``, ``coast``.
+    base : BaseCase or None
+        What to compare with.
+    """
+
+    name: str
+    sites: Sites
+    work: Work
+    start: float
+    days: float
+    ship: str | Mapping[str, Any] = "hopper-dredger"
+    world: Mapping[str, Any] = field(default_factory=dict)
+    base: BaseCase | None = None
+
+    @property
+    def end(self) -> float:
+        """The last moment looked at [s since 1970-01-01T00:00Z]."""
+        return self.start + self.days * DAY
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Project:
+        """Build a project from plain data.
+
+        Raises
+        ------
+        InputError
+            For unknown or missing entries, volumes and rates that are not positive, places, times
+            and load factors that cannot be.
+        """
+        _check_keys(data)
+        volume, hopper = positive(data, "volume_m3"), positive(data, "hopper_m3")
+        work = Work(
+            volume=volume,
+            hopper=hopper,
+            loading=Pumping.from_data(data["loading"], hopper, "loading"),
+            unloading=Pumping.from_data(data["unloading"], hopper, "unloading"),
+            load_factors=factors_of(data.get("load_factors", 11)),
+        )
+        sites = _sites(data)
+        return cls(
+            name=str(data.get("name", "dredging project")),
+            sites=sites,
+            work=work,
+            start=start_of(data["start"]),
+            days=days_of(data),
+            ship=data.get("ship", "hopper-dredger"),
+            world={key: _plain(data[key]) for key in _WORLD if key in data},
+            base=_base(data.get("base_case"), sites),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data, as `from_dict` reads it."""
+        sites, work = self.sites, self.work
+        data: dict[str, Any] = {
+            "name": self.name,
+            "ship": dict(self.ship) if isinstance(self.ship, Mapping) else self.ship,
+            **self.world,
+            "load": list(sites.load),
+            "unload": list(sites.unload),
+            "min_ukc_m": sites.min_ukc,
+            "margin_m": sites.margin,
+            "rings": sites.rings,
+            "detour": sites.detour,
+            "volume_m3": work.volume,
+            "hopper_m3": work.hopper,
+            "loading": work.loading.to_data(),
+            "unloading": work.unloading.to_data(),
+            "load_factors": list(work.load_factors),
+            "start": format_time(self.start),
+            "days": self.days,
+        }
+        if sites.spacing is not None:
+            data["spacing_m"] = sites.spacing
+        if self.base is not None:
+            route = [list(place) for place in self.base.route]
+            data["base_case"] = {"route": route, "load_factor": self.base.load_factor}
+        return data
+
+    @classmethod
+    def load(cls, path: str | Path) -> Project:
+        """Read a project from a YAML or JSON file; its files are looked for beside it.
+
+        Raises
+        ------
+        InputError
+            If the file is missing, too large, not YAML/JSON, or says something impossible.
+        """
+        import yaml
+
+        path = Path(path)
+        if not path.is_file():
+            raise InputError(f"There is no project file {path}.", "", "Check the path.")
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{path} is too large for a project file.", "At most 1 MB.", "")
+        try:
+            data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        except (yaml.YAMLError, UnicodeDecodeError) as error:
+            raise InputError(f"{path} is not YAML: {error}.", "", "Mend it.") from error
+        if not isinstance(data, dict):
+            raise InputError(f"{path} holds no project.", f"Entries: {', '.join(_KEYS)}.", "")
+        return cls.from_dict(_beside(data, path.parent))
+
+    def save(self, path: str | Path) -> None:
+        """Write the project as YAML."""
+        import yaml
+
+        text = yaml.safe_dump(self.to_dict(), sort_keys=False)
+        Path(path).write_text(text, encoding="utf-8")
+
+
+_WORLD = ("sea", "tides", "map", "depth", "zones", "coast")
+_NEEDED = ("load", "unload", "volume_m3", "hopper_m3", "loading", "unloading", "start")
+_KEYS = (
+    *("name", "ship"),
+    *_NEEDED,
+    *("days", "min_ukc_m", "margin_m", "load_factors", "spacing_m", "rings", "detour"),
+    *_WORLD,
+    "base_case",
+)
+
+
+def _check_keys(data: Mapping[str, Any]) -> None:
+    for key in data:
+        if key not in _KEYS:
+            raise unknown_name("project entry", str(key), _KEYS)
+    missing = [key for key in _NEEDED if key not in data]
+    if missing:
+        raise InputError(
+            f"The project lacks {', '.join(missing)}.",
+            f"Needed: {', '.join(_NEEDED)}.",
+            "Add them.",
+            missing=missing,
+        )
+
+
+def _sites(data: Mapping[str, Any]) -> Sites:
+    load, unload = place_of(data["load"], "load"), place_of(data["unload"], "unload")
+    if load == unload:
+        raise InputError(
+            "Loading and unloading site are the same place.",
+            "A project sails between two.",
+            "Give two places.",
+        )
+    return Sites(
+        load=load,
+        unload=unload,
+        min_ukc=data.get("min_ukc_m"),
+        margin=data.get("margin_m", 0.01),
+        spacing=data.get("spacing_m"),
+        rings=data.get("rings", 3),
+        detour=data.get("detour", 3.0),
+    )
+
+
+def _base(data: Any, sites: Sites) -> BaseCase | None:
+    if data is None:
+        return None
+    if not isinstance(data, Mapping) or not isinstance(data.get("route"), Sequence):
+        raise InputError(
+            "The base case has no route.",
+            "base_case: holds route, a list of [lat, lon].",
+            "Add it.",
+        )
+    for key in data:
+        if key not in ("route", "load_factor"):
+            raise unknown_name("entry of the base case", str(key), ("route", "load_factor"))
+    route = tuple(place_of(place, f"base_case.route[{k}]") for k, place in enumerate(data["route"]))
+    if len(route) < 2:
+        raise InputError(
+            "The route of the base case is no way.", "Two places or more.", "Add the others."
+        )
+    factor = data.get("load_factor", 1.0)
+    if factor != BEST:
+        number = isinstance(factor, (int, float)) and not isinstance(factor, bool)
+        if not number or not 0.0 < factor <= 1.0:
+            raise InputError(
+                f"base_case.load_factor is {factor!r}.",
+                "It lies above 0 and up to 1, or is 'best': in every cycle what produces most.",
+                "",
+                field="base_case.load_factor",
+            )
+        factor = float(factor)
+    _check_ends(route, sites)
+    return BaseCase(route, factor)
+
+
+def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
+    for end, site, which in ((route[0], sites.load, "starts"), (route[-1], sites.unload, "ends")):
+        away = float(distance(*end, *site))
+        if away > _AT_SITE:
+            raise InputError(
+                f"The route of the base case {which} {away:,.0f} m from the site.",
+                "It leads from the loading site to the unloading site.",
+                f"Let it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
+                field="base_case.route",
+            )
+
+
+def _plain(value: Any) -> Any:
+    """Return paths as the text that files hold."""
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
+def _beside(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the data with the files it names taken from beside the project file, if there."""
+
+    def found(name: Any) -> Any:
+        if isinstance(name, (list, tuple)):
+            return [found(one) for one in name]
+        near = folder / name if isinstance(name, str) else None
+        return str(near) if near is not None and near.exists() else name
+
+    return {k: found(v) if k in ("sea", "depth", "zones", "ship") else v for k, v in data.items()}

@@ -1,0 +1,320 @@
+"""The water of a project: networks, the frozen sea, and the ship at every load."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position, along, direct, distance, inverse
+from thalweg.kernels import codes
+from thalweg.network import Network, NetworkMeta, lattice, mesh
+from thalweg.network.assembly import Stations, assemble, measure, no_samples
+from thalweg.network.triangular_mesh.edge_sampling import sampled_on_sides
+from thalweg.operations.dredging.project import Sites
+from thalweg.planning.frozen_sea import MEMORY_LIMIT
+from thalweg.planning.request.requirements import Needs, check_period, find_needs, least_clearance
+from thalweg.planning.single.passage import table_of
+from thalweg.planning.voyage import Voyage
+from thalweg.sea import standard_names as nm
+from thalweg.search import Passages, Waters
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import Sea
+    from thalweg.ship import PerformanceTable, Ship
+
+FloatArray = NDArray[np.float64]
+
+LINE = "line"  #: kind of the network of a charted way
+_LINE_SPACING = 300.0  # of the nodes of a charted way [m]
+_BED_SAMPLES = 8  # looks at the bed per spacing of the network
+_SAME_PLACE = 1.0  # [m]
+_CHUNK = 200_000
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """What a project is sailed in.
+
+    Attributes
+    ----------
+    sites : Sites
+    period : tuple of float
+        First and last moment looked at [s since 1970-01-01T00:00Z].
+    ship : Ship
+    sea : Sea
+    chart : Chart
+    needs : Needs
+        Channels of the sea and limits of the full ship.
+    """
+
+    sites: Sites
+    period: tuple[float, float]
+    ship: Ship
+    sea: Sea
+    chart: Chart
+    needs: Needs
+
+    @classmethod
+    def open(
+        cls, sites: Sites, period: tuple[float, float], *, ship: Ship, sea: Sea, chart: Chart
+    ) -> World:
+        """Find what the ship needs of the sea.
+
+        Raises
+        ------
+        CoverageError
+            If the sea lacks a variable, or does not hold the beginning of the period.
+        """
+        voyage = _voyage(sites, period)
+        needs = find_needs(voyage, ship=ship.with_load_factor(1.0), sea=sea, chart=chart)
+        check_period(voyage, sea, needs)
+        return cls(sites, period, ship, sea, chart, needs)
+
+    @property
+    def min_ukc(self) -> float:
+        """Least under-keel clearance [m]: that of the sites, else the ship file's own."""
+        return least_clearance(_voyage(self.sites, self.period), self.ship)
+
+    @property
+    def bed_stands_still(self) -> bool:
+        """Whether every source of the bed's depth holds at all times."""
+        rows = [row for row in self.sea.coverage() if row.variable == nm.BED_DEPTH]
+        return bool(rows) and all(row.start is None for row in rows)
+
+    def loaded(self, load_factor: float) -> Loaded:
+        """Return the ship at a load, with its table and limits."""
+        ship = self.ship.with_load_factor(load_factor)
+        limits = self.needs.limits.copy()
+        if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]):
+            keel = self.min_ukc + self.sites.margin
+            limits[codes.LIMIT_REQUIRED_DEPTH] = ship.draught + keel
+        setting = len(ship.speeds) - 1
+        top = ship.top_speed(setting)
+        speed = float(ship.speeds[setting]) if top is None else top
+        return Loaded(ship, table_of(ship), limits, setting, speed)
+
+
+def _voyage(sites: Sites, period: tuple[float, float]) -> Voyage:
+    """Return what is asked of the sea, as a voyage asks it."""
+    return Voyage(start=sites.load, goal=sites.unload, depart=period[0], min_ukc_m=sites.min_ukc)
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A ship at one load: table, limits in the order of kernels, setting, top speed [m/s]."""
+
+    ship: Ship
+    table: PerformanceTable
+    limits: FloatArray
+    setting: int
+    top_speed: float
+
+    @property
+    def required_depth(self) -> float:
+        """Draught, clearance and margin [m]."""
+        return float(self.limits[codes.LIMIT_REQUIRED_DEPTH])
+
+
+@dataclass(frozen=True, eq=False)
+class Ways:
+    """A network between the sites with the sea frozen on it.
+
+    Attributes
+    ----------
+    network : Network
+        ``meta.start`` is the loading site, ``meta.goal`` the unloading site.
+    waters : Waters
+    """
+
+    network: Network
+    waters: Waters
+
+    def passages(self, loaded: Loaded, *, full: bool, extra_depth: float = 0.0) -> Passages:
+        """Prepare the passages from loading to unloading site (full), or back."""
+        ends = (self.network.meta.start, self.network.meta.goal)
+        limits = loaded.limits.copy()
+        limits[codes.LIMIT_REQUIRED_DEPTH] += extra_depth
+        return self.waters.passages(
+            loaded.table,
+            start=ends[0] if full else ends[1],
+            goal=ends[1] if full else ends[0],
+            setting=loaded.setting,
+            limits=limits,
+            top_speed=loaded.top_speed,
+        )
+
+    @cached_property
+    def length(self) -> float:
+        """Distance between the sites as the crow flies [m]."""
+        lat, lon = self.network.lat, self.network.lon
+        a, b = self.network.meta.start, self.network.meta.goal
+        return float(distance(lat[a], lon[a], lat[b], lon[b]))
+
+
+def open_ways(world: World, network: Network, tell: Tell) -> Ways:
+    """Freeze the sea at a network for the whole period.
+
+    Raises
+    ------
+    InputError
+        If it would take more memory than is allowed.
+    """
+    channels = list(world.needs.channels)
+    if world.bed_stands_still and codes.BED_DEPTH in channels:
+        channels.remove(codes.BED_DEPTH)
+        network = over_the_bed(world, network)
+    lat, lon = network.station_lat, network.station_lon
+    steps = len(world.sea.times(*world.period))
+    field = world.ship.speed_field
+    extra = None if field is None else {codes.SPEED_FIELD: field}
+    size = 4 * len(lat) * steps * (len(channels) + bool(extra))
+    if size > MEMORY_LIMIT:
+        raise InputError(
+            f"The sea at {len(lat):,} places and {steps:,} times takes {size / 1e9:.1f} GB.",
+            f"At most {MEMORY_LIMIT / 1e9:.0f} GB are taken.",
+            "Look fewer days ahead, or give a coarser spacing_m or a smaller detour.",
+        )
+    tell(f"freezing the sea at {len(lat):,} places and {steps:,} times")
+    fields = world.sea.freeze_stations(lat, lon, *world.period, channels, extra=extra)
+    return Ways(network, Waters.prepare(network, fields))
+
+
+def project_network(world: World) -> Network:
+    """Build the network between the sites: the sea's own mesh where it has one, else a lattice."""
+    sites, chart = world.sites, world.chart
+    model = world.sea.mesh()
+    if model is None:
+        return lattice(chart, sites.load, sites.unload, spacing=sites.spacing, directions=32)
+    lat, lon, faces = _near(model.lat, model.lon, model.triangles, sites)
+    network = sampled_on_sides(
+        mesh(chart, lat, lon, faces, largest_spacing=sites.spacing, rings=sites.rings)
+    )
+    ends = [_node_at(network, place) for place in (sites.load, sites.unload)]
+    return replace(network, meta=replace(network.meta, start=ends[0], goal=ends[1]))
+
+
+def _near(
+    lat: FloatArray, lon: FloatArray, triangles: NDArray[np.int64], sites: Sites
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return the nodes of a model around the sites, after the sites themselves."""
+    direct_way = float(distance(*sites.load, *sites.unload))
+    to_load = distance(lat, lon, *sites.load)
+    to_unload = distance(lat, lon, *sites.unload)
+    use = to_load + to_unload <= sites.detour * direct_way
+    use &= np.minimum(to_load, to_unload) > _SAME_PLACE
+    number = np.full(lat.size, -1, np.int64)
+    number[use] = 2 + np.arange(int(use.sum()))
+    if use.sum() < 3:
+        raise InputError(
+            "The mesh of the sea has no nodes around the sites, which are "
+            f"{direct_way:,.0f} m apart.",
+            f"It holds {lat.size} nodes between {lat.min():.3f} and {lat.max():.3f} N, "
+            f"{lon.min():.3f} and {lon.max():.3f} E.",
+            "Choose sites inside it, farther apart than its nodes.",
+        )
+    # a triangle counts where all its nodes do; those at a site itself are taken for that site
+    for place, node in ((to_load, 0), (to_unload, 1)):
+        number[place <= _SAME_PLACE] = node
+    faces = number[triangles]
+    faces = faces[(faces >= 0).all(axis=1)]
+    places = np.array([sites.load, sites.unload])
+    return (
+        np.concatenate([places[:, 0], lat[use]]),
+        np.concatenate([places[:, 1], lon[use]]),
+        faces,
+    )
+
+
+def _node_at(network: Network, place: Position) -> int:
+    away = distance(network.lat, network.lon, *place)
+    nearest = int(np.argmin(away))
+    if away[nearest] > _SAME_PLACE:
+        raise InputError(
+            f"The site {place[0]:.4f}, {place[1]:.4f} is not on navigable water.",
+            "It lies on land, in a no-go zone or outside the chart.",
+            "Move it.",
+        )
+    return nearest
+
+
+def line_network(chart: Chart, route: Sequence[Position]) -> Network:
+    """Return a charted way as a network: one line, with waiting anywhere on it.
+
+    Raises
+    ------
+    InputError
+        If the chart does not let it pass.
+    """
+    lat, lon = _spaced(route)
+    first = np.arange(len(lat) - 1, dtype=np.int32)
+    blocked = np.asarray(chart.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    if blocked.any():
+        k = int(np.argmax(blocked))
+        raise InputError(
+            f"The route of the base case is not navigable near {lat[k]:.4f}, {lon[k]:.4f}.",
+            "It crosses land or a no-go zone, or leaves the chart.",
+            "Correct base_case.route.",
+        )
+    pairs = measure(lat, lon, first, first + np.int32(1))
+    meta = NetworkMeta(LINE, _LINE_SPACING, 2, 0.0, start=0, goal=len(lat) - 1)
+    stations = Stations(lat, lon, len(lat))
+    return assemble(chart, stations, pairs, no_samples(len(first)), meta=meta)
+
+
+def _spaced(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]:
+    lats, lons = [np.array([route[0][0]])], [np.array([route[0][1]])]
+    for (lat1, lon1), (lat2, lon2) in itertools.pairwise(route):
+        pieces = max(1, math.ceil(float(distance(lat1, lon1, lat2, lon2)) / _LINE_SPACING))
+        lat, lon = along(lat1, lon1, lat2, lon2, np.arange(1, pieces + 1) / pieces)
+        lats.append(lat)
+        lons.append(lon)
+    return np.concatenate(lats), np.concatenate(lons)
+
+
+def over_the_bed(world: World, network: Network) -> Network:
+    """Return the network with the least depth of the sea's bed along every edge."""
+    tails, heads = network.tails(), network.target
+    once = tails < heads
+    pair = tails[once].astype(np.int64) * network.n_nodes + heads[once]
+    spacing = max(network.meta.spacing_m, 1.0) / _BED_SAMPLES
+    count = np.maximum(np.ceil(network.length[once] / spacing).astype(np.int64), 1) + 1
+    least = np.full(int(once.sum()), np.inf)
+    bounds = np.searchsorted(np.cumsum(count), np.arange(0, count.sum() + _CHUNK, _CHUNK))
+    for first, last in itertools.pairwise(bounds):
+        part = slice(int(first), int(last) + 1)
+        least[part] = _least_bed(
+            world, network, (tails[once][part], heads[once][part]), count[part]
+        )
+    key = np.minimum(tails, heads).astype(np.int64) * network.n_nodes + np.maximum(tails, heads)
+    order = np.argsort(pair)
+    found = least[order][np.searchsorted(pair[order], key)]
+    depth = np.where(np.isnan(found), np.nan, np.minimum(network.depth, found))
+    return replace(network, depth=depth.astype(np.float32))
+
+
+def _least_bed(
+    world: World, network: Network, ends: tuple[Any, Any], count: NDArray[np.int64]
+) -> FloatArray:
+    a, b = ends
+    lat, lon = network.lat, network.lon
+    if not len(a):
+        return np.empty(0)
+    length, course, _ = inverse(lat[a], lon[a], lat[b], lon[b])
+    of = np.repeat(np.arange(len(a)), count)
+    first = np.cumsum(count) - count
+    share = (np.arange(len(of)) - first[of]) / (count[of] - 1)
+    at = direct(lat[a][of], lon[a][of], np.asarray(course)[of], share * np.asarray(length)[of])
+    time = np.full(len(of), world.period[0])
+    bed = world.sea.sample([nm.BED_DEPTH], time, *at)[nm.BED_DEPTH]
+    return np.asarray(np.minimum.reduceat(bed, first))

@@ -1,0 +1,122 @@
+"""From the entries of a project file to a ship, a sea and a chart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import resources
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thalweg.core.errors import InputError
+from thalweg.operations.dredging.project import Project
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+ESTUARY = "synthetic-estuary"  #: a made-up world, named in place of files
+EXAMPLE = "example"  #: the name of the example project
+COASTS = ("c", "l", "i", "h", "f", "none")
+
+
+def example_file() -> Path:
+    """Return the example project file of the package: a nourishment behind a drying bank."""
+    return Path(str(resources.files("thalweg.operations").joinpath("estuary_project.yaml")))
+
+
+def open_project(path: str | Path) -> Project:
+    """Read a project file; ``example`` is the one of the package."""
+    return Project.load(example_file() if str(path) == EXAMPLE else path)
+
+
+def open_things(project: Project) -> tuple[Ship, Sea, Chart]:
+    """Return the ship, sea and chart that a project file names.
+
+    Raises
+    ------
+    InputError
+        If nothing names a sea, or an entry is not understood.
+    """
+    from thalweg.ship import Ship
+
+    ship = (
+        Ship.from_dict(project.ship, source="ship of the project")
+        if isinstance(project.ship, Mapping)
+        else Ship.load(project.ship)
+    )
+    if project.world.get("sea") != ESTUARY:
+        return ship, _sea(project.world), _chart(project.world, None)
+    from thalweg.operations.examples.estuary import synthetic_estuary
+
+    _refuse_beside_estuary(project.world)
+    estuary = synthetic_estuary()
+    return ship, estuary.sea, _chart(project.world, estuary.chart)
+
+
+def _sea(world: Mapping[str, Any]) -> Sea:
+    from thalweg.sea import Sea
+
+    files, mapping, tides = _listed(world.get("sea")), world.get("map"), world.get("tides")
+    if not files or not all(files):
+        raise InputError(
+            "The project names no sea.",
+            f"sea: is a file, a list of files, or {ESTUARY}.",
+            "Add it: weather and tides are never assumed.",
+            field="sea",
+        )
+    _check_names("sea", files, f"It is a file, a list of files, or {ESTUARY}.")
+    if not (mapping is None or isinstance(mapping, Mapping)):
+        raise InputError(
+            f"map is {mapping!r}.",
+            "It says what is what in the files, such as map: {crs: 'EPSG:32611'}.",
+            "Write it that way.",
+            field="map",
+        )
+    named = [] if isinstance(tides, bool) else _listed(tides)
+    _check_names("tides", named, "It is true, or a list of constituents such as [M2, S2].")
+    sea = Sea.open(*files, mapping=mapping)
+    if not tides:
+        return sea
+    return Sea.from_tides(sea, constituents=None if tides is True else named)
+
+
+def _check_names(what: str, given: list[Any], possible: str) -> None:
+    if not all(isinstance(name, (str, PathLike)) for name in given):
+        raise InputError(f"{what} is {given!r}.", possible, "Write it that way.", field=what)
+
+
+def _refuse_beside_estuary(world: Mapping[str, Any]) -> None:
+    """Raise `InputError` for entries that a made-up world has no use for."""
+    for what in ("map", "tides", "coast"):
+        if world.get(what) not in (None, False, "none"):
+            raise InputError(
+                f"{what} is given for the {ESTUARY}.",
+                "It has its own tides and rim, and no files.",
+                f"Leave {what} out, or name a sea of your own.",
+                field=what,
+            )
+
+
+def _chart(world: Mapping[str, Any], chart: Chart | None) -> Chart:
+    from thalweg.chart import Chart
+
+    coast = world.get("coast", "i")
+    coast = "none" if coast is None or coast is False else str(coast)
+    if coast not in COASTS:
+        raise InputError(f"coast is {coast!r}.", f"One of {', '.join(COASTS)}.", "", field="coast")
+    if chart is None:
+        whole = (-90.0, 90.0, -180.0, 180.0)
+        chart = Chart.open_water(*whole) if coast == "none" else Chart.gshhg(coast)
+    for path in _listed(world.get("depth")):
+        chart = chart.with_depth(path)
+    for path in _listed(world.get("zones")):
+        chart = chart.with_zones(path)
+    return chart
+
+
+def _listed(value: Any) -> list[Any]:
+    if value is None:
+        return []
+    return list(value) if isinstance(value, (list, tuple)) else [value]

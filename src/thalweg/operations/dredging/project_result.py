@@ -1,0 +1,282 @@
+"""What came of a project: totals, the table of van Halem's study, and files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.time import format_time
+from thalweg.core.units import DAY, HOUR, KNOT, TONNE
+from thalweg.operations.dredging.cycles import Cycle
+from thalweg.operations.dredging.project import Project
+from thalweg.planning.report.output_files import check_folder
+from thalweg.ship import Ship
+
+if TYPE_CHECKING:
+    from thalweg.operations.dredging.project_environment import World
+
+WEEK = 7.0 * DAY
+_PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel, where the ship file tells none
+
+#: Rows of the table: key, words, how to print.
+ROWS = (
+    ("production_m3_week", "production [1000 m3/week]", lambda v: f"{v / 1000:.1f}"),
+    ("duration_days", "duration", lambda v: "{} d {} h".format(*divmod(round(24 * v), 24))),
+    ("cycles", "cycles", lambda v: f"{v:d}"),
+    ("distance_m", "sailed distance [1000 km]", lambda v: f"{v / 1e6:.2f}"),
+    ("mean_load_factor", "mean load factor", lambda v: f"{v:.2f}"),
+    ("loading_share", "time loading", lambda v: f"{100 * v:.0f} %"),
+    ("unloading_share", "time unloading", lambda v: f"{100 * v:.0f} %"),
+    ("sailing_full_share", "time sailing full", lambda v: f"{100 * v:.0f} %"),
+    ("sailing_empty_share", "time sailing empty", lambda v: f"{100 * v:.0f} %"),
+    ("waiting_share", "of which waiting", lambda v: f"{100 * v:.1f} %"),
+    ("least_clearance_m", "least clearance [m]", lambda v: f"{v:.2f}"),
+    ("energy_gj", "energy [GJ]", lambda v: f"{v:,.0f}"),
+    ("hotel_gj", "of which hotel load [GJ]", lambda v: f"{v:,.0f}"),
+    ("fuel_t", "fuel [t]", lambda v: f"{v:,.1f}"),
+    ("co2_t", "CO2 [t]", lambda v: f"{v:,.1f}"),
+    ("co2_kg_m3", "CO2 per volume [kg/m3]", lambda v: f"{v:.2f}"),
+    ("cost", "cost of time and propulsion", lambda v: f"{v:,.0f}"),
+    ("production_gain", "gain in production", lambda v: f"{100 * v:+.0f} %"),
+    ("time_saved", "time saved", lambda v: f"{100 * v:+.0f} %"),
+    ("distance_saved", "distance saved", lambda v: f"{100 * v:+.0f} %"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One way of sailing the project, to its end.
+
+    Attributes
+    ----------
+    name : str
+    cycles : tuple of Cycle
+    totals : mapping of str to float or None
+        By the keys of `ROWS`; None where unknown.
+    notes : tuple of str
+    """
+
+    name: str
+    cycles: tuple[Cycle, ...]
+    totals: Mapping[str, float | int | None]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the referee finds no limit broken on any leg."""
+        return all(leg.route.feasible for cycle in self.cycles for leg in cycle.legs)
+
+
+@dataclass(frozen=True, eq=False)
+class ProjectResult:
+    """A project as it was sailed, and what it was compared with.
+
+    Attributes
+    ----------
+    project : Project
+        What was asked.
+    world : World
+        Ship, sea and chart.
+    optimised : Run
+    base : Run or None
+    provenance : mapping
+    """
+
+    project: Project
+    world: World
+    optimised: Run
+    base: Run | None = None
+    provenance: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def runs(self) -> tuple[Run, ...]:
+        """The base case, if there is one, and the optimised project."""
+        return (self.optimised,) if self.base is None else (self.base, self.optimised)
+
+    def gains(self) -> dict[str, float]:
+        """Return what is gained over the base case; empty without one."""
+        if self.base is None:
+            return {}
+        old, new = self.base.totals, self.optimised.totals
+
+        def ratio(key: str) -> float:
+            return float(new[key] or 0.0) / float(old[key] or math.nan)
+
+        return {
+            "production_gain": ratio("production_m3_week") - 1.0,
+            "time_saved": 1.0 - ratio("duration_days"),
+            "distance_saved": 1.0 - ratio("distance_m"),
+        }
+
+    def table(self) -> list[list[str]]:
+        """Return the table of van Halem (2019), Table 5.1, as text: a head and rows."""
+        columns = [dict(run.totals) for run in self.runs]
+        columns[-1].update(self.gains())
+        rows = [["", *(run.name for run in self.runs)]]
+        for key, words, written in ROWS:
+            values = [column.get(key) for column in columns]
+            if any(value is not None for value in values):
+                rows.append([words, *("" if v is None else written(v) for v in values)])
+        return rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything as plain data for a JSON answer."""
+        return {
+            "project": self.project.to_dict(),
+            "runs": {run.name: _run_data(run) for run in self.runs},
+            "gains": self.gains(),
+            "provenance": dict(self.provenance),
+        }
+
+    def to_json(self, path: str | Path | None = None) -> str:
+        """Return (and write) everything as JSON."""
+        text = json.dumps(self.as_dict(), indent=2, allow_nan=False)
+        if path is not None:
+            Path(path).write_text(text + "\n", encoding="utf-8")
+        return text
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write project.json, cycles.csv, project.png and routes.png; return the files."""
+        from thalweg.operations.plots.project_plots import draw_project, draw_routes
+
+        folder = check_folder(folder)
+        self.to_json(folder / "project.json")
+        with (folder / "cycles.csv").open("w", encoding="utf-8", newline="") as file:
+            writer = csv.DictWriter(file, _COLUMNS)
+            writer.writeheader()
+            for run in self.runs:
+                writer.writerows({"run": run.name, **_cycle_data(c)} for c in run.cycles)
+        draw_project(self, folder / "project.png")
+        draw_routes(self, folder / "routes.png")
+        names = ("project.json", "cycles.csv", "project.png", "routes.png")
+        return [folder / name for name in names]
+
+
+def finished_run(
+    name: str, cycles: list[Cycle], *, project: Project, ship: Ship, notes: tuple[str, ...] = ()
+) -> Run:
+    """Sum cycles up."""
+    duration = cycles[-1].end - cycles[0].start
+    legs = [leg for cycle in cycles for leg in cycle.legs]
+    volume = sum(cycle.volume for cycle in cycles)
+    shares = {
+        "loading_share": sum(c.loading for c in cycles),
+        "unloading_share": sum(c.unloading for c in cycles),
+        "sailing_full_share": sum(c.out.duration for c in cycles),
+        "sailing_empty_share": sum(c.back.duration for c in cycles),
+        "waiting_share": sum(leg.waiting for leg in legs),
+    }
+    totals: dict[str, float | int | None] = {
+        "production_m3_week": volume / duration * WEEK,
+        "volume_m3": volume,
+        "duration_days": duration / DAY,
+        "cycles": len(cycles),
+        "distance_m": sum(leg.distance for leg in legs),
+        "mean_load_factor": volume / (len(cycles) * project.work.hopper),
+        **{key: value / duration for key, value in shares.items()},
+        "least_clearance_m": _known(float(np.min([leg.clearance for leg in legs]))),
+        **_burnt(cycles, project, ship),
+    }
+    broken = sum(not leg.route.feasible for leg in legs)
+    if broken:
+        notes += (f"The referee finds a limit broken on {broken} of {len(legs)} legs.",)
+    return Run(name, tuple(cycles), MappingProxyType(totals), notes)
+
+
+def _burnt(cycles: list[Cycle], project: Project, ship: Ship) -> dict[str, float | None]:
+    """Return energy, fuel, CO2 and cost; None where the ship file does not tell."""
+    work, engine = project.work, ship.data.get("engine", {})
+    hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
+    pumps = sum(c.loading * work.loading.power + c.unloading * work.unloading.power for c in cycles)
+    propulsion = sum(leg.energy for c in cycles for leg in c.legs)
+    sfoc = float(engine.get("sfoc_g_per_kwh", _PRIME_MOVER_SFOC)) / 3.6e9  # kg/J
+    at_work = sum(c.loading + c.unloading for c in cycles) * ship.waiting_fuel_rate + pumps * sfoc
+    fuel = at_work + sum(leg.fuel for c in cycles for leg in c.legs)
+    co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
+    volume = sum(c.volume for c in cycles)
+    return {
+        "energy_gj": _known((propulsion + hotel + pumps) / 1e9),
+        "hotel_gj": None if math.isnan(propulsion) else _known(hotel / 1e9),
+        "fuel_t": _known(fuel / TONNE),
+        "co2_t": _known(co2 / TONNE),
+        "co2_kg_m3": _known(co2 / volume),
+        "cost": _known(_cost(cycles, ship)),
+    }
+
+
+def _cost(cycles: list[Cycle], ship: Ship) -> float:
+    """Return van Halem's cost, lambda_t t + lambda_f t V^3 while sailing; NaN if not given."""
+    costs = ship.data.get("costs", {})
+    if not costs:
+        return math.nan
+    total = costs.get("per_week", 0.0) / WEEK * (cycles[-1].end - cycles[0].start)
+    per_cube = costs.get("per_second_per_cubed_speed", 0.0)
+    for cycle in cycles:
+        for load_factor, leg in ((cycle.load_factor, cycle.out), (0.0, cycle.back)):
+            speed = float(ship.with_load_factor(load_factor).speeds[-1])
+            total += per_cube * (leg.duration - leg.waiting) * speed**3
+    return float(total)
+
+
+def _known(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _run_data(run: Run) -> dict[str, Any]:
+    return {
+        "totals": dict(run.totals),
+        "feasible": run.feasible,
+        "notes": list(run.notes),
+        "cycles": [_cycle_data(cycle) for cycle in run.cycles],
+    }
+
+
+_COLUMNS = (
+    *("run", "cycle", "start", "load_factor", "volume_m3", "loading_h", "sail_full", "full_h"),
+    *("full_waiting_h", "full_distance_km", "full_least_clearance_m", "unloading_h", "sail_empty"),
+    *("empty_h", "empty_waiting_h", "empty_distance_km", "empty_least_clearance_m", "end"),
+    *("production_m3_h", "mean_speed_kn", "fuel_t", "energy_gj"),
+)
+
+
+def _cycle_data(cycle: Cycle) -> dict[str, Any]:
+    """Return one row of cycles.csv, in the order of its columns."""
+    data: dict[str, Any] = {
+        "cycle": cycle.number,
+        "start": format_time(cycle.start),
+        "load_factor": cycle.load_factor,
+        "volume_m3": round(cycle.volume, 3),
+        "loading_h": round(cycle.loading / HOUR, 4),
+        "unloading_h": round(cycle.unloading / HOUR, 4),
+        "end": format_time(cycle.end),
+        "production_m3_h": round(cycle.production * HOUR, 2),
+    }
+    for name, leg in (("full", cycle.out), ("empty", cycle.back)):
+        clearance = _known(leg.clearance)
+        data |= {
+            f"sail_{name}": format_time(leg.depart),
+            f"{name}_h": round(leg.duration / HOUR, 4),
+            f"{name}_waiting_h": round(leg.waiting / HOUR, 4),
+            f"{name}_distance_km": round(leg.distance / 1000.0, 3),
+            f"{name}_least_clearance_m": None if clearance is None else round(clearance, 3),
+        }
+    sailing = sum(leg.duration - leg.waiting for leg in cycle.legs)
+    fuel, energy = (_known(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy"))
+    data["mean_speed_kn"] = round(sum(leg.distance for leg in cycle.legs) / sailing / KNOT, 2)
+    data["fuel_t"] = None if fuel is None else round(fuel / TONNE, 3)
+    data["energy_gj"] = None if energy is None else round(energy / 1e9, 3)
+    return {key: data[key] for key in _COLUMNS if key != "run"}
+
+
+def load_factor_counts(run: Run) -> tuple[list[float], list[int]]:
+    """Return the load factors of a run and how many cycles have each."""
+    values, counts = np.unique([cycle.load_factor for cycle in run.cycles], return_counts=True)
+    return values.tolist(), counts.tolist()

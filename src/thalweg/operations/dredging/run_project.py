@@ -1,0 +1,278 @@
+"""`run_project`: from a project to cycles, tables and pictures, and the checks before it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import Position, format_position
+from thalweg.core.time import format_time
+from thalweg.kernels import codes
+from thalweg.operations.dredging.cycle_simulation import Simulator
+from thalweg.operations.dredging.project import BEST, Project
+from thalweg.operations.dredging.project_environment import (
+    LINE,
+    Tell,
+    Ways,
+    World,
+    line_network,
+    open_ways,
+    project_network,
+)
+from thalweg.operations.dredging.project_result import ProjectResult, Run, finished_run
+from thalweg.planning.request.coverage_check import check_kinds
+from thalweg.planning.voyage import Voyage
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.network import Network
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+OPTIMISED, BASE_CASE = "optimised", "base case"
+_HALVINGS = 24  # of a depth, to the millimetre
+_DEEPEST = 200.0  # [m]
+
+
+def run_project(
+    project: Project,
+    *,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart,
+    progress: Callable[[str], None] | None = None,
+) -> ProjectResult:
+    """Sail a project to its end: in every cycle the load and the ways that produce most.
+
+    Parameters
+    ----------
+    project : Project
+    ship : Ship
+        Its load decides draught and speed.
+    sea : Sea
+        For the whole period of the project. A mesh of its own becomes the network.
+    chart : Chart
+        Land, zones and depth.
+    progress : callable, optional
+        Called with a short text now and then.
+
+    Returns
+    -------
+    ProjectResult
+        With the base case beside it, if the project has one.
+
+    Raises
+    ------
+    InputError
+        If a site is dry or on land, the hopper is more than the ship holds, or the sea at the
+        network takes too much memory.
+    NoRouteError
+        If no load has a way at any tide; it says when the water is highest and what is missing.
+    OutsidePeriodError
+        If the volume is not moved by the end of the project's period.
+
+    Notes
+    -----
+    A cycle's production is its volume over the time from the beginning of loading until the ship is
+    back to load again. For every load factor the ways there and back are searched exactly on the
+    network (`thalweg.search.profile_search`) and the highest production is taken, as by van Halem
+    (2019), section 3.2.1. The choice is greedy: a cycle does not make way for a better one after
+    it. Every leg is then sailed by the referee in fine steps; its times are those of the project.
+    """
+    tell: Tell = progress or (lambda text: None)
+    voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
+    check_kinds(voyage, ship, sea, chart)
+    _check_hopper(project.work.hopper, ship)
+    period = (project.start, project.end)
+    world = World.open(project.sites, period, ship=ship, sea=sea, chart=chart)
+    check_sites(world)
+    tell("building the network")
+    ways = open_ways(world, project_network(world), tell)
+    factors = project.work.load_factors
+    optimised = _run(project, world, ways, factors, name=OPTIMISED, tell=tell)
+    base = None
+    if project.base is not None:
+        given = project.base.load_factor
+        line = open_ways(world, line_network(chart, project.base.route), tell)
+        chosen = factors if given == BEST else (float(given),)
+        base = _run(project, world, line, chosen, name=BASE_CASE, tell=tell)
+    return ProjectResult(project, world, optimised, base, _provenance(world, ways))
+
+
+def _run(
+    project: Project, world: World, ways: Ways, factors: tuple[float, ...], *, name: str, tell: Tell
+) -> Run:
+    tell(f"{name}: preparing {len(factors)} loads")
+    simulator = Simulator(project, world, ways, factors=factors, tell=tell, name=name)
+    possible = simulator.possible
+    if not possible:
+        raise no_way(world, ways, min(x for x in factors if x > 0.0), name)
+    notes: tuple[str, ...] = ()
+    shut = [x for x in factors if x > max(possible)]
+    if shut:
+        notes = (f"Load factors above {max(possible):g} have no way at any tide.",)
+    cycles = simulator.run()
+    return finished_run(name, cycles, project=project, ship=world.ship, notes=notes)
+
+
+def _check_hopper(hopper: float, ship: Ship) -> None:
+    capacity = ship.loading.capacity
+    if hopper > capacity * (1.0 + 1e-9):  # never of a capacity that is not known
+        raise InputError(
+            f"hopper_m3 is {hopper:g}.",
+            f"The ship {ship.name!r} holds {capacity:g} m3 at load factor 1.",
+            "Correct one of them: loading.capacity_m3 of the ship, or hopper_m3.",
+            field="hopper_m3",
+        )
+
+
+def check_sites(world: World) -> None:
+    """Raise `InputError` for sites that are on land or fall too dry for the empty ship always."""
+    sites, chart = world.sites, world.chart
+    for what, place in (("loading", sites.load), ("unloading", sites.unload)):
+        if not bool(np.all(chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
+            raise InputError(
+                f"The {what} site {format_position(*place)} is on land or in a no-go zone.",
+                "A site is navigable water of the chart.",
+                "Move it.",
+                field=what,
+            )
+        _check_depth(world, what, place)
+
+
+def _check_depth(world: World, what: str, place: Position) -> None:
+    empty = world.loaded(0.0).required_depth
+    if not math.isfinite(empty):
+        return
+    times, depth = _depth_at(world, place)
+    if not np.isfinite(depth).any():
+        raise InputError(
+            f"The depth at the {what} site {format_position(*place)} is not known.",
+            "Chart or sea tell the depth of the water at both sites.",
+            "Move it into the data.",
+            field=what,
+        )
+    best = int(np.nanargmax(depth))
+    if depth[best] < empty:
+        raise InputError(
+            f"The {what} site {format_position(*place)} is too shallow at every tide.",
+            f"The water is deepest {format_time(float(times[best]))}: {depth[best]:.2f} m, "
+            f"{empty - depth[best]:.2f} m less than the empty ship needs ({empty:.2f} m).",
+            "Move the site into deeper water.",
+            field=what,
+            missing_m=float(empty - depth[best]),
+        )
+
+
+def _depth_at(world: World, place: Position) -> tuple[np.ndarray, np.ndarray]:
+    """Return (times, water depth [m]) at a place over the period."""
+    from thalweg.sea import standard_names as nm
+
+    (start, end), sea = world.period, world.sea
+    times = sea.times(start, end)
+    times = times[(times >= start) & (times <= end)]
+    depth = np.full(times.shape, np.inf)
+    if world.chart.has_depth:
+        depth = np.minimum(depth, np.asarray(world.chart.depth_at(*place), float))
+    channels = [n for n in (nm.BED_DEPTH, nm.WATER_LEVEL) if n in sea.variables]
+    lat, lon = np.full(times.shape, place[0]), np.full(times.shape, place[1])
+    got = sea.sample(channels, times, lat, lon) if channels else {}
+    if nm.BED_DEPTH in got:
+        depth = np.minimum(depth, got[nm.BED_DEPTH])
+    return times, depth + got.get(nm.WATER_LEVEL, 0.0)
+
+
+def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteError:
+    """Build the error for a project whose lightest load has no way at any tide.
+
+    It names the shallowest place that every way must pass, when the water is highest there, and
+    how much is missing.
+    """
+    loaded = world.loaded(load_factor)
+    required = loaded.required_depth
+    open_to = _passable_depth(ways, loaded) if math.isfinite(required) else -math.inf
+    asked = f"No tide opens a way with load factor {load_factor:g} ({name})."
+    if not math.isfinite(open_to):
+        unknown = _first_unknown(ways.network) if ways.network.meta.kind == LINE else None
+        if unknown is not None:
+            return NoRouteError(
+                asked,
+                f"The depth of the water is not known on its route at {format_position(*unknown)}.",
+                "Correct base_case.route, or give data that reach there.",
+                nearest=unknown,
+            )
+        return NoRouteError(
+            asked,
+            "The sites are not joined by water that the data know.",
+            "Check the chart, the data and the detour.",
+        )
+    place, when = _bottleneck(ways, open_to)
+    return NoRouteError(
+        asked,
+        f"The best way is {required - open_to:.2f} m too shallow: at {format_position(*place)} the "
+        f"water is highest {format_time(when)}, {open_to:.2f} m deep, and the ship needs "
+        f"{required:.2f} m.",
+        "Load less, ask less clearance, or choose another site.",
+        missing_m=required - open_to,
+        highest=format_time(when),
+        nearest=place,
+    )
+
+
+def _passable_depth(ways: Ways, loaded: Any) -> float:
+    """Return the greatest depth that some way has all along at its highest tides [m]."""
+    low, high = -_DEEPEST, _DEEPEST
+    required = loaded.required_depth
+    if ways.passages(loaded, full=True, extra_depth=low - required).shortest == math.inf:
+        return -math.inf
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        open_way = ways.passages(loaded, full=True, extra_depth=middle - required).shortest
+        low, high = (middle, high) if open_way < math.inf else (low, middle)
+    return low
+
+
+def _first_unknown(network: Network) -> Position | None:
+    """Return where the first edge begins whose depth is not known, from the loading site on."""
+    unknown = np.flatnonzero(np.isnan(network.depth))
+    if not len(unknown):
+        return None
+    node = int(np.minimum(network.tails(), network.target)[unknown].min())
+    return float(network.lat[node]), float(network.lon[node])
+
+
+def _bottleneck(ways: Ways, depth: float) -> tuple[Position, float]:
+    """Return the node whose greatest depth is just that of the best way, and when it has it."""
+    waters, network = ways.waters, ways.network
+    sea = waters.sea
+    charted = network.depth + sea.highest[network.target]
+    best = np.minimum(charted, sea.deepest[network.target])
+    edge = int(np.nanargmin(np.abs(best - depth)))
+    node = int(network.target[edge])
+    column = sea.channel_index[codes.WATER_LEVEL]
+    level = sea.values[node, :, column] if column >= 0 else np.zeros(len(sea.times))
+    when = float(sea.times[int(np.nanargmax(level))])
+    return (float(network.lat[node]), float(network.lon[node])), when
+
+
+def _provenance(world: World, ways: Ways) -> dict[str, Any]:
+    from importlib.metadata import version
+
+    network = ways.network
+    return {
+        "thalweg": version("thalweg"),
+        "ship": {"name": world.ship.name, "fingerprint": world.ship.fingerprint()},
+        "sea": world.sea.provenance() | {"fingerprint": world.sea.fingerprint()},
+        "chart": world.chart.fingerprint(),
+        "network": {
+            "kind": network.meta.kind,
+            "nodes": int(network.n_nodes),
+            "edges": int(network.n_edges),
+            "rings": world.sites.rings,
+        },
+        "assumptions": list(world.needs.notes),
+    }

@@ -1,0 +1,140 @@
+"""From a search to a leg that keeps every limit in the referee's fine steps."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.network.regional_lattice.conformal_projection import unit_vectors
+from thalweg.operations.dredging.cycles import Leg, leg_energy
+from thalweg.operations.dredging.project_environment import Loaded, Ways, World
+from thalweg.route import Route, Track, evaluate
+from thalweg.route.referee.limit_checks import is_gap
+from thalweg.search import Passage, Passages
+
+FloatArray = NDArray[np.float64]
+
+#: Depth added for a leg while the referee finds a limit broken between the nodes [m].
+CAREFUL = (0.0, 0.05, 0.2, 0.5)
+LARGEST_STEP = 600.0  #: twice the referee's coarser step at most [m]
+_ASIDE = 0.5  # nodes so near the line between their neighbours are no waypoints [m]
+
+
+class LegSailor:
+    """Sails legs over one set of ways and lets the referee judge them.
+
+    Parameters
+    ----------
+    world : World
+    ways : Ways
+    """
+
+    def __init__(self, world: World, ways: Ways) -> None:
+        self.world, self.ways = world, ways
+        self.step = 0.5 * min(ways.network.meta.spacing_m, LARGEST_STEP)
+        self._loaded: dict[float, Loaded] = {}
+        self._passages: dict[tuple[float, bool, float], Passages] = {}
+
+    def loaded(self, load_factor: float) -> Loaded:
+        """Return the ship at a load."""
+        if load_factor not in self._loaded:
+            self._loaded[load_factor] = self.world.loaded(load_factor)
+        return self._loaded[load_factor]
+
+    def passages(self, load_factor: float, *, outward: bool, extra: float = 0.0) -> Passages:
+        """Return the passages of a load to the unloading site (outward) or back."""
+        key = (load_factor, outward, extra)
+        if key not in self._passages:
+            loaded = self.loaded(load_factor)
+            self._passages[key] = self.ways.passages(loaded, full=outward, extra_depth=extra)
+        return self._passages[key]
+
+    def sail(
+        self,
+        load_factor: float,
+        depart: float,
+        *,
+        outward: bool,
+        passage: Passage | None = None,
+    ) -> Leg | None:
+        """Sail one leg; with more water planned for, while the referee finds a limit broken.
+
+        Parameters
+        ----------
+        load_factor : float
+        depart : float
+            When the ship is ready [s since 1970-01-01T00:00Z].
+        outward : bool
+            From the loading site to the unloading site, or back.
+        passage : Passage, optional
+            What a search has found already.
+
+        Returns
+        -------
+        Leg or None
+            None when there is no way before the data end. A leg that cannot be made to keep every
+            limit is returned as it is; its route tells what is broken.
+        """
+        loaded, best = self.loaded(load_factor), None
+        for extra in CAREFUL:
+            if passage is None:
+                passage = self.passages(load_factor, outward=outward, extra=extra).sail(depart)
+            if passage.found:
+                route = self._judged(passage, loaded)
+                best = route if best is None or route.feasible else best
+                if route.feasible:
+                    break
+            passage = None
+        if best is None or not math.isfinite(best.arrive):
+            return None
+        return Leg(best, leg_energy(best))
+
+    def _judged(self, passage: Passage, loaded: Loaded) -> Route:
+        """Score a passage by its corners; by all its nodes where these just leave the data."""
+        route = self._scored(track_of_passage(self.ways, passage, loaded.setting), loaded)
+        if any(is_gap(violation) for violation in route.violations):
+            track = track_of_passage(self.ways, passage, loaded.setting, corners=False)
+            return self._scored(track, loaded)
+        return route
+
+    def _scored(self, track: Track, loaded: Loaded) -> Route:
+        world = self.world
+        return evaluate(
+            track,
+            ship=loaded.ship,
+            sea=world.sea,
+            chart=world.chart,
+            min_ukc=world.min_ukc if math.isfinite(loaded.required_depth) else None,
+            step=self.step,
+            strict=False,
+        )
+
+
+def track_of_passage(ways: Ways, passage: Passage, setting: int, *, corners: bool = True) -> Track:
+    """Return the track of a passage, by its corners or all its nodes; waits below 1 s are none."""
+    wait = np.maximum(0.0, passage.node_depart - passage.node_arrive)
+    wait[-1] = 0.0
+    wait = np.where(wait < 1.0, 0.0, wait)
+    network = ways.network
+    lat, lon = network.lat[passage.nodes], network.lon[passage.nodes]
+    keep = _corners(lat, lon) | (wait > 0.0) if corners else np.ones(len(lat), bool)
+    count = int(keep.sum())
+    return Track(lat[keep], lon[keep], passage.depart, wait[keep], np.full(count - 1, setting))
+
+
+def _corners(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+    """Return which nodes of a way are needed so that it stays within `_ASIDE` of all of them."""
+    points = unit_vectors(lat, lon)
+    keep = np.zeros(len(lat), bool)
+    keep[[0, -1]] = True
+    first = 0
+    for last in range(2, len(lat)):
+        across = np.cross(points[first], points[last])  # of the great circle between them
+        aside = MEAN_RADIUS * np.abs(points[first + 1 : last] @ across)
+        if aside.max() > _ASIDE * float(np.linalg.norm(across)):
+            first = last - 1
+            keep[first] = True
+    return keep

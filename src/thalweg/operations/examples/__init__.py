@@ -1,0 +1,1 @@
+"""Synthetic worlds and tracks for examples and tutorials."""

@@ -1,0 +1,175 @@
+"""A synthetic estuary: a drying bank, a gully behind it, and the tides M2 and S2.
+
+Nothing in it is surveyed. It has what makes dredging projects hard: the short way runs over a bank
+that dries, the long way round through a gully with a bar that a full ship passes only above a
+certain level. Distances and depths are those of van Halem (2019), section 3.2.3.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position
+from thalweg.sea import Sea
+from thalweg.sea import standard_names as nm
+from thalweg.sea.tides.constituents import Constituents
+
+FloatArray = NDArray[np.float64]
+
+CENTRE: Final = (51.70, 3.55)  #: origin of the plane below [deg]
+HALF_WIDTH, HALF_HEIGHT = 12.0, 10.0  # of the domain [km]
+_KM_NORTH = 111.25  # of a degree of latitude here
+_KM_EAST = 111.41 * math.cos(math.radians(CENTRE[0]))
+_RIDGE_Y, _RIDGE_WIDTH, _RIDGE_END = -1.5, 1.2, -7.0  # the bank [km]
+_SADDLE_X, _SADDLE_WIDTH, _SADDLE_DEPTH, _CREST_DEPTH = 4.5, 1.2, 4.3, 0.3
+_BAR_X, _BAR_WIDTH, BAR_DEPTH = -6.0, 1.0, 7.86  # of the gully, below datum [m]
+_OUTSIDE, _INSIDE, _COAST_Y = 14.0, 10.0, -6.6
+_LEVEL: Final = {"M2": (1.45, 60.0), "S2": (0.36, 118.0)}  # amplitude [m], phase lag [deg]
+_LAG = 20.0  # of the tide from west to east [deg]
+_STREAM_LEAD = 65.0  # of the stream before the level [deg]
+
+
+@dataclass(frozen=True)
+class Estuary:
+    """A small world to plan in.
+
+    Attributes
+    ----------
+    sea : Sea
+        Level and current, at any date, on a mesh.
+    chart : Chart
+        Depth below datum; no coastline but the rim.
+    load, unload : (lat, lon)
+        A dredging area at sea and a place behind the bank [deg].
+    by_gully : tuple of (lat, lon)
+        The charted way from one to the other, round the bank and through the gully [deg].
+    bar : (lat, lon)
+        The shallowest place of that way [deg].
+    """
+
+    sea: Sea
+    chart: Chart
+    load: Position
+    unload: Position
+    by_gully: tuple[Position, ...]
+    bar: Position
+
+
+def synthetic_estuary(spacing_m: float = 300.0) -> Estuary:
+    """Return the estuary on a mesh of triangles.
+
+    Parameters
+    ----------
+    spacing_m : float
+        Side of the triangles [m], 100 to 2000; 300 m makes some 6,300 nodes.
+
+    Returns
+    -------
+    Estuary
+
+    Raises
+    ------
+    InputError
+        For a spacing out of range.
+
+    Notes
+    -----
+    The level is M2 of 1.45 m and S2 of 0.36 m, 20 degrees later at the eastern rim than at the
+    western; the stream turns 65 degrees before the level and is stronger in deeper water. The crest
+    of the bank lies 0.3 m below datum (it dries), its saddle 4.3 m, the bar of the gully 7.86 m.
+    """
+    if not 100.0 <= spacing_m <= 2000.0:
+        raise InputError(
+            f"A spacing of {spacing_m:g} m cannot be.", "It lies between 100 and 2000 m.", ""
+        )
+    lat, lon = _nodes(spacing_m / 1000.0)
+    chart = Chart.open_water(*_box()).with_depth(bed_depth, spacing_deg=0.0005)
+    gully = ((2.0, 5.0), (-7.8, -0.4), (-7.8, -3.0), (-6.0, -4.3), (0.0, -4.8), (7.0, -4.5))
+    places = tuple(_position(x, y) for x, y in gully)
+    return Estuary(
+        sea=Sea.from_tides(_constants(lat, lon)),
+        chart=chart,
+        load=places[0],
+        unload=places[-1],
+        by_gully=places,
+        bar=places[3],
+    )
+
+
+def bed_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+    """Return the depth of the bed [m below datum, positive down] at positions [deg]."""
+    x, y = _plane(lat, lon)
+    inner = y < _RIDGE_Y
+    bar = (_INSIDE - BAR_DEPTH) * np.exp(-(((x - _BAR_X) / _BAR_WIDTH) ** 2))
+    around = np.where(inner, _INSIDE - bar, _OUTSIDE)
+    saddle = np.exp(-(((x - _SADDLE_X) / _SADDLE_WIDTH) ** 2))
+    crest = _CREST_DEPTH + (_SADDLE_DEPTH - _CREST_DEPTH) * saddle
+    extent = 1.0 / (1.0 + np.exp(-(x - _RIDGE_END) / 0.3))
+    ridge = extent * np.exp(-(((y - _RIDGE_Y) / _RIDGE_WIDTH) ** 2))
+    # away from the bank the gully and the sea outside join smoothly
+    step = 1.0 / (1.0 + np.exp(-(y - _RIDGE_Y) / 0.25))
+    around = step * _OUTSIDE + (1.0 - step) * (_INSIDE - bar)
+    depth = around - ridge * (around - crest)
+    return np.asarray(depth - 16.0 / (1.0 + np.exp((y - _COAST_Y) / 0.12)))
+
+
+def _constants(lat: FloatArray, lon: FloatArray) -> Constituents:
+    x, _ = _plane(lat, lon)
+    lag = _LAG * (x + HALF_WIDTH) / (2.0 * HALF_WIDTH)
+    strength = 0.62 * np.clip(np.sqrt(np.maximum(bed_depth(lat, lon) + 0.5, 0.0) / 10.0), 0.0, 1.2)
+    level = np.array([_LEVEL[name] for name in _LEVEL])
+    ones = np.ones(lat.size)
+    amplitude = level[:, :1] * ones
+    phase = level[:, 1:] + lag
+    east, north = nm.CURRENT.pair
+    stream = amplitude * strength
+    return Constituents(
+        tuple(_LEVEL),
+        {nm.WATER_LEVEL: amplitude, east: stream, north: 0.15 * stream},
+        {nm.WATER_LEVEL: phase, east: phase - _STREAM_LEAD, north: phase - _STREAM_LEAD},
+        {nm.WATER_LEVEL: 0.0 * ones, east: 0.0 * ones, north: 0.0 * ones},
+        lat,
+        lon,
+        facts={"source": "synthetic estuary (made up)"},
+    )
+
+
+def _nodes(side: float) -> tuple[FloatArray, FloatArray]:
+    """Return a triangular lattice over the domain, its rim straight [deg]."""
+    rows = math.ceil(2.0 * HALF_HEIGHT / (side * math.sqrt(0.75)))
+    columns = math.ceil(2.0 * HALF_WIDTH / side)
+    y = np.linspace(-HALF_HEIGHT, HALF_HEIGHT, rows + 1)
+    x, places = np.linspace(-HALF_WIDTH, HALF_WIDTH, columns + 1), []
+    for number, row in enumerate(y):
+        across = x
+        if number % 2:
+            across = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
+        places.append(np.column_stack([across, np.full(across.size, row)]))
+    east, north = np.concatenate(places).T
+    return _degrees(east, north)
+
+
+def _box() -> tuple[float, float, float, float]:
+    lat, lon = _degrees(np.array([-HALF_WIDTH, HALF_WIDTH]), np.array([-HALF_HEIGHT, HALF_HEIGHT]))
+    return float(lat[0]), float(lat[1]), float(lon[0]), float(lon[1])
+
+
+def _plane(lat: ArrayLike, lon: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    x = (np.asarray(lon, float) - CENTRE[1]) * _KM_EAST
+    return x, (np.asarray(lat, float) - CENTRE[0]) * _KM_NORTH
+
+
+def _degrees(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    return CENTRE[0] + y / _KM_NORTH, CENTRE[1] + x / _KM_EAST
+
+
+def _position(x: float, y: float) -> Position:
+    lat, lon = _degrees(np.array([x]), np.array([y]))
+    return round(float(lat[0]), 4), round(float(lon[0]), 4)

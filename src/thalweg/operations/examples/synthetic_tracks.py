@@ -1,0 +1,256 @@
+"""Made tracks with known truth: a dredger sails cycles through a given sea."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.geodesy import FloatArray, Position, check_position, direct, distance, inverse
+from thalweg.core.time import TimeLike, parse_time, to_datetime64
+from thalweg.core.units import HOUR, KNOT
+from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from thalweg.sea import Sea
+
+_STEPS = 4  # of the ship for each message
+_LONGEST = 14.0 * 86400.0  # a trip may take [s]
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """What a ship repeats.
+
+    Attributes
+    ----------
+    loading_place, unloading_place : (float, float)
+        Middles of the areas (lat, lon) [deg].
+    full_kn, empty_kn : float
+        Speeds through water [kn].
+    loading_h, unloading_h : float
+        Time of work [h]; while loading the ship trails to and fro at 1.5 kn.
+    radius_nm : float
+        Of the areas [nm].
+    """
+
+    loading_place: Position
+    unloading_place: Position
+    full_kn: float = 11.0
+    empty_kn: float = 13.0
+    loading_h: float = 1.5
+    unloading_h: float = 1.0
+    radius_nm: float = 0.6
+
+    def __post_init__(self) -> None:
+        check_position(*self.loading_place, "loading place")
+        check_position(*self.unloading_place, "unloading place")
+        apart = float(distance(*self.loading_place, *self.unloading_place)) / 1852.0
+        numbers = (self.full_kn, self.empty_kn, self.loading_h, self.unloading_h, self.radius_nm)
+        if not all(math.isfinite(n) and n > 0.0 for n in numbers) or apart < 3 * self.radius_nm:
+            raise InputError(
+                f"{self} is no cycle.",
+                "All numbers are positive and the places at least three radii apart.",
+                "Correct it.",
+            )
+
+    @property
+    def areas(self) -> dict[str, Any]:
+        """Both areas as GeoJSON."""
+        return {
+            "type": "FeatureCollection",
+            "features": [
+                _circle(self.loading_place, self.radius_nm, "loading"),
+                _circle(self.unloading_place, self.radius_nm, "unloading"),
+            ],
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class SyntheticTrack:
+    """A made track and the truth behind it.
+
+    Attributes
+    ----------
+    frame : DataFrame
+        Columns time, lat, lon, speed_kn, course_deg, draught_m, mmsi, as AIS would tell.
+    truth : DataFrame
+        One row for each activity: kind, start, end.
+    cycle : Cycle
+    current_factor : float
+        By which the ship felt more current than the sea tells.
+    """
+
+    frame: pd.DataFrame
+    truth: pd.DataFrame
+    cycle: Cycle
+    current_factor: float
+
+
+def synthetic_track(
+    cycle: Cycle,
+    *,
+    sea: Sea,
+    start: TimeLike,
+    cycles: int = 10,
+    interval_s: float = 60.0,
+    current_factor: float = 1.0,
+    position_noise_m: float = 5.0,
+    speed_noise: float = 0.0,
+    seed: int = 0,
+) -> SyntheticTrack:
+    """Sail cycles through a sea and write down what AIS would tell.
+
+    Parameters
+    ----------
+    cycle : Cycle
+    sea : Sea
+        Its currents are felt ``current_factor`` times.
+    start : time
+        Beginning of the first loading.
+    cycles : int
+        How often, at least 1; the last ends with the ship back in the loading area.
+    interval_s : float
+        Between messages [s].
+    current_factor : float
+    position_noise_m : float
+        Standard deviation of each coordinate [m].
+    speed_noise : float
+        Standard deviation of the speed through water from trip to trip, as a share of it.
+    seed : int
+
+    Returns
+    -------
+    SyntheticTrack
+
+    Raises
+    ------
+    NoRouteError
+        If the ship cannot get ahead against the current.
+    InputError
+        If a number makes no sense, or the sea does not tell the currents on the way.
+    """
+    noises = (position_noise_m, speed_noise)
+    if cycles < 1 or not interval_s > 0.0 or not all(0.0 <= n < 1e4 for n in noises):
+        raise InputError(
+            f"{cycles} cycles every {interval_s} s with noise {noises} make no track.",
+            "At least one cycle, a positive interval and no negative noise.",
+            "Correct them.",
+        )
+    maker = _Maker(cycle, sea, current_factor, interval_s / _STEPS)
+    random = np.random.default_rng(seed)
+    time = parse_time(start)
+    for _ in range(cycles):
+        time = maker.work(time, cycle.loading_h, cycle.loading_place, "loading", 1.5 * KNOT)
+        time = maker.trip(time, "sailing full", 1.0 + speed_noise * random.normal())
+        time = maker.work(time, cycle.unloading_h, cycle.unloading_place, "unloading", 0.0)
+        time = maker.trip(time, "sailing empty", 1.0 + speed_noise * random.normal())
+    return maker.written(interval_s, position_noise_m, random)
+
+
+class _Maker:
+    """Sails and keeps what was sailed."""
+
+    def __init__(self, cycle: Cycle, sea: Sea, factor: float, step: float) -> None:
+        self.cycle, self.sea, self.factor, self.step = cycle, sea, factor, step
+        self.rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        self.told: list[dict[str, Any]] = []
+
+    def work(self, time: float, hours: float, place: Position, kind: str, speed: float) -> float:
+        """Stay around a place, to and fro at a speed, beginning and ending there."""
+        count = max(2, math.ceil(hours * HOUR / self.step))
+        at = np.arange(count, dtype=np.float64) * self.step
+        reach = 0.5 * self.cycle.radius_nm * 1852.0
+        east = reach * np.sin(speed / reach * at) * np.sin(np.pi * at / at[-1])
+        lat, lon = direct(place[0], place[1], math.radians(90.0), east)
+        self._keep(time + at, lat, lon, kind)
+        return time + count * self.step
+
+    def trip(self, time: float, kind: str, share: float) -> float:
+        """Sail the geodesic between the places in small steps."""
+        full = kind == "sailing full"
+        ends = (self.cycle.loading_place, self.cycle.unloading_place)
+        start, goal = ends if full else ends[::-1]
+        speed = (self.cycle.full_kn if full else self.cycle.empty_kn) * KNOT * share
+        length, course, _ = (float(v) for v in inverse(*start, *goal))
+        way, done, passed = [], 0.0, 0.0
+        while done < length:
+            way.append(done)
+            lat, lon = direct(*start, course, done)
+            done += self.step * self._ahead(time + passed, float(lat), float(lon), goal, speed)
+            passed += self.step
+            if passed > _LONGEST:
+                raise _stuck(start, goal)
+        lat, lon = direct(*start, course, np.array(way))
+        self._keep(time + self.step * np.arange(len(way), dtype=np.float64), lat, lon, kind)
+        return time + passed
+
+    def _ahead(self, time: float, lat: float, lon: float, goal: Position, speed: float) -> float:
+        told = self.sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], time, lat, lon)
+        flow = self.factor * complex(float(told[EASTWARD_CURRENT]), float(told[NORTHWARD_CURRENT]))
+        if not math.isfinite(abs(flow)):
+            raise InputError(
+                f"The sea does not tell the current at {lat:.3f}, {lon:.3f}.",
+                "A made track needs currents on all its way.",
+                "Use another sea, or fill it (Sea.filled).",
+            )
+        course = float(inverse(lat, lon, *goal)[1])
+        turned = flow * complex(math.sin(course), -math.cos(course))  # along, to starboard
+        cross, along = -turned.imag, turned.real
+        if abs(cross) >= speed or math.sqrt(speed**2 - cross**2) + along <= 0.0:
+            raise _stuck((lat, lon), goal)
+        return math.sqrt(speed**2 - cross**2) + along
+
+    def _keep(self, time: FloatArray, lat: FloatArray, lon: FloatArray, kind: str) -> None:
+        self.rows.append((time, lat, lon))
+        end = float(time[-1]) + self.step
+        self.told.append({"kind": kind, "start": float(time[0]), "end": end})
+
+    def written(self, interval: float, noise: float, random: np.random.Generator) -> SyntheticTrack:
+        """Return what was sailed as messages."""
+        import pandas as pd
+
+        time, lat, lon = (np.concatenate(column) for column in zip(*self.rows))
+        full = np.concatenate([np.full(len(r[0]), k % 4) for k, r in enumerate(self.rows)])
+        way, course, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        speed = np.append(way / np.diff(time), 0.0)
+        take = np.arange(0, len(time), _STEPS)
+        shift = noise * random.normal(size=(2, len(take)))
+        seen_lat, seen_lon = direct(
+            lat[take], lon[take], np.arctan2(shift[0], shift[1]), np.hypot(*shift)
+        )
+        frame = pd.DataFrame(
+            {
+                "time": pd.DatetimeIndex(to_datetime64(time[take])).tz_localize("UTC"),
+                "lat": seen_lat.round(6),
+                "lon": seen_lon.round(6),
+                "speed_kn": (speed[take] / KNOT).round(1),
+                "course_deg": np.degrees(np.append(course, 0.0)[take]).round(1),
+                "draught_m": np.where(np.isin(full[take], (1, 2)), 8.0, 5.0),
+                "mmsi": 244000000,
+            }
+        )
+        truth = pd.DataFrame(self.told)
+        return SyntheticTrack(frame, truth, self.cycle, self.factor)
+
+
+def _stuck(start: Position, goal: Position) -> NoRouteError:
+    return NoRouteError(
+        f"The ship does not get from {start[0]:.3f}, {start[1]:.3f} to {goal[0]:.3f}, "
+        f"{goal[1]:.3f} against the current.",
+        "A made track has no waits for the tide.",
+        "Give it more speed or a weaker current.",
+    )
+
+
+def _circle(place: Position, radius_nm: float, activity: str) -> dict[str, Any]:
+    lat, lon = direct(*place, np.radians(np.arange(0.0, 361.0, 10.0)), radius_nm * 1852.0)
+    ring = [[round(float(x), 6), round(float(y), 6)] for x, y in zip(lon, lat)]
+    ring[-1] = ring[0]
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    return {"type": "Feature", "properties": {"activity": activity}, "geometry": geometry}

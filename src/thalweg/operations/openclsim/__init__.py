@@ -1,0 +1,1 @@
+"""Planned voyages as activities of OpenCLSim."""

@@ -1,0 +1,183 @@
+"""OpenCLSim vessels that sail Thalweg's routes (needs ``pip install "thalweg[openclsim]"``).
+
+`SailsFairways` is a mix-in for the classes of OpenCLSim: it takes the place of ``Movable`` among
+the parts of a vessel. When an activity moves the vessel, the leg is planned for the simulation's
+present time and the vessel's present load; its duration, distance, waits, energy and fuel come from
+the plan, and are written to the vessel's log.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from shapely.geometry import Point, shape
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import Position
+from thalweg.operations.dredging.cycles import Leg
+
+try:
+    from openclsim.core import LogState, Movable
+except ImportError as error:
+    raise ImportError(
+        "OpenCLSim is not installed. The plug-in needs it: pip install 'thalweg[openclsim]'."
+    ) from error
+
+if TYPE_CHECKING:
+    from thalweg.operations.openclsim.leg_planner import Fairways
+
+
+class SailsFairways(Movable):
+    """A part of an OpenCLSim vessel: it moves along Thalweg's routes.
+
+    Parameters
+    ----------
+    fairways : Fairways
+        The ship, the sea and the chart. The simulation's clock (``env.now``) is in seconds since
+        1970-01-01T00:00Z, as OpenCLSim writes it to its logs.
+    *args, **kwargs
+        For the other parts: ``env``, ``geometry``, ``capacity`` ...
+
+    Attributes
+    ----------
+    legs : list of Leg
+        Everything sailed so far, in order, as the referee found it.
+
+    Notes
+    -----
+    The load factor is the level of the vessel's container over its capacity; a vessel without a
+    container sails as its ship is loaded. Every move writes ``START`` and ``STOP`` to the log, and
+    ``WAIT_START`` and ``WAIT_STOP`` with the position for each wait on the way; ``STOP`` carries
+    ``distance_m``, ``waiting_s``, ``least_clearance_m``, ``energy_j`` and ``fuel_kg`` (None where
+    unknown) beside the state of the vessel.
+
+    Examples
+    --------
+    A vessel is put together as always in OpenCLSim::
+
+        Vessel = type("Vessel", (Identifiable, SailsFairways, Processor, LoadingFunction,
+                                 UnloadingFunction, HasContainer, HasResource, Log), {})
+    """
+
+    def __init__(self, fairways: Fairways, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.fairways = fairways
+        self.legs: list[Leg] = []
+
+    @property
+    def load_factor(self) -> float:
+        """Level over capacity of the container, or the load of the ship without one."""
+        container = getattr(self, "container", None)
+        if container is None:
+            return self.fairways.ship.loading.load_factor
+        return float(container.get_level() / container.get_capacity())
+
+    @property
+    def v(self) -> float:
+        """Speed through calm, deep water at the present load [m/s]."""
+        return float(self.fairways.ship.with_load_factor(self.load_factor).speeds[-1])
+
+    def plan_leg(self, destination: Any, origin: Any = None) -> Leg:
+        """Return the leg that would be sailed now.
+
+        Parameters
+        ----------
+        destination, origin : geometry or object with one
+            Points (lon, lat); the vessel's own place when no origin is given.
+        """
+        here = _position(self.geometry if origin is None else origin)
+        there = _position(destination)
+        return self.fairways.sail(
+            here, there, depart=float(self.env.now), load_factor=self.load_factor
+        )
+
+    def compute_distance(self, origin: Any, destination: Any) -> float:
+        """Return the length of the route that would be sailed now [m]."""
+        if _together(origin, destination):
+            return 0.0
+        return self.plan_leg(destination, origin).distance
+
+    def compute_duration(self, origin: Any, destination: Any, engine_order: float = 1.0) -> float:
+        """Return how long the route would take now, waits included [s]."""
+        _check_order(engine_order)
+        return (
+            0.0 if _together(origin, destination) else self.plan_leg(destination, origin).duration
+        )
+
+    def move(
+        self, destination: Any = None, duration: float | None = None, engine_order: Any = None
+    ) -> Generator[Any, Any, None]:
+        """Sail to a destination along the route planned now; yields the times it takes.
+
+        A given duration is taken at its word, as OpenCLSim does.
+
+        Raises
+        ------
+        InputError
+            For an engine order other than 1: the ship sails as its model says.
+        NoRouteError, CoverageError
+            If there is no way, or not within the data.
+        """
+        _check_order(1.0 if engine_order is None else engine_order)
+        if destination is None or duration is not None or _together(self, destination):
+            yield from super().move(destination, duration=duration or 0.0)
+            return
+        leg = self.plan_leg(destination)
+        self.log_entry_v1(self.env.now, self.activity_id, LogState.START)
+        for begin, length, place in _waits(leg):
+            yield self.env.timeout(max(0.0, begin - self.env.now), value=self.activity_id)
+            self.geometry = place
+            self.log_entry_v1(self.env.now, self.activity_id, LogState.WAIT_START)
+            yield self.env.timeout(length, value=self.activity_id)
+            self.log_entry_v1(self.env.now, self.activity_id, LogState.WAIT_STOP)
+        yield self.env.timeout(max(0.0, leg.arrive - self.env.now), value=self.activity_id)
+        self.geometry = shape(destination.geometry)
+        self.legs.append(leg)
+        self.log_entry_v1(
+            self.env.now, self.activity_id, LogState.STOP, additional_state=_told(leg)
+        )
+
+
+def _waits(leg: Leg) -> list[tuple[float, float, Point]]:
+    """Return (begin, length, place) of every wait on a leg."""
+    track, arrive = leg.route.track, leg.route.legs["arrive"]
+    return [
+        (
+            leg.depart if k == 0 else float(arrive[k - 1]),
+            float(track.wait[k]),
+            Point(float(track.lon[k]), float(track.lat[k])),
+        )
+        for k in np.flatnonzero(track.wait)
+    ]
+
+
+def _told(leg: Leg) -> dict[str, float | None]:
+    facts = {
+        "distance_m": leg.distance,
+        "waiting_s": leg.waiting,
+        "least_clearance_m": leg.clearance,
+        "energy_j": leg.energy,
+        "fuel_kg": leg.fuel,
+    }
+    return {key: value if np.isfinite(value) else None for key, value in facts.items()}
+
+
+def _position(place: Any) -> Position:
+    """Return (lat, lon) of a point geometry, or of an object that has one."""
+    point = shape(getattr(place, "geometry", place))
+    return float(point.y), float(point.x)
+
+
+def _together(origin: Any, destination: Any) -> bool:
+    return bool(np.allclose(_position(origin), _position(destination), rtol=0.0, atol=1e-9))
+
+
+def _check_order(engine_order: float) -> None:
+    if engine_order != 1.0:
+        raise InputError(
+            f"An engine order of {engine_order!r} is asked of a vessel on Thalweg's routes.",
+            "It sails at the highest setting of its ship.",
+            "Give the ship other speeds (Ship.with_speeds).",
+        )

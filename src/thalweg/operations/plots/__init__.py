@@ -1,0 +1,1 @@
+"""Pictures of dredging projects, track analyses and waiting studies."""

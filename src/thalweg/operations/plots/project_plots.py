@@ -1,0 +1,247 @@
+"""Pictures of a project: production over time, tides and waiting, loads, and the bundle of ways."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.time import format_time
+from thalweg.core.units import DAY, HOUR
+
+if TYPE_CHECKING:
+    from thalweg.operations.dredging.project_result import ProjectResult, Run
+
+_COLOURS = {"optimised": "#0b6e99", "base case": "#b5651d"}
+_ACTIVITIES = {
+    "loading": "#7a9e3f",
+    "sailing full": "#0b6e99",
+    "waiting": "#d1495b",
+    "unloading": "#c9a227",
+    "sailing empty": "#8fc1d4",
+}
+_UNKNOWN = "#d9d4c8"  # land, and where no depth is known
+_FIRST_DAYS = 4.0  # shown hour by hour
+_MOST_LINES = 600  # ways drawn of each run
+
+
+def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
+    """Draw volume over time, the first days with the tide, the loads and the shares of time.
+
+    Parameters
+    ----------
+    result : ProjectResult
+    path : path, optional
+        Where to save the picture (PNG).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11, 8.5), dpi=120, layout="constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.add_gridspec(3, 2, height_ratios=(1.1, 1.0, 0.9))
+    _volume(result, figure.add_subplot(grid[0, :]))
+    _first_days(result, figure.add_subplot(grid[1, :]))
+    _loads(result, figure.add_subplot(grid[2, 0]))
+    _shares(result, figure.add_subplot(grid[2, 1]))
+    figure.suptitle(result.project.name, fontsize=11, parse_math=False)
+    if path is not None:
+        figure.savefig(path)
+    return figure
+
+
+def _volume(result: ProjectResult, axes: Any) -> None:
+    start = result.project.start
+    for run in result.runs:
+        moment = [0.0] + [(c.out.arrive + c.unloading - start) / DAY for c in run.cycles]
+        moved = np.cumsum([0.0] + [c.volume for c in run.cycles]) / 1000.0
+        days = run.totals["duration_days"]
+        axes.step(
+            moment, moved, where="post", color=_COLOURS.get(run.name), lw=1.5,
+            label=f"{run.name}: {days:.1f} days",
+        )  # fmt: skip
+    axes.axhline(result.project.work.volume / 1000.0, color="0.6", lw=0.7, ls=":")
+    axes.set(xlabel="days since the start", ylabel="volume moved [1000 m3]", xlim=(0, None))
+    axes.legend(fontsize=8, frameon=False, loc="upper left")
+    axes.grid(alpha=0.3, lw=0.4)
+
+
+def _first_days(result: ProjectResult, axes: Any) -> None:
+    """Draw what is done in the first days, under the water level."""
+    start = result.project.start
+    end = min(start + _FIRST_DAYS * DAY, max(run.cycles[-1].end for run in result.runs))
+    for row, run in enumerate(result.runs):
+        for activity, spans in _spans(run).items():
+            bars = [((a - start) / HOUR, (b - a) / HOUR) for a, b in spans if a < end]
+            axes.broken_barh(bars, (row - 0.35, 0.7), color=_ACTIVITIES[activity], lw=0)
+    hours = np.arange(0.0, (end - start) / HOUR, 1.0 / 6.0)
+    level = _level(result, start + hours * HOUR)
+    axes.set_yticks(range(len(result.runs)), [run.name for run in result.runs])
+    axes.set(xlim=(0.0, (end - start) / HOUR), ylim=(-0.6, len(result.runs) - 0.4))
+    axes.set_xlabel(f"hours since {format_time(start)}")
+    if np.isfinite(level).any():
+        above = axes.twinx()
+        above.plot(hours, level, color="#22303c", lw=1.0, alpha=0.8)
+        above.set_ylabel("level at the unloading site [m]", fontsize=8)
+    handles = [_patch(colour, name) for name, colour in _ACTIVITIES.items()]
+    axes.legend(handles=handles, fontsize=7, ncols=5, frameon=False, loc="lower left",
+                bbox_to_anchor=(0.0, 1.0))  # fmt: skip
+
+
+def _spans(run: Run) -> dict[str, list[tuple[float, float]]]:
+    """Return when each activity begins and ends; waits along a way are put where they happen."""
+    spans: dict[str, list[tuple[float, float]]] = {name: [] for name in _ACTIVITIES}
+    for cycle in run.cycles:
+        spans["loading"].append((cycle.start, cycle.start + cycle.loading))
+        spans["unloading"].append((cycle.out.arrive, cycle.out.arrive + cycle.unloading))
+        for name, leg in (("sailing full", cycle.out), ("sailing empty", cycle.back)):
+            spans[name].append((leg.depart, leg.arrive))
+            track, arrive = leg.route.track, leg.route.legs["arrive"]
+            for k in np.flatnonzero(track.wait):
+                begin = leg.depart if k == 0 else float(arrive[k - 1])
+                spans["waiting"].append((begin, begin + float(track.wait[k])))
+    order = ("loading", "sailing full", "unloading", "sailing empty", "waiting")
+    return {name: spans[name] for name in order}
+
+
+def _level(result: ProjectResult, times: np.ndarray) -> np.ndarray:
+    from thalweg.sea import standard_names as nm
+
+    sea, (lat, lon) = result.world.sea, result.project.sites.unload
+    if nm.WATER_LEVEL not in sea.variables:
+        return np.full(times.shape, np.nan)
+    where = np.full(times.shape, lat), np.full(times.shape, lon)
+    return np.asarray(sea.sample([nm.WATER_LEVEL], times, *where)[nm.WATER_LEVEL])
+
+
+def _patch(colour: str, label: str) -> Any:
+    from matplotlib.patches import Patch
+
+    return Patch(color=colour, label=label)
+
+
+def _loads(result: ProjectResult, axes: Any) -> None:
+    from thalweg.operations.dredging.project_result import load_factor_counts
+
+    factors = np.array(result.project.work.load_factors)
+    width = min(0.08, 0.4 * float(np.diff(factors).min())) if len(factors) > 1 else 0.04
+    shift = -0.5 * width * (len(result.runs) - 1)
+    for number, run in enumerate(result.runs):
+        values, counts = load_factor_counts(run)
+        at = np.array(values) + shift + number * width
+        axes.bar(at, counts, width=width, color=_COLOURS.get(run.name), label=run.name)
+    axes.set(xlabel="load factor", ylabel="cycles", xlim=(-0.1, 1.1))
+    axes.legend(fontsize=8, frameon=False)
+
+
+def _shares(result: ProjectResult, axes: Any) -> None:
+    keys = ("loading_share", "sailing_full_share", "unloading_share", "sailing_empty_share")
+    names = ("loading", "sailing full", "unloading", "sailing empty")
+    left = np.zeros(len(result.runs))
+    rows = np.arange(len(result.runs))
+    for key, name in zip(keys, names):
+        share = np.array([100.0 * float(run.totals[key] or 0.0) for run in result.runs])
+        axes.barh(rows, share, left=left, color=_ACTIVITIES[name], label=name)
+        for row, (a, b) in enumerate(zip(left, share)):
+            axes.text(a + 0.5 * b, row, f"{b:.0f}", ha="center", va="center", fontsize=8)
+        left = left + share
+    axes.set_yticks(rows, [run.name for run in result.runs])
+    axes.set(xlabel="share of the time [%]", xlim=(0, 100))
+
+
+def draw_routes(
+    result: ProjectResult, path: str | Path | None = None, *, colour: str = "time"
+) -> Any:
+    """Draw every way sailed over the depth of the water, coloured by time or by load.
+
+    Parameters
+    ----------
+    result : ProjectResult
+    path : path, optional
+        Where to save the picture (PNG).
+    colour : {"time", "load"}
+        Days since the start, or the load factor.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    count = len(result.runs)
+    figure = Figure(figsize=(1.0 + 6.5 * count, 6.0), dpi=120, layout="constrained")
+    FigureCanvasAgg(figure)
+    frames = np.atleast_1d(figure.subplots(1, count, sharex=True, sharey=True))
+    last = max(run.totals["duration_days"] or 0.0 for run in result.runs)
+    bundle = None
+    for axes, run in zip(frames, result.runs):
+        bundle = _bundle(run, axes, colour, float(last))
+        axes.set_title(run.name, fontsize=10)
+        axes.set_aspect(1.0 / np.cos(np.radians(result.project.sites.load[0])))
+    for axes in frames:
+        depth = _depth(result, axes)
+        for what, place in (("load", result.project.sites.load),
+                            ("unload", result.project.sites.unload)):  # fmt: skip
+            axes.plot(place[1], place[0], "o", ms=6, mfc="w", mec="k", zorder=5)
+            axes.annotate(what, (place[1], place[0]), xytext=(5, 5), textcoords="offset points",
+                          fontsize=8, zorder=5)  # fmt: skip
+        axes.set(xlabel="longitude [deg]", ylabel="latitude [deg]")
+    if depth is not None:
+        figure.colorbar(depth, ax=list(frames), label="depth below datum [m]", shrink=0.7, pad=0.01)
+    if bundle is not None:
+        label = "days since the start" if colour == "time" else "load factor"
+        figure.colorbar(bundle, ax=list(frames), label=label, shrink=0.7)
+    if path is not None:
+        figure.savefig(path)
+    return figure
+
+
+def _bundle(run: Run, axes: Any, colour: str, last: float) -> Any:
+    from matplotlib.collections import LineCollection
+
+    lines, values = [], []
+    start = run.cycles[0].start
+    for cycle in run.cycles[:_MOST_LINES]:
+        for leg, load in ((cycle.out, cycle.load_factor), (cycle.back, 0.0)):
+            track = leg.route.track
+            lines.append(np.column_stack([track.lon, track.lat]))
+            values.append((leg.depart - start) / DAY if colour == "time" else load)
+    limit = last if colour == "time" else 1.0
+    bundle = LineCollection(lines, array=np.array(values), cmap="rainbow", lw=0.9, alpha=0.75)
+    bundle.set_clim(0.0, limit)
+    axes.add_collection(bundle)
+    axes.autoscale_view()
+    axes.margins(0.12)
+    return bundle
+
+
+def _depth(result: ProjectResult, axes: Any) -> Any:
+    """Draw the depth of chart or sea behind the ways; nothing where the chart lets no ship."""
+    from thalweg.sea import standard_names as nm
+
+    (west, east), (south, north) = axes.get_xlim(), axes.get_ylim()
+    lon, lat = np.meshgrid(np.linspace(west, east, 160), np.linspace(south, north, 160))
+    chart, sea = result.world.chart, result.world.sea
+    depth = np.full(lat.shape, np.nan)
+    if chart.has_depth:
+        depth = np.asarray(chart.depth_at(lat, lon), float)
+    if nm.BED_DEPTH in sea.variables:
+        time = np.full(lat.shape, result.project.start)
+        depth = np.fmin(depth, sea.sample([nm.BED_DEPTH], time, lat, lon)[nm.BED_DEPTH])
+    depth = np.where(chart.is_navigable(lat, lon), depth, np.nan)
+    if not np.isfinite(depth).any():
+        return None
+    axes.set_facecolor(_UNKNOWN)
+    shown = np.where(np.isfinite(depth), np.clip(depth, -2.0, 20.0), np.nan)
+    filled = axes.contourf(lon, lat, shown, levels=np.arange(-2.0, 20.5, 1.0), cmap="Blues",
+                           alpha=0.75, zorder=0)  # fmt: skip
+    axes.contour(lon, lat, shown, levels=[0.0], colors="#8f8672", linewidths=0.8, zorder=1)
+    axes.set_xlim(west, east)
+    axes.set_ylim(south, north)
+    return filled

@@ -1,0 +1,228 @@
+"""Cutting a track into activities: loading, sailing full, unloading, sailing empty, waiting.
+
+As van Halem (2019, section 4.1.2) did for 184 cycles: inside an area a ship does what the area is
+for; between areas it sails full if it loaded last and empty if it unloaded last. Besides there are
+waits on the way, trips that come back to where they began, and gaps.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.units import KNOT
+from thalweg.operations.tracks.track_cleaning import TrackLog
+from thalweg.operations.tracks.work_areas import KINDS, LOADING, UNLOADING, WAITING, Areas
+
+SAILING_FULL, SAILING_EMPTY = "sailing full", "sailing empty"
+AWAY, UNSEEN = "away", "not seen"
+ACTIVITIES: Final = (LOADING, SAILING_FULL, UNLOADING, SAILING_EMPTY, WAITING, AWAY, UNSEEN)
+_SAILING: Final = {(LOADING, UNLOADING): SAILING_FULL, (UNLOADING, LOADING): SAILING_EMPTY}
+
+
+@dataclass(frozen=True)
+class CuttingRules:
+    """How a track is cut.
+
+    Attributes
+    ----------
+    slow : float
+        Outside the areas, slower than this [m/s] is waiting or manoeuvring ...
+    least_wait : float
+        ... if it lasts this long [s].
+    short_trip : float
+        A ship that leaves an area and comes back to one of the same kind within this time [s] is
+        taken never to have left.
+    """
+
+    slow: float = 2.0 * KNOT
+    least_wait: float = 600.0
+    short_trip: float = 1800.0
+
+    def __post_init__(self) -> None:
+        values = (self.slow, self.least_wait, self.short_trip)
+        if not all(np.isfinite(v) and v >= 0.0 for v in values):
+            raise InputError(
+                f"A track cannot be cut by {self}.", "The numbers are not negative.", "Correct it."
+            )
+
+
+@dataclass(frozen=True)
+class Activity:
+    """A stretch of a track in which a ship does one thing.
+
+    Attributes
+    ----------
+    kind : str
+        One of ``ACTIVITIES``.
+    start, end : float
+        [s since 1970-01-01T00:00Z]; half-way between the positions on either side.
+    first, last : int
+        Its first and last position in the track.
+    trip : int
+        Number of the trip between areas it belongs to (its sailing and its waits); -1 for none.
+    whole : bool
+        Whether the track tells all of it: it is not cut off by the ends of the track or by a gap,
+        and there is no gap in it in which the ship may have left and come back.
+    """
+
+    kind: str
+    start: float
+    end: float
+    first: int
+    last: int
+    trip: int
+    whole: bool
+
+    @property
+    def duration(self) -> float:
+        """Its length [s]."""
+        return self.end - self.start
+
+
+def find_activities(
+    log: TrackLog, areas: Areas, *, rules: CuttingRules | None = None
+) -> tuple[Activity, ...]:
+    """Cut a track into activities.
+
+    Parameters
+    ----------
+    log : TrackLog
+    areas : Areas
+    rules : CuttingRules, optional
+
+    Returns
+    -------
+    tuple of Activity
+        In order of time, without holes between them.
+
+    Raises
+    ------
+    InputError
+        If the ship never comes into an area for loading or unloading.
+    """
+    rules = rules or CuttingRules()
+    where = areas.at(log.lat, log.lon)
+    if not (where == KINDS.index(LOADING)).any() and not (where == KINDS.index(UNLOADING)).any():
+        raise InputError(
+            "The ship is never in an area for loading or unloading.",
+            f"The track runs from {log.lat.min():.3f} to {log.lat.max():.3f} N and from "
+            f"{log.lon.min():.3f} to {log.lon.max():.3f} E.",
+            "Check the areas (longitude first in GeoJSON) and the ship.",
+        )
+    kinds, trips, whole = _kinds(log, where, rules)
+    away = log.broken & (np.diff(log.time) > rules.short_trip)
+    return tuple(_activities(log, kinds, trips, whole, away))
+
+
+def _runs(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]:
+    """Return (first, last) of stretches of equal keys."""
+    found, at = [], 0
+    for _, group in itertools.groupby(keys):
+        count = len(list(group))
+        found.append((at, at + count - 1))
+        at += count
+    return found
+
+
+def _kinds(
+    log: TrackLog, where: NDArray[np.int8], rules: CuttingRules
+) -> tuple[list[str], list[int], list[bool]]:
+    """Return the activity, trip and wholeness of every position."""
+    count = len(log)
+    kinds = [KINDS[w] if w in (0, 1) else "" for w in where.tolist()]
+    trips, whole = [-1] * count, [True] * count
+    slow = _slow(log, where, rules)
+    number = 0
+    for first, last in _runs([(k,) for k in kinds]):
+        if kinds[first]:
+            continue
+        before = kinds[first - 1] if first > 0 else ""
+        after = kinds[last + 1] if last + 1 < count else ""
+        span = float(log.time[min(last + 1, count - 1)] - log.time[max(first - 1, 0)])
+        cut_off = bool(log.broken[max(first - 1, 0) : last + 1].any())
+        if before and before == after and span <= rules.short_trip and not cut_off:
+            kinds[first : last + 1] = [before] * (last + 1 - first)
+            continue
+        kind = _between(before, after)
+        ends = not before or not after
+        for i in range(first, last + 1):
+            waits = slow[i] and kind != AWAY
+            kinds[i], trips[i] = (WAITING if waits else kind), number
+            whole[i] = not (cut_off or ends)
+        number += 1
+    return kinds, trips, whole
+
+
+def _between(before: str, after: str) -> str:
+    """Return what a ship does between areas of two kinds; at the ends of a track one is unknown."""
+    if before and after:
+        return _SAILING.get((before, after), AWAY)
+    if before or after:
+        loaded = before == LOADING or after == UNLOADING
+        return SAILING_FULL if loaded else SAILING_EMPTY
+    return AWAY
+
+
+def _slow(log: TrackLog, where: NDArray[np.int8], rules: CuttingRules) -> NDArray[np.bool_]:
+    """Return where the ship waits outside the areas of work."""
+    waiting = where == KINDS.index(WAITING)
+    slow = (log.speeds() < rules.slow) & (where < 0)
+    edges = _edges(log)
+    for first, last in _runs([(bool(s),) for s in slow]):
+        if slow[first] and edges[last + 1] - edges[first] < rules.least_wait:
+            slow[first : last + 1] = False
+    return np.asarray(slow | waiting)
+
+
+def _edges(log: TrackLog) -> FloatArray:
+    """Return the times half-way between positions, with both ends."""
+    middles = 0.5 * (log.time[1:] + log.time[:-1])
+    return np.concatenate([log.time[:1], middles, log.time[-1:]])
+
+
+def _activities(
+    log: TrackLog,
+    kinds: list[str],
+    trips: list[int],
+    whole: list[bool],
+    away: NDArray[np.bool_],
+) -> list[Activity]:
+    """Return stretches of one activity; intervals in which the ship was not seen apart.
+
+    What holds an interval of ``away``, a gap long enough for a trip, is not whole.
+    """
+    segment = np.concatenate([[0], np.cumsum(_unseen(log, kinds))]).tolist()
+    edges = _edges(log)
+    found: list[Activity] = []
+    for first, last in _runs(list(zip(kinds, trips, segment))):
+        start, end = float(edges[first]), float(edges[last + 1])
+        if first > 0 and segment[first] != segment[first - 1]:
+            start = float(log.time[first])
+            ended = found[-1].end
+            found.append(Activity(UNSEEN, ended, start, first - 1, first, -1, False))
+        if last + 1 < len(kinds) and segment[last + 1] != segment[last]:
+            end = float(log.time[last])
+        inside = first > 0 and last + 1 < len(kinds)
+        told = (
+            inside and segment[first] == segment[first - 1] and segment[last] == segment[last + 1]
+        )
+        complete = told and all(whole[first : last + 1]) and not away[first:last].any()
+        found.append(Activity(kinds[first], start, end, first, last, trips[first], complete))
+    return found
+
+
+def _unseen(log: TrackLog, kinds: list[str]) -> NDArray[np.bool_]:
+    """Return the intervals in which a broken track does not tell what the ship did.
+
+    A gap with the same area of work at both ends belongs to that work.
+    """
+    work = np.array([k in (LOADING, UNLOADING) for k in kinds])
+    same = np.array([a == b for a, b in itertools.pairwise(kinds)], dtype=bool)
+    return np.asarray(log.broken & ~(same & work[:-1]))

@@ -1,0 +1,163 @@
+"""What a ship model says of a measured track: its speed at ordered settings or measured powers."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.units import KNOT
+from thalweg.operations.tracks.track_calibration import mean_speeds
+from thalweg.operations.tracks.track_cleaning import TrackLog
+from thalweg.operations.tracks.track_segments import KINDS, Pieces
+from thalweg.operations.waiting.trip_durations import check_depth_is_told
+from thalweg.route.referee.leg_segments import Points
+from thalweg.route.referee.sailing_physics import World, conditions_at, look, move, open_world
+from thalweg.route.referee.wind_speed_only import with_wind_speed
+from thalweg.ship.conditions import Conditions
+
+if TYPE_CHECKING:
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+_HALVINGS = 40
+_FASTEST = 25.0  #: a speed through water that is looked for at a power [m/s]
+
+
+def ship_speeds(
+    pieces: Pieces, ship: Ship, sea: Sea, *, speed_kn: float | None = None
+) -> FloatArray:
+    """Return the speed through water [m/s] that a ship model gives on every piece.
+
+    Parameters
+    ----------
+    pieces : Pieces
+    ship : Ship
+        Full while sailing full (load factor 1), empty while sailing empty (0).
+    sea : Sea
+    speed_kn : float, optional
+        Ordered speed; by default, for each activity, the setting of the ship whose calm-water speed
+        is nearest to the measured speed through water.
+
+    Returns
+    -------
+    ndarray
+        NaN where the sea does not tell what the model needs.
+    """
+    found = np.full(len(pieces), np.nan)
+    for kind, (loaded, setting) in ordered(pieces, ship, speed_kn=speed_kn).items():
+        mine = pieces.kind == KINDS.index(kind)
+        world = open_world(loaded, with_wind_speed(loaded, sea), None)
+        check_depth_is_told(world)
+        here = pieces.part(mine)
+        found[mine] = move(world, _points(here, setting), here.time).through_water
+    return found
+
+
+def ordered(
+    pieces: Pieces, ship: Ship, *, speed_kn: float | None = None
+) -> dict[str, tuple[Ship, int]]:
+    """Return the loaded ship and its setting for each activity there is; as in `ship_speeds`."""
+    found = {}
+    wanted = mean_speeds(pieces, 1.0)
+    wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(pieces, 0.0))
+    for index, load_factor in ((0, 1.0), (1, 0.0)):
+        mine = pieces.kind == index
+        if not mine.any():
+            continue
+        loaded = ship.with_load_factor(load_factor)
+        if speed_kn is not None:
+            loaded = loaded.with_speeds([speed_kn * KNOT])
+        setting = int(np.argmin(np.abs(loaded.speeds - wanted[mine][0])))
+        found[KINDS[index]] = (loaded, setting)
+    return found
+
+
+def speeds_at_measured_power(
+    log: TrackLog, pieces: Pieces, ship: Ship, sea: Sea
+) -> FloatArray | None:
+    """Return the speed through water [m/s] at the measured power, as Schless (2023) validated.
+
+    Parameters
+    ----------
+    log : TrackLog
+        With ``power``, the brake power [W]; its ``draught``, where known, sets the load factor.
+    pieces : Pieces
+    ship : Ship
+        Made from its resistance.
+    sea : Sea
+        With what the resistance needs (wind, waves, depth).
+
+    Returns
+    -------
+    ndarray or None
+        NaN where the power or the sea is unknown or no speed up to 25 m/s takes that power; None if
+        the log tells no power or the ship does not know its resistance.
+
+    Notes
+    -----
+    The ship is taken to head along its course over ground. By bisection, as the power of a ship in
+    shallow water may jump.
+    """
+    if "power" not in log.values or not hasattr(ship.model, "power_at_speed"):
+        return None
+    power = piece_means(log, pieces, "power")
+    world = open_world(ship, with_wind_speed(ship, sea), None)
+    check_depth_is_told(world)
+    points = _points(pieces, 0)
+    met = _conditions(world, points, pieces.time)
+    met = met.with_values(load_factor=_load_factors(log, pieces, ship))
+    low, high = np.zeros(len(pieces)), np.full(len(pieces), _FASTEST)
+    with np.errstate(invalid="ignore"):
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            needed = ship.power_at_speed(met, middle)
+            enough = ~(needed > power)  # beyond the range of a method: look lower
+            low = np.where(enough & np.isfinite(needed), middle, low)
+            high = np.where(enough & np.isfinite(needed), high, middle)
+        at_last = ship.power_at_speed(met, np.maximum(low, 1e-3))
+        close = (np.abs(at_last - power) < 0.02 * power) & (low > 0.0)
+    return np.where(close, low, np.nan)
+
+
+def piece_means(log: TrackLog, pieces: Pieces, name: str) -> FloatArray:
+    """Return the mean over each piece of a measured value; NaN where it is not known at all."""
+    values = log.values[name]
+    known = np.isfinite(values)
+    sums = np.append(0.0, np.cumsum(np.where(known, values, 0.0)))
+    counts = np.append(0, np.cumsum(known))
+    first = np.searchsorted(log.time, pieces.time - 0.5 * pieces.took - 1e-6)
+    last = np.searchsorted(log.time, pieces.time + 0.5 * pieces.took + 1e-6)
+    count = counts[last] - counts[first]
+    return np.where(count > 0, (sums[last] - sums[first]) / np.maximum(count, 1), np.nan)
+
+
+def _points(pieces: Pieces, setting: int) -> Points:
+    zero = np.zeros(len(pieces), dtype=np.int64)
+    return Points(
+        lat=pieces.lat,
+        lon=pieces.lon,
+        course=pieces.course,
+        setting=zero + setting,
+        leg=zero,
+        along=np.zeros(len(pieces)),
+        charted=np.full(len(pieces), math.inf),
+    )
+
+
+def _conditions(world: World, points: Points, time: FloatArray) -> Conditions:
+    sampled, depth = look(world, points, time)
+    return conditions_at(world, points, time, sampled=sampled, depth=depth, heading=points.course)
+
+
+def _load_factors(log: TrackLog, pieces: Pieces, ship: Ship) -> FloatArray:
+    """Return load factors: from the measured draught, else 1 while full and 0 while empty."""
+    assumed = np.where(pieces.kind == 0, 1.0, 0.0)
+    deep, light = (ship.with_load_factor(f).draught for f in (1.0, 0.0))
+    if "draught" not in log.values or deep <= light:
+        return assumed
+    measured = (piece_means(log, pieces, "draught") - light) / (deep - light)
+    rounded = np.round(np.clip(measured, 0.0, 1.0), 2)  # a ship is floated anew for each
+    return np.where(np.isfinite(measured), rounded, assumed)

@@ -1,0 +1,336 @@
+"""Analysis of measured tracks: activities, cycles, and a model held against what was sailed."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.time import format_time, to_datetime64
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
+from thalweg.operations.tracks.activities import (
+    ACTIVITIES,
+    SAILING_EMPTY,
+    SAILING_FULL,
+    UNSEEN,
+    Activity,
+    CuttingRules,
+    find_activities,
+)
+from thalweg.operations.tracks.predicted_speeds import (
+    ordered,
+    ship_speeds,
+    speeds_at_measured_power,
+)
+from thalweg.operations.tracks.track_calibration import (
+    Calibration,
+    Spread,
+    calibrate,
+    leg_speeds,
+    mean_speeds,
+    over_ground,
+    spread,
+)
+from thalweg.operations.tracks.track_cleaning import Cleaning, TrackLog
+from thalweg.operations.tracks.track_readers import TrackSource, read_tracks
+from thalweg.operations.tracks.track_segments import KINDS, PIECE, Pieces, cut_pieces
+from thalweg.operations.tracks.work_areas import LOADING, UNLOADING, WAITING, Areas
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+WEEK = 168.0 * HOUR
+
+
+@dataclass(frozen=True, eq=False)
+class TrackAnalysis:
+    """What a track tells.
+
+    Attributes
+    ----------
+    log : TrackLog
+    areas : Areas
+    activities : tuple of Activity
+    pieces : Pieces
+        Of all sailing, without the ends of the legs.
+    models : dict of str to float64 array (p,)
+        Speed over ground of each model on every piece [m/s]; NaN where it cannot tell.
+    calibration : Calibration or None
+        None without currents, or if they cannot tell a factor.
+    notes : tuple of str
+        Everything that was assumed, dropped or could not be done.
+    """
+
+    log: TrackLog
+    areas: Areas
+    activities: tuple[Activity, ...]
+    pieces: Pieces
+    models: dict[str, FloatArray]
+    calibration: Calibration | None
+    notes: tuple[str, ...]
+
+    def spreads(self) -> dict[str, Spread]:
+        """Return how the mean speeds of the legs, modelled, lie against those measured."""
+        measured = leg_speeds(self.pieces, self.pieces.speed)
+        return {
+            name: spread(measured, leg_speeds(self.pieces, model))
+            for name, model in self.models.items()
+        }
+
+    def activity_frame(self) -> pd.DataFrame:
+        """Return one row for each activity: times, hours, trip, and whether it is whole."""
+        import pandas as pd
+
+        rows = [
+            {
+                "activity": a.kind,
+                "start": to_datetime64(a.start),
+                "end": to_datetime64(a.end),
+                "hours": a.duration / HOUR,
+                "trip": a.trip,
+                "whole": a.whole,
+            }
+            for a in self.activities
+        ]
+        return pd.DataFrame(rows)
+
+    def leg_frame(self) -> pd.DataFrame:
+        """Return one row for each sailed leg: measured and modelled speeds, distance, errors.
+
+        ``rmse_rel`` of each model is taken over the pieces of the leg (Schless 2023, Table 4.8).
+        """
+        import pandas as pd
+
+        pieces, rows = self.pieces, []
+        for trip in np.unique(pieces.leg).tolist():
+            here = pieces.leg == trip
+            part = pieces.part(here)
+            row = {
+                "trip": trip,
+                "activity": KINDS[int(part.kind[0])],
+                "start": to_datetime64(part.time[0] - 0.5 * part.took[0]),
+                "hours": part.took.sum() / HOUR,
+                "distance_nm": float(part.speed @ part.took) / NAUTICAL_MILE,
+                "speed_kn": float(leg_speeds(part, part.speed)[0]) / KNOT,
+            }
+            for name, model in self.models.items():
+                row[f"{name} [kn]"] = float(leg_speeds(part, model[here])[0]) / KNOT
+                row[f"{name} rmse_rel [%]"] = spread(part.speed, model[here]).rmse_rel
+            rows.append(row)
+        return pd.DataFrame(rows)
+
+    def cycle_frame(self) -> pd.DataFrame:
+        """Return one row for each whole cycle: hours of each activity, from loading to loading."""
+        import pandas as pd
+
+        rows = []
+        for first, last in _cycles(self.activities):
+            part = self.activities[first:last]
+            row: dict[str, Any] = {"start": to_datetime64(part[0].start)}
+            for kind in (LOADING, SAILING_FULL, UNLOADING, SAILING_EMPTY, WAITING):
+                row[f"{kind} [h]"] = sum(a.duration for a in part if a.kind == kind) / HOUR
+            row["cycle [h]"] = (part[-1].end - part[0].start) / HOUR
+            rows.append(row)
+        return pd.DataFrame(rows)
+
+    def statistics(self) -> pd.DataFrame:
+        """Return for each activity: count, hours (mean, median, deviation, sum), share of time.
+
+        Mean, median and deviation are of whole stretches only; sum and share of all.
+        """
+        import pandas as pd
+
+        total = sum(a.duration for a in self.activities)
+        rows = []
+        for kind in ACTIVITIES:
+            every = np.array([a.duration for a in self.activities if a.kind == kind])
+            whole = np.array([a.duration for a in self.activities if a.kind == kind and a.whole])
+            if not every.size:
+                continue
+            rows.append(
+                {
+                    "activity": kind,
+                    "count": every.size,
+                    "mean_h": whole.mean() / HOUR if whole.size else math.nan,
+                    "median_h": float(np.median(whole)) / HOUR if whole.size else math.nan,
+                    "std_h": whole.std(ddof=1) / HOUR if whole.size > 1 else math.nan,
+                    "sum_h": every.sum() / HOUR,
+                    "share": every.sum() / total,
+                }
+            )
+        return pd.DataFrame(rows)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the analysis as plain data for JSON."""
+        cycles, legs = self.cycle_frame(), self.leg_frame()
+        span = self.log.time[-1] - self.log.time[0]
+        speeds = {
+            kind: {"legs": len(part), "mean_kn": part.mean(), "std_kn": part.std()}
+            for kind, part in (legs.groupby("activity").speed_kn if len(legs) else ())
+        }
+        found = {
+            "vessel": self.log.vessel,
+            "start": format_time(float(self.log.time[0])),
+            "end": format_time(float(self.log.time[-1])),
+            "positions": len(self.log),
+            "notes": list(self.notes),
+            "activities": self.statistics().to_dict("records"),
+            "cycles": {
+                "count": len(cycles),
+                "per_week": len(cycles) * WEEK / span,
+                "mean_h": cycles["cycle [h]"].mean() if len(cycles) else None,
+            },
+            "speeds": speeds,
+            "calibration": None if self.calibration is None else asdict(self.calibration),
+            "models": {name: asdict(s) for name, s in self.spreads().items()},
+        }
+        return dict(_plain(found))
+
+
+def analyse_tracks(
+    source: TrackSource | TrackLog,
+    areas: Areas | str | PathLike[str] | Mapping[str, Any],
+    *,
+    sea: Sea | None = None,
+    ship: Ship | None = None,
+    speed_kn: float | None = None,
+    cutting: CuttingRules | None = None,
+    cleaning: Cleaning | None = None,
+    piece_s: float = PIECE,
+    **reading: Any,
+) -> TrackAnalysis:
+    """Cut a track into activities and hold models of its speed against what was measured.
+
+    Parameters
+    ----------
+    source : path, DataFrame or TrackLog
+        The track; see `thalweg.operations.tracks.track_readers.read_tracks`, whose ``columns``,
+        ``vessel`` and ``time_format`` may be given too.
+    areas : Areas, path or GeoJSON mapping
+        See `thalweg.operations.tracks.work_areas.Areas.read`.
+    sea : Sea, optional
+        With currents: the models "currents" (as the sea tells them) and "calibrated" (times the
+        factor that fits best), both with the mean speed through water that belongs to them, beside
+        "still water".
+    ship : Ship, optional
+        With a sea: the model "ship", the ship's own speed in the conditions met, and "ship,
+        calibrated"; with measured powers and a ship made from its resistance "ship, measured
+        power".
+    speed_kn : float, optional
+        Ordered speed of the ship; by default that of its settings which lies nearest.
+    cutting : CuttingRules, optional
+    cleaning : Cleaning, optional
+    piece_s : float
+        Length of the pieces in which speeds are compared [s].
+
+    Returns
+    -------
+    TrackAnalysis
+
+    Raises
+    ------
+    InputError
+        If the track or the areas cannot be used.
+    MissingVariableError
+        If the sea tells no currents, or not what the ship needs.
+    """
+    log = (
+        source
+        if isinstance(source, TrackLog)
+        else read_tracks(source, cleaning=cleaning, **reading)
+    )
+    places = areas if isinstance(areas, Areas) else Areas.read(areas)
+    activities = find_activities(log, places, rules=cutting)
+    pieces = cut_pieces(log, activities, sea=sea, length=piece_s)
+    notes = [*log.notes, *_about(activities)]
+    calibration = None
+    models = {"still water": over_ground(_still(pieces), mean_speeds(_still(pieces), 0.0), 0.0)}
+    if sea is not None:
+        models["currents"] = over_ground(pieces, mean_speeds(pieces, 1.0), 1.0)
+        calibration = calibrate(pieces)
+        notes += _about_currents(pieces, calibration)
+    if calibration is not None:
+        factor = calibration.factor
+        models["calibrated"] = over_ground(pieces, mean_speeds(pieces, factor), factor)
+    if sea is not None and ship is not None:
+        water = ship_speeds(pieces, ship, sea, speed_kn=speed_kn)
+        models["ship"] = over_ground(pieces, water, 1.0)
+        notes += [
+            f"The ship sails at its setting of {loaded.speeds[setting] / KNOT:.2f} kn while {kind}."
+            for kind, (loaded, setting) in ordered(pieces, ship, speed_kn=speed_kn).items()
+        ]
+        if calibration is not None:
+            models["ship, calibrated"] = over_ground(pieces, water, calibration.factor)
+        powered = speeds_at_measured_power(log, pieces, ship, sea)
+        if powered is not None:
+            models["ship, measured power"] = over_ground(pieces, powered, 1.0)
+    return TrackAnalysis(log, places, activities, pieces, models, calibration, tuple(notes))
+
+
+def _still(pieces: Pieces) -> Pieces:
+    return replace(pieces, current=np.zeros(len(pieces), dtype=np.complex128))
+
+
+def _about(activities: tuple[Activity, ...]) -> list[str]:
+    """Say what of the track cannot be counted."""
+    cut = sum(1 for a in activities if not a.whole and a.kind != UNSEEN)
+    unseen = [a.duration for a in activities if a.kind == UNSEEN]
+    notes = []
+    if unseen:
+        notes.append(f"For {sum(unseen) / HOUR:.1f} h in {len(unseen)} gaps the ship was not seen.")
+    if cut:
+        notes.append(
+            f"{cut} activities are cut off by gaps or the ends of the track; they count in sums, "
+            "not in means."
+        )
+    return notes
+
+
+def _about_currents(pieces: Pieces, calibration: Calibration | None) -> list[str]:
+    notes = []
+    missing = int((~np.isfinite(pieces.current)).sum())
+    if missing:
+        notes.append(
+            f"The sea tells no current at {missing} of {len(pieces)} pieces; legs with such a "
+            "piece are left out of the comparison with models that need it."
+        )
+    if calibration is None:
+        notes.append(
+            "The factor on the currents cannot be told: fewer than three legs with known currents, "
+            "or currents that do not differ enough."
+        )
+    return notes
+
+
+def _cycles(activities: tuple[Activity, ...]) -> list[tuple[int, int]]:
+    """Return (first, one past last) activity of every whole cycle, from loading to loading."""
+    starts = [i for i, a in enumerate(activities) if a.kind == LOADING]
+    found = []
+    for first, last in itertools.pairwise(starts):
+        kinds = {a.kind for a in activities[first:last]}
+        needed = {LOADING, SAILING_FULL, UNLOADING, SAILING_EMPTY}
+        if needed <= kinds and all(a.whole for a in activities[first:last]):
+            found.append((first, last))
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """Return numbers and texts that JSON can hold; None for what is unknown."""
+    if isinstance(value, dict):
+        return {str(key): _plain(v) for key, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, (np.integer, bool)):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        return float(value) if math.isfinite(value) else None
+    return value

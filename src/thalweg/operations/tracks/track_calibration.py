@@ -1,0 +1,218 @@
+"""Model against measurement: spread, errors, and the factor on the currents that fits best."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.operations.tracks.track_segments import KINDS, Pieces
+
+_LEAST = 3  # points of a spread, legs of a calibration
+_TURNS = 50
+_SETTLED = 1e-10
+LARGEST_FACTOR = 10.0  #: that a search for a slope of one looks at
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How modelled values lie against measured ones.
+
+    Attributes
+    ----------
+    count : int
+    slope, intercept : float
+        Of the straight line ``modelled = slope * measured + intercept`` by least squares; a perfect
+        model has 1 and 0.
+    r2 : float
+        Square of the correlation.
+    rmse : float
+        Root of the mean square of modelled minus measured (Schless 2023, eq. 4.2).
+    rmse_rel : float
+        The same over the mean of what was measured, in per cent (eq. 4.1).
+    measured, modelled : float
+        Means.
+
+    Notes
+    -----
+    All NaN that fewer than three values, or values without any spread, cannot tell. Slope,
+    intercept and r2 as in van Halem (2019), section 4.1.2, with measured values on the x-axis.
+    """
+
+    count: int
+    slope: float
+    intercept: float
+    r2: float
+    rmse: float
+    rmse_rel: float
+    measured: float
+    modelled: float
+
+
+def spread(measured: ArrayLike, modelled: ArrayLike) -> Spread:
+    """Compare modelled values with measured ones; pairs with NaN are left out."""
+    x, y = (np.asarray(v, dtype=np.float64).reshape(-1) for v in (measured, modelled))
+    known = np.isfinite(x) & np.isfinite(y)
+    x, y = x[known], y[known]
+    nan = math.nan
+    if not x.size:
+        return Spread(0, nan, nan, nan, nan, nan, nan, nan)
+    rmse, mean = float(np.sqrt(np.mean((y - x) ** 2))), float(x.mean())
+    across, up = x - mean, y - float(y.mean())
+    wide, high = float(across @ across), float(up @ up)
+    slope = intercept = r2 = nan
+    if x.size >= _LEAST and wide > 1e-18 * x.size * max(mean * mean, 1e-300):
+        slope = float(across @ up) / wide
+        intercept = float(y.mean()) - slope * mean
+        r2 = float(across @ up) ** 2 / (wide * high) if high > 1e-24 else nan
+    return Spread(x.size, slope, intercept, r2, rmse, 100.0 * rmse / mean, mean, float(y.mean()))
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Speeds through water and the factor on the currents that explain a track best.
+
+    Attributes
+    ----------
+    factor, factor_error : float
+        Factor on the currents of the sea, and its standard error.
+    speeds, speed_errors : dict of str to float
+        Speed through water [m/s] of "sailing full" and "sailing empty", and standard errors.
+    residual : float
+        Root mean square of what remains [m/s].
+    slope_one : float
+        The factor for which the speeds of the legs, modelled over measured, have a slope of one
+        (van Halem 2019, section 4.1.2); NaN if there is none up to 10.
+    legs : int
+        Legs with known currents.
+    """
+
+    factor: float
+    factor_error: float
+    speeds: dict[str, float]
+    speed_errors: dict[str, float]
+    residual: float
+    slope_one: float
+    legs: int
+
+
+def through_water(pieces: Pieces, factor: float) -> FloatArray:
+    """Return speeds through water [m/s]: over ground less ``factor`` times the current."""
+    return np.abs(pieces.ground - factor * pieces.current)
+
+
+def calibrate(pieces: Pieces) -> Calibration | None:
+    """Find the speeds through water and the factor on the currents by least squares.
+
+    Minimises the sum over pieces, weighted with their time, of
+    ``(|over ground - factor * current| - speed of the activity) ** 2`` (Gauss-Newton).
+
+    Returns
+    -------
+    Calibration or None
+        None if fewer than three legs have known currents, or the currents do not differ enough to
+        tell a factor.
+
+    Notes
+    -----
+    Standard errors take the legs, not the pieces, as independent (sandwich estimate by clusters,
+    with the usual correction for few of them); wind, waves and a captain's choice act on a whole
+    leg alike.
+    """
+    pieces = pieces.part(np.isfinite(pieces.current))
+    legs = np.unique(pieces.leg)
+    if len(legs) < _LEAST:
+        return None
+    used = np.unique(pieces.kind)
+    groups = (pieces.kind[:, None] == used).astype(np.float64)
+    weight = pieces.took / pieces.took.mean()
+    factor = 1.0
+    for _ in range(_TURNS):
+        water = pieces.ground - factor * pieces.current
+        speed = np.abs(water)
+        along = -(water.real * pieces.current.real + water.imag * pieces.current.imag) / speed
+        design = np.column_stack([groups, -along])
+        normal = design.T @ (weight[:, None] * design)
+        if np.linalg.cond(normal) > 1e12:
+            return None
+        solved = np.linalg.solve(normal, design.T @ (weight * (speed - along * factor)))
+        change, factor = float(solved[-1]) - factor, float(solved[-1])
+        if abs(change) < _SETTLED:
+            break
+    residual = speed - groups @ solved[:-1]
+    errors = _errors(design, weight * residual, np.linalg.inv(normal), pieces.leg)
+    names = [KINDS[k] for k in used]
+    return Calibration(
+        factor=factor,
+        factor_error=float(errors[-1]),
+        speeds=dict(zip(names, solved[:-1].tolist())),
+        speed_errors=dict(zip(names, errors[:-1].tolist())),
+        residual=float(np.sqrt(np.average(residual**2, weights=weight))),
+        slope_one=_slope_one(pieces),
+        legs=len(legs),
+    )
+
+
+def _errors(
+    design: FloatArray, score: FloatArray, inverse: FloatArray, leg: NDArray[np.int64]
+) -> FloatArray:
+    """Return standard errors with legs as clusters."""
+    _, index = np.unique(leg, return_inverse=True)
+    count = int(index.max()) + 1
+    sums = np.zeros((count, design.shape[1]))
+    np.add.at(sums, index, design * score[:, None])
+    few = count / max(1, count - design.shape[1])
+    return np.sqrt(np.diag(inverse @ (sums.T @ sums) @ inverse) * few)
+
+
+def mean_speeds(pieces: Pieces, factor: float) -> FloatArray:
+    """Return the mean speed through water of the activity of every piece [m/s]."""
+    speed = through_water(pieces, factor)
+    known = np.isfinite(speed)
+    took = np.where(known, pieces.took, 0.0)
+    way = np.bincount(pieces.kind, np.where(known, speed, 0.0) * took, minlength=len(KINDS))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray((way / np.bincount(pieces.kind, took, minlength=len(KINDS)))[pieces.kind])
+
+
+def over_ground(pieces: Pieces, water: ArrayLike, factor: float) -> FloatArray:
+    """Return the speed over ground [m/s] on the measured course at a speed through water.
+
+    NaN where the ship cannot hold the course or the current is unknown.
+    """
+    along_cross = factor * pieces.current * np.conj(pieces.ground / np.abs(pieces.ground))
+    speed = np.asarray(water, dtype=np.float64)
+    with np.errstate(invalid="ignore"):
+        found = np.sqrt(speed**2 - along_cross.imag**2) + along_cross.real
+        return np.where(found > 0.0, found, np.nan)
+
+
+def leg_speeds(pieces: Pieces, speed: ArrayLike) -> FloatArray:
+    """Return the speed over each leg [m/s]: its way over the time it takes at given speeds."""
+    way = pieces.speed * pieces.took
+    _, length = pieces.by_leg(way)
+    _, time = pieces.by_leg(way / np.asarray(speed, dtype=np.float64))
+    return np.asarray(length / time)
+
+
+def _slope_one(pieces: Pieces) -> float:
+    """Return the factor on the currents for which the legs' spread has a slope of one."""
+    measured = leg_speeds(pieces, pieces.speed)
+
+    def excess(factor: float) -> float:
+        model = over_ground(pieces, mean_speeds(pieces, factor), factor)
+        return spread(measured, leg_speeds(pieces, model)).slope - 1.0
+
+    factors = np.linspace(0.0, LARGEST_FACTOR, 101)
+    values = np.array([excess(float(f)) for f in factors])
+    crossings = np.flatnonzero((values[:-1] <= 0.0) & (values[1:] > 0.0))
+    if not crossings.size:
+        return math.nan
+    low, high = factors[crossings[0]], factors[crossings[0] + 1]
+    for _ in range(_TURNS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(float(middle)) <= 0.0 else (low, middle)
+    return float(0.5 * (low + high))

@@ -1,0 +1,304 @@
+"""Ship tracks from CSV files or tables: AIS messages and logs, under whatever column names.
+
+Nothing is dropped or assumed in silence: what was done stands in ``notes`` of the track.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.units import KNOT
+from thalweg.operations.tracks.track_cleaning import Cleaning, RawTrack, TrackLog, clean
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TrackSource: TypeAlias = "str | PathLike[str] | pd.DataFrame"
+
+#: names of columns (lower case, units and signs taken off), the likeliest first
+NAMES: Final[dict[str, tuple[str, ...]]] = {
+    "time": (
+        *("time", "timestamp", "datetime", "date_time", "basedatetime", "base_date_time"),
+        *("time_utc", "date_time_utc", "datetime_utc", "timestamp_utc", "utc", "postime", "date"),
+    ),
+    "lat": ("lat", "latitude", "position_lat", "y_lat"),
+    "lon": ("lon", "longitude", "long", "lng", "position_lon", "x_lon"),
+    "speed": ("sog", "speed_over_ground", "speed", "vessel_sog", "velocity"),
+    "course": ("cog", "course_over_ground", "course"),
+    "draught": ("draught", "draft"),
+    "power": ("power", "engine_power", "shaft_power", "brake_power"),
+    "vessel": ("mmsi", "imo", "vessel", "vessel_name", "ship", "ship_name", "name"),
+}
+#: what one unit of a column is in SI; the first of each is taken when the header tells none
+UNITS: Final[dict[str, dict[str, float]]] = {
+    "speed": {"kn": KNOT, "kt": KNOT, "knots": KNOT, "m_s": 1.0, "ms": 1.0, "km_h": 1.0 / 3.6},
+    "power": {"kw": 1e3, "w": 1.0, "mw": 1e6},
+    "draught": {"m": 1.0, "dm": 0.1, "cm": 0.01},
+    "course": {"deg": float(np.pi / 180.0), "rad": 1.0},
+    "lat": {"deg": 1.0},
+    "lon": {"deg": 1.0},
+}
+#: values by which AIS says "not available"
+ABSENT: Final = {"speed": 102.25, "course": 359.999}
+_DATES: Final = ("%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%m-%d-%Y", "%d.%m.%Y")
+_CLOCKS: Final = (" %H:%M:%S", " %H:%M", "")
+
+
+def read_tracks(
+    source: TrackSource,
+    *,
+    columns: Mapping[str, str] | None = None,
+    vessel: str | int | None = None,
+    time_format: str | None = None,
+    cleaning: Cleaning | None = None,
+) -> TrackLog:
+    """Read the track of one ship and clean it.
+
+    Parameters
+    ----------
+    source : path or DataFrame
+        A CSV file (comma, semicolon or tab) or a table with columns for time, lat, lon and maybe
+        speed, course, draught, power and vessel, under any usual name; see ``NAMES``.
+    columns : mapping of str to str, optional
+        Which column is what, where the name does not tell: ``{"time": "t_gps"}``.
+    vessel : str or int, optional
+        Which ship, if there are several (MMSI or name).
+    time_format : str, optional
+        As of ``strptime``; by default ISO 8601, seconds or milliseconds since 1970, or day and
+        month in the only order that is possible for all rows. Times without a zone are UTC.
+    cleaning : Cleaning, optional
+        What counts as a gap or an impossible jump.
+
+    Returns
+    -------
+    TrackLog
+        Sorted, without double times and impossible positions; ``notes`` tells what was done.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, times cannot be read or are ambiguous, several ships are in the
+        file, or fewer than two positions remain.
+    """
+    table, name = _table(source)
+    found = _columns(table, dict(columns or {}), name)
+    notes: list[str] = []
+    ships, rows = _one_vessel(table, found, vessel)
+    table = table[rows]
+    time = _times(table, found, time_format, name, notes)
+    values = {
+        kind: _numbers(table[column], kind, column, notes)
+        for kind, column in found.items()
+        if kind not in ("time", "date", "vessel")
+    }
+    raw = RawTrack(time, values.pop("lat"), values.pop("lon"), values)
+    return clean(raw, cleaning or Cleaning(), vessel=ships, source=name, notes=notes)
+
+
+def _table(source: TrackSource) -> tuple[pd.DataFrame, str]:
+    import pandas as pd
+
+    if isinstance(source, pd.DataFrame):
+        return source.reset_index(drop=True), "the table"
+    path = Path(source)
+    try:
+        with path.open(encoding="utf-8-sig") as file:
+            header = file.readline()
+        separator = max(",;\t", key=header.count)
+        decimal = "," if separator == ";" else "."
+        table = pd.read_csv(path, sep=separator, encoding="utf-8-sig", dtype=str)
+        if decimal == ",":
+            commas = table.map(lambda x: isinstance(x, str) and bool(re.fullmatch(r"-?\d+,\d+", x)))
+            table = table.mask(commas, table.map(lambda x: str(x).replace(",", ".")))
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"The track file {str(path)!r} cannot be read: {error}.",
+            "It must be a CSV file with a line of column names, in UTF-8.",
+            "Check the path and the file.",
+            file=str(path),
+        ) from error
+    return table, str(path)
+
+
+def _plain(column: str) -> str:
+    """Return a column name in lower case, words joined by single underscores."""
+    return re.sub(r"[^a-z0-9]+", "_", str(column).lower()).strip("_")
+
+
+def _stem(column: str, kind: str) -> tuple[str, str | None]:
+    """Return a column name without its unit, and the unit."""
+    plain = _plain(column)
+    for unit in sorted(UNITS.get(kind, {}), key=len, reverse=True):
+        if plain.endswith("_" + unit):
+            return plain[: -len(unit) - 1], unit
+    return plain, None
+
+
+def _columns(table: pd.DataFrame, given: dict[str, str], name: str) -> dict[str, str]:
+    """Return the column of every kind that there is."""
+    unknown = sorted(set(given) - set(NAMES))
+    absent = sorted(column for column in given.values() if column not in table.columns)
+    if unknown or absent:
+        raise InputError(
+            f"The columns given for {name} are wrong: {', '.join(unknown + absent)}.",
+            f"Kinds: {', '.join(NAMES)}; columns: {', '.join(map(str, table.columns))}.",
+            "Correct them.",
+        )
+    found = dict(given)
+    for kind, names in NAMES.items():
+        stems = {_stem(c, kind)[0]: str(c) for c in reversed(list(table.columns))}
+        match = next((stems[n] for n in names if n in stems), None)
+        if kind not in found and match is not None:
+            found[kind] = match
+    dates = {_plain(c): str(c) for c in table.columns}
+    if "date" in dates and found.get("time") != dates["date"] and "time" not in given:
+        found["date"] = dates["date"]
+    missing = [kind for kind in ("time", "lat", "lon") if kind not in found]
+    if missing:
+        raise InputError(
+            f"No column of {name} tells {' or '.join(missing)}.",
+            f"Columns: {', '.join(map(str, table.columns))}; names that are known: "
+            + "; ".join(f"{kind}: {', '.join(NAMES[kind][:4])}" for kind in missing)
+            + ".",
+            "Rename the columns, or say which is which (columns, or --column lat=NAME).",
+            missing=missing,
+        )
+    return found
+
+
+def _one_vessel(
+    table: pd.DataFrame, found: dict[str, str], vessel: str | int | None
+) -> tuple[str | None, Any]:
+    """Return the ship and its rows.
+
+    Raises
+    ------
+    InputError
+        If there are several ships and none is chosen, or the chosen one is not there.
+    """
+    every = np.ones(len(table), dtype=bool)
+    column = found.get("vessel")
+    names = None if column is None else table[column].astype(str).str.strip()
+    known = [] if names is None else sorted(set(names[table[column].notna()]))
+    if vessel is None and len(known) <= 1:
+        return (known[0] if known else None), every
+    listed = ", ".join(known[:10]) + (", ..." if len(known) > 10 else "")
+    if vessel is None or names is None or str(vessel).strip() not in known:
+        asked = "none was chosen" if vessel is None else f"{vessel!r} was asked for"
+        raise InputError(
+            f"The tracks are of {len(known)} named ships, and {asked}.",
+            f"Ships: {listed or 'the file names none'}.",
+            "Choose one of them (vessel, or --vessel).",
+            vessels=known[:100],
+        )
+    return str(vessel).strip(), (names == str(vessel).strip()).to_numpy()
+
+
+def _numbers(column: pd.Series[Any], kind: str, header: str, notes: list[str]) -> FloatArray:
+    """Return a column as SI numbers; NaN where there is none."""
+    import pandas as pd
+
+    values = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
+    unit = _stem(header, kind)[1]
+    units = UNITS[kind]
+    if unit is None:
+        unit = next(iter(units))
+        if kind in ("speed", "power"):
+            notes.append(f"Column {header!r} is taken to be in {unit}.")
+    limit = ABSENT.get(kind)
+    if limit is not None and unit in ("kn", "kt", "knots", "deg"):
+        values = np.where(values > limit, np.nan, values)
+    return np.asarray(values * units[unit])
+
+
+def _times(
+    table: pd.DataFrame,
+    found: dict[str, str],
+    time_format: str | None,
+    name: str,
+    notes: list[str],
+) -> FloatArray:
+    """Return times [s since 1970-01-01T00:00Z]; NaN where unreadable."""
+    import pandas as pd
+
+    column = table[found["time"]]
+    if "date" in found:
+        column = table[found["date"]].astype(str) + " " + column.astype(str)
+    if isinstance(column.dtype, pd.DatetimeTZDtype) or column.dtype.kind == "M":
+        return _seconds(pd.to_datetime(column, utc=True))
+    numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
+    if time_format is None and 2 * np.isfinite(numbers).sum() > len(numbers):
+        return _epoch(numbers, found["time"])
+    if time_format is not None:
+        return _by_format(column, time_format)
+    parsed = pd.to_datetime(column, format="ISO8601", utc=True, errors="coerce")
+    if len(column) == 0 or parsed.notna().mean() >= 0.5:
+        return _seconds(parsed)
+    return _dates(column, name, notes)
+
+
+def _by_format(column: pd.Series[Any], time_format: str) -> FloatArray:
+    import pandas as pd
+
+    try:
+        return _seconds(pd.to_datetime(column, format=time_format, utc=True, errors="coerce"))
+    except ValueError as error:
+        raise InputError(
+            f"The time format {time_format!r} cannot be used: {error}.",
+            "It is as of strptime.",
+            "Write for example '%d/%m/%Y %H:%M:%S'.",
+        ) from error
+
+
+def _epoch(numbers: FloatArray, header: str) -> FloatArray:
+    size = float(np.nanmedian(np.abs(numbers)))
+    for scale in (1.0, 1e3, 1e6, 1e9):
+        if 1e8 <= size / scale < 1e10:
+            return np.asarray(numbers / scale)
+    raise InputError(
+        f"Numbers such as {size:g} in column {header!r} are no times.",
+        "Numbers are read as seconds, milli-, micro- or nanoseconds since 1970-01-01T00:00Z.",
+        "Write ISO 8601 times, such as 2026-01-01T06:30:00Z.",
+    )
+
+
+def _dates(column: pd.Series[Any], name: str, notes: list[str]) -> FloatArray:
+    """Read dates with slashes, points or dashes in the only order that fits all rows."""
+    import pandas as pd
+
+    fits: dict[str, FloatArray] = {}
+    for date in _DATES:
+        for clock in _CLOCKS:
+            parsed = pd.to_datetime(column, format=date + clock, utc=True, errors="coerce")
+            if parsed.notna().sum() >= 0.99 * column.notna().sum() and parsed.notna().any():
+                fits[date + clock] = _seconds(parsed)
+    if not fits:
+        raise InputError(
+            f"The times of {name} cannot be read, for example {str(column.iloc[0])!r}.",
+            "Times are ISO 8601, or seconds since 1970.",
+            "Give their format (time_format, or --time-format '%d/%m/%Y %H:%M:%S').",
+        )
+    (form, first), *others = fits.items()
+    for other, seconds in others:
+        if not np.array_equal(first, seconds, equal_nan=True):
+            raise InputError(
+                f"The times of {name} can be read as {form} and as {other}.",
+                f"For example {str(column.iloc[0])!r}.",
+                "Say which it is (time_format, or --time-format).",
+            )
+    notes.append(f"Times are read as {form}.")
+    return first
+
+
+def _seconds(moments: Any) -> FloatArray:
+    values = moments.to_numpy(dtype="datetime64[ns]")
+    seconds = values.astype(np.int64) / 1e9
+    return np.where(np.isnat(values), np.nan, seconds)

@@ -1,0 +1,161 @@
+"""Short pieces of sailed legs: what was measured, and the current the sea tells there."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray, inverse
+from thalweg.operations.tracks.activities import SAILING_EMPTY, SAILING_FULL, Activity
+from thalweg.operations.tracks.track_cleaning import TrackLog
+from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
+
+if TYPE_CHECKING:
+    from thalweg.sea import Sea
+
+PIECE = 300.0  #: usual length of a piece [s]: long against noise, short against tides
+STEADY = 0.8  #: share of a leg's median speed from which on it counts as free sailing
+KINDS = (SAILING_FULL, SAILING_EMPTY)
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Pieces of legs, with p pieces in all.
+
+    Attributes
+    ----------
+    leg : int64 array (p,)
+        Number of the trip each piece belongs to.
+    kind : int64 array (p,)
+        Index into ``KINDS`` (sailing full, sailing empty).
+    time, took : float64 array (p,)
+        Middle [s since 1970-01-01T00:00Z] and length [s].
+    lat, lon : float64 array (p,)
+        Middle [deg].
+    ground : complex128 array (p,)
+        Velocity over ground, east + i north [m/s].
+    current : complex128 array (p,)
+        Current, east + i north [m/s]; NaN where the sea does not tell.
+    """
+
+    leg: NDArray[np.int64]
+    kind: NDArray[np.int64]
+    time: FloatArray
+    took: FloatArray
+    lat: FloatArray
+    lon: FloatArray
+    ground: NDArray[np.complex128]
+    current: NDArray[np.complex128]
+
+    def __len__(self) -> int:
+        return len(self.leg)
+
+    @property
+    def speed(self) -> FloatArray:
+        """Speed over ground [m/s]."""
+        return np.abs(self.ground)
+
+    @property
+    def course(self) -> FloatArray:
+        """Course over ground, clockwise from north [rad]."""
+        return np.asarray(np.angle(1j * np.conj(self.ground)) % (2.0 * np.pi))
+
+    def part(self, keep: NDArray[np.bool_]) -> Pieces:
+        """Return some of the pieces."""
+        names = ("leg", "kind", "time", "took", "lat", "lon", "ground", "current")
+        return Pieces(**{name: getattr(self, name)[keep] for name in names})
+
+    def by_leg(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """Return (legs, sums of values over each leg)."""
+        legs, index = np.unique(self.leg, return_inverse=True)
+        return legs, np.bincount(index, values, minlength=len(legs)).astype(np.float64)
+
+
+def cut_pieces(
+    log: TrackLog,
+    activities: Sequence[Activity],
+    *,
+    sea: Sea | None = None,
+    length: float = PIECE,
+    steady: bool = True,
+) -> Pieces:
+    """Cut all sailing of a track into pieces.
+
+    Parameters
+    ----------
+    log : TrackLog
+    activities : sequence of Activity
+    sea : Sea, optional
+        For the currents.
+    length : float
+        Least length of a piece [s]; the last of a leg takes the rest.
+    steady : bool
+        Leave out the ends of every leg, in which the ship gathers or loses way: all before the
+        first and after the last position with at least 80 % of the leg's median speed
+        (the "free sailing" of Schless 2023, section 4.2, by its speed alone).
+
+    Returns
+    -------
+    Pieces
+        With the chords' velocities. Legs with fewer than two positions have none, and a ship that
+        ends a piece where it began it has no course: such pieces are left out.
+    """
+    speeds = log.speeds()
+    rows = [
+        (activity.trip, KINDS.index(activity.kind), *pair)
+        for activity in activities
+        if activity.kind in KINDS
+        for pair in _pairs(log, activity, speeds, length, steady)
+    ]
+    table = np.array(rows, dtype=np.int64).reshape(-1, 4)
+    leg, kind, first, last = table.T
+    way, course, _ = inverse(log.lat[first], log.lon[first], log.lat[last], log.lon[last])
+    moved = way > 0.0
+    leg, kind, first, last = table[moved].T
+    way, course = way[moved], course[moved]
+    took = log.time[last] - log.time[first]
+    middle = 0.5 * (log.time[first] + log.time[last])
+    lat, lon = _midpoints(log, first, last)
+    ground = way / took * (np.sin(course) + 1j * np.cos(course))
+    current = np.full(len(leg), complex(np.nan, np.nan))
+    if sea is not None and len(leg):
+        told = sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], middle, lat, lon)
+        current = told[EASTWARD_CURRENT] + 1j * told[NORTHWARD_CURRENT]
+    return Pieces(leg, kind, middle, took, lat, lon, ground, current)
+
+
+def _pairs(
+    log: TrackLog, activity: Activity, speeds: FloatArray, length: float, steady: bool
+) -> list[tuple[int, int]]:
+    """Return (first, last) positions of the pieces of a leg."""
+    first, last = activity.first, activity.last
+    if steady and last > first:
+        seen = speeds[first : last + 1]
+        fast = np.flatnonzero(seen >= STEADY * np.median(seen))
+        first, last = first + int(fast[0]), first + int(fast[-1])
+    ends = [first]
+    for i in range(first + 1, last + 1):
+        if log.time[i] - log.time[ends[-1]] >= length:
+            ends.append(i)
+    if len(ends) > 1 and ends[-1] < last:
+        ends[-1] = last
+    elif len(ends) == 1 and last > first:
+        ends.append(last)
+    return list(itertools.pairwise(ends))
+
+
+def _midpoints(
+    log: TrackLog, first: NDArray[np.int64], last: NDArray[np.int64]
+) -> tuple[FloatArray, FloatArray]:
+    """Return where the ship was half-way in time, between its own positions."""
+    middle = 0.5 * (log.time[first] + log.time[last])
+    right = np.clip(np.searchsorted(log.time, middle), 1, len(log) - 1)
+    share = (middle - log.time[right - 1]) / (log.time[right] - log.time[right - 1])
+    east = (log.lon[right] - log.lon[right - 1] + 180.0) % 360.0 - 180.0
+    lat = log.lat[right - 1] + share * (log.lat[right] - log.lat[right - 1])
+    return lat, np.asarray(log.lon[right - 1] + share * east)

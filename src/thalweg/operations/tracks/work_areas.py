@@ -1,0 +1,128 @@
+"""Areas of work: polygons in which a ship loads, unloads or waits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.chart.zones.geojson_zones import polygons, read
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.geodesy import wrap_longitude
+
+LOADING, UNLOADING, WAITING = "loading", "unloading", "waiting"
+KINDS: Final = (LOADING, UNLOADING, WAITING)
+#: words in a property ``activity``, ``kind``, ``type`` or ``name`` that tell what an area is for
+WORDS: Final[dict[str, str]] = {
+    **dict.fromkeys(("loading", "load", "dredging", "dredge", "borrow", "trailing"), LOADING),
+    **dict.fromkeys(
+        ("unloading", "unload", "discharging", "dumping", "dump", "pumping", "reclamation"),
+        UNLOADING,
+    ),
+    **dict.fromkeys(("reclaim", "nourishment", "rainbowing", "disposal"), UNLOADING),
+    **dict.fromkeys(
+        ("waiting", "wait", "anchorage", "anchor", "berth", "port", "harbour"), WAITING
+    ),
+}
+_KEYS: Final = ("activity", "kind", "type", "name")
+_LEAST_OVERLAP: Final = 1e-9  # of the smaller area: what is more than touching
+
+
+@dataclass(frozen=True, eq=False)
+class Areas:
+    """Polygons by kind.
+
+    Attributes
+    ----------
+    shapes : dict of str to shapely geometry
+        One for each of "loading", "unloading" and "waiting" that there is, longitude first [deg].
+    """
+
+    shapes: dict[str, Any]
+
+    @classmethod
+    def read(cls, source: str | PathLike[str] | Mapping[str, Any]) -> Areas:
+        """Read areas from GeoJSON.
+
+        Parameters
+        ----------
+        source : path or mapping
+            Polygons with a property ``activity`` (or ``kind``, ``type``, ``name``) that holds a
+            word such as loading, dredging, unloading, pumping, waiting or anchorage.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read, an area tells no activity, areas of different activities
+            overlap, or there is no area for loading or none for unloading.
+        """
+        import shapely
+
+        shapes: dict[str, list[Any]] = {}
+        names: list[tuple[str, str, Any]] = []
+        for number, (geometry, properties) in enumerate(read(source, "areas"), start=1):
+            kind = _kind(properties, number)
+            label = str(properties.get("name") or f"area {number} ({kind})")
+            shape = shapely.union_all(polygons(geometry, "areas"))
+            shapes.setdefault(kind, []).append(shape)
+            names.append((label, kind, shape))
+        missing = [kind for kind in (LOADING, UNLOADING) if kind not in shapes]
+        if missing:
+            raise InputError(
+                f"There is no area for {' and none for '.join(missing)}.",
+                f"Areas are for: {', '.join(sorted(shapes)) or 'nothing'}.",
+                "Give polygons with a property activity: loading and activity: unloading.",
+            )
+        _check_apart(names)
+        return cls({kind: shapely.union_all(parts) for kind, parts in shapes.items()})
+
+    def at(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.int8]:
+        """Return which area positions [deg] lie in: index into ``KINDS``, -1 for none."""
+        import shapely
+
+        y, x = np.asarray(lat, dtype=np.float64), wrap_longitude(lon)
+        where = np.full(y.shape, -1, dtype=np.int8)
+        for kind, shape in self.shapes.items():
+            shapely.prepare(shape)
+            for turn in (-360.0, 0.0, 360.0):  # outlines may run on beyond the antimeridian
+                inside = shapely.intersects_xy(shape, x + turn, y)
+                where[inside] = KINDS.index(kind)
+        return where
+
+
+def _kind(properties: Mapping[str, Any], number: int) -> str:
+    for key in _KEYS:
+        text = str(properties.get(key) or "").lower()
+        words = [w for w in re.split(r"[^a-z]+", text) if w in WORDS]
+        if words:
+            return WORDS[words[0]]
+        if text and key == "activity":
+            raise unknown_name("activity of an area", text, WORDS)
+    raise InputError(
+        f"Area {number} does not tell what it is for.",
+        f"A property {', '.join(_KEYS[:-1])} or {_KEYS[-1]} holds one of {', '.join(KINDS)}.",
+        'Add "activity": "loading" (or "unloading", "waiting") to its properties.',
+        area=number,
+    )
+
+
+def _check_apart(names: list[tuple[str, str, Any]]) -> None:
+    for i, (first, kind, shape) in enumerate(names):
+        for second, other, its in names[i + 1 :]:
+            if kind == other:
+                continue
+            common = shape.intersection(its).area
+            if common > _LEAST_OVERLAP * min(shape.area, its.area):
+                share = 100.0 * common / min(shape.area, its.area)
+                raise InputError(
+                    f"The areas {first!r} ({kind}) and {second!r} ({other}) overlap "
+                    f"({share:.0f} % of the smaller).",
+                    "A position must tell one activity.",
+                    "Draw them apart.",
+                    areas=[first, second],
+                )

@@ -1,0 +1,1 @@
+"""Waiting studies: which departure and which wait give the shortest or cheapest trip."""

@@ -1,0 +1,294 @@
+"""Waiting for a better current before sailing: what it saves, and what it costs.
+
+Schless (2023), *Going with the flow*, let a dredger wait at either end of its trips until the
+current has turned in its favour. Here that rule stands beside two others, and the true optimum:
+
+``none``
+    Sail as soon as the trip can be made.
+``current``
+    The rule of Schless: of all moments within the allowed wait, leave when the current at the
+    place of departure helps most along the course. It looks neither at the current across nor at
+    what the ship meets later, and can lose energy.
+``next trip``
+    Leave when the coming trip, with the wait before it, takes least energy. Never worse than
+    ``none`` for a single trip; over several it can be, as it does not see the trips after it.
+``optimum``
+    The best of all departures together, by dynamic programming from the last trip backwards.
+
+All of them choose from the same departures, those of the trip tables; a ship that is ready between
+two of them leaves at the next. On these departures the optimum is exact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import CoverageError, InputError, unknown_name
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.operations.waiting.trip_table import TripTable
+
+RULES: Final = ("none", "current", "next trip", "optimum")
+
+
+@dataclass(frozen=True)
+class WaitingPlan:
+    """When to leave on every trip, and what it takes in all.
+
+    Attributes
+    ----------
+    rule : str
+    start : float
+        When the ship is ready for the first trip [s since 1970-01-01T00:00Z].
+    departs, arrives : tuple of float
+        Of every trip [s since 1970-01-01T00:00Z].
+    energy : float
+        Brake energy under way and hotel energy from the start to the last arrival [J].
+    """
+
+    rule: str
+    start: float
+    departs: tuple[float, ...]
+    arrives: tuple[float, ...]
+    energy: float
+
+    @property
+    def duration(self) -> float:
+        """Time from the start to the last arrival [s]."""
+        return self.arrives[-1] - self.start
+
+    @property
+    def waited(self) -> float:
+        """Time not under way [s]."""
+        return self.duration - sum(b - a for a, b in zip(self.departs, self.arrives))
+
+
+def plan_waiting(
+    trips: Sequence[TripTable],
+    *,
+    start: TimeLike,
+    most_wait: float,
+    hotel_power: float = 0.0,
+    rule: str = "optimum",
+) -> WaitingPlan:
+    """Choose the departures of trips that follow each other.
+
+    Parameters
+    ----------
+    trips : sequence of TripTable
+        In the order in which they are sailed, all with the same departures.
+    start : time
+        When the ship is ready for the first.
+    most_wait : float
+        Longest wait before each trip [s], at least 0, counted from when the trip can be made.
+    hotel_power : float
+        Power that is used all the time, waiting or not [W].
+    rule : {"none", "current", "next trip", "optimum"}
+
+    Returns
+    -------
+    WaitingPlan
+
+    Raises
+    ------
+    CoverageError
+        If the tables end before the last trip does.
+    InputError
+        If the tables do not go together, or a number makes no sense.
+    """
+    if rule not in RULES:
+        raise unknown_name("waiting rule", rule, RULES)
+    board = _Board.of(trips, most_wait if rule != "none" else 0.0, hotel_power)
+    first = board.index(parse_time(start))
+    return board.follow(rule, first, board.values() if rule == "optimum" else None)
+
+
+def optimum_energy(
+    trips: Sequence[TripTable], *, most_wait: float, hotel_power: float = 0.0
+) -> FloatArray:
+    """Return the least energy [J] of a sequence of trips, for every start in the tables.
+
+    Arguments as in `plan_waiting`; +inf for starts from which the tables end too early.
+    """
+    board = _Board.of(trips, most_wait, hotel_power)
+    return board.best_from(board.values()[0], trips[0])[: len(trips[0])]
+
+
+@dataclass(frozen=True, eq=False)
+class _Board:
+    """Trips over one grid of departures."""
+
+    trips: tuple[TripTable, ...]
+    width: int  # steps a ship may wait
+    hotel: float  # energy of one step of hotel load [J]
+
+    @classmethod
+    def of(cls, trips: Sequence[TripTable], most_wait: float, hotel_power: float) -> _Board:
+        _check(trips)
+        for name, value, unit in (
+            ("longest wait", most_wait, "s"),
+            ("hotel power", hotel_power, "W"),
+        ):
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError(
+                    f"The {name} is {value!r} {unit}.",
+                    "It is a number that is not negative.",
+                    "Correct it.",
+                )
+        table = trips[0]
+        width = int(most_wait / table.step + 1e-9)
+        if table.periodic:  # after a whole period all is as before
+            width = min(width, len(table) - 1)
+        return cls(tuple(trips), min(width, len(table)), hotel_power * table.step)
+
+    @property
+    def first(self) -> TripTable:
+        return self.trips[0]
+
+    def index(self, time: float) -> int:
+        """Return the first departure at or after a time."""
+        index = math.ceil((time - self.first.start) / self.first.step - 1e-9)
+        if not self.first.periodic and not 0 <= index < len(self.first):
+            raise self._too_short(time)
+        return index
+
+    def window(self, index: int, trip: TripTable) -> NDArray[np.int64]:
+        """Return the departures allowed to a ship that is ready at one."""
+        count = len(trip)
+        possible = np.isfinite(trip.duration)
+        if not possible.any():
+            raise _never(trip)
+        if trip.periodic:
+            ahead = index + np.flatnonzero(possible[(index + np.arange(count)) % count])
+        else:
+            ahead = index + np.flatnonzero(possible[index:])
+        if not ahead.size:
+            raise self._too_short(trip.start + index * trip.step)
+        return np.asarray(ahead[ahead <= ahead[0] + self.width], dtype=np.int64)
+
+    def cost(self, trip: TripTable, at: NDArray[np.int64], last: bool) -> FloatArray:
+        """Return the energy [J] of a trip and of the time until the next can begin."""
+        i = at % len(trip)
+        known = np.where(np.isfinite(trip.duration), trip.duration, 0.0)
+        time = known[i] / trip.step if last else trip.steps[i]
+        return np.asarray(trip.energy[i] + self.hotel * time)
+
+    def values(self) -> list[FloatArray]:
+        """Return for every trip the energy from each departure to the end, waits excluded.
+
+        What is returned for a departure ``s`` carries the hotel energy of ``s`` steps on top, so
+        that the best departure of a window is its least value.
+        """
+        count = len(self.first)
+        reach = 2 * count + self.width if self.first.periodic else count
+        at = np.arange(reach, dtype=np.int64)
+        found: list[FloatArray] = []
+        later = None
+        for k in range(len(self.trips) - 1, -1, -1):
+            trip = self.trips[k]
+            total = self.cost(trip, at, later is None)
+            if later is not None:
+                total = total + self._onward(trip, at, later)
+            found.append(np.where(np.isfinite(total), total + self.hotel * at, np.inf))
+            later = self.best_from(found[-1], trip)
+        return found[::-1]
+
+    def _onward(self, trip: TripTable, at: NDArray[np.int64], later: FloatArray) -> FloatArray:
+        """Return the energy [J] after arrival, for departures ``at``."""
+        count = len(trip)
+        ready = at + trip.steps[at % count]
+        if trip.periodic:
+            return np.asarray(later[ready % count])
+        inside = ready < count
+        return np.where(inside, later[np.where(inside, ready, 0)], np.inf)
+
+    def best_from(self, values: FloatArray, trip: TripTable) -> FloatArray:
+        """Return the least energy [J] of a ship that is ready for a trip at each departure."""
+        count = len(trip)
+        least = _least_ahead(values, self.width)
+        at = np.arange(len(values))
+        ahead = np.where(np.isfinite(trip.duration[at % count]), at, len(values))
+        ahead = np.minimum.accumulate(ahead[::-1])[::-1]  # the next departure that is possible
+        padded = np.append(least, np.inf)
+        return np.asarray(padded[ahead] - self.hotel * at)[:count]
+
+    def follow(self, rule: str, index: int, values: list[FloatArray] | None) -> WaitingPlan:
+        """Sail all trips by a rule."""
+        ready, energy = index, 0.0
+        departs, arrives = [], []
+        for k, trip in enumerate(self.trips):
+            last = k == len(self.trips) - 1
+            at = self._choose(rule, ready, k, values)
+            energy += self.hotel * (at - ready) + float(self.cost(trip, np.array([at]), last)[0])
+            departs.append(trip.start + trip.step * at)
+            arrives.append(departs[-1] + float(trip.duration[at % len(trip)]))
+            ready = at + int(trip.steps[at % len(trip)])
+            if not (last or trip.periodic or ready < len(trip)):
+                raise self._too_short(arrives[-1])
+        start = self.first.start + self.first.step * index
+        return WaitingPlan(rule, start, tuple(departs), tuple(arrives), energy)
+
+    def _choose(self, rule: str, ready: int, k: int, values: list[FloatArray] | None) -> int:
+        trip = self.trips[k]
+        allowed = self.window(ready, trip)
+        if rule == "none":
+            return int(allowed[0])
+        if values is not None:
+            turn = ready - ready % len(trip) if trip.periodic else 0
+            padded = np.append(values[k], np.inf)
+            wanted = padded[np.minimum(allowed - turn, len(values[k]))]
+            if not np.isfinite(wanted).any():
+                raise self._too_short(trip.start + ready * trip.step)
+        elif rule == "current":
+            wanted = -trip.current[allowed % len(trip)]
+        else:
+            wanted = self.cost(trip, allowed, True) + self.hotel * (allowed - ready)
+        return int(allowed[np.argmin(wanted)])
+
+    def _too_short(self, time: float) -> CoverageError:
+        table = self.first
+        last = float(table.times[-1])
+        return CoverageError(
+            f"No departure is left for a ship that is ready at {format_time(time)}.",
+            f"The trips are known for departures from {format_time(table.start)} to "
+            f"{format_time(last)}, and are not possible at all of them.",
+            "Make the tables longer, allow less waiting or fewer trips.",
+        )
+
+
+def _never(trip: TripTable) -> CoverageError:
+    return CoverageError(
+        f"The trip {trip.name!r} cannot be made at any of its {len(trip)} departures.",
+        "All of them meet too little water, too strong a current or weather beyond the limits.",
+        "Ask for less clearance, or choose another time, track or ship.",
+    )
+
+
+def _least_ahead(values: FloatArray, width: int) -> FloatArray:
+    """Return the least of each value and the ``width`` after it, by doubling windows."""
+    least, span = values.copy(), 1
+    while 2 * span <= width + 1:
+        least[:-span] = np.minimum(least[:-span], least[span:])
+        span *= 2
+    rest = width + 1 - span
+    if rest:
+        least[:-rest] = np.minimum(least[:-rest], least[rest:])
+    return least
+
+
+def _check(trips: Sequence[TripTable]) -> None:
+    if not trips:
+        raise InputError("There are no trips.", "At least one is needed.", "Give some.")
+    kinds = {(t.start, t.step, len(t), t.periodic) for t in trips}
+    if len(kinds) > 1:
+        raise InputError(
+            "The trips are not known for the same departures.",
+            "All tables must have one start, step, length and period.",
+            "Make them with the same start, end or period, and step.",
+        )

@@ -1,0 +1,56 @@
+"""What a first run compiles in a second process (`thalweg.kernels.compilation.warm_up`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thalweg.core.geodesy import inverse
+from thalweg.kernels import codes
+from thalweg.network import Network, NetworkMeta
+
+
+def compile_search() -> None:
+    """Search and smooth two nodes in open water, as a plan does."""
+    from thalweg.route import Track, smooth
+    from thalweg.sea import GridFields, StationFields
+    from thalweg.search import earliest_arrival, lower_bound
+    from thalweg.ship import Ship
+
+    network = _two_nodes()
+    times = np.array([0.0, 7200.0])
+    index = np.full(codes.CHANNELS, -1)
+    index[[codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CH]] = [0, 1, 2]
+    stations = StationFields(times, np.zeros((2, 2, 3), np.float32), index)
+    table = Ship.load("handysize-bulker").tabulate()
+    limits = np.array([-np.inf, 8.0, np.inf])
+    options = {"start": 0, "goal": 1, "depart": 0.0, "setting": 0, "limits": limits}
+    earliest_arrival(network, stations, table, top_speed=10.0, **options)  # type: ignore[arg-type]
+    lower_bound(network, stations, table, top_speed=10.0, **options)  # type: ignore[arg-type]
+    raster = GridFields(times, -0.1, 0.1, -0.1, 0.1, np.zeros((2, 4, 4, 3), np.float32), index)
+    track = Track([0.0, 0.02, 0.0], [0.0, 0.05, 0.1], 0.0, None, [0, 0])  # type: ignore[arg-type]
+    smooth(track, table=table, fields=raster, limits=limits)
+
+
+def _two_nodes() -> Network:
+    lat, lon = np.zeros(2), np.array([0.0, 0.1])
+    length, _, _ = inverse(0.0, 0.0, 0.0, 0.1)
+    ones = np.ones(2, np.float32)
+    return Network(
+        station_lat=lat,
+        station_lon=lon,
+        n_nodes=2,
+        indptr=np.array([0, 1, 2]),
+        target=np.array([1, 0], np.int32),
+        length=np.full(2, float(length)),
+        course=np.radians([90.0, 270.0]).astype(np.float32),
+        depth=np.full(2, np.inf, np.float32),
+        factor=ones,
+        price=ones,
+        via_ptr=np.zeros(3, np.int64),
+        via_a=np.empty(0, np.int32),
+        via_b=np.empty(0, np.int32),
+        via_w=np.empty(0, np.float32),
+        via_s=np.empty(0, np.float32),
+        can_wait=np.ones(2, np.bool_),
+        meta=NetworkMeta("two nodes", 11_000.0, 2, np.pi / 8),
+    )

@@ -1,0 +1,204 @@
+"""Plans under an uncertain forecast: the route that is best over all members of an ensemble."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import NoRouteError
+from thalweg.planning.pareto.exploration import not_dominated, spread
+from thalweg.planning.pareto.objective import Criterion, find_criterion
+from thalweg.planning.pareto.plan_front import FrontOfPlan
+from thalweg.planning.plan import Plan
+from thalweg.planning.request.requirements import least_clearance
+from thalweg.planning.voyage import TRADES, Voyage
+from thalweg.route import Distribution, Route, evaluate_members
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+
+#: Members that are planned for; every route found is then sailed in all members.
+MOST_PLANNED = 3
+#: Routes of a front that are sailed in all members.
+MOST_SAILED = 10
+_QUANTITY = {
+    "time": "time_h",
+    "front": "time_h",
+    "fuel": "fuel_t",
+    "energy": "energy_mwh",
+    "cost": "cost",
+    "co2": "co2_t",
+}
+
+
+@dataclass(frozen=True)
+class Sailed:
+    """A route with the plan it comes from and its place there, sailed in all members."""
+
+    member: int
+    plan: Plan
+    index: int
+    route: Route
+    distribution: Distribution
+    time: float
+    value: float
+
+
+def plan_robust(
+    voyage: Voyage, *, ship: Ship, sea: Sea, plan_one: Callable[[Voyage, Sea], Plan]
+) -> Plan:
+    """Plan with an ensemble.
+
+    The voyage is planned in a few members, evenly through their numbers; every route found is
+    sailed in all members, and what is least by the mean (or by the mean of the worst tenth) over
+    them is chosen. What no member's plan found is not looked at: the choice is the best of these
+    routes, not of all.
+
+    Parameters
+    ----------
+    voyage : Voyage
+    ship : Ship
+    sea : Sea
+        An ensemble.
+    plan_one : callable
+        Plans a voyage in one sea.
+
+    Returns
+    -------
+    Plan
+        Of the member the chosen route (or the first of the front) comes from, with the
+        distributions of its routes in ``ensemble``.
+
+    Raises
+    ------
+    NoRouteError
+        If no member has a route.
+    """
+    measure = voyage.ensemble or "mean"
+    planned = np.unique(np.linspace(0, sea.members - 1, min(MOST_PLANNED, sea.members)).astype(int))
+    plans: dict[int, Plan] = {}
+    refusal = None
+    tried: list[int] = []
+    for member in planned.tolist():
+        tried.append(member)
+        try:
+            plans[member] = plan_one(voyage, sea.member(member))
+        except NoRouteError as error:
+            refusal = error
+            continue
+        if plans[member].cancelled:
+            break
+    if not plans:
+        assert refusal is not None  # some member was planned
+        raise refusal
+    sailed = [
+        item
+        for member, plan in plans.items()
+        for item in _sailed(voyage, member, plan, ship, sea, measure)
+    ]
+    usable = [item for item in sailed if math.isfinite(item.value)] or sailed
+    criterion = find_criterion(voyage, ship) if voyage.objective in TRADES else None
+    chosen = _chosen(voyage, criterion, usable, tried, measure)
+    stopped = any(plan.cancelled for plan in plans.values())
+    return dataclasses.replace(chosen, cancelled=stopped)
+
+
+def _sailed(
+    voyage: Voyage, member: int, plan: Plan, ship: Ship, sea: Sea, measure: str
+) -> list[Sailed]:
+    """Sail the routes of a plan in all members."""
+    terms = find_criterion(voyage, ship).terms if voyage.objective in TRADES else None
+    found = []
+    for index in _picked(plan):
+        route = plan.routes[index]
+        distribution = evaluate_members(
+            route,
+            ship=ship,
+            sea=sea,
+            terms=terms,
+            chart=None if plan.surroundings is None else plan.surroundings.chart,
+            min_ukc=least_clearance(voyage, ship),
+        )
+        time = distribution.risk("time_h", measure)
+        found.append(
+            Sailed(
+                member, plan, index, route, distribution, time, _value(plan, distribution, measure)
+            )
+        )
+    return found
+
+
+def _picked(plan: Plan) -> list[int]:
+    """Return the routes that are sailed in all members: along a front, or the least of it."""
+    if plan.front is None or plan.voyage.objective != "front":
+        return [0] if plan.front is None else np.argsort(plan.front.values)[:MOST_SAILED].tolist()
+    time = np.array([route.time_h for route in plan.routes])
+    return [int(i) for i in spread(time, plan.front.values, MOST_SAILED)]
+
+
+def _value(plan: Plan, distribution: Distribution, measure: str) -> float:
+    """Return what a route is chosen by: its risk in the criterion, or its length."""
+    if plan.voyage.objective == "distance":
+        return distribution.routes[0].distance_nm
+    quantity = _QUANTITY[plan.voyage.objective]
+    if plan.voyage.objective == "front" and plan.front is not None:
+        quantity = _QUANTITY[plan.front.criterion]
+    return distribution.risk(quantity, measure)
+
+
+def _chosen(
+    voyage: Voyage, criterion: Criterion | None, sailed: list[Sailed], planned: list[int],
+    measure: str,
+) -> Plan:  # fmt: skip
+    """Return the plan of the member that the best route comes from, with what is best over all.
+
+    All routes are told as they are sailed in that one member, so that they can be compared; what
+    they are over the members is in ``ensemble``.
+    """
+    time = np.array([item.time for item in sailed])
+    value = np.array([item.value for item in sailed])
+    if voyage.objective == "front":
+        order = [sailed[index] for index in not_dominated(time, value)]
+    else:
+        order = [sailed[int(np.argmin(value))]]
+    first, shown = order[0].plan, order[0].member
+    routes = tuple(item.distribution.routes[shown] for item in order)
+    members = len(order[0].distribution.routes)
+    word = "mean" if measure == "mean" else "mean of the worst tenth"
+    note = (
+        f"Planned in members {', '.join(map(str, planned))} of {members} and sailed in all; "
+        f"chosen by the {word} over the members, told as sailed in member {shown}."
+    )
+    notes = [note, *first.notes, *(n for item in order for n in item.distribution.notes)]
+    return dataclasses.replace(
+        first,
+        voyage=voyage,
+        routes=routes,
+        front=_front(order, routes, criterion),
+        notes=tuple(dict.fromkeys(notes)),
+        ensemble=tuple(_row(item) for item in order),
+    )
+
+
+def _front(
+    order: list[Sailed], routes: tuple[Route, ...], criterion: Criterion | None
+) -> FrontOfPlan | None:
+    """Return the front of the chosen routes, which may come from several plans."""
+    first = order[0].plan.front
+    if first is None or criterion is None:
+        return None
+    fronts = [(item.plan.front, item.index) for item in order]
+    return dataclasses.replace(
+        first,
+        values=np.array([criterion.of(route) for route in routes]),
+        stages=tuple(front.stages[i] for front, i in fronts if front is not None),
+        ways=tuple(front.ways[i] for front, i in fronts if front is not None),
+    )
+
+
+def _row(item: Sailed) -> dict[str, Any]:
+    return {"time_risk_h": item.time, "value_risk": item.value, **item.distribution.as_dict()}

@@ -1,0 +1,60 @@
+"""The sea frozen at the stations of a network."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.kernels import codes
+from thalweg.network import Network
+from thalweg.sea import StationFields
+
+if TYPE_CHECKING:
+    from thalweg.planning.single.passage import Task
+
+#: Frozen fields larger than this are refused before they are taken [bytes].
+MEMORY_LIMIT = 4_000_000_000
+
+
+@dataclass(frozen=True)
+class Frozen:
+    """The sea at the stations of a network, and what it allows at most."""
+
+    stations: StationFields
+    top_speed: float
+
+
+def freeze(task: Task, network: Network, start: float, end: float) -> Frozen:
+    """Freeze the sea at the stations of a network.
+
+    Raises
+    ------
+    InputError
+        If it would take more memory than is allowed.
+    """
+    lat, lon = network.station_lat, network.station_lon
+    steps = len(task.sea.times(start, end))
+    channels = task.needs.channels
+    extra = None
+    if task.ship.speed_field is not None:
+        extra = {codes.SPEED_FIELD: task.ship.speed_field}
+    size = len(lat) * steps * (len(channels) + bool(extra)) * 4
+    if size > MEMORY_LIMIT:
+        raise InputError(
+            f"The sea at {len(lat):,} stations and {steps:,} times takes {size / 1e9:.1f} GB.",
+            f"At most {MEMORY_LIMIT / 1e9:.0f} GB are taken.",
+            "Use a coarser resolution or a shorter window.",
+        )
+    stations = task.sea.freeze_stations(lat, lon, start, end, channels, extra=extra)
+    return Frozen(stations, _top_speed(task, stations))
+
+
+def _top_speed(task: Task, stations: StationFields) -> float:
+    column = stations.channel_index[codes.SPEED_FIELD]
+    if column >= 0:
+        return float(np.nanmax(stations.values[:, :, column], initial=0.0))
+    top = task.ship.top_speed(task.setting)
+    return float(task.ship.speeds[task.setting] if top is None else top)

@@ -1,0 +1,142 @@
+"""A network on the nodes of the sea's own model, thinned where its flow is slow and straight."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, distance
+from thalweg.core.units import HOUR
+from thalweg.network import Network, mesh
+from thalweg.network.triangular_mesh.thinning import dimensionless_curl
+from thalweg.sea import Mesh, Sea, standard_names
+
+MOST_TIMES = 150  #: moments at which the flow is looked at
+MOST_NODES = 30_000  #: models with more nodes are thinned where no spacing is asked for
+_LOOK = 25 * HOUR  # the flow is looked at for two tides
+_WIDER = 1.25  # steps of the spacing until few enough nodes are left
+_SLOW = 0.1  # speed [m/s] by which curl is made dimensionless at least
+
+
+def pruned_mesh(
+    chart: Chart,
+    sea: Sea,
+    start: float,
+    end: float,
+    *,
+    largest_spacing: float | None,
+    **options: Any,
+) -> Network:
+    """Build a network on the model's nodes, dense where the flow is strong or turns.
+
+    Parameters
+    ----------
+    chart : Chart
+    sea : Sea
+        With a mesh.
+    start, end : float
+        Period over which the flow is looked at [s since 1970]; what the data do not cover of it is
+        left out.
+    largest_spacing : float or None
+        Spacing of the nodes in still water [m]; also the length by which curl becomes
+        dimensionless, with the greatest speed of the flow: the change of the current over one
+        spacing, as a share of it. None keeps all nodes.
+    **options
+        ``alpha``, ``curl_power``, ``speed_power``, ``rings`` and ``sampling`` of
+        `thalweg.network.mesh`.
+
+    Returns
+    -------
+    Network
+        Without start and goal (see `thalweg.network.with_endpoints`).
+
+    Raises
+    ------
+    InputError
+        If the sea has no mesh.
+    """
+    model = sea.mesh()
+    if model is None:
+        raise InputError(
+            "A mesh network is asked, but the sea has no mesh.",
+            "Meshes come from UGRID files of hydrodynamic models.",
+            "Use a lattice, or open such a file first.",
+        )
+    speed, curl = None, None
+    if largest_spacing is not None:
+        speed, curl = flow_of(sea, start, end, length=largest_spacing)
+    return mesh(
+        chart, model.lat, model.lon, model.triangles, speed=speed, curl=curl,
+        largest_spacing=largest_spacing, **options,
+    )  # fmt: skip
+
+
+def model_network(
+    chart: Chart, sea: Sea, period: tuple[float, float], *, spacing: float | None = None
+) -> Network:
+    """Build a network on the model's nodes: all, or those that a spacing leaves.
+
+    Parameters
+    ----------
+    chart : Chart
+    sea : Sea
+        With a mesh.
+    period : tuple of float
+        Of the voyage [s since 1970]; the flow is looked at for its first 25 h.
+    spacing : float, optional
+        In still water [m], less where the flow is strong or turns. By default all nodes are kept,
+        of models with more than `MOST_NODES` about so many.
+    """
+    model = sea.mesh()
+    if spacing is None and (model is None or model.lat.size <= MOST_NODES):
+        return pruned_mesh(chart, sea, *period, largest_spacing=None)
+    start, end = period[0], min(period[1], period[0] + _LOOK)
+    if spacing is not None:
+        return pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
+    assert model is not None  # told by the size above
+    spacing = 2.0 * mean_spacing(model)
+    network = pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
+    while network.n_nodes > MOST_NODES:
+        spacing *= max(_WIDER, math.sqrt(network.n_nodes / MOST_NODES))
+        network = pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
+    return network
+
+
+def mean_spacing(model: Mesh) -> float:
+    """Return the mean length of the sides of a model's triangles [m]."""
+    a, b = model.triangles[:, 0], model.triangles[:, 1]
+    return float(np.mean(distance(model.lat[a], model.lon[a], model.lat[b], model.lon[b])))
+
+
+def flow_of(
+    sea: Sea, start: float, end: float, *, length: float
+) -> tuple[FloatArray | None, FloatArray | None]:
+    """Return the largest speed [m/s] and dimensionless curl over a period at the mesh's nodes.
+
+    Where and when the current is not known (dry flats) it counts as still; without currents both
+    are None.
+    """
+    model = sea.mesh()
+    if model is None or not set(standard_names.CURRENT.pair) <= sea.variables:
+        return None, None
+    times = _times(sea, start, end)
+    flow = sea.series(standard_names.CURRENT.pair, times, model.lat, model.lon)
+    east, north = (np.nan_to_num(flow[name]).T for name in standard_names.CURRENT.pair)
+    speed = np.hypot(east, north).max(axis=0)
+    curl = dimensionless_curl(
+        model.lat, model.lon, model.triangles, east, north,
+        length=length, speed=max(float(speed.max()), _SLOW),
+    )  # fmt: skip
+    return np.asarray(speed), curl
+
+
+def _times(sea: Sea, start: float, end: float) -> FloatArray:
+    """Return native times of the current in a period, not too many."""
+    times = sea.times(start, end, names=standard_names.CURRENT.pair)
+    if times.size <= MOST_TIMES:
+        return times if times.size else np.array([start])
+    return np.asarray(times[np.linspace(0, times.size - 1, MOST_TIMES).round().astype(int)])

@@ -1,0 +1,1 @@
+"""Plans that trade time against fuel, energy, cost or emissions."""

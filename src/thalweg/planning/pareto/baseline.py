@@ -1,0 +1,139 @@
+"""What the weather is worth: the weather-blind route, sailed in the same weather."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.units import KNOT
+from thalweg.route import Route, Track, better_route, evaluate
+from thalweg.sea import Sea
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from thalweg.planning.pareto.objective import Criterion
+    from thalweg.planning.single.passage import Task
+
+
+_MOST_SPEEDS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """The shortest way, sailed at each constant setting through the same weather.
+
+    Attributes
+    ----------
+    routes : tuple of Route
+        Refereed, one per setting that can be sailed to its end; by ascending time.
+    values : ndarray
+        What each counts, in the unit of the front.
+    rows : tuple of dict
+        For each of them what the front saves: ``saved_h`` at the same value, ``saved`` (and its
+        ``saved_percent``) in the same time; None where the front does not reach so far.
+    """
+
+    routes: tuple[Route, ...]
+    values: FloatArray
+    rows: tuple[dict[str, Any], ...]
+
+
+def blind_tracks(
+    task: Task, lat: FloatArray, lon: FloatArray, settings: NDArray[np.int64]
+) -> list[Track]:
+    """Return the shortest way over the chart from a rough one, at up to six settings.
+
+    Where the chart tells no depth but the sea does, the sea's depth is kept to.
+    """
+    depth_from_sea = math.isfinite(task.needs.limits[0]) and not task.chart.has_depth
+    sea = task.sea if depth_from_sea else _still(task)
+    depart = task.voyage.earliest_departure
+    top = len(task.ship.speeds) - 1
+    rough = Track(lat, lon, depart, None, np.full(len(lat) - 1, top))  # type: ignore[arg-type]
+    common = {"ship": task.ship, "sea": sea, "chart": task.chart, "min_ukc": task.min_ukc}
+    scored = evaluate(rough, strict=False, **common)  # type: ignore[arg-type]
+    short = better_route(
+        scored,
+        table=task.table,
+        limits=task.needs.limits,
+        objective="distance",
+        wait=False,
+        **common,  # type: ignore[arg-type]
+    ).track
+    legs = len(short.lat) - 1
+    chosen = settings[
+        np.unique(np.linspace(0, len(settings) - 1, _MOST_SPEEDS).round().astype(int))
+    ]
+    return [short.replaced(setting=np.full(legs, s)) for s in chosen]
+
+
+def _still(task: Task) -> Sea:
+    """Return the sea without weather, with all the variables that the ship reads."""
+    return Sea.layered(Sea.calm(), task.sea)
+
+
+def sail_blind(task: Task, criterion: Criterion, tracks: Sequence[Track]) -> list[Route]:
+    """Sail weather-blind tracks in the weather of the plan; by ascending time."""
+    sailed = [
+        evaluate(
+            track,
+            ship=task.ship,
+            sea=task.sea,
+            chart=task.chart,
+            min_ukc=task.min_ukc,
+            strict=False,
+            terms=criterion.terms,
+        )
+        for track in tracks
+    ]
+    known = [route for route in sailed if math.isfinite(criterion.of(route))]
+    return sorted(known, key=lambda route: route.time_h)
+
+
+def compare(
+    task: Task,
+    criterion: Criterion,
+    front: Sequence[Route],
+    values: FloatArray,
+    blind: Sequence[Route],
+) -> Comparison | None:
+    """Tell what a front saves over weather-blind routes.
+
+    Between two routes of the front it is read off the line between them: sailing the one for a
+    part of the way and the other for the rest comes close to that.
+    """
+    if not blind:
+        return None
+    order = np.argsort([route.time_h for route in front])
+    time = np.array([front[i].time_h for i in order])
+    value = np.minimum.accumulate(np.asarray(values)[order])
+    counts = np.array([criterion.of(route) for route in blind])
+    speeds = np.asarray(task.ship.speeds) / KNOT
+    rows = tuple(
+        {"speed_kn": float(speeds[int(route.track.setting[0])])} | _row(route, count, time, value)
+        for route, count in zip(blind, counts)
+    )
+    return Comparison(tuple(blind), counts, rows)
+
+
+def _row(blind: Route, count: float, time: FloatArray, value: FloatArray) -> dict[str, Any]:
+    """Return what a front saves over one route: None where it holds nothing to compare."""
+    no_earlier = blind.time_h >= time[0] * (1.0 - 1e-6)
+    no_cheaper = count >= value[-1] * (1.0 - 1e-6)
+    saved = float(count - np.interp(blind.time_h, time, value)) if no_earlier else None
+    saved_h = float(blind.time_h - np.interp(-count, -value, time)) if no_cheaper else None
+    return {
+        "time_h": blind.time_h,
+        "value": float(count),
+        "distance_nm": blind.distance_nm,
+        "feasible": blind.feasible,
+        "saved_h": saved_h,
+        "saved": saved,
+        "saved_percent": None if saved is None or count <= 0 else 100.0 * saved / float(count),
+    }

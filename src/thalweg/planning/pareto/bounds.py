@@ -1,0 +1,107 @@
+"""How good a front is: the lower front of open water, and what no route at all undercuts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thalweg.core.geodesy import distance
+from thalweg.core.units import HOUR
+from thalweg.planning.pareto.exploration import Explored, Means, not_dominated, strongest_current
+from thalweg.planning.pareto.plan_front import FrontOfPlan
+from thalweg.planning.plan import Proof
+from thalweg.search import extreme
+
+_KIND = (
+    "the lower front of the network: all as favourable as at any moment of each time step, "
+    "lengths as short as in open water"
+)
+_KIND_CERTAIN = "the geodesic at the greatest speed over ground in the data"
+
+
+def lower_front(explored: list[Explored], criterion_floor: float) -> np.ndarray:
+    """Return the lower front of open water over all ways round: times [h] and values.
+
+    A way in open water that takes T and costs C has one on the network that takes at most T / k
+    and costs at most C / k, with k the factor of directions: so C is at least k L(T / k), L being
+    the lower front of the network. As certain as that factor.
+    """
+    time, value = [np.empty(0)], [np.empty(0)]
+    for one in explored:
+        if one.exact is None:
+            continue
+        k = one.factor
+        time.append(k * one.exact.lower_time / HOUR)
+        value.append(np.maximum(k * one.exact.lower_cost, criterion_floor))
+    times, values = np.concatenate(time), np.concatenate(value)
+    kept = not_dominated(times, values)
+    return np.array([times[kept], values[kept]]).reshape(2, -1)
+
+
+def disproved(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the factors (time, value) by which routes show the lower front to be too high.
+
+    1 where none does. Ways between islands may be shorter, by more than the factor of directions,
+    than those of a coarse network.
+    """
+    if not lower.size:
+        return np.ones(2)
+    soonest = float(lower[0].min())  # 0 where a setting is slower than the current
+    factors = np.array([min(1.0, float(time_h.min()) / soonest) if soonest > 0.0 else 1.0, 1.0])
+    for time, value in zip(time_h, values):
+        bound = lower[1, factors[0] * lower[0] <= time].min(initial=math.inf)
+        if value < bound < math.inf:
+            factors[1] = min(factors[1], float(value / bound))
+    return factors
+
+
+def proof_of(means: Means, explored: list[Explored], front: FrontOfPlan, *, whole: bool) -> Proof:
+    """Return the bound: of the fast end for a whole front, else of the criterion."""
+    certain_time, certain_value = certain(means, explored)
+    kind = _KIND if front.lower.size else _KIND_CERTAIN
+    if whole:
+        fastest = min(one.first.duration for one in explored) / HOUR
+        lower = front.lower[0].min() if front.lower.size else certain_time
+        return Proof(max(float(lower), certain_time), kind, certain_time, fastest)
+    points = [point for one in explored if one.exact for point in one.exact.points]
+    solver = min((point.cost for point in points), default=math.nan)
+    value = float(front.values[0])
+    lower = float(front.lower[1].min()) if front.lower.size else certain_value
+    if lower > value:  # disproved by the route itself, which is not confined to the network
+        lower = certain_value
+    return Proof(max(lower, certain_value), kind, certain_value, solver)
+
+
+def certain(means: Means, explored: list[Explored]) -> tuple[float, float]:
+    """Return what no route at all undercuts: a time [h] and a value of the criterion.
+
+    The geodesic at the greatest speed over ground that the data allow, for the value with the
+    least rate of the best setting and the least weight of it.
+    """
+    task, criterion = means.task, means.criterion
+    start, goal = means.ends[0], means.ends[-1]
+    geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
+    current = max(strongest_current(one.frozen.stations) for one in explored)
+    least = min(criterion.inside, criterion.outside)
+    if criterion.name == "cost":
+        least *= min(float(one.way.network.price.min()) for one in explored)
+    rates = np.maximum(extreme(means.rate.table.kernel_arrays(), np.fmin), 0.0)
+    fastest, value = 0.0, math.inf
+    for setting in means.settings:
+        over_ground = float(task.ship.top_speed(int(setting)) or math.inf) + current
+        fastest = max(fastest, over_ground)
+        per_second = least * float(rates[setting]) + criterion.time_price
+        value = min(value, per_second * geodesic / over_ground)
+    return geodesic / fastest / HOUR, value
+
+
+def lowered_notes(share: np.ndarray) -> list[str]:
+    """Say by how much the lower front had to be lowered, if at all."""
+    least = float(share.min())
+    if least == 1.0:
+        return []
+    return [
+        f"Refined routes undercut the lower front of the network by up to {1.0 - least:.1%}; it "
+        "was lowered by that, and is evidence, no proof."
+    ]

@@ -1,0 +1,118 @@
+"""`FrontOfPlan`: the trade of a plan, point by point, with its bound and what it is compared to."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR
+
+if TYPE_CHECKING:
+    from thalweg.planning.pareto.baseline import Comparison
+    from thalweg.route import Route
+
+
+@dataclass(frozen=True, eq=False)
+class FrontOfPlan:
+    """The trade of time against one other thing, as refereed.
+
+    Attributes
+    ----------
+    criterion : {"fuel", "energy", "cost", "co2"}
+        What is traded for time.
+    unit : str
+        Its unit: t, MWh, or a currency.
+    values : ndarray (n,)
+        Of the plan's routes, in their order.
+    stages : tuple of str (n,)
+        What each route comes from: ``"fastest"`` (refined for time), ``"exact"``, ``"way round"``
+        (a taut one with its best speeds), ``"polish"``, the evolutionary method, or ``"constant
+        speed"`` (of the weather-blind route).
+    ways : tuple of str (n,)
+        The way round of each: its canals, or ``"open sea"``; where routes pass land on other sides,
+        with these (`thalweg.planning.pareto.route_names.names_of_ways`).
+    lower : ndarray (2, m)
+        Times [h] and values of the lower front: on the evidence of the network no route that
+        takes at most such a time counts less.
+    comparison : Comparison or None
+        The weather-blind route in the same weather.
+    """
+
+    criterion: str
+    unit: str
+    values: FloatArray
+    stages: tuple[str, ...]
+    ways: tuple[str, ...]
+    lower: FloatArray
+    comparison: Comparison | None = None
+
+    def lower_at(self, time_h: float) -> float:
+        """Return the least value of the lower front at a time [h]; NaN before it begins."""
+        return lower_at(self.lower, time_h)
+
+    def gaps(self, routes: tuple[Route, ...]) -> list[float | None]:
+        """Return how far each route may be from the best of its time [fraction of its value]."""
+        found: list[float | None] = []
+        for route, value in zip(routes, self.values):
+            low = self.lower_at(route.time_h)
+            known = math.isfinite(low) and value > 0
+            found.append(max(0.0, (float(value) - low) / float(value)) if known else None)
+        return found
+
+    def rows(self, routes: tuple[Route, ...]) -> list[dict[str, Any]]:
+        """Return one plain dictionary per route."""
+        rows = []
+        for number, (route, gap) in enumerate(zip(routes, self.gaps(routes))):
+            row = {
+                "number": number + 1,
+                "time_h": route.time_h,
+                "arrive": format_time(route.arrive),
+                self.column: float(self.values[number]),
+                "fuel_t": route.fuel_t,
+                "energy_mwh": route.energy_mwh,
+                "distance_nm": route.distance_nm,
+                "waiting_h": route.waiting_h,
+                "gap": gap,
+                "stage": self.stages[number],
+                "way": self.ways[number],
+                "feasible": route.feasible,
+                "referee_tolerance_h": route.tolerance_s / HOUR,
+            }
+            rows.append(row)
+        return rows
+
+    @property
+    def column(self) -> str:
+        """The criterion with its unit, as files name it."""
+        return f"{self.criterion}_{self.unit.lower()}"
+
+    def as_dict(self, routes: tuple[Route, ...]) -> dict[str, Any]:
+        """Return the front as plain data for JSON."""
+        return {
+            "criterion": self.criterion,
+            "unit": self.unit,
+            "points": self.rows(routes),
+            "lower": [
+                {"time_h": float(t), self.column: float(v)} for t, v in self.lower.T if t == t
+            ],
+        }
+
+
+def lower_at(lower: FloatArray, time_h: float) -> float:
+    """Return the least value of a lower front (2, m) among the times up to one; NaN if none."""
+    reached = lower[1][lower[0] <= time_h + 1e-9]
+    return float(reached.min()) if reached.size else math.nan
+
+
+def knee(time: FloatArray, value: FloatArray) -> int:
+    """Return the index of the point of a front that lies farthest below the line of its ends."""
+    if len(time) < 3:
+        return 0
+    x = (time - time.min()) / max(float(np.ptp(time)), 1e-12)
+    y = (value - value.min()) / max(float(np.ptp(value)), 1e-12)
+    return int(np.argmin(x + y))

@@ -1,0 +1,1 @@
+"""Pictures of a plan: map, profile, Pareto front, space-time diagram."""

@@ -1,0 +1,130 @@
+"""When and where a track is closed: by too little water, or by a current the ship cannot stem.
+
+After van Halem (2019), "Route optimization in dynamic currents", Fig. 4.1: position along the track
+against time, with the periods in which the ship cannot pass.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.route import Route
+from thalweg.route.referee.leg_segments import Pieces, Points, cut
+from thalweg.route.referee.sailing import move_along
+from thalweg.route.referee.sailing_physics import CURRENTS, World, open_world
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+PLACES, TIMES = 240, 240
+_SLACK = 1e-9  # of clearance, as the referee allows [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Closures:
+    """The open and closed periods of a track.
+
+    Attributes
+    ----------
+    distance : float64 array (S,)
+        Along the track [m].
+    times : float64 array (T,)
+        [s since 1970-01-01T00:00Z].
+    shallow : bool array (S, T)
+        Whether there is too little water.
+    strong : bool array (S, T)
+        Whether there is enough, and the ship cannot stem the current on the track's course.
+    unknown : bool array (S, T)
+        Whether depth or current are not known.
+    clearance : float64 array (S, T)
+        Under-keel clearance [m]; +inf where nothing tells depth, NaN where it is not known.
+    """
+
+    distance: FloatArray
+    times: FloatArray
+    shallow: NDArray[np.bool_]
+    strong: NDArray[np.bool_]
+    unknown: NDArray[np.bool_]
+    clearance: FloatArray
+
+    @property
+    def closed(self) -> NDArray[np.bool_]:
+        """Whether the ship cannot pass, or nobody knows."""
+        return self.shallow | self.strong | self.unknown
+
+
+def find_closures(
+    route: Route,
+    *,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart | None = None,
+    min_ukc: float = 0.0,
+    times: FloatArray | None = None,
+    places: int = PLACES,
+) -> Closures:
+    """Return when a track can be passed where.
+
+    Parameters
+    ----------
+    route : Route
+        As the referee found it.
+    ship, sea, chart
+        As for `thalweg.evaluate`.
+    min_ukc : float, optional
+        Least under-keel clearance [m].
+    times : float64 array (T,), optional
+        [s since 1970]; by default from a little before the departure to a quarter of the time
+        after the arrival.
+    places : int, optional
+        How many places along the track to look at, about; every waypoint is one.
+
+    Returns
+    -------
+    Closures
+    """
+    world = open_world(ship, sea, chart)
+    pieces = cut(route.track, float(route.track.lengths.sum()) / max(places, 2), 1, chart)
+    points = _points(world, pieces)
+    start = np.concatenate([[0.0], np.cumsum(pieces.length)])
+    order = np.lexsort((points.along, points.leg))
+    points = points.part(order)
+    times = default_times(route) if times is None else np.asarray(times, float)
+    shape = (len(points), len(times))
+    wide = points.part(np.repeat(np.arange(shape[0]), shape[1]))
+    motion = move_along(world, pieces.canals, wide, np.tile(times, shape[0]))
+    clearance = (motion.depth - world.ship.draught).reshape(shape)
+    lost = np.zeros(shape, bool)
+    if world.has_current:
+        for name in CURRENTS:
+            lost |= np.isnan(motion.sampled[name]).reshape(shape)
+    sailed = (pieces.canals.number[points.leg] < 0)[:, None]  # canals are always open
+    unknown = sailed & (lost | np.isnan(clearance))
+    shallow = sailed & ~unknown & (clearance < min_ukc - _SLACK)
+    stuck = np.isnan(motion.over_ground) & np.isfinite(motion.through_water)
+    strong = sailed & stuck.reshape(shape) & ~unknown & ~shallow
+    return Closures(start[points.leg] + points.along, times, shallow, strong, unknown, clearance)
+
+
+def default_times(route: Route, count: int = TIMES) -> FloatArray:
+    """Return times from a little before the departure to a while after the arrival."""
+    end = route.arrive if math.isfinite(route.arrive) else float(np.nanmax(route.samples["time"]))
+    length = max(end - route.depart, 60.0)
+    return np.linspace(route.depart - 0.05 * length, end + 0.25 * length, count)
+
+
+def _points(world: World, pieces: Pieces) -> Points:
+    """Return the ends of all pieces, with the charted depth at them."""
+    points = pieces.ends()
+    if world.chart is None or not world.charted:
+        return points
+    charted = np.asarray(world.chart.depth_at(points.lat, points.lon), float)
+    return replace(points, charted=charted)

@@ -1,0 +1,114 @@
+"""The picture of a front: what time buys, its bound, and what the weather-blind route pays."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thalweg.planning.pareto.plan_front import knee
+
+if TYPE_CHECKING:
+    from thalweg.planning.plan import Plan
+
+_WORDS = {"fuel": "fuel", "energy": "energy", "cost": "cost", "co2": "CO2"}
+_COLOURS = ("#c2185b", "#1565c0", "#2e7d32", "#ef6c00", "#6a1b9a", "#00838f")
+_INK = "#22303c"
+
+
+def draw_front(plan: Plan, path: str | Path | None = None) -> Any:
+    """Draw the front of a plan that trades time for fuel, energy, cost or CO2.
+
+    Parameters
+    ----------
+    plan : Plan
+        With a front (its objective is neither ``"time"`` nor ``"distance"``).
+    path : path, optional
+        Where to save the picture (PNG).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    ValueError
+        If the plan has no front.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    front = plan.front
+    if front is None:
+        raise ValueError(f"a plan for least {plan.voyage.objective} has no front")
+    figure = Figure(figsize=(8.4, 5.4), dpi=130, layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    _draw_lower(axes, plan)
+    _draw_blind(axes, plan)
+    _draw_points(axes, plan)
+    axes.set_xlabel("time from departure to arrival [h]")
+    axes.set_ylabel(f"{_WORDS[front.criterion]} [{front.unit}]")
+    axes.set_title(
+        f"{plan.provenance['from']} to {plan.provenance['to']}: what time buys",
+        fontsize=10,
+        loc="left",
+    )
+    axes.grid(alpha=0.3, lw=0.5)
+    axes.legend(fontsize=8, framealpha=0.9)
+    if path is not None:
+        figure.savefig(path)
+    return figure
+
+
+def _draw_points(axes: Any, plan: Plan) -> None:
+    """Draw the routes, a colour for each way round, and name the ends and the knee."""
+    front = plan.front
+    assert front is not None  # checked by the caller
+    time = np.array([route.time_h for route in plan.routes])
+    order = np.argsort(time)
+    axes.step(time[order], front.values[order], where="post", color=_INK, lw=0.8, alpha=0.5)
+    for number, way in enumerate(dict.fromkeys(front.ways)):
+        here = np.array([name == way for name in front.ways])
+        colour = _COLOURS[number % len(_COLOURS)]
+        axes.plot(time[here], front.values[here], "o", ms=5, color=colour, label=f"routes: {way}")
+    chosen = {int(order[0]): "fastest", int(order[-1]): "least"}
+    chosen.setdefault(int(order[knee(time[order], front.values[order])]), "knee")
+    for index, word in chosen.items():
+        value = front.values[index]
+        digits = 0 if value >= 1000.0 else 1 if value >= 100.0 else 2
+        text = f"{word}: {time[index]:.1f} h, {value:,.{digits}f} {front.unit}"
+        axes.annotate(
+            text,
+            (time[index], front.values[index]),
+            xytext=(7, 7),
+            textcoords="offset points",
+            fontsize=7.5,
+            color=_INK,
+        )
+
+
+def _draw_lower(axes: Any, plan: Plan) -> None:
+    front = plan.front
+    assert front is not None
+    shown = front.lower[:, np.isfinite(front.lower).all(axis=0)]
+    if shown.shape[1] < 2:
+        return
+    last = max(route.time_h for route in plan.routes)
+    shown = shown[:, shown[0] <= 1.02 * last]
+    axes.step(*shown, where="post", color="#607d8b", lw=1.2, label="lower front (bound)")
+    axes.fill_between(
+        shown[0], shown[1], shown[1].min() * 0.98, step="post", color="#607d8b", alpha=0.12
+    )
+
+
+def _draw_blind(axes: Any, plan: Plan) -> None:
+    comparison = plan.front.comparison if plan.front is not None else None
+    if comparison is None:
+        return
+    last = 1.15 * max(route.time_h for route in plan.routes)
+    pairs = [(r.time_h, v) for r, v in zip(comparison.routes, comparison.values) if r.time_h < last]
+    if pairs:
+        axes.plot(*np.array(pairs).T, "x--", color=_INK, ms=6, lw=0.8, label="weather-blind route")

@@ -1,0 +1,1 @@
+"""The request: end points, coverage of the data, required variables, restrictions."""

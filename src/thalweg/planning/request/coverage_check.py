@@ -1,0 +1,221 @@
+"""Checks at the door: whether the ends of a voyage lie where the data know anything."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.chart import Chart
+from thalweg.core.errors import InputError, NoRouteError, OutsideAreaError
+from thalweg.core.geodesy import FloatArray, direct, format_position
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.kernels import codes
+from thalweg.planning.request.requirements import Needs
+from thalweg.planning.request.voyage_endpoints import SNAP_PORT, End
+from thalweg.planning.voyage import Voyage
+from thalweg.sea import Sea, standard_names
+from thalweg.ship import Ship
+
+_DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
+#: Where there is no end of the data, the ends are looked at over so long a time [s].
+_LONGEST = 20 * 24 * HOUR
+_MOMENTS = 24
+_RINGS, _BEARINGS, _TRIED = 40, 72, 40
+
+
+def check_kinds(voyage: object, ship: object, sea: object, chart: object) -> None:
+    """Raise `InputError` when an argument of `plan` is not what it should be."""
+    wanted = {
+        "voyage": (voyage, Voyage, "Voyage(start=..., goal=..., depart=...)"),
+        "ship": (ship, Ship, "Ship.load(name or file) or Ship.simple(...)"),
+        "sea": (sea, Sea, "Sea.open(files), Sea.from_functions(...), Sea.storm() or Sea.calm()"),
+        "chart": (chart, Chart, 'Chart.gshhg("i") or Chart.open_water(...)'),
+    }
+    for name, (value, kind, example) in wanted.items():
+        if not isinstance(value, kind):
+            raise InputError(
+                f"The {name} is {value!r}, which is no {kind.__name__}.",
+                f"It is made by {example}.",
+                f"Give a {kind.__name__}.",
+                field=name,
+            )
+
+
+def covered_ends(
+    ends: Sequence[End],
+    *,
+    voyage: Voyage,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart,
+    needs: Needs,
+    last: float,
+) -> list[End]:
+    """Return the ends; ports move to the nearest water that is known and deep enough.
+
+    Parameters
+    ----------
+    ends : sequence of End
+    voyage, ship, sea, chart, needs
+        What is asked and what is needed.
+    last : float
+        Last moment of the data [s since 1970]; may be infinite.
+
+    Raises
+    ------
+    OutsideAreaError
+        If the data never know all that is needed at an end.
+    NoRouteError
+        If the water at an end is too shallow at any tide.
+    """
+    knowledge = _Knowledge(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs, last=last)
+    return [_covered(end, knowledge, chart) for end in ends]
+
+
+class _Knowledge:
+    """What the data must know at a place, and when it is looked for."""
+
+    def __init__(
+        self, *, voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, needs: Needs, last: float
+    ) -> None:
+        channels = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
+        self.names = sorted(
+            (channels | set(ship.needs)) - set(_DIRECTIONS) - {standard_names.BED_DEPTH}
+        )
+        self.sea, self.chart = sea, chart
+        self.depth = float(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
+        first = voyage.earliest_departure
+        end = last if math.isfinite(last) else voyage.latest_departure + _LONGEST
+        self.times = np.linspace(first, end, _MOMENTS)
+
+    def missing(self, lat: FloatArray, lon: FloatArray) -> list[str]:
+        """Return what is not known at a place at any time."""
+        got = self._sample(self.names, lat, lon)
+        lacking = [name for name in self.names if not np.isfinite(got[name]).any()]
+        if math.isfinite(self.depth) and not np.isfinite(self._depths(lat, lon)).any():
+            lacking.append("depth")
+        return lacking
+
+    def suits(self, lat: FloatArray, lon: FloatArray, *, harbour: bool) -> NDArray[np.bool_]:
+        """Return where all is known at some time; for a harbour, always and with water enough."""
+        good = np.ones(lat.shape, bool)
+        often = np.all if harbour else np.any
+        for values in self._sample(self.names, lat, lon).values():
+            good &= often(np.isfinite(values), axis=0)
+        if math.isfinite(self.depth):
+            depths = self._depths(lat, lon)
+            good &= depths >= self.depth if harbour else np.isfinite(depths)
+        return good
+
+    def check_deep_enough(self, end: End) -> None:
+        """Raise `NoRouteError` if the water at an end is too shallow at any tide of the data."""
+        if not math.isfinite(self.depth):
+            return
+        place = np.array([end.lat]), np.array([end.lon])
+        depth, time = float(self._depths(*place)[0]), math.nan
+        if standard_names.WATER_LEVEL in self.sea.variables:
+            first, last = float(self.times[0]), float(self.times[-1])
+            native = self.sea.times(first, last, names=[standard_names.WATER_LEVEL])
+            native = native[(native >= first) & (native <= last)]
+            native = np.append(native, self.times)  # formulas have steps of their own
+            level = self.sea.sample([standard_names.WATER_LEVEL], native, end.lat, end.lon)
+            values = level[standard_names.WATER_LEVEL]
+            if not np.isfinite(values).any():
+                return
+            highest = int(np.nanargmax(values))
+            depth, time = depth + float(values[highest]), float(native[highest])
+        if depth < self.depth:
+            raise _too_shallow(end, depth, time, self.depth)
+
+    def _sample(self, wanted: list[str], lat: FloatArray, lon: FloatArray) -> dict[str, FloatArray]:
+        return self.sea.sample(wanted, self.times[:, None], lat, lon) if wanted else {}
+
+    def _depths(self, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        """Return the depth at chart datum [m]; NaN where nothing tells it."""
+        depths = np.full(lat.shape, math.nan)
+        if self.chart.has_depth:
+            depths = np.asarray(self.chart.depth_at(lat, lon), float)
+        if standard_names.BED_DEPTH in self.sea.variables:
+            bed = self._sample([standard_names.BED_DEPTH], lat, lon)[standard_names.BED_DEPTH]
+            depths = np.fmin(depths, np.fmin.reduce(bed, axis=0))
+        return depths
+
+
+def _covered(end: End, knowledge: _Knowledge, chart: Chart) -> End:
+    here = np.array([end.lat]), np.array([end.lon])
+    if end.is_port and not knowledge.suits(*here, harbour=True)[0]:
+        near = _nearest(end, knowledge, chart, harbour=True)
+        if near is not None:
+            why = "in water that is shallow or outside the data"
+            return replace(end, lat=near[0], lon=near[1], moved_m=near[2], why=why)
+    lacking = knowledge.missing(*here)
+    if not lacking:
+        knowledge.check_deep_enough(end)
+        return end
+    raise OutsideAreaError(
+        f"{end.name} lies outside the data: {', '.join(lacking)} "
+        f"{'is' if len(lacking) == 1 else 'are'} not known there.",
+        _possible(_nearest(end, knowledge, chart, harbour=False), knowledge, lacking),
+        "Choose a place inside, or add data that cover it.",
+        lacking=lacking,
+    )
+
+
+def _too_shallow(end: End, depth: float, time: float, required: float) -> NoRouteError:
+    dry = "is dry" if depth <= 0.0 else f"has at most {depth:.2f} m of water"
+    when = "" if math.isnan(time) else f", at its highest tide at {format_time(time)}"
+    return NoRouteError(
+        f"{end.name} {dry}{when}.",
+        f"{required:.2f} m are needed: {required - depth:.2f} m too little at any tide of the "
+        "data.",
+        "Choose a place in deeper water, sail lighter, or ask less clearance.",
+        reasons={codes.REASONS[codes.DEPTH]: 1},
+        nearest=(end.lat, end.lon),
+        missing_m=required - depth,
+    )
+
+
+def _nearest(
+    end: End, knowledge: _Knowledge, chart: Chart, *, harbour: bool
+) -> tuple[float, float, float] | None:
+    """Return the nearest navigable water that suits: lat, lon [deg], distance [m]."""
+    radius, bearing = np.meshgrid(
+        np.linspace(0.0, SNAP_PORT, _RINGS + 1)[1:],
+        np.linspace(0.0, 2.0 * math.pi, _BEARINGS, endpoint=False),
+        indexing="ij",
+    )
+    lat, lon = direct(*end.origin, bearing.ravel(), radius.ravel())
+    use = np.asarray(chart.is_navigable(lat, lon), bool)
+    use[use] = knowledge.suits(lat[use], lon[use], harbour=harbour)
+    away = radius.ravel()
+    places = np.flatnonzero(use)
+    for k in places[np.argsort(away[places], kind="stable")][:_TRIED]:
+        water = chart.nearest_navigable(float(lat[k]), float(lon[k]), largest=2_000.0)
+        if water is not None and water[2] < 1_000.0:
+            return float(lat[k]), float(lon[k]), float(away[k])
+    return None
+
+
+def _possible(
+    near: tuple[float, float, float] | None, knowledge: _Knowledge, lacking: list[str]
+) -> str:
+    if near is not None:
+        return (
+            f"The nearest water they know is {near[2] / NAUTICAL_MILE:.1f} nm away, at "
+            f"{format_position(near[0], near[1])}."
+        )
+    rows = [row for row in knowledge.sea.coverage() if row.variable in lacking]
+    rows = [row for row in rows if row.north - row.south < 180.0]
+    if not rows:
+        return f"They know none within {SNAP_PORT / NAUTICAL_MILE:.0f} nm."
+    south, north = min(row.south for row in rows), max(row.north for row in rows)
+    west, east = min(row.west for row in rows), max(row.east for row in rows)
+    return (
+        f"The data lie between {format_position(south, west)} and {format_position(north, east)}, "
+        "perhaps with gaps."
+    )

@@ -1,0 +1,134 @@
+"""What the sea must supply for a ship and a voyage, and what is assumed where it does not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.core.errors import MissingVariableError, OutsidePeriodError
+from thalweg.core.time import format_time
+from thalweg.kernels import codes
+from thalweg.planning.voyage import Voyage
+from thalweg.sea import Sea, standard_names
+from thalweg.ship import Ship
+
+_CHANNEL_OF = {name: channel for channel, name in standard_names.CHANNEL_VARIABLES.items()}
+
+
+@dataclass(frozen=True)
+class Needs:
+    """What is looked at along the way.
+
+    Attributes
+    ----------
+    channels : tuple of int
+        Channels of the sea to freeze (see `thalweg.kernels.codes`).
+    limits : ndarray
+        Limits for the kernels, in their order.
+    notes : tuple of str
+        What is assumed because no data say otherwise.
+    """
+
+    channels: tuple[int, ...]
+    limits: np.ndarray
+    notes: tuple[str, ...]
+
+
+def find_needs(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -> Needs:
+    """Check that the sea supplies what the ship and the voyage need.
+
+    Raises
+    ------
+    MissingVariableError
+        If a model or a limit of the ship needs a variable that no data hold, or a clearance is
+        demanded and there is no depth.
+    """
+    _check_variables(ship, sea)
+    notes = list(sea.assumptions)
+    channels = {_CHANNEL_OF[name] for name in ship.needs if name in _CHANNEL_OF}
+    if all(name in sea.variables for name in standard_names.CURRENT.pair):
+        channels |= {codes.CURRENT_EAST, codes.CURRENT_NORTH}
+    else:
+        notes.append("No currents in the data: still water is assumed.")
+    required = _required_depth(voyage, ship, sea, chart, notes)
+    if math.isfinite(required):
+        if standard_names.WATER_LEVEL in sea.variables:
+            channels.add(codes.WATER_LEVEL)
+        else:
+            notes.append("No water levels in the data: depths are taken at chart datum.")
+        if standard_names.BED_DEPTH in sea.variables:
+            channels.add(codes.BED_DEPTH)
+    limits = np.array([required, ship.limits.wave_height, ship.limits.wind_speed], float)
+    return Needs(tuple(sorted(channels)), limits, tuple(notes))
+
+
+def _check_variables(ship: Ship, sea: Sea) -> None:
+    missing = sorted(name for name in ship.needs if name not in sea.variables)
+    if missing:
+        raise MissingVariableError(
+            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not hold.",
+            f"The sea holds: {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            "Add a file with it, or ask for a filling by name (for example --fill waves=0).",
+            missing=missing,
+        )
+
+
+def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: list[str]) -> float:
+    known = chart.has_depth or standard_names.BED_DEPTH in sea.variables
+    if voyage.min_ukc_m is not None and not known:
+        raise MissingVariableError(
+            f"An under-keel clearance of {voyage.min_ukc_m:g} m is asked, but nothing tells depth.",
+            "Depth comes from a chart with depth (--depth FILE) or from a sea with a bed level.",
+            "Add depth, or plan without a clearance and check it on the chart.",
+        )
+    if "depth" in ship.reads and not known:
+        raise MissingVariableError(
+            f"The speed of {ship.name!r} depends on the depth of the water, which nothing tells.",
+            "Depth comes from a chart with depth (--depth FILE) or from a sea with a bed level.",
+            "Add depth, or take a ship file without a method for shallow water.",
+        )
+    if not known:
+        notes.append("No depth in the data: under-keel clearance was not checked.")
+        return -math.inf
+    return float(ship.draught) + least_clearance(voyage, ship)
+
+
+def least_clearance(voyage: Voyage, ship: Ship) -> float:
+    """Return the least under-keel clearance [m]: the voyage's, else the ship file's own limit."""
+    if voyage.min_ukc_m is not None:
+        return voyage.min_ukc_m
+    return float(ship.data.get("limits", {}).get("min_under_keel_clearance_m", 0.0))
+
+
+def check_period(voyage: Voyage, sea: Sea, needs: Needs) -> float:
+    """Return the last moment at which all that is needed is covered [s since 1970].
+
+    Raises
+    ------
+    OutsidePeriodError
+        If the departure lies outside the data.
+    """
+    needed = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
+    periods: dict[str, list[tuple[float, float]]] = {}
+    for row in sea.coverage():
+        if row.variable in needed:
+            start = -math.inf if row.start is None else row.start
+            end = math.inf if row.end is None else row.end
+            periods.setdefault(row.variable, []).append((start, end))
+    first = max((min(s for s, _ in rows) for rows in periods.values()), default=-math.inf)
+    last = min((max(e for _, e in rows) for rows in periods.values()), default=math.inf)
+    if not first <= voyage.earliest_departure < last or voyage.latest_departure >= last:
+        asked = (
+            voyage.latest_departure
+            if voyage.latest_departure >= last
+            else voyage.earliest_departure
+        )
+        raise OutsidePeriodError(
+            f"Departure {format_time(asked)} is outside the data.",
+            f"The data run from {format_time(first)} to {format_time(last)}.",
+            "Choose a departure inside, or add a dataset.",
+        )
+    return last

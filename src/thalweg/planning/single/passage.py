@@ -1,0 +1,380 @@
+"""One passage between two ends: network, frozen sea, exact search, refinement, referee."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.core.errors import NoRouteError
+from thalweg.core.geodesy import along, distance
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR
+from thalweg.kernels import codes
+from thalweg.kernels.compilation import warm_up
+from thalweg.network import Network
+from thalweg.planning.frozen_sea import Frozen, freeze
+from thalweg.planning.network_selection.network_choice import NetworkChoice, build_network
+from thalweg.planning.request.requirements import Needs, least_clearance
+from thalweg.planning.request.voyage_endpoints import End
+from thalweg.planning.single.no_route_diagnosis import no_route, too_late
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route, Track, better_route, evaluate
+from thalweg.route.refinement.better_route import rank
+from thalweg.sea import Sea
+from thalweg.search import Bound, SearchResult, best_departure, earliest_arrival, lower_bound
+from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
+
+#: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
+_HORIZONS = (2.5, 8.0, 30.0)
+#: Gap to the bound [fraction] from which the way of the bound is refined as well.
+_WIDE_GAP = 0.01
+#: Isochrones are drawn until this multiple of the passage's time.
+_ISOCHRONES = 1.5
+_TWO_TIDES = 25 * HOUR
+#: What is tried in turn while the referee finds a limit broken between the stations: how much finer
+#: the network, the margin on the depth [m], and on the limits of wave height and wind [fraction].
+_ATTEMPTS = (
+    (1, 0.0, 0.0),
+    (1, 0.1, 0.02),
+    (2, 0.0, 0.0),
+    (2, 0.3, 0.05),
+    (4, 0.0, 0.0),
+    (4, 1.0, 0.1),
+)
+
+
+@dataclass(frozen=True)
+class Task:
+    """What stays the same for every passage of a voyage."""
+
+    voyage: Voyage
+    ship: Ship
+    sea: Sea
+    chart: Chart
+    needs: Needs
+    table: PerformanceTable
+    setting: int
+    last: float
+    choice: NetworkChoice
+    tell: Callable[[str], None] = field(default=lambda text: None)
+
+    @property
+    def min_ukc(self) -> float:
+        """The least under-keel clearance asked [m]."""
+        return least_clearance(self.voyage, self.ship)
+
+    @property
+    def latest(self) -> float:
+        """The latest arrival asked for [s since 1970]; inf without any."""
+        asked = self.voyage.arrive_by
+        return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class Passage:
+    """What came of one passage.
+
+    Attributes
+    ----------
+    route : Route
+        The best route, scored by the referee.
+    result : SearchResult
+        What the search on the network found.
+    bound : Bound
+        No route is better than this, in SI, on the evidence of the network.
+    floor : Bound
+        No route at all is better than this.
+    network : Network
+        The network searched.
+    isochrones : ndarray
+        Earliest arrival at every node [s since 1970], for the map; inf where never reached.
+    notes : tuple of str
+        What the user must know.
+    """
+
+    route: Route
+    result: SearchResult
+    bound: Bound
+    floor: Bound
+    network: Network
+    isochrones: np.ndarray
+    notes: tuple[str, ...]
+
+
+def make_passage(task: Task, start: End, goal: End, window: tuple[float, float]) -> Passage:
+    """Find the best route between two ends, departing inside a window of times.
+
+    Raises
+    ------
+    NoRouteError
+        If no route exists within the limits, the data and the latest arrival.
+    """
+    networks: dict[int, Network] = {}
+    passage: Passage | None = None
+    refusal: NoRouteError | None = None
+    for finer, depth, fraction in _ATTEMPTS:
+        if finer not in networks:
+            networks[finer] = _network(task, (start, goal), finer, networks)
+        limits = task.needs.limits * (1.0 - fraction)
+        limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+        try:
+            tried = _attempt(task, networks[finer], (start, goal), window, limits)
+        except NoRouteError as error:
+            refusal = refusal or error
+            denser = _replaceable(task, networks[finer]) or _thinned(task, networks[finer])
+            if passage is None and not denser:
+                raise refusal from None
+            continue
+        if passage is None or tried.route.feasible:
+            passage = tried
+        if passage.route.feasible:
+            break
+    assert passage is not None  # every way without one has raised
+    arrive, latest = passage.route.arrive, task.latest
+    if latest + 1.0 < arrive < math.inf:
+        raise too_late(latest, arrive, window=window[1] > window[0])
+    return passage
+
+
+def _replaceable(task: Task, network: Network) -> bool:
+    """Whether a lattice may take the place of the mesh that was chosen automatically."""
+    return task.choice.network == "auto" and network.meta.kind == "mesh"
+
+
+def _thinned(task: Task, network: Network) -> bool:
+    """Whether a mesh lacks nodes of the model, as a spacing was asked."""
+    return network.meta.kind == "mesh" and task.choice.spacing is not None
+
+
+def _network(
+    task: Task, ends: tuple[End, End], finer: int, networks: Mapping[int, Network]
+) -> Network:
+    task.tell(f"building the network from {ends[0].name} to {ends[1].name}")
+    choice, first = task.choice, networks.get(1)
+    if first is not None and _replaceable(task, first):
+        # The nodes of a model cannot be made finer; a lattice over the same water can.
+        spacing = networks[2].meta.spacing_m * 2 / finer if 2 in networks else choice.spacing
+        choice = replace(choice, network="lattice", spacing=spacing)
+    elif first is not None and first.meta.kind == "mesh":
+        if not _thinned(task, first):
+            return first
+        choice = replace(choice, spacing=None)  # all nodes, or as many as can be searched
+    elif first is not None:
+        choice = replace(choice, spacing=first.meta.spacing_m / finer)
+    period = task.voyage.earliest_departure, task.last
+    return build_network(choice, task.chart, task.sea, ends, period=period)
+
+
+def _attempt(
+    task: Task,
+    network: Network,
+    ends: tuple[End, End],
+    window: tuple[float, float],
+    limits: np.ndarray,
+) -> Passage:
+    """Search, refine and bound once."""
+    frozen, result = _search(task, network, limits, window, ends)
+    route = refined(task, track_of(network, result, task.setting), limits)
+    task.tell("bounding the answer")
+    floor = _bound(task, network, frozen, result, route, any_departure=True)
+    bound = floor
+    if task.voyage.depart_window is None:
+        bound = _bound(task, network, frozen, result, route)
+        other = _other_way(task, network, bound, route, limits)
+        if other is not route:
+            route, bound = other, _bound(task, network, frozen, result, other)
+    notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
+    until = route.depart + _ISOCHRONES * route.time_h * HOUR if route.feasible else None
+    arrival = isochrones(task, network, frozen, route.depart, until)
+    return Passage(route, result, bound, floor, network, arrival, notes)
+
+
+def _other_way(
+    task: Task, network: Network, bound: Bound, route: Route, limits: np.ndarray
+) -> Route:
+    """Where the gap is wide, refine the way of the bound as well and return the better route.
+
+    Weather that passes makes the network's ways sensitive to their delay: the way of the bound is
+    timed as a ship in open water would be.
+    """
+    value = _value(task, route)
+    if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
+        return route
+    lat, lon = network.station_lat[bound.path], network.station_lon[bound.path]
+    settings = np.full(len(lat) - 1, task.setting)
+    other = refined(task, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
+    routes = (route, other)  # penalty zones count here as they did in the search
+    return min(routes, key=lambda item: rank(item, task.voyage.objective, task.chart))
+
+
+def _value(task: Task, route: Route) -> float:
+    """Return what a route is compared by: its length [m] or its time [s]."""
+    if task.voyage.objective == "distance":
+        return float(route.legs["length"].sum())
+    return route.time_h * HOUR
+
+
+def isochrones(
+    task: Task, network: Network, frozen: Frozen, depart: float, until: float | None
+) -> np.ndarray:
+    """Return the earliest arrival everywhere [s since 1970], until a time when one is given."""
+    everywhere = earliest_arrival(
+        network,
+        frozen.stations,
+        task.table,
+        start=network.meta.start,
+        goal=None,
+        depart=depart,
+        setting=task.setting,
+        limits=task.needs.limits,
+        wait=task.voyage.wait,
+        arrive_by=until,
+        top_speed=frozen.top_speed,
+    )
+    return everywhere.node_arrival
+
+
+def refined(task: Task, track: Track, limits: np.ndarray) -> Route:
+    """Let the referee score a track, refine it, and return the better route."""
+    task.tell("refining the route")
+    scored = evaluate(
+        track,
+        ship=task.ship,
+        sea=task.sea,
+        chart=task.chart,
+        min_ukc=task.min_ukc,
+        strict=False,
+    )
+    return better_route(
+        scored,
+        ship=task.ship,
+        sea=task.sea,
+        chart=task.chart,
+        table=task.table,
+        limits=limits,
+        min_ukc=task.min_ukc,
+        objective="distance" if task.voyage.objective == "distance" else "time",
+        wait=task.voyage.wait,
+    )
+
+
+def track_of(network: Network, result: SearchResult, setting: int) -> Track:
+    """Turn a path on the network into a track with its waits."""
+    path = result.path
+    wait = np.maximum(0.0, result.path_depart - result.path_arrive)
+    wait[-1] = 0.0
+    return Track(
+        network.station_lat[path],
+        network.station_lon[path],
+        float(result.path_arrive[0]),
+        np.where(wait < 1.0, 0.0, wait),
+        np.full(len(path) - 1, setting),
+    )
+
+
+def _search(
+    task: Task,
+    network: Network,
+    limits: np.ndarray,
+    window: tuple[float, float],
+    ends: tuple[End, End],
+) -> tuple[Frozen, SearchResult]:
+    straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
+    usual = straight / _usual_speed(task, ends, window[0])
+    latest = min(task.last, task.latest)
+    for number, horizon in enumerate(_HORIZONS):
+        end = window[1] + horizon * usual + (_TWO_TIDES if number else 0.0)
+        end = min(end, latest)
+        task.tell(f"freezing the sea until {format_time(end)}")
+        frozen = freeze(task, network, window[0], end)
+        warm_up.finish()
+        task.tell("searching")
+        result = _run(task, network, frozen, limits, window)
+        if result.found or end >= latest:
+            break
+    if not result.found:
+        if task.voyage.arrive_by is not None:
+            raise _too_late(task, network, limits, window, ends)
+        raise no_route(
+            network, result, ends, depart=task.voyage.earliest_departure, last=task.last,
+            fields=frozen.stations, required=float(limits[codes.LIMIT_REQUIRED_DEPTH]),
+        )  # fmt: skip
+    return frozen, result
+
+
+def _too_late(
+    task: Task, network: Network, limits: np.ndarray, window: tuple[float, float],
+    ends: tuple[End, End],
+) -> NoRouteError:  # fmt: skip
+    """Return the error for a latest arrival that is missed; raise the one without it, if any."""
+    freely = replace(task, voyage=replace(task.voyage, arrive_by=None, objective="time"))
+    _, result = _search(freely, network, limits, window, ends)
+    return too_late(task.latest, result.arrive, window=window[1] > window[0])
+
+
+def _usual_speed(task: Task, ends: tuple[End, End], depart: float) -> float:
+    """Return a speed [m/s] to expect: the setting's, or the mean of a speed field on the way."""
+    if task.ship.speed_field is None:
+        return float(task.ship.speeds[task.setting])
+    start, goal = ends
+    lat, lon = along(start.lat, start.lon, goal.lat, goal.lon, np.linspace(0, 1, 33))
+    time = np.full(lat.shape, depart)
+    names = sorted(task.ship.needs)
+    speed = task.ship.speed_field(task.sea.sample(names, time, lat, lon), time, lat, lon)
+    known = speed[np.isfinite(speed) & (speed > 0)]
+    return float(known.mean()) if known.size else 1.0
+
+
+def table_of(ship: Ship) -> PerformanceTable:
+    """Return the table of a ship; of one whose speed is a field, a table without any say."""
+    if ship.speed_field is None:
+        return ship.tabulate()
+    none = TablePart((), (), np.zeros(len(ship.speeds), np.float32))
+    return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))
+
+
+def _run(
+    task: Task, network: Network, frozen: Frozen, limits: np.ndarray, window: tuple[float, float]
+) -> SearchResult:
+    options = {
+        "start": network.meta.start,
+        "goal": network.meta.goal,
+        "setting": task.setting,
+        "limits": limits,
+        "objective": task.voyage.objective,
+        "wait": task.voyage.wait,
+        "arrive_by": task.voyage.arrive_by,
+        "top_speed": frozen.top_speed,
+    }
+    if window[1] > window[0]:
+        return best_departure(network, frozen.stations, task.table, window=window, **options)  # type: ignore[arg-type]
+    return earliest_arrival(network, frozen.stations, task.table, depart=window[0], **options)  # type: ignore[arg-type]
+
+
+def _bound(
+    task: Task,
+    network: Network,
+    frozen: Frozen,
+    result: SearchResult,
+    route: Route,
+    *,
+    any_departure: bool = False,
+) -> Bound:
+    return lower_bound(
+        network,
+        frozen.stations,
+        task.table,
+        start=network.meta.start,
+        goal=network.meta.goal,
+        depart=float(result.path_arrive[0]),
+        setting=task.setting,
+        limits=task.needs.limits,
+        objective="distance" if task.voyage.objective == "distance" else "time",
+        top_speed=frozen.top_speed,
+        known=_value(task, route) if route.feasible else None,
+        any_departure=any_departure,
+    )

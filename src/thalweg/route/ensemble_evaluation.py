@@ -1,0 +1,310 @@
+"""A route in every member of an ensemble: what it may cost, and what it costs in the worst of them.
+
+Every member is taken as likely as the others. The tail is that of Rockafellar, R.T. & Uryasev, S.
+(2000), "Optimization of conditional value-at-risk", *Journal of Risk* 2(3), 21-41: the mean of the
+worst ``1 - alpha`` of the members, of which one may count in part.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.geodesy import FloatArray
+from thalweg.route.referee.evaluation import Routable, evaluate
+from thalweg.route.route import Route
+
+if TYPE_CHECKING:
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+ALPHA: Final = 0.9
+QUANTITIES: Final = ("time_h", "fuel_t", "cost", "co2_t", "energy_mwh")
+MEASURES: Final = ("mean", "p10", "p90", "cvar")
+_NEVER: Final = 1e-12  # shares of a member below this are rounding
+
+
+def cvar(values: ArrayLike, alpha: float = ALPHA) -> float:
+    """Return the mean of the largest ``1 - alpha`` of equally likely values.
+
+    Parameters
+    ----------
+    values : array_like
+        One number per member; the larger the worse.
+    alpha : float, optional
+        Share of the members that is not looked at, 0 (the mean of all) up to but not 1.
+
+    Returns
+    -------
+    float
+        Where ``(1 - alpha) n`` is no whole number, the last member of the tail counts in part;
+        a tail of less than one member is the worst one. NaN without values.
+
+    Raises
+    ------
+    InputError
+        If alpha is not in [0, 1).
+
+    Examples
+    --------
+    >>> cvar([3.0, 1.0, 2.0, 10.0], 0.5)
+    6.5
+    >>> round(cvar(range(1, 26), 0.9), 6)  # (25 + 24 + 23 / 2) / 2.5
+    24.2
+    """
+    if not 0.0 <= alpha < 1.0:
+        raise InputError(
+            f"A tail beyond {alpha!r} cannot be taken.", "alpha lies in [0, 1).", "Give 0.9."
+        )
+    ordered = np.sort(np.asarray(values, float))[::-1]
+    if not ordered.size:
+        return math.nan
+    tail = max((1.0 - alpha) * ordered.size, 1.0)
+    share = np.clip(tail - np.arange(ordered.size), 0.0, 1.0)
+    share[share < _NEVER] = 0.0
+    used = share > 0.0
+    return float((ordered[used] * share[used]).sum() / share.sum())
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How a number varies over the members that could be sailed.
+
+    Attributes
+    ----------
+    mean, p10, p90 : float
+        Mean, and what one in ten falls below and exceeds (linear between members).
+    cvar : float
+        Mean of the worst tail (see `cvar`).
+    count : int
+        How many members it is of.
+    """
+
+    mean: float
+    p10: float
+    p90: float
+    cvar: float
+    count: int
+
+    @classmethod
+    def of(cls, values: FloatArray, alpha: float) -> Spread:
+        """Return the spread of one number or more."""
+        low, high = np.percentile(values, [10.0, 90.0])
+        return cls(
+            float(np.mean(values)), float(low), float(high), cvar(values, alpha), int(values.size)
+        )
+
+    def as_dict(self) -> dict[str, float | int]:
+        """Return plain data, ready for JSON."""
+        return {**{name: getattr(self, name) for name in MEASURES}, "members": self.count}
+
+
+@dataclass(frozen=True, eq=False)
+class Distribution:
+    """A route as the referee found it in every member of an ensemble.
+
+    Attributes
+    ----------
+    routes : tuple of Route
+        One per member, in their order, the infeasible ones too.
+    alpha : float
+        Share of the members that the tail of `Spread.cvar` leaves out.
+    """
+
+    routes: tuple[Route, ...]
+    alpha: float = ALPHA
+
+    @property
+    def infeasible(self) -> tuple[int, ...]:
+        """Numbers of the members in which the route breaks a limit or cannot be sailed out."""
+        return tuple(k for k, route in enumerate(self.routes) if not route.feasible)
+
+    @property
+    def time_h(self) -> Spread | None:
+        """Spread of the time [h]; None if no member is feasible."""
+        return self.spread("time_h")
+
+    @property
+    def fuel_t(self) -> Spread | None:
+        """Spread of the fuel [t]; None if unknown."""
+        return self.spread("fuel_t")
+
+    @property
+    def cost(self) -> Spread | None:
+        """Spread of the cost, in the currency of the prices; None without prices."""
+        return self.spread("cost")
+
+    @property
+    def co2_t(self) -> Spread | None:
+        """Spread of the carbon dioxide [t]; None if unknown."""
+        return self.spread("co2_t")
+
+    def spread(self, quantity: str) -> Spread | None:
+        """Return how one of `QUANTITIES` varies over the feasible members.
+
+        What is infeasible has no number of its own to take part; `infeasible` and `notes` tell it
+        and `risk` counts it.
+        """
+        values = self.values(quantity)
+        values = values[np.isfinite(values)]
+        return Spread.of(values, self.alpha) if values.size else None
+
+    def values(self, quantity: str) -> FloatArray:
+        """Return a quantity in every member; inf where infeasible, NaN where unknown."""
+        if quantity not in QUANTITIES:
+            raise unknown_name("quantity of a distribution", quantity, QUANTITIES)
+        found = [
+            (getattr(route, quantity, None) if route.feasible else math.inf)
+            for route in self.routes
+        ]
+        return np.array([math.nan if value is None else value for value in found], float)
+
+    def risk(self, quantity: str = "time_h", measure: str = "cvar") -> float:
+        """Return one number by which routes can be compared, the smaller the better.
+
+        Parameters
+        ----------
+        quantity : {"time_h", "fuel_t", "cost", "co2_t", "energy_mwh"}
+        measure : {"mean", "p10", "p90", "cvar"}
+
+        Returns
+        -------
+        float
+            inf where an infeasible member has part in it (always in the mean); NaN if unknown.
+        """
+        if measure not in MEASURES:
+            raise unknown_name("measure of risk", measure, MEASURES)
+        values = self.values(quantity)
+        if np.isnan(values).any():
+            return math.nan
+        if measure == "cvar":
+            return cvar(values, self.alpha)
+        if measure == "mean":
+            return float(np.mean(values))
+        return _quantile(values, 0.1 if measure == "p10" else 0.9)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences about what is not in the numbers."""
+        if not self.infeasible:
+            return ()
+        return (
+            f"In {len(self.infeasible)} of {len(self.routes)} members the route cannot be sailed "
+            f"within its limits ({_listed(self.infeasible)}): {self._first_reason()}. Mean, "
+            "quantiles and tail are of the others.",
+        )
+
+    def _first_reason(self) -> str:
+        broken = self.routes[self.infeasible[0]].violations
+        return str(broken[0]) if broken else "it never arrives"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data, ready for JSON."""
+        spreads = {name: self.spread(name) for name in QUANTITIES}
+        return {
+            "members": len(self.routes),
+            "infeasible": list(self.infeasible),
+            "alpha": self.alpha,
+            **{name: None if s is None else s.as_dict() for name, s in spreads.items()},
+            "notes": list(self.notes),
+        }
+
+    def __str__(self) -> str:
+        time = self.time_h
+        if time is None:
+            return f"Distribution: infeasible in all {len(self.routes)} members"
+        told = (
+            f"Distribution over {len(self.routes)} members: {time.mean:.3f} h, p10 {time.p10:.3f}, "
+            f"p90 {time.p90:.3f}, worst {100 * (1 - self.alpha):.0f} % {time.cvar:.3f}"
+        )
+        return told + (f"; infeasible in {len(self.infeasible)}" if self.infeasible else "")
+
+
+def evaluate_members(
+    route: Routable,
+    *,
+    ship: Ship,
+    sea: Sea,
+    terms: Any = None,
+    alpha: float = ALPHA,
+    progress: Callable[[int, int], None] | None = None,
+    **options: Any,
+) -> Distribution:
+    """Sail one route in every member of an ensemble by the referee.
+
+    Parameters
+    ----------
+    route : Track, Route, path, or iterable of (lat, lon)
+        As in `evaluate`.
+    ship : Ship
+    sea : Sea
+        An ensemble.
+    terms : FuelTerms, optional
+        Prices, as in `evaluate`.
+    alpha : float, optional
+        Share of the members that the worst tail leaves out.
+    progress : callable, optional
+        Called with members done and members in all.
+    **options
+        ``chart``, ``depart``, ``min_ukc``, ``step``, ``load_factor`` and ``speed_kn`` of
+        `evaluate`. Data that end before the route does make a member infeasible.
+
+    Returns
+    -------
+    Distribution
+
+    Raises
+    ------
+    InputError
+        If the sea is no ensemble, alpha is not in [0, 1), or `evaluate` cannot be asked so.
+    """
+    count = _checked(sea, alpha)
+    if "strict" in options:
+        raise InputError(
+            "strict is given.", "Members whose data end too early are told.", "Leave it out."
+        )
+    asked: Mapping[str, Any] = options if terms is None else {**options, "terms": terms}
+    routes: list[Route] = []
+    for index in range(count):
+        routes.append(evaluate(route, ship=ship, sea=sea.member(index), strict=False, **asked))
+        if progress is not None:
+            progress(index + 1, count)
+    return Distribution(tuple(routes), alpha)
+
+
+def _checked(sea: Sea, alpha: float) -> int:
+    cvar((), alpha)
+    count = int(getattr(sea, "members", 0))
+    if count:
+        return count
+    raise InputError(
+        "The sea is no ensemble: there is only one of it.",
+        "Ensembles come from files with a dimension such as number or realization, or from "
+        "Sea.ensemble.",
+        "Use evaluate for one sea.",
+        field="sea",
+    )
+
+
+def _quantile(values: FloatArray, share: float) -> float:
+    """Return a quantile, linear between members; inf where an infinite one has part in it."""
+    ordered = np.sort(values)
+    place = share * (ordered.size - 1)
+    low = int(place)
+    part = place - low
+    if part == 0.0 or low + 1 == ordered.size:
+        return float(ordered[low])
+    if not math.isfinite(ordered[low + 1]):
+        return math.inf
+    return float(ordered[low] + part * (ordered[low + 1] - ordered[low]))
+
+
+def _listed(numbers: tuple[int, ...], most: int = 8) -> str:
+    told = ", ".join(map(str, numbers[:most]))
+    return told + (", ..." if len(numbers) > most else "")

@@ -1,0 +1,1 @@
+"""The referee: sails a track in small steps and scores the route."""

@@ -1,0 +1,214 @@
+"""Which limits a sailed track breaks, and where the data do not reach."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import CoverageError, OutsideAreaError, OutsidePeriodError
+from thalweg.core.geodesy import FloatArray, along, format_position
+from thalweg.core.time import format_time
+from thalweg.kernels import codes
+from thalweg.kernels.codes import REASONS
+from thalweg.route.referee.leg_segments import Pieces, Points
+from thalweg.route.referee.sailing_physics import Motion, World
+from thalweg.route.route import Violation
+from thalweg.route.track import Track
+from thalweg.ship.condition_variables import (
+    EASTWARD_CURRENT,
+    EASTWARD_WIND,
+    NORTHWARD_CURRENT,
+    NORTHWARD_WIND,
+    WAVE_HEIGHT,
+)
+from thalweg.ship.conditions import Conditions
+
+BoolArray = NDArray[np.bool_]
+_SLACK = 1e-9  # rounding allowed on every limit, in its own unit
+
+
+def broken_limits(
+    world: World,
+    points: Points,
+    time: FloatArray,
+    *,
+    sampled: Mapping[str, FloatArray],
+    depth: FloatArray,
+    min_ukc: float | None,
+) -> list[Violation]:
+    """Return the limits broken and the gaps met, one record for each stretch and reason.
+
+    Parameters
+    ----------
+    world : World
+    points : Points
+        In the order of sailing.
+    time : ndarray
+        [s since 1970-01-01T00:00Z]; NaN behind a point the ship does not get past.
+    sampled : mapping of str to ndarray
+        The sea there and then.
+    depth : ndarray
+        Water depth there and then [m].
+    min_ukc : float or None
+        Least under-keel clearance [m]; None: depth is not looked at.
+    """
+    reached = np.isfinite(time)
+    found: list[Violation] = []
+    for reason, bad, values, limit in _checks(world, sampled, depth, min_ukc):
+        for first, last in _stretches(bad & reached, points.leg):
+            worst = first + int(np.argmax(np.abs(values[first:last] - limit)))
+            found.append(_record(reason, points, time, worst, float(values[worst]), limit))
+    return found + _gaps(world, points, time, sampled)
+
+
+def land_violations(world: World, track: Track, times: FloatArray) -> list[Violation]:
+    """Return the legs that touch land or a no-go zone or leave the chart, each at its middle."""
+    if world.chart is None:
+        return []
+    status = world.chart.leg_status(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    found = []
+    for leg in np.flatnonzero(np.asarray(status) != codes.OK):
+        ends = (track.lat[leg], track.lon[leg], track.lat[leg + 1], track.lon[leg + 1])
+        lat, lon = along(*ends, 0.5)
+        reason = REASONS.get(int(status[leg]), REASONS[codes.LAND])
+        where = f"{reason}: leg {leg + 1}"
+        found.append(Violation(where, float(times[leg]), float(lat), float(lon)))
+    return found
+
+
+def canal_violations(world: World, pieces: Pieces, times: FloatArray) -> list[Violation]:
+    """Return the canals that the ship may not pass, each at the entrance it takes."""
+    beam = world.ship.data.get("hull", {}).get("breadth_m")
+    found = []
+    for leg in pieces.canals.legs:
+        why = pieces.canals.of(leg).why_not(draught=world.ship.draught, beam=beam)
+        if why:
+            place = (float(pieces.track.lat[leg]), float(pieces.track.lon[leg]))
+            found.append(Violation(f"canal: {why}", float(times[leg]), *place))
+    return found
+
+
+def coverage_error(violation: Violation) -> CoverageError:
+    """Return the error for a route that runs off the data."""
+    place = f"{format_position(violation.lat, violation.lon)} at {format_time(violation.time)}"
+    what = violation.reason.partition(": ")[2]
+    kind = CoverageError
+    if violation.reason.endswith("(period)"):
+        kind = OutsidePeriodError
+    elif violation.reason.endswith("(area)"):
+        kind = OutsideAreaError
+    return kind(
+        f"The route runs to {place}, where the data do not know {what}.",
+        "Up to there it can be scored.",
+        "Add a dataset that covers it, sail elsewhere, or ask for a partial answer (strict=False).",
+        lat=violation.lat,
+        lon=violation.lon,
+        time=violation.time,
+    )
+
+
+def is_gap(violation: Violation) -> bool:
+    """Return whether a violation is one of missing data."""
+    return violation.reason.startswith((REASONS[codes.NO_DATA], REASONS[codes.OUTSIDE_PERIOD]))
+
+
+def stops(world: World, points: Points, time: FloatArray, motion: Motion) -> list[Violation]:
+    """Return where and why the ship cannot go on."""
+    stopped = np.isnan(motion.over_ground) & np.isfinite(time)
+    known = ~np.isnan(motion.depth)
+    for values in motion.sampled.values():
+        known &= ~np.isnan(values)
+    out_of_range = stopped & known & ~np.isfinite(motion.through_water)
+    current = stopped & known & ~out_of_range
+    found = []
+    for code, bad in ((codes.SHIP_RANGE, out_of_range), (codes.CURRENT, current)):
+        for first, _ in _stretches(bad, points.leg):
+            speed = float(motion.through_water[first])
+            found.append(_record(REASONS[code], points, time, first, speed, math.nan))
+    return found + _gaps(world, points, np.where(stopped, time, math.nan), motion.sampled)
+
+
+def dangers(world: World, points: Points, time: FloatArray, motion: Motion) -> list[Violation]:
+    """Return where the ship does what it must not in waves: its limits of safety and comfort."""
+    safety = world.ship.limits.safety
+    if safety is None:
+        return []
+    at = Conditions.from_sea(motion.sampled, heading=motion.heading)
+    height, speed = at.wave_height, motion.through_water
+    bad = safety.forbids(
+        speed, wave_angle=at.wave_angle, wave_height=height, wave_period=at.wave_period
+    )
+    bad &= np.isfinite(time) & np.isfinite(motion.over_ground)
+    return [
+        _record(REASONS[codes.SAFETY], points, time, first, float(height[first]), math.nan)
+        for first, _ in _stretches(bad, points.leg)
+    ]
+
+
+def _checks(
+    world: World, sampled: Mapping[str, FloatArray], depth: FloatArray, min_ukc: float | None
+) -> Iterator[tuple[str, BoolArray, FloatArray, float]]:
+    limits, draught = world.ship.limits, world.ship.draught
+    with np.errstate(invalid="ignore"):
+        if min_ukc is not None and world.has_depth:
+            clearance = depth - draught
+            yield REASONS[codes.DEPTH], clearance < min_ukc - _SLACK, clearance, min_ukc
+        if math.isfinite(limits.wave_height):
+            height = sampled[WAVE_HEIGHT]
+            bad = height > limits.wave_height + _SLACK
+            yield REASONS[codes.WAVE_HEIGHT], bad, height, limits.wave_height
+        if math.isfinite(limits.wind_speed):
+            wind = _relative_wind(sampled)
+            bad = wind > limits.wind_speed + _SLACK
+            yield REASONS[codes.WIND_SPEED], bad, wind, limits.wind_speed
+
+
+def _relative_wind(sampled: Mapping[str, FloatArray]) -> FloatArray:
+    """Return the speed of the wind relative to the moving water [m/s]."""
+    east, north = sampled[EASTWARD_WIND], sampled[NORTHWARD_WIND]
+    still = np.zeros_like(east)
+    east = east - sampled.get(EASTWARD_CURRENT, still)
+    north = north - sampled.get(NORTHWARD_CURRENT, still)
+    return np.hypot(east, north)
+
+
+def _gaps(
+    world: World, points: Points, time: FloatArray, sampled: Mapping[str, FloatArray]
+) -> list[Violation]:
+    """Return the stretches where something is not known, each at its first point."""
+    reached = np.isfinite(time)
+    missing = {name: np.isnan(values) for name, values in sampled.items()}
+    if world.charted:
+        missing["charted depth"] = np.isnan(points.charted)
+    found = []
+    for name, gone in missing.items():
+        for first, _ in _stretches(gone & reached, points.leg):
+            why = ""
+            if name in sampled:
+                place = (float(time[first]), float(points.lat[first]), float(points.lon[first]))
+                why = f" ({world.sea.why_missing(name, *place)})"
+            code = codes.OUTSIDE_PERIOD if why == " (period)" else codes.NO_DATA
+            reason = f"{REASONS[code]}: {name}{why}"
+            found.append(_record(reason, points, time, first, math.nan, math.nan))
+    return found
+
+
+def _stretches(bad: BoolArray, leg: NDArray[np.int64]) -> list[tuple[int, int]]:
+    """Return (first, one past the last) of each run of bad points on one leg."""
+    if not bad.any():
+        return []
+    edge = np.flatnonzero((bad[1:] != bad[:-1]) | (leg[1:] != leg[:-1])) + 1
+    cuts = np.concatenate([[0], edge, [len(bad)]])
+    return [(int(a), int(b)) for a, b in itertools.pairwise(cuts) if bad[a]]
+
+
+def _record(
+    reason: str, points: Points, time: FloatArray, index: int, value: float, limit: float
+) -> Violation:
+    return Violation(
+        reason, float(time[index]), float(points.lat[index]), float(points.lon[index]), value, limit
+    )

@@ -1,0 +1,235 @@
+"""What a sailed track takes, burns, emits and costs: per piece of a leg, by the zone it is in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.route.referee.leg_segments import Points
+from thalweg.route.referee.sailing import Sailed
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.ship.fuel_prices import FuelTerms
+
+OUTSIDE = "outside"  #: what lies in no emission control area, among the zones of `Bill`
+
+
+@dataclass(frozen=True)
+class Bill:
+    """What the legs of a track burn and cost.
+
+    Attributes
+    ----------
+    legs : dict of str to float64 array (legs,)
+        ``fuel`` (of sailing) and ``waiting_fuel`` (lying still before it) [kg], ``fuel_in_eca``
+        (of both) [kg], ``co2`` [kg], ``cost`` [currency], ``energy`` (of sailing) and
+        ``waiting_energy`` [J]; NaN where unknown.
+    zones : dict of str to float
+        Fuel [kg] by emission control area, and ``outside`` them.
+    notes : tuple of str
+        What was taken for granted.
+    """
+
+    legs: dict[str, FloatArray]
+    zones: dict[str, float]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Rates:
+    """What a ship spends at the Gauss points of its track; NaN where unknown.
+
+    Attributes
+    ----------
+    fuel : float64 array
+        [kg/s], of the fuel burnt outside control areas.
+    power : float64 array
+        Of the brake, without hotel load [W].
+    """
+
+    fuel: FloatArray
+    power: FloatArray
+
+
+@dataclass(frozen=True)
+class _Burnt:
+    """Fuel as the ship's model tells it [kg], and where: of pieces, then of waits."""
+
+    fuel: FloatArray
+    leg: NDArray[np.int64]
+    inside: FloatArray
+    price: FloatArray
+    zone: NDArray[np.int64]
+
+
+def bill(sailed: Sailed, rates: Rates, terms: FuelTerms) -> Bill:
+    """Add up what a track takes, burns and costs.
+
+    Parameters
+    ----------
+    sailed : Sailed
+    rates : Rates
+    terms : FuelTerms
+
+    Notes
+    -----
+    Of every piece (at most half a nautical mile by default) the exact share inside the control
+    areas burns at the terms inside; price zones multiply its cost. Cost is fuel, canal dues and the
+    price of time, waits included. Where fuel has no price but speed has, the time of sailing counts
+    by the cubed ordered speed instead (van Halem 2019). Energy is that of the brake and the hotel
+    load. What is unknown makes the sum unknown, never zero.
+    """
+    count = len(sailed.pieces.length)
+    parts = _parts(sailed, rates.fuel)
+    sailing = np.arange(len(parts.leg)) < len(sailed.pieces)
+
+    def total(values: FloatArray) -> FloatArray:
+        return np.bincount(parts.leg, weights=values, minlength=count).astype(np.float64)
+
+    mass, kept = _weighted(parts, terms, "fuel")
+    time = np.concatenate([_integral(sailed, 1.0), _waits(sailed)])
+    energy = np.concatenate([_integral(sailed, rates.power), np.zeros(count)])
+    energy += sailed.world.ship.hotel_power * time
+    legs = {
+        "fuel": total(np.where(sailing, mass, 0.0)),
+        "waiting_fuel": total(np.where(sailing, 0.0, mass)),
+        "fuel_in_eca": total(kept),
+        "co2": total(_weighted(parts, terms, "co2")[0]),
+        "energy": total(np.where(sailing, energy, 0.0)),
+        "waiting_energy": total(np.where(sailing, 0.0, energy)),
+    }
+    if terms.by_speed:
+        spent = np.where(sailing, terms.speed_price * _ordered(sailed)[parts.leg] ** 3 * time, 0.0)
+    else:
+        spent = _weighted(parts, terms, "cost")[0]
+    cost = total(parts.price * spent)
+    fee, notes = _dues(sailed, terms, cost)
+    legs["cost"] = cost + terms.time_price * total(time) + fee
+    return Bill(legs, _by_zone(sailed, parts, mass, kept), notes)
+
+
+def _integral(sailed: Sailed, rate: FloatArray | float) -> FloatArray:
+    """Return a rate at the Gauss points, summed over the time of every piece; NaN if not sailed."""
+    pieces, passage = sailed.pieces, sailed.passage
+    rates = np.broadcast_to(rate, 2 * len(pieces)).reshape(-1, 2)
+    found = 0.5 * pieces.step * (rates * passage.slowness).sum(axis=1)
+    if passage.first_bad < len(pieces):
+        found[passage.first_bad :] = math.nan
+    return np.asarray(found)
+
+
+def _ordered(sailed: Sailed) -> FloatArray:
+    """Return the calm-water speed that every leg is ordered to [m/s]."""
+    ship, pieces = sailed.world.ship, sailed.pieces
+    speeds = np.asarray(ship.speeds, float)[pieces.track.setting]
+    in_canals = pieces.canals.ordered_speed(ship)
+    return np.where(np.isnan(in_canals), speeds, in_canals)
+
+
+def _parts(sailed: Sailed, rate: FloatArray) -> _Burnt:
+    """Return what is burnt on every piece, and then in the wait before every leg."""
+    pieces, world = sailed.pieces, sailed.world
+    burnt = _integral(sailed, rate)
+    legs = np.arange(len(pieces.length))
+    lying = _waits(sailed) * world.ship.waiting_fuel_rate
+    low = pieces.points(pieces.leg, pieces.start)
+    high = pieces.points(pieces.leg, pieces.start + pieces.step)
+    track = pieces.track
+    still = (track.lat[:-1], track.lon[:-1])
+    inside, price, zone = _places(world.chart, low, high)
+    there = _places_still(world.chart, *still)
+    return _Burnt(
+        np.concatenate([burnt, lying]),
+        np.concatenate([pieces.leg, legs]),
+        np.concatenate([inside, there[0]]),
+        np.concatenate([price, there[1]]),
+        np.concatenate([zone, there[2]]),
+    )
+
+
+def _waits(sailed: Sailed) -> FloatArray:
+    """Return the wait before every leg [s]."""
+    return np.asarray(sailed.pieces.track.wait[:-1])
+
+
+def _weighted(parts: _Burnt, terms: FuelTerms, what: str) -> tuple[FloatArray, FloatArray]:
+    """Return a sum of fuel of every part, and how much of it lies inside control areas."""
+    within = np.where(parts.inside > 0.0, parts.inside * terms.per_kg(what, True), 0.0)
+    beyond = np.where(parts.inside < 1.0, (1.0 - parts.inside) * terms.per_kg(what, False), 0.0)
+    return parts.fuel * (within + beyond), parts.fuel * within
+
+
+def _places(
+    chart: Chart | None, low: Points, high: Points
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return (share in control areas, price factor, number of the area or -1) of pieces."""
+    count = len(low)
+    share, price, zone = np.zeros(count), np.ones(count), np.full(count, -1)
+    if chart is None:
+        return share, price, zone
+    ends = (low.lat, low.lon, high.lat, high.lon)
+    if chart.zones.price:
+        price = chart.zone_factor(*ends)[1]
+    if chart.zones.eca:
+        share = chart.eca_share(*ends)
+        some = np.flatnonzero(share > 0.0)
+        for place in (low, high):
+            zone[some] = np.where(
+                zone[some] < 0, _zone_of(chart, place.lat[some], place.lon[some]), zone[some]
+            )
+        zone[some] = np.where(zone[some] < 0, 0, zone[some])
+    return share, price, zone
+
+
+def _places_still(
+    chart: Chart | None, lat: FloatArray, lon: FloatArray
+) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
+    """Return the same of places."""
+    share, price, zone = np.zeros(len(lat)), np.ones(len(lat)), np.full(len(lat), -1)
+    if chart is not None and chart.zones.price:
+        price = chart.zone_factor(lat, lon, lat, lon)[1]
+    if chart is not None and chart.zones.eca:
+        share = chart.in_eca(lat, lon).astype(np.float64)
+        zone = np.where(share > 0.0, np.maximum(_zone_of(chart, lat, lon), 0), -1)
+    return share, price, zone
+
+
+def _zone_of(chart: Chart, lat: FloatArray, lon: FloatArray) -> NDArray[np.int64]:
+    """Return the first control area that positions lie in; -1 for none."""
+    zone = np.full(len(lat), -1)
+    for number, area in enumerate(chart.zones.eca):
+        rest = np.flatnonzero(zone < 0)
+        if not len(rest):
+            break
+        zone[rest[area.contains(lat[rest], lon[rest])]] = number
+    return zone
+
+
+def _by_zone(sailed: Sailed, parts: _Burnt, mass: FloatArray, kept: FloatArray) -> dict[str, float]:
+    """Return the fuel [kg] by control area and outside."""
+    chart = sailed.world.chart
+    found: dict[str, float] = {}
+    for number, area in enumerate(() if chart is None else chart.zones.eca):
+        here = parts.zone == number
+        if here.any():
+            found[area.name] = found.get(area.name, 0.0) + float(kept[here].sum())
+    return {OUTSIDE: float((mass - kept).sum()), **found}
+
+
+def _dues(sailed: Sailed, terms: FuelTerms, cost: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
+    """Return the dues of every leg, and what is to be said; NaN in another currency than USD."""
+    fee = sailed.pieces.canals.fee
+    if not np.isfinite(cost).all():
+        return fee, ()
+    if not terms.currency and (cost.any() or terms.time_price):
+        return fee, ("The prices name no currency: US dollars are assumed.",)
+    if terms.currency in ("", "USD") or not fee.any():
+        return fee, ()
+    told = f"Canal dues are in USD, prices in {terms.currency}: the cost is not told."
+    return np.where(fee > 0.0, math.nan, 0.0), (told,)

@@ -1,0 +1,257 @@
+"""The referee's verdict: every number of a sailed track, and every limit it breaks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.route.referee.leg_segments import IntArray, Pieces, Points
+from thalweg.route.referee.limit_checks import (
+    broken_limits,
+    canal_violations,
+    dangers,
+    land_violations,
+    stops,
+)
+from thalweg.route.referee.pricing import Rates, bill
+from thalweg.route.referee.sailing import Sailed, move_along, spacings
+from thalweg.route.referee.sailing_physics import Motion, World, conditions_at, look
+from thalweg.route.referee.waiting_limits import forbidden_waits
+from thalweg.route.route import Route, Violation
+from thalweg.route.track import Track
+from thalweg.ship.fuel_prices import FuelTerms
+
+MOST_LOOKS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
+LOOKS_PER_CELL = 8  #: of gridded data
+_WAIT_LOOKS = 300.0  # longest time between two looks at the depth while waiting [s]
+
+
+def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelTerms) -> Route:
+    """Look at every point once more, check the limits and put the route together.
+
+    Parameters
+    ----------
+    sailed : Sailed
+    min_ukc : float or None
+        Least under-keel clearance [m]; None: depth is not looked at.
+    tolerance : float
+        Of the time of sailing [s].
+    terms : FuelTerms
+        What fuel and time cost.
+    """
+    world, pieces = sailed.world, sailed.pieces
+    points, time, order = _all_points(sailed)
+    looked_at = np.where(np.isfinite(time), time, pieces.track.depart)
+    motion = move_along(world, pieces.canals, points, looked_at)
+    power, rate = _rates(world, pieces, points, time=looked_at, motion=motion)
+    near, moments = _looks(sailed, points, time)
+    violations, least = _judged(sailed, near, moments, min_ukc)
+    violations += stops(world, points, time, motion)
+    violations += dangers(world, points, time, motion)
+    violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
+    departs, arrives = sailed.leg_times()
+    legs = {
+        "length": pieces.length,
+        "course": pieces.course,
+        "depart": departs,
+        "arrive": arrives,
+        "under_keel_clearance": least,
+        "ordered_speed": np.asarray(world.ship.speeds, float)[pieces.track.setting],
+    }
+    spent = bill(sailed, Rates(rate[order], power[order]), terms)
+    if np.any(pieces.track.wait) and world.has_depth:
+        tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
+    samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
+    told = (*world.assumptions, *spent.notes)
+    return Route(
+        pieces.track,
+        {**legs, **spent.legs},
+        samples,
+        tuple(violations),
+        tolerance,
+        told,
+        spent.zones,
+        terms.currency or "USD",
+    )
+
+
+def _judged(
+    sailed: Sailed, near: Points, moments: FloatArray, min_ukc: float | None
+) -> tuple[list[Violation], FloatArray]:
+    """Return the limits broken at close looks, and the least clearance of every leg [m]."""
+    world, track = sailed.world, sailed.pieces.track
+    sampled, depth = look(world, near, np.where(np.isfinite(moments), moments, track.depart))
+    found = broken_limits(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
+    waits = _wait_clearances(sailed)
+    found += _grounded_waits(track, waits, min_ukc)
+    found += forbidden_waits(world.chart, track, sailed.leg_times()[1])
+    found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
+    found += land_violations(world, track, sailed.leg_times()[0])
+    clearance = _finite(depth - world.ship.draught)
+    least = _leg_least(near.leg, clearance, moments, len(track) - 1)
+    for index, _, lying in waits:  # a wait belongs to the leg after it
+        least[index] = np.fmin(least[index], np.fmin.reduce(_finite(lying)))
+    return found, least
+
+
+def _samples(
+    sailed: Sailed,
+    points: Points,
+    time: FloatArray,
+    *,
+    motion: Motion,
+    rates: tuple[FloatArray, FloatArray],
+) -> dict[str, FloatArray]:
+    """Return the columns of the fine samples; NaN where the ship does not get."""
+    start = np.concatenate([[0.0], np.cumsum(sailed.pieces.length)])
+    varying = {
+        **motion.sampled,
+        "time": time,
+        "heading": motion.heading,
+        "speed_through_water": motion.through_water,
+        "speed_over_ground": motion.over_ground,
+        "depth": _finite(motion.depth),
+        "under_keel_clearance": _finite(motion.depth - sailed.world.ship.draught),
+        "power": rates[0],
+        "fuel_rate": rates[1],
+    }
+    reached = np.isfinite(time)
+    return {
+        "leg": points.leg,  # type: ignore[dict-item]
+        "lat": points.lat,
+        "lon": points.lon,
+        "distance": start[points.leg] + points.along,
+        "course": points.course,
+        **{name: np.where(reached, values, math.nan) for name, values in varying.items()},
+    }
+
+
+def _all_points(sailed: Sailed) -> tuple[Points, FloatArray, IntArray]:
+    """Return all points in the order of sailing, their times, and where the Gauss points are."""
+    pieces, passage = sailed.pieces, sailed.passage
+    last = pieces.last_of_leg()
+    charted = np.concatenate([sailed.charted, sailed.charted[last]])
+    ends = replace(pieces.ends(), charted=charted)
+    arrive = passage.start[1:][last] - pieces.wait[last]
+    fields = ("lat", "lon", "course", "setting", "leg", "along", "charted")
+    both = Points(*(np.concatenate([getattr(sailed.gauss, f), getattr(ends, f)]) for f in fields))
+    time = np.concatenate([passage.inside.reshape(-1), passage.start[:-1], arrive])
+    stop = passage.first_bad
+    if stop < len(pieces):
+        time[time > passage.inside[stop, int(np.argmax(passage.bad[stop]))]] = math.nan
+    order = np.lexsort((both.along, both.leg))
+    place = np.empty(len(both), dtype=np.int64)
+    place[order] = np.arange(len(both))
+    return both.part(order), time[order], place[: len(sailed.gauss)]
+
+
+def _rates(
+    world: World, pieces: Pieces, points: Points, *, time: FloatArray, motion: Motion
+) -> tuple[FloatArray, FloatArray]:
+    """Return the brake power [W] and the fuel rate [kg/s] at points; NaN where not known."""
+    here = conditions_at(
+        world,
+        points,
+        time,
+        sampled=motion.sampled,
+        depth=motion.depth,
+        heading=motion.heading,
+    )
+    found = world.ship.power_and_fuel(here, points.setting)
+    power, fuel = (np.array(np.broadcast_to(rate, len(points)), float) for rate in found)
+    if pieces.canals.any:
+        fixed = pieces.canals.number[points.leg] >= 0
+        in_canals = pieces.canals.rates(world.ship)
+        for rate, there in zip((power, fuel), in_canals):
+            rate[fixed] = there[points.leg[fixed]]
+    return power, fuel
+
+
+def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
+    """Return the least known value on each leg as far as it is sailed; NaN where none is known."""
+    least = np.full(count, math.inf)
+    known = np.isfinite(values) & np.isfinite(time)
+    np.minimum.at(least, leg[known], values[known])
+    return np.where(np.isfinite(least), least, math.nan)
+
+
+def _looks(sailed: Sailed, points: Points, time: FloatArray) -> tuple[Points, FloatArray]:
+    """Return closely spaced points where limits are looked at, and when they are passed."""
+    world, pieces = sailed.world, sailed.pieces
+    spacing = float(pieces.length.sum()) / MOST_LOOKS
+    spacing = max(spacing, min(spacings(world, 1.0 / LOOKS_PER_CELL), default=0.0))
+    count = np.maximum(np.ceil(pieces.length / max(spacing, 1e-3)).astype(np.int64), 1) + 1
+    leg = np.repeat(np.arange(len(count)), count)
+    share = (np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)) / (count[leg] - 1)
+    near = pieces.points(leg, share * pieces.length[leg])
+    step = np.zeros(len(pieces.length))
+    step[pieces.leg] = pieces.step
+    first = np.searchsorted(pieces.leg, leg)
+    last = np.searchsorted(pieces.leg, leg, side="right") - 1
+    with np.errstate(invalid="ignore", divide="ignore"):
+        number = np.where(step[leg] > 0.0, near.along / step[leg], 0.0).astype(np.int64)
+    near = replace(near, charted=sailed.charted[np.minimum(first + number, last)])
+    key = _key(points.leg, points.along, pieces.length)
+    moments = np.interp(_key(leg, near.along, pieces.length), key, time)
+    sea = pieces.canals.number[leg] < 0
+    return near.part(sea), moments[sea]
+
+
+def _key(leg: IntArray, along: FloatArray, length: FloatArray) -> FloatArray:
+    """Return a number that grows along the track, with a step between legs."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.where(length[leg] > 0.0, along / length[leg], 0.0)
+    return leg * 2.0 + np.clip(share, 0.0, 1.0)
+
+
+def _finite(values: FloatArray) -> FloatArray:
+    return np.where(np.isfinite(values), values, math.nan)
+
+
+def _wait_clearances(sailed: Sailed) -> list[tuple[int, FloatArray, FloatArray]]:
+    """Return (waypoint, times, clearances [m]) of every wait but that at the berth."""
+    world, track = sailed.world, sailed.pieces.track
+    if not world.has_depth:
+        return []
+    _, arrive = sailed.leg_times()
+    found = []
+    for index in np.flatnonzero(track.wait[1:-1]) + 1:
+        if not math.isfinite(arrive[index - 1]):
+            continue
+        count = 2 + int(track.wait[index] / _WAIT_LOOKS)
+        time = arrive[index - 1] + np.linspace(0.0, track.wait[index], count)
+        _, depth = look(world, _still(world, track, int(index), count), time)
+        found.append((int(index), time, depth - world.ship.draught))
+    return found
+
+
+def _grounded_waits(
+    track: Track, waits: list[tuple[int, FloatArray, FloatArray]], min_ukc: float | None
+) -> list[Violation]:
+    """Return the waits during which there is too little water."""
+    found: list[Violation] = []
+    if min_ukc is None:
+        return found
+    for index, time, clearance in waits:
+        worst = int(np.argmin(clearance))
+        if not clearance[worst] >= min_ukc - 1e-9:
+            place = (float(track.lat[index]), float(track.lon[index]))
+            value = float(clearance[worst])
+            reason = "under-keel clearance" if math.isfinite(value) else "no data: depth"
+            found.append(
+                Violation(f"{reason} (waiting)", float(time[worst]), *place, value, min_ukc)
+            )
+    return found
+
+
+def _still(world: World, track: Track, index: int, count: int) -> Points:
+    """Return one waypoint, several times."""
+    lat, lon = np.full(count, track.lat[index]), np.full(count, track.lon[index])
+    charted = np.full(count, math.inf)
+    if world.charted and world.chart is not None:
+        charted[:] = np.asarray(world.chart.depth_at(track.lat[index], track.lon[index]), float)
+    zero = np.zeros(count, dtype=np.int64)
+    return Points(lat, lon, np.zeros(count), zero, zero, np.zeros(count), charted)

@@ -1,0 +1,143 @@
+"""Sailing a track at one step size: cut, looked at and timed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.route.canal_legs import CanalLegs
+from thalweg.route.referee.leg_segments import Pieces, Points, cut
+from thalweg.route.referee.passage_times import Passage, find_times
+from thalweg.route.referee.sailing_physics import Motion, World, move
+from thalweg.route.track import Track
+
+METRES_PER_DEGREE = 111_000.0
+
+
+@dataclass(frozen=True)
+class Sailed:
+    """A track, cut and sailed at one step size.
+
+    Attributes
+    ----------
+    world : World
+    pieces : Pieces
+    charted : float64 array (p,)
+        Least charted depth along every piece [m below datum]; +inf without a chart of depth.
+    gauss : Points
+        The two Gauss points of every piece.
+    passage : Passage
+        When they are passed.
+    """
+
+    world: World
+    pieces: Pieces
+    charted: FloatArray
+    gauss: Points
+    passage: Passage
+
+    @property
+    def arrive(self) -> float:
+        """The arrival [s]; NaN if the ship does not get there."""
+        arrives = self.passage.first_bad == len(self.pieces)
+        return float(self.passage.start[-1]) if arrives else math.nan
+
+    def leg_times(self) -> tuple[FloatArray, FloatArray]:
+        """Return when each leg is begun and ended [s]; NaN from where the ship cannot go on."""
+        passage, last = self.passage, self.pieces.last_of_leg()
+        first = np.concatenate([[True], last[:-1]])
+        depart = passage.start[:-1][first]
+        arrive = passage.start[1:][last] - self.pieces.wait[last]
+        stuck = self.pieces.leg[passage.first_bad] if passage.first_bad < len(last) else len(depart)
+        legs = np.arange(len(depart))
+        return np.where(legs <= stuck, depart, math.nan), np.where(legs < stuck, arrive, math.nan)
+
+
+def sail(world: World, track: Track, step: float, least: int, coarse: Sailed | None) -> Sailed:
+    """Cut and sail a track; a coarser answer gives the first guess."""
+    pieces = cut(track, step, least, world.chart)
+    charted = _charted(world, pieces)
+    gauss = replace(pieces.gauss_points(), charted=np.repeat(charted, 2))
+
+    def slowness(
+        first: int, last: int, time: FloatArray, guess: FloatArray | None
+    ) -> tuple[FloatArray, FloatArray]:
+        motion = move_along(world, pieces.canals, gauss.part(slice(first, last)), time, guess)
+        return 1.0 / motion.over_ground, motion.through_water
+
+    passage = find_times(
+        slowness,
+        step=pieces.step,
+        wait=pieces.wait,
+        depart=track.depart + float(track.wait[0]),
+        guess=_first_guess(world, pieces, coarse),
+    )
+    return Sailed(world, pieces, charted, gauss, passage)
+
+
+def move_along(
+    world: World,
+    canals: CanalLegs,
+    points: Points,
+    time: FloatArray,
+    guess: FloatArray | None = None,
+) -> Motion:
+    """Return what the ship does at points of a track, some of which may lie in canals.
+
+    There the speed is the canal's, whatever the sea does, and nothing of the sea is told.
+    """
+    fixed = canals.speed[points.leg]
+    free = np.flatnonzero(np.isnan(fixed))
+    if len(free) == len(points):
+        return move(world, points, time, guess)
+    unknown = {name: np.full(len(points), math.nan) for name in world.names}
+    motion = Motion(
+        unknown, np.full(len(points), math.nan), points.course.copy(), fixed, fixed.copy()
+    )
+    if not len(free):
+        return motion
+    part = move(world, points.part(free), time[free], None if guess is None else guess[free])
+    for name, values in part.sampled.items():
+        motion.sampled.setdefault(name, np.full(len(points), math.nan))[free] = values
+    for name in ("depth", "heading", "through_water", "over_ground"):
+        getattr(motion, name)[free] = getattr(part, name)
+    return motion
+
+
+def _first_guess(world: World, pieces: Pieces, coarse: Sailed | None) -> FloatArray:
+    """Return a slowness to begin with at the Gauss points of every piece [s/m]."""
+    canal = pieces.canals.speed[pieces.leg]
+    if coarse is not None:
+        middle = pieces.start + 0.5 * pieces.step
+        ends = np.cumsum(np.bincount(coarse.pieces.leg))
+        first = np.concatenate([[0], ends[:-1]])[pieces.leg]
+        nearest = first + (middle / coarse.pieces.step[first]).astype(np.int64)
+        mean = coarse.passage.slowness.mean(axis=1)
+        mean = mean[np.minimum(nearest, ends[pieces.leg] - 1)]
+        return np.repeat(np.where(np.isnan(canal), mean, 1.0 / canal)[:, None], 2, axis=1)
+    speeds = world.ship.speeds[pieces.track.setting[pieces.leg]]
+    usual = np.where(np.isfinite(speeds) & (speeds > 0.0), speeds, 5.0)
+    usual = np.where(np.isnan(canal), usual, canal)
+    return np.repeat(1.0 / usual[:, None], 2, axis=1)
+
+
+def _charted(world: World, pieces: Pieces) -> FloatArray:
+    """Return the least charted depth along every piece [m below datum]; +inf if there is none."""
+    if world.chart is None or not world.charted:
+        return np.full(len(pieces), math.inf)
+    low = pieces.points(pieces.leg, pieces.start)
+    high = pieces.points(pieces.leg, pieces.start + pieces.step)
+    depth = world.chart.depth_along(low.lat, low.lon, high.lat, high.lon)
+    return np.where(pieces.canals.number[pieces.leg] >= 0, math.inf, np.asarray(depth, float))
+
+
+def spacings(world: World, share: float) -> list[float]:
+    """Return a share of the spacing of every source of data that is looked at [m]."""
+    return [
+        row.spacing_deg * METRES_PER_DEGREE * share
+        for row in world.sea.coverage()
+        if row.variable in world.names and row.spacing_deg
+    ]

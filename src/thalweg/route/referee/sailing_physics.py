@@ -1,0 +1,248 @@
+"""What the ship meets and does at points of a track: the sea and the ship's own formulas."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thalweg.core.errors import MissingVariableError
+from thalweg.core.geodesy import FloatArray
+from thalweg.route.referee.leg_segments import Points
+from thalweg.ship.condition_variables import (
+    BED_DEPTH,
+    EASTWARD_CURRENT,
+    NORTHWARD_CURRENT,
+    WATER_LEVEL,
+    WAVE_EAST,
+    WAVE_HEIGHT,
+    WAVE_NORTH,
+)
+from thalweg.ship.conditions import Conditions
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+CURRENTS = (EASTWARD_CURRENT, NORTHWARD_CURRENT)
+_TURNS = 60  # corrections of the heading at most
+_SPEED_TOLERANCE = 1e-11  # relative change of speed that ends them ...
+_SPEED_NOISE = 1e-5  # ... or one below this that shrinks no more: ships that solve for their speed
+
+
+@dataclass(frozen=True)
+class World:
+    """A ship, the sea and the chart, and which of their variables are looked at.
+
+    Attributes
+    ----------
+    ship : Ship
+    sea : Sea
+    chart : Chart or None
+    names : tuple of str
+        Variables of the sea to sample.
+    assumptions : tuple of str
+        What is taken for granted.
+    """
+
+    ship: Ship
+    sea: Sea
+    chart: Chart | None
+    names: tuple[str, ...]
+    assumptions: tuple[str, ...]
+
+    @property
+    def has_current(self) -> bool:
+        """Whether the sea tells currents."""
+        return EASTWARD_CURRENT in self.names
+
+    @property
+    def charted(self) -> bool:
+        """Whether the chart tells depth."""
+        return self.chart is not None and bool(self.chart.has_depth)
+
+    @property
+    def has_depth(self) -> bool:
+        """Whether the chart or the sea tells depth."""
+        return self.charted or BED_DEPTH in self.names
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a ship does at points and times.
+
+    Attributes
+    ----------
+    sampled : dict of str to ndarray
+        Variables of the sea by name, SI.
+    depth : ndarray
+        Water depth, level included [m]; +inf where no source of depth exists, NaN unknown.
+    heading : ndarray
+        [rad from north].
+    through_water, over_ground : ndarray
+        Speeds [m/s]; ``over_ground`` is NaN where the ship cannot hold its course or its speed is
+        unknown.
+    """
+
+    sampled: dict[str, FloatArray]
+    depth: FloatArray
+    heading: FloatArray
+    through_water: FloatArray
+    over_ground: FloatArray
+
+
+def open_world(ship: Ship, sea: Sea, chart: Chart | None) -> World:
+    """Find which variables a ship needs, and check that the sea holds them.
+
+    Raises
+    ------
+    MissingVariableError
+        If a model or a limit of the ship needs what no source tells.
+    """
+    missing = sorted(name for name in ship.needs if name not in sea.variables)
+    if missing:
+        raise MissingVariableError(
+            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not hold.",
+            f"The sea holds: {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            "Add data with it, or ask for a filling by name (Sea.filled).",
+            missing=missing,
+        )
+    names = set(ship.needs)
+    told = list(getattr(sea, "assumptions", ()))
+    if all(name in sea.variables for name in CURRENTS):
+        names |= set(CURRENTS)
+    else:
+        told.append("No currents in the data: still water is assumed.")
+    charted = chart is not None and bool(chart.has_depth)
+    if BED_DEPTH in sea.variables:
+        names.add(BED_DEPTH)
+    if charted or BED_DEPTH in names:
+        if WATER_LEVEL in sea.variables:
+            names.add(WATER_LEVEL)
+        else:
+            told.append("No water levels in the data: depths are taken at chart datum.")
+    else:
+        told.append("No depth in the data: under-keel clearance was not checked.")
+    if chart is None:
+        told.append("No chart: land was not checked.")
+    return World(ship, sea, chart, tuple(sorted(names)), tuple(dict.fromkeys(told)))
+
+
+def look(
+    world: World, points: Points, time: FloatArray
+) -> tuple[dict[str, FloatArray], FloatArray]:
+    """Return (sampled sea variables, water depth [m]) at points and times."""
+    sampled = world.sea.sample(world.names, time, points.lat, points.lon)
+    if WAVE_HEIGHT in sampled and WAVE_NORTH in sampled:  # no waves have no direction
+        flat = (sampled[WAVE_HEIGHT] == 0.0) & ~np.isfinite(sampled[WAVE_NORTH])
+        sampled[WAVE_EAST] = np.where(flat, 0.0, sampled[WAVE_EAST])
+        sampled[WAVE_NORTH] = np.where(flat, 1.0, sampled[WAVE_NORTH])
+    depth = points.charted
+    if BED_DEPTH in sampled:
+        depth = np.minimum(depth, sampled[BED_DEPTH])
+    if WATER_LEVEL in sampled:
+        depth = depth + sampled[WATER_LEVEL]
+    return sampled, depth
+
+
+def move(world: World, points: Points, time: FloatArray, guess: FloatArray | None = None) -> Motion:
+    """Return what the ship does at points and times.
+
+    Parameters
+    ----------
+    world : World
+    points : Points
+    time : ndarray
+        [s since 1970-01-01T00:00Z].
+    guess : ndarray, optional
+        Speed through water [m/s] near the answer, to start the current triangle from.
+
+    Notes
+    -----
+    With the current's components ``a`` along and ``b`` across the course (positive to starboard)
+    the heading is ``course - asin(b / V)`` and the speed over ground ``a + sqrt(V^2 - b^2)``
+    (van Halem 2019, section 2.3). As V depends on the heading where waves and wind are met at
+    an angle, both are found by fixed-point iteration to a relative 1e-11.
+    """
+    sampled, depth = look(world, points, time)
+    east, north = np.sin(points.course), np.cos(points.course)
+    along = across = np.zeros(len(points))
+    if world.has_current:
+        current_east, current_north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
+        along = current_east * east + current_north * north
+        across = current_east * north - current_north * east
+    speed, drift = _triangle(world, points, time, sampled, depth, across, guess)
+    with np.errstate(invalid="ignore"):
+        ground = along + np.sqrt(speed * speed - across * across)
+        ground = np.where((ground > 0.0) & (speed > np.abs(across)), ground, math.nan)
+    heading = (points.course - drift) % (2.0 * math.pi)
+    return Motion(sampled, depth, heading, speed, ground)
+
+
+def conditions_at(
+    world: World,
+    points: Points,
+    time: FloatArray,
+    *,
+    sampled: dict[str, FloatArray],
+    depth: FloatArray,
+    heading: FloatArray,
+) -> Conditions:
+    """Return the conditions a ship model reads."""
+    crab = (heading - points.course + math.pi) % (2.0 * math.pi) - math.pi
+    more = {"depth": depth, "crab_angle": crab} if world.has_depth else {"crab_angle": crab}
+    return Conditions.from_sea(
+        sampled, heading=heading, time=time, lat=points.lat, lon=points.lon, **more
+    )
+
+
+def _triangle(
+    world: World,
+    points: Points,
+    time: FloatArray,
+    sampled: dict[str, FloatArray],
+    depth: FloatArray,
+    across: FloatArray,
+    guess: FloatArray | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Return (speed through water, drift angle), consistent with each other."""
+    ship = world.ship
+    field = ship.speed_field
+    if field is not None:
+        speed = np.broadcast_to(field(sampled, time, points.lat, points.lon), across.shape)
+        return speed, _drift(across, speed)
+    fixed = not ship.heading_matters or not np.any(across)
+    drift = np.zeros_like(across) if guess is None or fixed else _drift(across, guess)
+    speed = np.full_like(across, math.nan)
+    change = math.inf
+    for _ in range(_TURNS):
+        before = speed
+        here = conditions_at(
+            world, points, time, sampled=sampled, depth=depth, heading=points.course - drift
+        )
+        speed = np.broadcast_to(ship.speed_through_water(here, points.setting), across.shape)
+        drift = _drift(across, speed)
+        if fixed:
+            break
+        last_change, change = change, _largest_change(before, speed)
+        if change <= _SPEED_TOLERANCE or (change < _SPEED_NOISE and change > 0.3 * last_change):
+            break
+    return speed, drift
+
+
+def _largest_change(before: FloatArray, speed: FloatArray) -> float:
+    """Return the largest relative change of the speeds that are known; inf at first."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        change = np.abs(speed - before) / np.abs(speed)
+    change = np.where(speed == before, 0.0, change)[~np.isnan(speed)]
+    return math.inf if np.isnan(change).any() else float(change.max(initial=0.0))
+
+
+def _drift(across: FloatArray, speed: FloatArray) -> FloatArray:
+    """Return the angle between course and heading [rad]; 0 where the speed is unknown."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sine = np.where(speed > 0.0, across / speed, 0.0)
+    return np.arcsin(np.clip(np.where(np.isfinite(sine), sine, 0.0), -1.0, 1.0))

@@ -1,0 +1,40 @@
+"""Wind of which only the speed is known, for ships that look at nothing else of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.sea import Sea
+from thalweg.ship import Ship
+from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND
+
+SPEED = "wind_speed"
+#: What is told when it is done.
+ASSUMPTION = "wind: only its speed is known and only that is looked at; taken as from the west"
+
+
+def with_wind_speed(ship: Ship, sea: Sea) -> Sea:
+    """Return the sea with a wind vector, where a plain wind speed is enough for the ship.
+
+    Parameters
+    ----------
+    ship : Ship
+    sea : Sea
+        If it holds ``wind_speed`` without a direction, and the ship needs wind but reads no angle
+        of it, the wind blows from the west at that speed; else it comes back as it is.
+    """
+    wind = {EASTWARD_WIND, NORTHWARD_WIND}
+    needed = bool(wind & set(ship.needs)) and "wind_angle" not in ship.reads
+    if not needed or wind & sea.variables or SPEED not in sea.variables:
+        return sea
+
+    def eastward(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        return np.asarray(sea.sample([SPEED], time, lat, lon)[SPEED])
+
+    def northward(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        return 0.0 * eastward(time, lat, lon)
+
+    directed = Sea.from_functions({EASTWARD_WIND: eastward, NORTHWARD_WIND: northward})
+    both = Sea.layered(sea, directed)
+    return Sea(both.layers, (*both.assumptions, ASSUMPTION))

@@ -1,0 +1,1 @@
+"""Continuous refinement of tracks: waypoints and speeds improved between network nodes."""

@@ -1,0 +1,283 @@
+"""A better route than a given one, by the referee's own word."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.kernels import codes
+from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.route.canal_legs import canal_legs, sea_stretches
+from thalweg.route.referee.evaluation import evaluate
+from thalweg.route.refinement.feasible_interpolation import blended
+from thalweg.route.refinement.polyline import unwrapped
+from thalweg.route.refinement.simplification import thinned
+from thalweg.route.refinement.smoothing import smooth
+from thalweg.route.refinement.time_evaluator import penalty_factors
+from thalweg.route.route import Route
+from thalweg.route.track import Track
+from thalweg.sea.standard_names import CHANNEL_VARIABLES
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import GridFields, Sea
+    from thalweg.ship import PerformanceTable, Ship
+
+LARGEST_RASTER = 4_000_000  #: numbers in the frozen raster of the sea around a track
+_LEAST_ROWS, _MOST_ROWS = 12, 120  # cells along the longer side of the raster
+_ROOM = (0.2, 0.4, 0.6)  # room around the track, as a share of its box; more when it is used up
+_RIM = 0.04  # nearness to the rim of the raster at which it counts as used up
+# (share by which limits are tightened, whether it may wait anywhere) while the referee objects
+_TRIES = ((0.0, True), (0.005, True), (0.02, True), (0.06, True), (0.0, False), (0.02, False))
+_MARGINS = 4  # of them differ for a ship that does not wait
+_WAIT_EXACT = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
+_WAIT_SHARE = 1e-5
+_LONGER = (0.0, 120.0, 600.0, 1800.0)  # seconds by which a wait may grow when the referee objects
+
+Score = Callable[[Track], Route]
+
+
+def better_route(
+    scored: Route,
+    *,
+    ship: Ship,
+    sea: Sea,
+    chart: Chart | None,
+    table: PerformanceTable | TableArrays,
+    limits: ArrayLike,
+    min_ukc: float | None = 0.0,
+    objective: str = "time",
+    wait: bool | None = None,
+) -> Route:
+    """Smooth a route and return whichever of the two the referee prefers.
+
+    Parameters
+    ----------
+    scored : Route
+        As the referee found it.
+    ship : Ship
+    sea : Sea
+    chart : Chart or None
+    table : PerformanceTable or TableArrays
+        Of the ship.
+    limits : array_like of float
+        Required depth [m], wave height [m] and wind speed [m/s] for the kernels.
+    min_ukc : float or None
+        As for `evaluate`.
+    objective : {"time", "distance"}
+    wait : bool, optional
+        Whether the ship may wait where it did not before; by default only if it waits somewhere.
+
+    Returns
+    -------
+    Route
+        Scored by the referee; never worse than the given one, and within every limit if the given
+        one is.
+    """
+
+    def score(track: Track) -> Route:
+        return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
+
+    if canal_legs(scored.track, chart).any:
+        better = partial(
+            better_route,
+            ship=ship,
+            sea=sea,
+            chart=chart,
+            table=table,
+            limits=limits,
+            min_ukc=min_ukc,
+            objective=objective,
+            wait=wait,
+        )
+        refined = _between_canals(scored, chart, score, better)
+        return min(scored, refined, key=lambda item: rank(item, objective, chart))
+    best, wished = scored, None
+    may_wait = bool(scored.track.wait.any()) if wait is None else wait
+    for margin, patient in _TRIES[: None if may_wait else _MARGINS]:
+        track = scored.track
+        for room in _ROOM:
+            fields = freeze_around(scored, track, room, ship=ship, sea=sea, limits=limits)
+            track = smooth(
+                track,
+                table=table,
+                fields=fields,
+                limits=tightened(limits, margin),
+                chart=chart,
+                objective=objective,
+                wait=may_wait and patient,
+            )
+            if objective == "distance" or not _touches_rim(track, fields):
+                break
+        route = shorten_waits(score(track), score) if track != scored.track else scored
+        best = min(best, route, key=lambda item: rank(item, objective, chart))
+        if route.feasible:
+            break
+        if best is scored and scored.feasible and math.isfinite(route.arrive):
+            wished = track if wished is None else wished
+    if best is scored and wished is not None:
+        best = blended(scored, wished, score)
+    best = shorten_waits(best, score)
+    most = rank(scored, objective, chart)[1] if scored.feasible else math.inf
+    return thinned(best, score, lambda item: rank(item, objective, chart)[1], most=most)
+
+
+def _between_canals(
+    scored: Route, chart: Chart | None, score: Score, better: Callable[[Route], Route]
+) -> Route:
+    """Return the route with its stretches between canals refined, one after the other."""
+    route = scored
+    for number in range(len(sea_stretches(scored.track, chart))):
+        track = route.track
+        first, last = sea_stretches(track, chart)[number]
+        depart = track.depart if first == 0 else float(route.legs["arrive"][first - 1])
+        if not math.isfinite(depart):
+            break
+        part = better(score(track.part(first, last, depart))).track
+        route = score(track.with_part(first, last, part))
+    return route
+
+
+def freeze_around(
+    route: Route,
+    track: Track,
+    room: float,
+    *,
+    ship: Ship,
+    sea: Sea,
+    limits: ArrayLike,
+    until: float | None = None,
+) -> GridFields:
+    """Freeze the sea on a raster around a track, as fine as the data or a size limit allows.
+
+    Parameters
+    ----------
+    route : Route
+        Tells how long the voyage takes.
+    track : Track
+    room : float
+        Room on all sides, as a share of the longer side of the track's box.
+    until : float, optional
+        Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
+    """
+    lon = unwrapped(track.lon)
+    extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
+    margin = room * extent
+    south, north = max(track.lat.min() - margin, -89.9), min(track.lat.max() + margin, 89.9)
+    width = min(np.ptp(lon) + 2.0 * margin, 359.0)
+    west = 0.5 * (lon.min() + lon.max() - width)
+    start = track.depart
+    arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
+    arrive = arrive if until is None else max(arrive, until)
+    end = start + 1.1 * (arrive - start) + 600.0
+    channels = _channels(ship, sea, np.asarray(limits, float))
+    extra = {codes.SPEED_FIELD: ship.speed_field} if ship.speed_field is not None else None
+    numbers = max(len(sea.times(start, end)), 2) * max(len(channels) + bool(extra), 1)
+    finest = math.sqrt((north - south) * width * numbers / LARGEST_RASTER)
+    native = [r.spacing_deg for r in sea.coverage() if r.spacing_deg]
+    spacing = max(min([extent / _MOST_ROWS, *native]), finest, extent / 400.0)
+    spacing = min(spacing, extent / _LEAST_ROWS)
+    return sea.freeze_grid(
+        south, north, west, west + width, start, end, channels, spacing_deg=spacing, extra=extra
+    )
+
+
+def _touches_rim(track: Track, fields: GridFields) -> bool:
+    """Return whether a track comes so near to the rim of a raster that it may have been held up."""
+    rows, columns = fields.values.shape[1:3]
+    y = (track.lat - fields.lat0) / (fields.dlat * (rows - 1))
+    x = ((track.lon - fields.lon0) % 360.0) / (fields.dlon * (columns - 1))
+    return bool(min(y.min(), x.min(), 1.0 - y.max(), 1.0 - x.max()) < _RIM)
+
+
+def shorten_waits(route: Route, score: Score) -> Route:
+    """Return the route with every wait as short as the referee allows, to half a second.
+
+    Frozen fields blur the moment at which a bar opens by up to one of their time steps; the
+    referee knows it. A wait that turns out too short is made longer first.
+    """
+    waiting = np.flatnonzero(route.track.wait)
+    if not waiting.size:
+        return route
+    if not route.feasible:
+        for longer in _LONGER[1:]:
+            later = score(_with_wait(route.track, int(waiting[-1]), longer))
+            if later.feasible:
+                route = later
+                break
+        else:
+            return route
+    for index in waiting:
+        route = _shorten(route, int(index), score)
+    return route
+
+
+def _shorten(route: Route, index: int, score: Score) -> Route:
+    """Halve the interval between a wait that is too short and one that is long enough."""
+    long_enough = float(route.track.wait[index])
+    none = score(_with_wait(route.track, index, -long_enough))
+    if none.feasible:
+        return none if none.arrive <= route.arrive else route
+    best, track, too_short = route, route.track, 0.0
+    exact = min(_WAIT_EXACT, _WAIT_SHARE * (route.arrive - route.depart))
+    while long_enough - too_short > exact:
+        tried = 0.5 * (too_short + long_enough)
+        shorter = score(_with_wait(track, index, tried - float(track.wait[index])))
+        if shorter.feasible and shorter.arrive <= best.arrive:
+            best, long_enough = shorter, tried
+        else:
+            too_short = tried
+    return best
+
+
+def _with_wait(track: Track, index: int, change: float) -> Track:
+    """Return the track with one wait changed and the next one still ending when it did."""
+    wait = np.array(track.wait)
+    wait[index] = max(wait[index] + change, 0.0)
+    later = np.flatnonzero(wait[index + 1 :])
+    if later.size:
+        following = index + 1 + int(later[0])
+        wait[following] = max(wait[following] - change, 0.0)
+    return track.replaced(wait=wait)
+
+
+def rank(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
+    """Return what routes are compared by: limits kept first, then the objective, then time."""
+    if not math.isfinite(route.arrive):
+        return True, math.inf, math.inf
+    sailed = route.legs["arrive"] - route.legs["depart"]
+    spent = route.legs["length"] if objective == "distance" else sailed
+    factor = penalty_factors(chart, route.track.lat, route.track.lon)
+    cost = float(np.sum(spent if factor is None else factor * spent))
+    if objective != "distance":
+        cost += float(route.track.wait.sum())
+    return not route.feasible, cost, route.arrive
+
+
+def tightened(limits: ArrayLike, margin: float) -> FloatArray:
+    """Return limits that are stricter by a share of themselves."""
+    tight = np.array(limits, dtype=float)
+    tight[codes.LIMIT_REQUIRED_DEPTH] *= 1.0 + margin
+    tight[codes.LIMIT_WAVE_HEIGHT] *= 1.0 - margin
+    tight[codes.LIMIT_WIND_SPEED] *= 1.0 - margin
+    return tight
+
+
+def _usual(route: Route, ship: Ship) -> float:
+    speeds = ship.speeds[np.isfinite(ship.speeds)]
+    return float(route.legs["length"].sum()) / float(speeds[-1] if speeds.size else 5.0)
+
+
+def _channels(ship: Ship, sea: Sea, limits: FloatArray) -> list[int]:
+    """Return the channels the kernels look at."""
+    names = {CHANNEL_VARIABLES[codes.CURRENT_EAST], CHANNEL_VARIABLES[codes.CURRENT_NORTH]}
+    names |= ship.needs
+    if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]) or "depth" in ship.reads:
+        names |= {CHANNEL_VARIABLES[codes.WATER_LEVEL], CHANNEL_VARIABLES[codes.BED_DEPTH]}
+    return [c for c, name in CHANNEL_VARIABLES.items() if name in names and name in sea.variables]

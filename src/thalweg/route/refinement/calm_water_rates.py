@@ -1,0 +1,38 @@
+"""What a ship does in calm conditions, read from its tables."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray
+from thalweg.kernels.codes import AXES, AXIS_DEPTH, AXIS_WAVE_PERIOD
+from thalweg.kernels.leg.table_lookup import TableArrays, table_value
+
+
+def calm_rate(table: TableArrays, setting: int) -> float:
+    """Return a table's value without wind and waves in deep water; NaN if it has none."""
+    value, ok = table_value(table, _calm(table), setting)
+    return float(value) if ok else float("nan")
+
+
+def calm_speeds(table: TableArrays) -> FloatArray:
+    """Return the calm value of every setting."""
+    return np.array([calm_rate(table, setting) for setting in range(table.n_settings)])
+
+
+def _calm(table: TableArrays) -> tuple[float, ...]:
+    """Return a calm value for every axis: the nearest to zero, but the greatest depth."""
+    values = np.zeros(AXES)
+    for part, ids in enumerate(table.part_axes):
+        for k, axis in enumerate(ids):
+            if axis < 0:
+                break
+            low = table.axis_start[part, k]
+            high = low + (table.axis_size[part, k] - 1) / table.axis_inv_step[part, k]
+            if axis == AXIS_DEPTH:
+                values[axis] = 1e6
+            elif axis == AXIS_WAVE_PERIOD:
+                values[axis] = max(values[axis], low)
+            else:
+                values[axis] = min(max(0.0, low), high)
+    return tuple(values.tolist())

@@ -1,0 +1,330 @@
+"""A sailor that prices fuel: cost and time of many tracks at once, for polishing to compare."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.kernels.leg import population_sailing as columns
+from thalweg.kernels.leg.population_sailing import FitnessWorld, sail_population
+from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.route.canal_legs import canal_legs, canal_rates, canal_setting
+from thalweg.route.refinement.time_evaluator import Bundle, IntArray, Sailor, make_sailor
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.chart.canals import Canal
+    from thalweg.route.track import Track
+    from thalweg.sea import GridFields
+    from thalweg.ship import PerformanceTable, Ship
+    from thalweg.ship.fuel_prices import FuelTerms
+
+OBJECTIVES = ("fuel", "cost", "co2")
+
+
+@dataclass(frozen=True)
+class Weights:
+    """What is made least, in its own unit (kg of fuel, money, kg of CO2).
+
+    Attributes
+    ----------
+    inside, outside : float
+        Of a kilogram of fuel inside and outside emission control areas.
+    time : float
+        Of a second.
+    waiting : float
+        Of a second lain still.
+    priced : bool
+        Whether price zones and canal dues count.
+    cubed : bool
+        Whether ``inside`` and ``outside`` are of a cubed speed for a second, in place of fuel.
+    """
+
+    inside: float = 1.0
+    outside: float = 1.0
+    time: float = 0.0
+    waiting: float = 0.0
+    priced: bool = False
+    cubed: bool = False
+
+    @classmethod
+    def of(cls, objective: str, terms: FuelTerms, waiting_rate: float) -> Weights:
+        """Return the weights of an objective.
+
+        Raises
+        ------
+        InputError
+            If there is no such objective, or a price or carbon factor it needs is unknown.
+        """
+        if objective not in OBJECTIVES:
+            raise InputError(
+                f"A route cannot be polished for {objective!r}.",
+                f"Objectives are {', '.join(OBJECTIVES)}.",
+                "Choose one of them.",
+                field="objective",
+            )
+        if objective == "cost" and terms.by_speed:
+            price = terms.speed_price
+            return cls(price, price, terms.time_price, 0.0, priced=True, cubed=True)
+        inside, outside = terms.per_kg(objective, True), terms.per_kg(objective, False)
+        if not (math.isfinite(inside) and math.isfinite(outside)):
+            what = "price" if objective == "cost" else "carbon factor"
+            raise InputError(
+                f"The {what} of the fuel is unknown.",
+                f"Polishing for {objective!r} needs it, inside and outside control areas.",
+                "Name it in the ship file, or give prices (FuelTerms.with_prices).",
+                field="terms",
+            )
+        money = objective == "cost"
+        time = terms.time_price if money else 0.0
+        return cls(inside, outside, time, waiting_rate * outside, money)
+
+
+@dataclass(frozen=True)
+class Purse:
+    """Sails polylines as `Sailor` does, and tells what they cost.
+
+    Attributes
+    ----------
+    sailor : Sailor
+        Looks up land and charted depth.
+    world : FitnessWorld
+        Sea, ship, limits and terms as the kernel takes them; times from ``sailor.origin``.
+    weights : Weights
+    per_second : float
+        What a second of the passage is worth besides; costs that are compared have it in them.
+    canals : float64 array (C, 3)
+        Time [s], fuel [kg] and dues of each canal of the chart; empty if the track has none.
+    """
+
+    sailor: Sailor
+    world: FitnessWorld
+    weights: Weights
+    per_second: float
+    canals: FloatArray
+
+    by_length = True  # costs are counted from the start of a track, not from the origin
+    chooses_settings = True
+
+    @property
+    def chart(self) -> Chart | None:
+        """The chart that tracks keep clear of."""
+        return self.sailor.chart
+
+    @property
+    def origin(self) -> float:
+        """Where its times count from [s since 1970-01-01T00:00Z]."""
+        return self.sailor.origin
+
+    @property
+    def limits(self) -> FloatArray:
+        """Required depth, wave height and wind speed."""
+        return self.sailor.limits
+
+    @property
+    def patience(self) -> FloatArray:
+        """How it waits of itself: it does not."""
+        return np.zeros(3)
+
+    @property
+    def settings(self) -> int:
+        """Number of speed settings."""
+        return int(self.world.table.n_settings)
+
+    def worth(self, per_second: float) -> Purse:
+        """Return the purse with another worth of a second."""
+        return replace(self, per_second=per_second)
+
+    def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
+        """Return how many pieces each leg of polylines (..., n) is cut into."""
+        return self.sailor.pieces(lat, lon)
+
+    def look(
+        self, lat: FloatArray, lon: FloatArray
+    ) -> tuple[NDArray[np.bool_] | None, FloatArray | None]:
+        """Return (blocked, least charted depth) of the legs of polylines; None: not known."""
+        return self.sailor.look(lat, lon)
+
+    def fixed_points(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return which points of one polyline may not move: its ends and those of canals."""
+        canal = self.canal_legs(lat, lon)
+        fixed = self.sailor.fixed_points(lat, lon)
+        return fixed | np.append(canal, False) | np.append(False, canal)
+
+    def canal_legs(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return which legs of one polyline run through canals."""
+        if not len(self.canals):
+            return np.zeros(len(lat) - 1, dtype=bool)
+        chart: Any = self.chart
+        return np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]) >= 0)
+
+    def sail(
+        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    ) -> tuple[FloatArray, FloatArray]:
+        """Sail polylines: (arrival at every point [s after the origin], cost), as `Sailor.sail`.
+
+        The cost has the worth of time in it and is +inf where a track cannot be sailed.
+        """
+        arrive, cost, time = self.spend(bundle, pieces=pieces, check=check)
+        return arrive, cost + self.per_second * time
+
+    def sail_and_wait(
+        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Do as `sail` does, and return (arrive, leave, cost): when each point is left, too."""
+        arrive, cost = self.sail(bundle, pieces=pieces, check=check)
+        return arrive, np.maximum(arrive, bundle.leave), cost
+
+    def spend(
+        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return (arrival at every point, cost without the worth of time, passage time)."""
+        count, size = bundle.lat.shape
+        genes = self._genes(bundle, pieces, check)
+        waits = np.isfinite(bundle.leave[:, :-1])
+        if not waits.any():
+            score, arrive = self._run(genes, bundle.depart)
+        else:  # moments of leaving become waits leg by leg
+            arrive = np.empty((count, size))
+            arrive[:, 0] = bundle.depart
+            score = np.zeros((count, columns.SCORES))
+            for k in range(size - 1):
+                pair = genes[:, k : k + 2].copy()
+                late = bundle.leave[:, k] - arrive[:, k]
+                pair[:, 0, columns.WAIT] = np.where(late > 0.0, late, 0.0)
+                part, there = self._run(pair, arrive[:, k])
+                score, arrive[:, k + 1] = score + part, there[:, 1]
+        bad = score[:, columns.VIOLATION] > 0.0
+        cost = np.where(bad, math.inf, score[:, columns.COST])
+        arrive[bad, -1] = math.inf
+        return arrive, cost, score[:, columns.TIME]
+
+    def broken_legs(self, bundle: Bundle) -> NDArray[np.bool_]:
+        """Return which legs of polylines (L, n - 1) cannot be sailed, each by itself."""
+        arrive, _, _ = self.spend(bundle, check=False)
+        size = bundle.lat.shape[1]
+        broken = np.zeros((len(bundle.lat), size - 1), dtype=bool)
+        genes = self._genes(bundle, None, True)
+        for k in range(size - 1):
+            depart = np.where(np.isfinite(arrive[:, k]), arrive[:, k], bundle.depart)
+            score, _ = self._run(genes[:, k : k + 2], depart)
+            broken[:, k] = score[:, columns.VIOLATION] > 0.0
+        return broken
+
+    def _run(self, genes: FloatArray, depart: FloatArray) -> tuple[FloatArray, FloatArray]:
+        count, size = genes.shape[:2]
+        score, arrive = np.empty((count, columns.SCORES)), np.empty((count, size))
+        sail_population(
+            np.full(count, size, dtype=np.int64),
+            np.ascontiguousarray(genes),
+            np.array(depart, dtype=float),
+            self.world,
+            score,
+            arrive,
+            np.empty((count, columns.SCRATCH)),
+        )
+        return score, arrive
+
+    def _genes(self, bundle: Bundle, pieces: IntArray | None, check: bool) -> FloatArray:
+        """Return polylines as the kernel takes them, every leg looked up."""
+        count, size = bundle.lat.shape
+        genes = np.zeros((count, size, columns.COLUMNS))
+        genes[:, :, columns.LAT], genes[:, :, columns.LON] = bundle.lat, bundle.lon
+        legs = genes[:, :-1]
+        legs[:, :, columns.SETTING] = bundle.setting
+        if pieces is not None:
+            legs[:, :, columns.PIECES] = np.broadcast_to(pieces, (count, size - 1))
+        legs[:, :, columns.CHARTED] = math.inf
+        if check:
+            blocked, charted = self.look(bundle.lat, bundle.lon)
+            legs[:, :, columns.BLOCKED] = 0.0 if blocked is None else blocked
+            legs[:, :, columns.CHARTED] = math.inf if charted is None else charted
+        lat, lon = bundle.lat, bundle.lon
+        self._price(legs, (lat[:, :-1], lon[:, :-1], lat[:, 1:], lon[:, 1:]))
+        return genes
+
+    def _price(self, legs: FloatArray, ends: tuple[FloatArray, ...]) -> None:
+        """Write weights, penalties and canals of legs in place."""
+        chart: Any = self.chart
+        weights = self.weights
+        legs[:, :, columns.WEIGHT], legs[:, :, columns.PENALTY] = weights.outside, 1.0
+        legs[:, :, columns.FIXED_TIME] = math.nan
+        if chart is None:
+            return
+        if chart.zones.eca and weights.inside != weights.outside:
+            share = chart.eca_share(*ends)
+            legs[:, :, columns.WEIGHT] += share * (weights.inside - weights.outside)
+        if chart.zones.penalty or (chart.zones.price and weights.priced):
+            penalty, price = chart.zone_factor(*ends)
+            legs[:, :, columns.PENALTY] = penalty
+            if weights.priced:
+                legs[:, :, columns.WEIGHT] *= price
+        if len(self.canals):
+            number = chart.canal_of_legs(*ends)
+            on = number >= 0
+            time, burnt, dues = self.canals[number[on]].T
+            legs[on, columns.FIXED_TIME] = time
+            legs[on, columns.FIXED_COST] = burnt * legs[on, columns.WEIGHT] + dues
+
+
+def make_purse(
+    *,
+    ship: Ship,
+    table: PerformanceTable | TableArrays,
+    fuel: PerformanceTable | TableArrays,
+    fields: GridFields,
+    limits: ArrayLike,
+    chart: Chart | None,
+    track: Track,
+    weights: Weights,
+) -> Purse:
+    """Put a purse together for polishing a track; times count from its departure.
+
+    Raises
+    ------
+    InputError
+        If the tables differ in their settings.
+    """
+    sailor = make_sailor(
+        table=table,
+        chart=chart,
+        fields=fields,
+        limits=limits,
+        origin=track.depart,
+        by_length=False,
+        total=float(track.lengths.sum()),
+    )
+    rates = fuel if isinstance(fuel, TableArrays) else fuel.kernel_arrays()
+    if rates.n_settings != sailor.table.n_settings:
+        raise InputError(
+            f"The table of fuel has {rates.n_settings} settings, that of speed "
+            f"{sailor.table.n_settings}.",
+            "Both are of one ship.",
+            "Tabulate both for the same speeds.",
+        )
+    terms = np.zeros(columns.TERMS)
+    terms[columns.TIME_PRICE] = weights.time
+    terms[columns.WAITING_PRICE] = weights.waiting
+    terms[columns.LATEST], terms[columns.SPACING] = math.inf, sailor.spacing
+    index = sailor.raster.channel_index
+    channels = np.zeros(sailor.raster.values.shape[3], dtype=np.int64)
+    channels[index[index >= 0]] = np.flatnonzero(index >= 0)
+    world = FitnessWorld(sailor.raster, channels, sailor.table, rates, sailor.limits, terms)
+    passed = canal_legs(track, chart)  # none: canals need not be looked for again and again
+
+    def rate(canal: Canal) -> float:
+        if weights.cubed:
+            return float(ship.speeds[canal_setting(ship, canal)]) ** 3
+        return canal_rates(ship, canal)[1]
+
+    canals = [
+        (c.transit_time, rate(c) * c.transit_time, c.fee * weights.priced)
+        for c in (passed.canals if passed.any else ())
+    ]
+    return Purse(sailor, world, weights, 0.0, np.array(canals, float).reshape(-1, 3))

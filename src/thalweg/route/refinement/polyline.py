@@ -1,0 +1,135 @@
+"""A track in the hands of the refinement: plain arrays, times from an origin."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.geodesy import FloatArray, along, wrap_longitude
+from thalweg.route.refinement.cost_evaluator import Purse
+from thalweg.route.refinement.time_evaluator import Bundle, Sailor, rough_lengths
+from thalweg.route.track import Track
+
+IntArray = NDArray[np.int64]
+METRES_PER_DEGREE = 111_195.0
+
+
+@dataclass(frozen=True)
+class Line:
+    """Waypoints with moments not to leave before.
+
+    Attributes
+    ----------
+    lat, lon : float64 array (n,)
+        [deg]; longitudes unwrapped, without jumps.
+    leave : float64 array (n,)
+        The ship leaves a point no earlier [s after the origin]; -inf where it does not wait.
+    setting : int64 array (n - 1,)
+    depart : float
+        [s after the origin].
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    leave: FloatArray
+    setting: IntArray
+    depart: float
+
+    def __len__(self) -> int:
+        return len(self.lat)
+
+    def bundle(self, lat: FloatArray | None = None, lon: FloatArray | None = None) -> Bundle:
+        """Return this line, or variants of it at other positions (L, n), ready to sail."""
+        lat = self.lat[None] if lat is None else lat
+        lon = self.lon[None] if lon is None else lon
+        count = len(lat)
+        return Bundle(
+            lat,
+            lon,
+            np.broadcast_to(self.leave, lat.shape),
+            np.broadcast_to(self.setting, (count, len(self) - 1)),
+            np.full(count, self.depart),
+        )
+
+    def moved(self, lat: FloatArray, lon: FloatArray) -> Line:
+        """Return the line with its points elsewhere."""
+        return replace(self, lat=lat, lon=lon)
+
+    def kept(self, index: IntArray) -> Line:
+        """Return the line through some of its points; joined legs keep the first setting."""
+        return Line(
+            self.lat[index],
+            self.lon[index],
+            self.leave[index],
+            self.setting[index[:-1]],
+            self.depart,
+        )
+
+    def kept_points(self, sailor: Sailor | Purse) -> NDArray[np.bool_]:
+        """Return which points must stay: the ends and where the setting changes.
+
+        Sailors that price fuel have settings chosen anew, so those do not bind them; canals do.
+        """
+        kept = sailor.fixed_points(self.lat, self.lon)
+        if not sailor.chooses_settings:
+            kept[1:-1] |= np.diff(self.setting) != 0
+        return kept
+
+    def split(self, longest: float, which: NDArray[np.bool_] | None = None) -> Line:
+        """Return the line with a point in the middle of every leg longer than ``longest`` [m].
+
+        Of the legs in ``which`` only, if that is given.
+        """
+        lat, lon, leave, setting = [self.lat[0]], [self.lon[0]], [self.leave[0]], []
+        longer = rough_lengths(self.lat, self.lon) > longest
+        for k, long in enumerate(longer if which is None else longer & which):
+            if long:
+                middle = along(self.lat[k], self.lon[k], self.lat[k + 1], self.lon[k + 1], 0.5)
+                lat.append(float(middle[0]))
+                lon.append(float(middle[1]))
+                leave.append(-math.inf)
+                setting.append(self.setting[k])
+            lat.append(self.lat[k + 1])
+            lon.append(self.lon[k + 1])
+            leave.append(self.leave[k + 1])
+            setting.append(self.setting[k])
+        return Line(
+            np.array(lat), unwrapped(np.array(lon)), np.array(leave), np.array(setting), self.depart
+        )
+
+
+def line_of(track: Track, sailor: Sailor | Purse) -> Line:
+    """Return a track as a line; its waits become moments of leaving."""
+    line = Line(
+        np.array(track.lat),
+        unwrapped(track.lon),
+        np.full(len(track), -math.inf),
+        np.array(track.setting),
+        track.depart - sailor.origin,
+    )
+    for index in np.flatnonzero(track.wait):
+        arrive, _ = sailor.sail(line.bundle(), check=False)
+        leave = line.leave.copy()
+        leave[index] = arrive[0, index] + track.wait[index]
+        line = replace(line, leave=leave)
+    return line
+
+
+def track_of_line(line: Line, sailor: Sailor | Purse) -> Track:
+    """Return a line as a track, its moments of leaving as waits."""
+    arrive, leave, _ = sailor.sail_and_wait(line.bundle())
+    wait = np.maximum(0.0, leave[0] - arrive[0])
+    wait[~np.isfinite(wait)] = 0.0
+    wait[-1] = 0.0
+    return Track(
+        line.lat, wrap_longitude(line.lon), line.depart + sailor.origin, wait, line.setting
+    )
+
+
+def unwrapped(lon: FloatArray) -> FloatArray:
+    """Return longitudes without jumps of 360 degrees."""
+    result: FloatArray = np.unwrap(np.asarray(lon, float), period=360.0)
+    return result

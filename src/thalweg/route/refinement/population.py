@@ -1,0 +1,181 @@
+"""Genomes: tracks as evolution sees them, alone and as a population."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray, wrap_longitude
+from thalweg.kernels.leg import population_sailing as columns
+from thalweg.route.track import Track
+
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Genome:
+    """One track: points, the speed setting of every leg, waits.
+
+    Attributes
+    ----------
+    lat, lon : float64 array (n,)
+        Points [deg], n >= 2.
+    setting : int64 array (n - 1,)
+        Setting of each leg, counted from 0.
+    wait : float64 array (n,), optional
+        Time lain still at each point [s]; none by default.
+    via : bool array (n,), optional
+        Points that every track must pass, in this order; the ends always are.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    setting: IntArray
+    wait: FloatArray = None  # type: ignore[assignment]
+    via: BoolArray = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        lat, lon = np.array(self.lat, float).reshape(-1), np.array(self.lon, float).reshape(-1)
+        count = len(lat)
+        wait = np.zeros(count) if self.wait is None else np.array(self.wait, float)
+        via = np.zeros(count, bool) if self.via is None else np.array(self.via, bool)
+        setting = np.array(self.setting, np.int64).reshape(-1)
+        if count < 2 or any(len(x) != n for x, n in _lengths(count, lon, setting, wait, via)):
+            raise InputError(
+                f"A genome has {count} latitudes, {len(lon)} longitudes, {len(setting)} settings, "
+                f"{len(wait)} waits and {len(via)} marks of via points.",
+                "It has at least two points and one setting less than points.",
+                "Give arrays that fit together.",
+            )
+        via[[0, -1]] = True
+        made = {"lat": lat, "lon": wrap_longitude(lon), "setting": setting, "wait": wait}
+        for name, values in {**made, "via": via}.items():
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
+
+    def __len__(self) -> int:
+        return len(self.lat)
+
+    @classmethod
+    def from_track(
+        cls, track: Track, *, settings: int, via: Sequence[ArrayLike] | None = None
+    ) -> Genome:
+        """Return the genome of a track.
+
+        Parameters
+        ----------
+        track : Track
+        settings : int
+            Number of settings of the ship, for settings counted from the end.
+        via : sequence of (lat, lon), optional
+            Waypoints of the track [deg] that must stay (within 1e-9 degrees).
+        """
+        setting = np.where(track.setting < 0, track.setting + settings, track.setting)
+        held = np.zeros(len(track), dtype=bool)
+        for position in via or ():
+            lat, lon = (float(x) for x in np.asarray(position, float))
+            away = np.abs(track.lat - lat) + np.abs(wrap_longitude(track.lon - lon))
+            nearest = int(np.argmin(away))
+            if away[nearest] > 2e-9:
+                raise InputError(
+                    f"The via point ({lat:g}, {lon:g}) is not on the track.",
+                    "Via points of a genome are waypoints of its track.",
+                    "Give a track through it.",
+                )
+            held[nearest] = True
+        return cls(track.lat, track.lon, setting, track.wait, held)
+
+    def to_track(self, depart: float) -> Track:
+        """Return the track that leaves at a time [s since 1970-01-01T00:00Z]."""
+        wait = np.array(self.wait)
+        wait[-1] = 0.0
+        return Track(self.lat, self.lon, depart, wait, self.setting)
+
+
+@dataclass(frozen=True, eq=False)
+class Population:
+    """Many genomes in arrays, each leg with what is known of it.
+
+    Attributes
+    ----------
+    count : int64 array (N,)
+        Points of each track.
+    genes : float64 array (N, M, COLUMNS)
+        Points and the legs that start there, see `thalweg.kernels.leg.population_sailing`.
+    """
+
+    count: IntArray
+    genes: FloatArray
+
+    @classmethod
+    def of(cls, genomes: Sequence[Genome], *, room: int = 0) -> Population:
+        """Put genomes into arrays with room for at least ``room`` points each."""
+        if not len(genomes):
+            raise InputError(
+                "There is no genome.", "A population has at least one.", "Give a track to begin."
+            )
+        count = np.array([len(genome) for genome in genomes], dtype=np.int64)
+        genes = np.zeros((len(genomes), max(int(count.max()), room), columns.COLUMNS))
+        genes[:, :, columns.FIXED_TIME] = np.nan
+        for row, genome in zip(genes, genomes):
+            n = len(genome)
+            row[:n, columns.LAT], row[:n, columns.LON] = genome.lat, genome.lon
+            row[:n, columns.WAIT], row[:n, columns.HELD] = genome.wait, genome.via
+            row[: n - 1, columns.SETTING] = genome.setting
+        return cls(count, genes)
+
+    def __len__(self) -> int:
+        return len(self.count)
+
+    @property
+    def room(self) -> int:
+        """Most points a track can have."""
+        return int(self.genes.shape[1])
+
+    def genome(self, index: int) -> Genome:
+        """Return one track."""
+        n = int(self.count[index])
+        row = self.genes[index, :n]
+        return Genome(
+            row[:, columns.LAT],
+            row[:, columns.LON],
+            row[:-1, columns.SETTING].astype(np.int64),
+            row[:, columns.WAIT],
+            row[:, columns.HELD] != 0.0,
+        )
+
+    def genomes(self) -> list[Genome]:
+        """Return every track."""
+        return [self.genome(i) for i in range(len(self))]
+
+    def take(self, index: ArrayLike) -> Population:
+        """Return some of the tracks, copied."""
+        chosen = np.asarray(index)
+        return Population(self.count[chosen], self.genes[chosen])
+
+    def with_room(self, room: int) -> Population:
+        """Return the population with room for exactly so many points (or as many as it needs)."""
+        room = max(room, int(self.count.max(initial=0)))
+        genes = np.zeros((len(self), room, columns.COLUMNS))
+        genes[:, :, columns.FIXED_TIME] = np.nan
+        both = min(room, self.room)
+        genes[:, :both] = self.genes[:, :both]
+        return Population(self.count, genes)
+
+
+def joined(*populations: Population) -> Population:
+    """Return one population of all the tracks of several."""
+    room = max(population.room for population in populations)
+    same = [p if p.room == room else p.with_room(room) for p in populations]
+    return Population(
+        np.concatenate([p.count for p in same]), np.concatenate([p.genes for p in same])
+    )
+
+
+def _lengths(count: int, lon, setting, wait, via):  # type: ignore[no-untyped-def]
+    return (lon, count), (setting, count - 1), (wait, count), (via, count)

@@ -1,0 +1,378 @@
+"""What tracks are worth: a whole population sailed at once, on all cores."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import FloatArray
+from thalweg.core.time import format_time
+from thalweg.kernels import codes
+from thalweg.kernels.leg import population_sailing as columns
+from thalweg.kernels.leg.population_sailing import FitnessWorld, sail_population
+from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.route.refinement.calm_water_rates import calm_rate, calm_speeds
+from thalweg.route.refinement.population import Genome, Population
+from thalweg.route.refinement.time_evaluator import Sailor, make_sailor
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import GridFields
+    from thalweg.ship import PerformanceTable
+
+_PART = 16  # tracks that are worth a thread of their own
+_FINEST = 25.0  # [m] to which legs are cut at borders of control areas
+
+
+@dataclass(frozen=True)
+class Prices:
+    """What time and fuel cost, in one unit (kilograms, money, kilograms of CO2).
+
+    Attributes
+    ----------
+    inside, outside : float
+        Of a kilogram of fuel inside and outside emission control areas.
+    time : float
+        Of a second.
+    waiting : float
+        Of the fuel of a second lain still.
+    fees : bool
+        Whether canal fees count.
+    """
+
+    inside: float = 1.0
+    outside: float = 1.0
+    time: float = 0.0
+    waiting: float = 0.0
+    fees: bool = True
+
+
+@dataclass(frozen=True)
+class Evaluator:
+    """Scores tracks; make one with `make_evaluator`.
+
+    Attributes
+    ----------
+    world : FitnessWorld
+        Sea, ship, limits and terms, as the kernel takes them; times are seconds after ``depart``.
+    sailor : Sailor
+        Looks up land and charted depth.
+    prices : Prices
+    depart, latest : float
+        [s since 1970-01-01T00:00Z]; ``latest`` may be +inf.
+    """
+
+    world: FitnessWorld
+    sailor: Sailor
+    prices: Prices
+    depart: float
+    latest: float
+
+    @property
+    def settings(self) -> int:
+        """Number of speed settings."""
+        return int(self.world.table.n_settings)
+
+    @property
+    def chart(self) -> Chart | None:
+        """The chart that tracks keep clear of."""
+        return self.sailor.chart
+
+    @property
+    def varies(self) -> bool:
+        """Whether zones or charted depth make legs differ besides by the sea."""
+        chart: Any = self.chart
+        if chart is None:
+            return False
+        zones = chart.zones
+        priced = self.prices.inside != self.prices.outside and len(getattr(zones, "eca", ()))
+        return bool(chart.has_depth or zones.penalty or zones.price or priced)
+
+    def __call__(
+        self, genomes: Sequence[Genome] | Population
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return (time, cost, violation) of every track.
+
+        Returns
+        -------
+        time : float64 array (N,)
+            Passage time [s], with what penalty zones add.
+        cost : float64 array (N,)
+            In the unit of the prices, with what penalty zones add.
+        violation : float64 array (N,)
+            0: feasible. Else the share of the length that cannot be sailed (land, no-go zones,
+            limits, no data) plus the lateness as a share of the time there is.
+        """
+        population = genomes if isinstance(genomes, Population) else self.population(genomes)
+        score = self.score(population)
+        return score[:, 0].copy(), score[:, 1].copy(), score[:, 2].copy()
+
+    def population(self, genomes: Sequence[Genome], *, room: int = 0) -> Population:
+        """Return genomes as a population, checked against the ship's settings."""
+        population = Population.of(genomes, room=room)
+        for number, genome in enumerate(genomes, start=1):
+            if genome.setting.min() < 0 or genome.setting.max() >= self.settings:
+                raise InputError(
+                    f"Track {number} asks for a speed setting that the ship does not have.",
+                    f"It has {self.settings} settings, 0 to {self.settings - 1}.",
+                    "Give the settings of this ship.",
+                )
+        return population
+
+    def score(self, population: Population) -> FloatArray:
+        """Return time, cost and violation, shape (N, 3); what legs need is looked up first."""
+        return self.sail(population)[0]
+
+    def sail(
+        self, population: Population, *, depart: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return (scores (N, 3), arrival at every point (N, M) [s after ``self.depart``]).
+
+        ``depart`` [s after ``self.depart``] may differ from track to track; by default 0.
+        """
+        self.look(population)
+        n, room = len(population), population.room
+        start = np.zeros(n) if depart is None else np.ascontiguousarray(depart, float)
+        score, arrive = np.empty((n, columns.SCORES)), np.full((n, room), math.nan)
+        scratch = np.empty((n, columns.SCRATCH))
+        count, genes = np.ascontiguousarray(population.count), population.genes
+
+        def part(piece: slice) -> None:
+            sail_population(
+                count[piece],
+                genes[piece],
+                start[piece],
+                self.world,
+                score[piece],
+                arrive[piece],
+                scratch[piece],
+            )
+
+        in_threads(part, n)
+        return score, arrive
+
+    def look(self, population: Population) -> None:
+        """Look up land, depth, zones and canals of the legs that are not known yet, in place."""
+        legs = np.arange(population.room) < (population.count - 1)[:, None]
+        row, place = np.nonzero(legs & (population.genes[:, :, columns.KNOWN] == 0.0))
+        if not len(row):
+            return
+        genes = population.genes
+        ends = [genes[row, place + k, c] for k in (0, 1) for c in (columns.LAT, columns.LON)]
+        first, back = _distinct(ends)
+        facts = self._facts(*(end[first] for end in ends))
+        blocked, charted, weight, penalty = (fact[back] for fact in facts)
+        genes[row, place, columns.BLOCKED] = blocked
+        genes[row, place, columns.CHARTED] = charted
+        genes[row, place, columns.WEIGHT] = weight
+        genes[row, place, columns.PENALTY] = penalty
+        genes[row, place, columns.FIXED_TIME] = math.nan
+        self._canals(genes, row, place, ends)
+        genes[row, place, columns.KNOWN] = 1.0
+
+    def _facts(
+        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return (blocked, charted depth, weight of fuel, penalty) of legs."""
+        n, prices = len(lat1), self.prices
+        chart: Any = self.chart
+        blocked, charted = np.zeros(n), np.full(n, math.inf)
+        weight, penalty = np.full(n, prices.outside), np.ones(n)
+        if chart is None:
+            return blocked, charted, weight, penalty
+        ends = (lat1, lon1, lat2, lon2)
+        required = self.world.limits[codes.LIMIT_REQUIRED_DEPTH]
+        if chart.has_depth and math.isfinite(required):
+            lines = np.stack([lat1, lat2], axis=1), np.stack([lon1, lon2], axis=1)
+            shut, depth = self.sailor.look(*lines)
+            if shut is not None and depth is not None:
+                blocked, charted = shut[:, 0].astype(float), depth[:, 0]
+        else:
+            blocked[:] = chart.legs_blocked(*ends)
+        zones: Any = chart.zones
+        if prices.inside != prices.outside and len(getattr(zones, "eca", ())):
+            weight = weight + _eca_shares(chart, ends) * (prices.inside - prices.outside)
+        if chart.zones.penalty or chart.zones.price:
+            factor, price = chart.zone_factor(*ends)
+            penalty, weight = np.asarray(factor), weight * np.asarray(price)
+        return blocked, charted, weight, penalty
+
+    def _canals(
+        self, genes: FloatArray, row: np.ndarray, place: np.ndarray, ends: list[FloatArray]
+    ) -> None:
+        """Note time and cost of the legs that are canals; their points are held."""
+        chart: Any = self.chart
+        canals = getattr(chart, "canals", ())
+        if not canals:
+            return
+        index = np.asarray(chart.canal_of_legs(*ends))
+        for k in np.flatnonzero(index >= 0):
+            canal, gene = canals[index[k]], genes[row[k], place[k]]
+            speed = canal.length / canal.transit_time
+            enough = np.flatnonzero(calm_speeds(self.world.table) >= speed)
+            setting = int(enough[0]) if len(enough) else self.settings - 1
+            burnt = calm_rate(self.world.fuel, setting) * canal.transit_time
+            gene[columns.BLOCKED], gene[columns.FIXED_TIME] = 0.0, canal.transit_time
+            fee = canal.fee if self.prices.fees else 0.0
+            gene[columns.FIXED_COST] = burnt * gene[columns.WEIGHT] + fee
+
+    def finer(self, times: float) -> Evaluator:
+        """Return an evaluator with pieces so many times shorter."""
+        terms = self.world.terms.copy()
+        terms[columns.SPACING] /= times
+        return replace(self, world=self.world._replace(terms=terms))
+
+
+def make_evaluator(
+    *,
+    table: PerformanceTable | TableArrays,
+    fuel: PerformanceTable | TableArrays,
+    fields: GridFields,
+    limits: ArrayLike,
+    depart: float,
+    chart: Chart | None = None,
+    latest: float = math.inf,
+    weight_inside: float = 1.0,
+    weight_outside: float = 1.0,
+    time_price: float = 0.0,
+    waiting_fuel: float = 0.0,
+    waiting_weight: float | None = None,
+    fees: bool = True,
+    spacing: float | None = None,
+    total: float = 0.0,
+) -> Evaluator:
+    """Put an evaluator together.
+
+    Parameters
+    ----------
+    table, fuel : PerformanceTable or TableArrays
+        Speed through water [m/s] and fuel rate [kg/s].
+    fields : GridFields
+        The sea frozen around the tracks.
+    limits : array_like of float
+        Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
+    depart : float
+        [s since 1970-01-01T00:00Z].
+    chart : Chart, optional
+        Land, zones, emission control areas, canals and charted depth.
+    latest : float
+        Latest arrival [s since 1970-01-01T00:00Z].
+    weight_inside, weight_outside : float
+        Cost of a kilogram of fuel inside and outside emission control areas.
+    time_price : float
+        Cost of a second.
+    waiting_fuel : float
+        Fuel rate while lying still [kg/s].
+    waiting_weight : float, optional
+        Cost of a kilogram of it; ``weight_outside`` by default.
+    fees : bool
+        Whether canal fees count (not when the cost is fuel).
+    spacing : float, optional
+        Longest piece that legs are cut into [m]; by default half a cell of the raster, at least a
+        400th of ``total`` and at most 100 km.
+    total : float
+        Rough length of the tracks [m].
+
+    Raises
+    ------
+    InputError
+        If a weight is negative or not a number, the latest arrival does not follow the
+        departure, or the tables differ in their settings.
+    """
+    waiting_weight = weight_outside if waiting_weight is None else waiting_weight
+    _check_terms(depart, latest, (weight_inside, weight_outside, waiting_weight, time_price))
+    sailor = make_sailor(
+        table=table,
+        chart=chart,
+        fields=fields,
+        limits=limits,
+        origin=depart,
+        by_length=False,
+        total=total,
+    )
+    rates = fuel if isinstance(fuel, TableArrays) else fuel.kernel_arrays()
+    if rates.n_settings != sailor.table.n_settings:
+        raise InputError(
+            f"The table of fuel has {rates.n_settings} settings, that of speed "
+            f"{sailor.table.n_settings}.",
+            "Both are of one ship.",
+            "Tabulate both for the same speeds.",
+        )
+    terms = np.empty(columns.TERMS)
+    terms[columns.TIME_PRICE] = time_price
+    terms[columns.WAITING_PRICE] = waiting_fuel * waiting_weight
+    terms[columns.LATEST] = latest - depart
+    terms[columns.SPACING] = sailor.spacing if spacing is None else spacing
+    index = sailor.raster.channel_index
+    channels = np.zeros(sailor.raster.values.shape[3], dtype=np.int64)
+    channels[index[index >= 0]] = np.flatnonzero(index >= 0)
+    world = FitnessWorld(sailor.raster, channels, sailor.table, rates, sailor.limits, terms)
+    prices = Prices(
+        weight_inside, weight_outside, time_price, float(terms[columns.WAITING_PRICE]), fees
+    )
+    return Evaluator(world, sailor, prices, depart, latest)
+
+
+def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
+    if not all(math.isfinite(value) and value >= 0.0 for value in terms):
+        raise InputError(
+            f"A price is negative or not a number: {', '.join(f'{x:g}' for x in terms)}.",
+            "Weights of fuel and the price of time are zero or more.",
+            "Correct the prices.",
+        )
+    if not latest > depart:
+        raise InputError(
+            f"The latest arrival {format_time(latest)} is not after the departure.",
+            f"The departure is {format_time(depart)}.",
+            "Give a later arrival.",
+        )
+
+
+def _distinct(ends: list[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the first of every different leg, and which of these each leg is.
+
+    A third of the legs that polishing tries are tried more than once.
+    """
+    mixed = ends[0] + math.sqrt(2.0) * ends[1] + math.sqrt(3.0) * ends[2] + math.sqrt(5.0) * ends[3]
+    _, first, back = np.unique(mixed, return_index=True, return_inverse=True)
+    back = back.reshape(-1)
+    if all(np.array_equal(end, end[first][back]) for end in ends):
+        return first, back
+    every = np.arange(len(mixed))  # different legs with one mixture: as good as never
+    return every, every
+
+
+def _eca_shares(chart: Any, ends: tuple[FloatArray, ...]) -> FloatArray:
+    """Return the shares of legs inside emission control areas, as closely as evolution needs."""
+    share = np.empty(len(ends[0]))
+
+    def part(legs: slice) -> None:
+        share[legs] = chart.eca_share(*(end[legs] for end in ends), finest=_FINEST)
+
+    in_threads(part, len(share))
+    return share
+
+
+def in_threads(work, count: int) -> None:  # type: ignore[no-untyped-def]
+    """Call ``work(slice)`` for parts of ``range(count)`` on all cores."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    parts = min(max(1, count // _PART), 4 * (cores or 1))
+    if parts == 1 or cores == 1:
+        work(slice(0, count))
+        return
+    edges = np.linspace(0, count, parts + 1).astype(int)
+    list(_threads(cores or 1).map(work, map(slice, edges[:-1], edges[1:])))
+
+
+@cache
+def _threads(cores: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(cores, thread_name_prefix="thalweg-evolution")

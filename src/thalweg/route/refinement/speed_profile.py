@@ -1,0 +1,166 @@
+"""Which setting on which leg: the cheapest choice that is in time."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.route.refinement.cost_evaluator import Purse
+from thalweg.route.refinement.polyline import IntArray, Line, unwrapped
+from thalweg.route.refinement.time_evaluator import Bundle
+
+_ROUNDS = 4  # choices, each at the times of the one before
+_ALIKE = 1e-3  # slopes that differ by less than this share count as one: neighbours go first
+_LEAST_SHARE = 0.02  # of a leg that is worth a waypoint
+
+
+def choose_paces(
+    line: Line, purse: Purse, latest: float, *, whole: bool = False
+) -> tuple[Line, float]:
+    """Return the line with the cheapest settings that arrive by a time, and the worth of a second.
+
+    Parameters
+    ----------
+    line : Line
+    purse : Purse
+    latest : float
+        [s after the origin].
+    whole : bool
+        Leave legs whole, so that the line has the same waypoints.
+
+    Returns
+    -------
+    Line
+        Perhaps with one more waypoint, where the setting changes within a leg. At the fastest
+        settings if even those are late.
+    per_second : float
+        What the next second saved costs (the slope of cost over time); 0 if all legs are at their
+        cheapest.
+
+    Notes
+    -----
+    The time of a leg buys less fuel; on the lower convex hull of (time, cost) of every leg the
+    steps are taken in the order of what they save per second (the linear relaxation of the
+    multiple-choice knapsack, Sinha & Zoltners 1979), the last one on a part of its leg. Times of
+    passage shift with the choice, so it is repeated.
+    """
+    budget, slope = latest, 0.0
+    base = line
+    rounds = _ROUNDS // 2 if whole else _ROUNDS
+    for number in range(rounds):
+        times, costs = _options(base, purse)
+        room = budget - _fixed_time(base, purse)
+        setting, slope, part = _knapsack(times, costs, room)
+        base = replace(base, setting=setting)
+        if number == rounds - 1 and not whole:
+            line = _with_part(base, part)
+        else:
+            line = base
+        arrive = float(purse.sail(line.bundle(), check=False)[0][0, -1])
+        if math.isfinite(arrive) and number >= rounds - 2:
+            budget += min(0.0, latest - arrive)
+    return line, slope
+
+
+def _fixed_time(line: Line, purse: Purse) -> float:
+    """Return departure plus the time lain still [s after the origin]."""
+    arrive = purse.sail(line.bundle(), check=False)[0][0]
+    waits = np.maximum(line.leave[:-1] - arrive[:-1], 0.0)
+    return line.depart + float(waits[np.isfinite(waits)].sum())
+
+
+def _options(line: Line, purse: Purse) -> tuple[FloatArray, FloatArray]:
+    """Return (time, cost) of every leg (legs, settings) at the times of passage of the line.
+
+    Cost has the price of time in it; both are +inf where a leg cannot be sailed.
+    """
+    legs, settings = len(line) - 1, purse.settings
+    arrive = purse.sail(line.bundle(), check=False)[0][0]
+    depart = np.maximum(arrive[:-1], line.leave[:-1])
+    depart = np.where(np.isfinite(depart), depart, line.depart)
+    lat = np.stack([line.lat[:-1], line.lat[1:]], axis=1)
+    lon = np.stack([line.lon[:-1], line.lon[1:]], axis=1)
+    bundle = Bundle(
+        np.repeat(lat, settings, axis=0),
+        np.repeat(lon, settings, axis=0),
+        np.full((legs * settings, 2), -math.inf),
+        np.tile(np.arange(settings), legs)[:, None],
+        np.repeat(depart, settings),
+    )
+    ends, cost, _ = purse.spend(bundle)
+    time = np.where(np.isfinite(cost), ends[:, -1] - bundle.depart, math.inf)
+    return time.reshape(legs, settings), cost.reshape(legs, settings)
+
+
+def _knapsack(
+    times: FloatArray, costs: FloatArray, room: float
+) -> tuple[IntArray, float, tuple[int, int, float] | None]:
+    """Return (setting of every leg, slope, (leg, slower setting, share of the leg) or None)."""
+    legs = len(times)
+    setting = np.zeros(legs, dtype=np.int64)
+    steps: list[tuple[float, int, int, int, float]] = []  # slope, leg, from, to, seconds
+    for leg in range(legs):
+        hull = _hull(times[leg], costs[leg])
+        setting[leg] = hull[0] if hull else int(np.argmin(times[leg]))
+        for a, b in itertools.pairwise(hull):
+            seconds = float(times[leg, b] - times[leg, a])
+            steps.append(((costs[leg, a] - costs[leg, b]) / seconds, leg, a, b, seconds))
+    room -= float(times[np.arange(legs), setting].sum())
+    if not room > 0.0:
+        return setting, (steps and max(steps)[0]) or 0.0, None
+    steps.sort(key=lambda step: (-_rounded(step[0]), step[1]))
+    for slope, leg, before, after, seconds in steps:
+        if setting[leg] != before:
+            continue
+        if seconds > room:
+            return setting, slope, (leg, after, room / seconds)
+        setting[leg], room = after, room - seconds
+    return setting, 0.0, None
+
+
+def _rounded(slope: float) -> float:
+    """Return a slope rounded on a logarithmic scale, so that like ones are equal."""
+    return math.exp(round(math.log(slope) / _ALIKE) * _ALIKE) if slope > 0.0 else 0.0
+
+
+def _hull(time: FloatArray, cost: FloatArray) -> list[int]:
+    """Return the settings on the lower convex hull of cost over time, fastest first."""
+    order = [int(k) for k in np.lexsort((cost, time)) if np.isfinite(time[k] + cost[k])]
+    hull: list[int] = []
+    for k in order:
+        if hull and not cost[k] < cost[hull[-1]]:
+            continue
+        while len(hull) > 1:
+            a, b = hull[-2], hull[-1]
+            if (cost[b] - cost[a]) * (time[k] - time[a]) < (cost[k] - cost[a]) * (
+                time[b] - time[a]
+            ):
+                break
+            hull.pop()
+        hull.append(k)
+    return hull
+
+
+def _with_part(line: Line, part: tuple[int, int, float] | None) -> Line:
+    """Return the line with a slower setting on a part of one leg, next to a leg as slow."""
+    if part is None or part[2] < _LEAST_SHARE:
+        return line
+    leg, slower, share = part
+    share = min(share, 1.0 - _LEAST_SHARE)
+    first = leg > 0 and line.setting[leg - 1] == slower  # the slower part comes first
+    ends = (line.lat[leg], line.lon[leg], line.lat[leg + 1], line.lon[leg + 1])
+    length, course, _ = inverse(*ends)
+    lat, lon = direct(ends[0], ends[1], course, (share if first else 1.0 - share) * length)
+    pair = (slower, line.setting[leg]) if first else (line.setting[leg], slower)
+    setting = np.concatenate([line.setting[:leg], pair, line.setting[leg + 1 :]])
+    return Line(
+        np.insert(line.lat, leg + 1, lat),
+        unwrapped(np.insert(line.lon, leg + 1, lon)),
+        np.insert(line.leave, leg + 1, -math.inf),
+        setting.astype(np.int64),
+        line.depart,
+    )

@@ -1,0 +1,85 @@
+"""String pulling: which waypoints of a line are worth keeping."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.route.refinement.cost_evaluator import Purse
+from thalweg.route.refinement.polyline import Line
+from thalweg.route.refinement.time_evaluator import Bundle, Sailor
+
+_REACH = 48  # waypoints a single hop may skip
+_PASSES = 4
+
+
+def pull(line: Line, sailor: Sailor | Purse, *, penalty: float = 0.0) -> Line:
+    """Return the best line through a subset of the waypoints, in their order.
+
+    Parameters
+    ----------
+    line : Line
+    sailor : Sailor
+    penalty : float
+        What a waypoint costs [s, or m when tracks compare by length]: a line with fewer waypoints
+        may be worse by this much for each that is left out.
+
+    Returns
+    -------
+    Line
+        Through the points where the setting changes, unless settings are chosen anew afterwards.
+        Never worse than the line, but for the penalty; the line itself if it cannot be sailed.
+
+    Notes
+    -----
+    An exact search for the earliest arrival (or least length) on the directed graph of all hops
+    from a waypoint to a later one; right for time because a ship that may slow down never loses by
+    being earlier. Unlike deleting one waypoint after the other it sees shortcuts past many.
+    """
+    for _ in range(_PASSES):
+        index = _best_subset(line, sailor, penalty)
+        if index is None or len(index) == len(line):
+            return line
+        before, line = len(line), line.kept(index)
+        if before <= _REACH:
+            return line
+    return line
+
+
+def _best_subset(line: Line, sailor: Sailor | Purse, penalty: float) -> NDArray[np.int64] | None:
+    count = len(line)
+    arrive, label = np.full(count, math.inf), np.full(count, math.inf)
+    came_from = np.full(count, -1, dtype=np.int64)
+    arrive[0], label[0] = line.depart, 0.0
+    held = np.flatnonzero(line.kept_points(sailor))
+    for here in range(count - 1):
+        if not math.isfinite(label[here]):
+            continue
+        there = np.arange(here + 1, min(count, here + 1 + _REACH))
+        leave = max(arrive[here], line.leave[here])
+        there = there[: int(np.searchsorted(there, held[held > here][0], side="right"))]
+        ends, cost = sailor.sail(_hops(line, here, there, leave))
+        spent = cost if sailor.by_length else cost - arrive[here]
+        total = label[here] + spent + penalty
+        slack = 1e-9 * np.where(np.isfinite(total), np.abs(total), 0.0)
+        better = total + slack < label[there]
+        label[there[better]] = total[better]
+        arrive[there[better]] = ends[better, -1]
+        came_from[there[better]] = here
+    if not math.isfinite(label[-1]):
+        return None
+    chain = [count - 1]
+    while chain[-1] > 0:
+        chain.append(int(came_from[chain[-1]]))
+    return np.array(chain[::-1], dtype=np.int64)
+
+
+def _hops(line: Line, here: int, there: NDArray[np.int64], leave: float) -> Bundle:
+    shape = (len(there), 2)
+    lat, lon = np.empty(shape), np.empty(shape)
+    lat[:, 0], lon[:, 0] = line.lat[here], line.lon[here]
+    lat[:, 1], lon[:, 1] = line.lat[there], line.lon[there]
+    setting = np.full((len(there), 1), line.setting[here])
+    return Bundle(lat, lon, np.full(shape, -math.inf), setting, np.full(len(there), leave))

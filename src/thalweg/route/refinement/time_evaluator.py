@@ -1,0 +1,273 @@
+"""The quick sailor: many tracks at once through a frozen raster, for refinement to compare."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.kernels import codes
+from thalweg.kernels.leg.polyline_sailing import Lines, Passages, RasterArrays, sail_lines
+from thalweg.kernels.leg.table_lookup import TableArrays
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.sea import GridFields
+    from thalweg.ship import PerformanceTable
+
+IntArray = NDArray[np.int64]
+_METRES_PER_DEGREE = 111_195.0
+_BERTH = 5.0  # metres to each side of a leg where charted depth is looked up
+_DEPTH_PART = 0.5  # degrees of a leg whose charted depth is looked up at once
+_PATIENCE = 13.0 * 3600.0  # longest wait for a leg to open [s]: a tide and a little
+_PAUSES = (30.0, 900.0)  # least and largest time between two looks [s]
+_OPENING = 0.1  # seconds to which an opening is found
+_LONGEST_PIECE = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """Polylines of one number of points.
+
+    Attributes
+    ----------
+    lat, lon : float64 array (L, n)
+        Points [deg].
+    leave : float64 array (L, n)
+        The ship leaves a point no earlier [s after the origin]; -inf where it does not wait.
+    setting : int64 array (L, n - 1)
+    depart : float64 array (L,)
+        [s after the origin].
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    leave: FloatArray
+    setting: IntArray
+    depart: FloatArray
+
+
+@dataclass(frozen=True)
+class Sailor:
+    """Everything that stays the same while a track is refined.
+
+    Attributes
+    ----------
+    raster : RasterArrays
+        Times are seconds after ``origin``.
+    table : TableArrays
+    chart : Chart or None
+    limits : float64 array
+    origin : float
+        [s since 1970-01-01T00:00Z].
+    by_length : bool
+        Whether tracks compare by length instead of time.
+    spacing : float
+        Longest piece [m].
+    patience : float64 array (3,)
+        How the ship waits of itself (see `thalweg.kernels.leg.polyline_sailing.sail_lines`);
+        zeros: it does not.
+    """
+
+    raster: RasterArrays
+    table: TableArrays
+    chart: Chart | None
+    limits: FloatArray
+    origin: float
+    by_length: bool
+    spacing: float
+    patience: FloatArray
+
+    chooses_settings = False  # settings of a track stay as they are
+
+    def fixed_points(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return which points of one polyline may not move: its ends."""
+        fixed = np.zeros(len(lat), dtype=bool)
+        fixed[[0, -1]] = True
+        return fixed
+
+    def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
+        """Return how many pieces each leg of polylines (..., n) is cut into."""
+        return np.maximum(2, np.ceil(rough_lengths(lat, lon) / self.spacing)).astype(np.int64)
+
+    def sail(
+        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    ) -> tuple[FloatArray, FloatArray]:
+        """Sail polylines.
+
+        Parameters
+        ----------
+        bundle : Bundle
+        pieces : int64 array (L, n - 1), optional
+            Pieces of each leg; the same for lines whose times are to be differenced.
+        check : bool
+            Look at land, zones and charted depth too.
+
+        Returns
+        -------
+        arrive : float64 array (L, n)
+            Arrival at every point [s after the origin]; +inf from the first leg that cannot be
+            sailed.
+        cost : float64 array (L,)
+            What is compared: last arrival [s], or length [m], with what penalty zones add to it;
+            +inf if it cannot be sailed.
+        """
+        arrive, _, cost = self.sail_and_wait(bundle, pieces=pieces, check=check)
+        return arrive, cost
+
+    def sail_and_wait(
+        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Do as `sail` does, and return (arrive, leave, cost): when each point is left, too."""
+        count, size = bundle.lat.shape
+        shape = (count, size - 1)
+        pieces = self.pieces(bundle.lat, bundle.lon) if pieces is None else pieces
+        blocked, charted = self.look(bundle.lat, bundle.lon) if check else (None, None)
+        lines = Lines(
+            np.arange(count + 1, dtype=np.int64) * size,
+            _flat(bundle.lat, np.float64),
+            _flat(bundle.lon, np.float64),
+            _flat(bundle.leave, np.float64),
+            _flat(_padded(bundle.setting, shape), np.int64),
+            _flat(_padded(np.broadcast_to(pieces, shape), shape), np.int64),
+            _flat(_padded(np.full(shape, math.inf) if charted is None else charted, shape), float),
+            _flat(bundle.depart, np.float64),
+        )
+        out = Passages(
+            np.empty(count * size),
+            np.array(lines.leave),
+            np.empty(count),
+            np.empty(count, dtype=np.int64),
+        )
+        room = np.zeros(codes.CHANNELS), np.zeros(3)
+        sail_lines(lines, self.raster, self.table, self.limits, self.patience, out, *room)
+        arrive = out.arrive.reshape(count, size)
+        cost = out.length.copy() if self.by_length else arrive[:, -1].copy()
+        cost[out.status != codes.OK] = math.inf
+        if blocked is not None:
+            over = np.logical_or.accumulate(blocked, axis=1)
+            arrive[:, 1:][over] = math.inf
+            cost[over[:, -1]] = math.inf
+        leave = out.leave.reshape(count, size)
+        return arrive, leave, cost + self._penalty(bundle, arrive, leave, cost) if check else cost
+
+    def _penalty(
+        self, bundle: Bundle, arrive: FloatArray, leave: FloatArray, cost: FloatArray
+    ) -> FloatArray:
+        """Return what penalty zones add to the cost of polylines."""
+        factor = penalty_factors(self.chart, bundle.lat, bundle.lon)
+        if factor is None:
+            return np.zeros(len(cost))
+        spent = rough_lengths(bundle.lat, bundle.lon)
+        if not self.by_length:
+            with np.errstate(invalid="ignore"):
+                spent = arrive[:, 1:] - leave[:, :-1]
+        spent = np.where(np.isfinite(cost)[:, None], spent, 0.0)
+        added: FloatArray = ((factor - 1.0) * spent).sum(axis=1)
+        return added
+
+    def look(
+        self, lat: FloatArray, lon: FloatArray
+    ) -> tuple[NDArray[np.bool_] | None, FloatArray | None]:
+        """Return (blocked, least charted depth) of the legs of polylines; None: not known."""
+        if self.chart is None:
+            return None, None
+        shape = (lat.shape[0], lat.shape[1] - 1)
+        every = np.stack([lat[:, :-1], lon[:, :-1], lat[:, 1:], lon[:, 1:]], axis=-1).reshape(-1, 4)
+        legs, place = np.unique(every, axis=0, return_inverse=True)
+        blocked = np.asarray(self.chart.legs_blocked(*legs.T))
+        required = self.limits[codes.LIMIT_REQUIRED_DEPTH]
+        charted = None
+        if self.chart.has_depth and math.isfinite(required):
+            least = np.full(len(legs), -math.inf)
+            least[~blocked] = _least_depths(self.chart, legs[~blocked])
+            charted = least[place].reshape(shape)
+        return blocked[place].reshape(shape), charted
+
+
+def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
+    """Return the least charted depth of legs (n, 4); long ones in short parts, which is quicker."""
+    lat1, lon1, lat2, lon2 = legs.T
+    span = np.maximum(np.abs(lat2 - lat1), np.abs(lon2 - lon1))
+    count = np.maximum(np.ceil(span / _DEPTH_PART), 1.0).astype(np.int64)
+    first = np.cumsum(count) - count
+    leg = np.repeat(np.arange(len(legs)), count)
+    number = np.arange(len(leg)) - first[leg]
+    length, course, _ = inverse(lat1, lon1, lat2, lon2)
+    if not len(legs):
+        return np.empty(0)
+    part, way = (length / count)[leg], course[leg]
+    a = direct(lat1[leg], lon1[leg], way, number * part)
+    b = direct(lat1[leg], lon1[leg], way, (number + 1) * part)
+    beside = np.minimum(_BERTH, 1e-3 * length)[leg]
+    depth = np.full(len(leg), math.inf)
+    for side in (-0.5 * math.pi, 0.5 * math.pi):  # a lane, so that cutting it otherwise is the same
+        ends = *direct(*a, way + side, beside), *direct(*b, way + side, beside)
+        depth = np.minimum(depth, np.asarray(chart.depth_along(*ends), dtype=np.float64))
+    least: FloatArray = np.minimum.reduceat(depth, first)
+    return least
+
+
+def make_sailor(
+    *,
+    table: PerformanceTable | TableArrays,
+    chart: Chart | None,
+    fields: GridFields,
+    limits: ArrayLike,
+    origin: float,
+    by_length: bool,
+    total: float,
+    wait: bool = False,
+) -> Sailor:
+    """Put a sailor together; ``total`` is the rough length of the track [m], and
+    with ``wait`` it waits of itself where a leg is closed for the time being.
+
+    Pieces are half a cell of the raster, at least a 400th of the track, at most 100 km.
+    """
+    raster = RasterArrays(
+        np.asarray(fields.times, np.float64) - origin,
+        np.array([fields.lat0, fields.dlat, fields.lon0, fields.dlon], np.float64),
+        np.ascontiguousarray(fields.values, dtype=np.float32),
+        np.asarray(fields.channel_index, np.int64),
+    )
+    arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
+    spacing = min(max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0), _LONGEST_PIECE)
+    bounds = np.asarray(limits, np.float64)
+    patience = np.zeros(3)
+    if wait and np.isfinite(bounds).any():
+        pause = float(np.clip(np.median(np.diff(raster.times)), *_PAUSES))
+        patience[:] = _PATIENCE, pause, _OPENING
+    return Sailor(raster, arrays, chart, bounds, origin, by_length, spacing, patience)
+
+
+def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> FloatArray | None:
+    """Return the penalty factor of every leg of polylines (..., n); None if there are no zones."""
+    if chart is None or not chart.zones.penalty:
+        return None
+    ends = lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:]
+    shape = ends[0].shape
+    return np.asarray(chart.zone_factor(*(x.ravel() for x in ends))[0]).reshape(shape)
+
+
+def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return lengths of legs (..., n - 1) on the sphere [m], good to 0.5 %."""
+    a, b = np.radians(lat[..., :-1]), np.radians(lat[..., 1:])
+    half = 0.5 * np.radians(np.diff(lon, axis=-1))
+    h = np.sin(0.5 * (b - a)) ** 2 + np.cos(a) * np.cos(b) * np.sin(half) ** 2
+    lengths: FloatArray = 2.0 * 6371008.8 * np.arcsin(np.sqrt(np.minimum(h, 1.0)))
+    return lengths
+
+
+def _flat(values: ArrayLike, kind: type) -> NDArray[Any]:
+    return np.require(values, kind, ["C", "W"]).reshape(-1)  # read-only ones are another kernel
+
+
+def _padded(values: NDArray[Any], shape: tuple[int, int]) -> NDArray[Any]:
+    """Return values per leg (L, n - 1) with a column for the last points, which is not read."""
+    return np.concatenate(
+        [np.broadcast_to(values, shape), np.ones((shape[0], 1), values.dtype)], axis=1
+    )

@@ -1,0 +1,55 @@
+"""Checks of what users give for areas, periods and steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import TimeLike, parse_time
+from thalweg.sea.frozen_fields import WORLD, Area
+
+
+def area_of(area: tuple[float, float, float, float] | None) -> Area:
+    """Return the box for (south, north, west, east) [deg]; the world for None."""
+    if area is None:
+        return WORLD
+    try:
+        south, north, west, east = (float(x) for x in area)
+    except (TypeError, ValueError):
+        south = north = west = east = np.nan
+    if not (-90.0 <= south < north <= 90.0 and np.isfinite([west, east]).all()):
+        raise InputError(
+            f"The area {area!r} is none.",
+            "An area is (south, north, west, east) in degrees with south < north.",
+            "Check the four numbers and their order.",
+        )
+    return Area(south, north, west, east if east > west else east + 360.0)
+
+
+def period_of(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:
+    """Return (start, end) [s since epoch]."""
+    if period is None:
+        return None
+    if isinstance(period, str) or len(period) != 2:
+        raise InputError(
+            f"The period {period!r} is none.", "A period is (start, end).", "Give two times."
+        )
+    start, end = parse_time(period[0]), parse_time(period[1])
+    if end < start:
+        raise InputError(
+            "The period ends before it starts.", "A period is (start, end).", "Swap the two times."
+        )
+    return start, end
+
+
+def step_of(time_step: float | None, *, least: float = 0.0) -> float | None:
+    """Return a time step [s] that is None, or not less than the least one."""
+    if time_step is not None and not (np.isfinite(time_step) and time_step >= least):
+        raise InputError(
+            f"A time step of {time_step!r} s cannot be used.",
+            f"It must be {least:g} s or more."
+            if least
+            else "It must be positive, or 0 for fields that never change.",
+            "Leave it out to have one chosen.",
+        )
+    return None if time_step is None else float(time_step)

@@ -1,0 +1,1 @@
+"""Files of met-ocean data: opening, recognising variables and grids, checking values."""

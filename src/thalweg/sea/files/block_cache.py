@@ -1,0 +1,308 @@
+"""Reading no more of a file than is asked for, and keeping what was read.
+
+A `Quantity` is one canonical variable (or both components of a vector) and how it is made from
+variables of files. `BlockCache` reads it for a window of time, rows and columns, and keeps one
+block per quantity; a question outside the block reads a block that holds both, with a margin that
+grows so that many small questions do not become many small reads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import DatasetError
+from thalweg.sea.files import plausible_values
+from thalweg.sea.frozen_fields import FloatArray
+
+Raw: TypeAlias = NDArray[Any]
+READ_ERRORS = (OSError, RuntimeError, ValueError, IndexError, KeyError, EOFError, OverflowError)
+LARGEST_LAYERED = 4_000_000  #: values in layers that are read at once
+LARGEST_UNION = 30_000_000  #: values of a block above which old and new are not read together
+
+
+class Window(NamedTuple):
+    """A part of a grid: levels [t0, t1), rows [y0, y1), ``width`` columns from ``x0`` on, round."""
+
+    t0: int
+    t1: int
+    y0: int
+    y1: int
+    x0: int
+    width: int
+
+    def holds(self, other: Window, columns: int) -> bool:
+        """Return whether another window lies within this one."""
+        offset = (other.x0 - self.x0) % columns
+        return (
+            self.t0 <= other.t0
+            and other.t1 <= self.t1
+            and self.y0 <= other.y0
+            and other.y1 <= self.y1
+            and (self.width == columns or offset + other.width <= self.width)
+        )
+
+    @property
+    def size(self) -> int:
+        """How many values it holds."""
+        return (self.t1 - self.t0) * (self.y1 - self.y0) * self.width
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A variable in one file.
+
+    Attributes
+    ----------
+    array : xarray.DataArray
+        Dimensions (time, row, column), (row, column), (time, place) or (place,); not loaded.
+    levels : int
+        Number of times.
+    has_time : bool
+        Whether time is its first dimension; else all its values belong to one time, or to all.
+    factor : float
+        What its values are multiplied with for SI; files of one layer may differ in units.
+    """
+
+    array: Any
+    levels: int
+    has_time: bool
+    factor: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Variable:
+    """A variable of one or more files that follow each other in time.
+
+    Attributes
+    ----------
+    name : str
+        Its name in the files.
+    pieces : tuple of Piece
+        One per file.
+    timed : bool
+        Whether it has times at all; if not, there is one piece that holds always.
+    is_mesh : bool
+        Whether places are in one dimension (always read whole) instead of rows and columns.
+    source : str
+        File names, for messages.
+    shift : tuple of int
+        (rows, columns) by which a staggered variable is behind its cell: (0, 1) for velocities on
+        the east side of cells, (1, 0) on the north side; it is averaged to the centre of the cell.
+    """
+
+    name: str
+    pieces: tuple[Piece, ...]
+    timed: bool
+    is_mesh: bool
+    source: str
+    shift: tuple[int, int] = (0, 0)
+
+    @property
+    def is_double(self) -> bool:
+        """Whether the file keeps more digits than single precision."""
+        array = self.pieces[0].array
+        stored = array.encoding.get("dtype", array.dtype)
+        return "scale_factor" not in array.encoding and np.dtype(stored) == np.float64
+
+    def read(self, window: Window, columns: int) -> Raw:
+        """Return values (levels, rows, columns); a variable without time has one level."""
+        try:
+            if any(self.shift):
+                return self._centred(window, columns)
+            return self._levels(window, columns)
+        except READ_ERRORS as error:
+            raise DatasetError(
+                f"{self.source}: {self.name!r} cannot be read ({error}).",
+                "The file opens, but its data are damaged or incomplete.",
+                "Fetch the file again.",
+                file=self.source,
+                variable=self.name,
+            ) from error
+
+    def _levels(self, window: Window, columns: int) -> Raw:
+        if not self.timed:
+            return self._space(self.pieces[0], slice(None), window, columns)[None]
+        parts, first = [], 0
+        for piece in self.pieces:
+            begin, end = max(window.t0 - first, 0), min(window.t1 - first, piece.levels)
+            if begin < end and piece.has_time:
+                parts.append(self._space(piece, slice(begin, end), window, columns))
+            elif begin < end:
+                parts.append(self._space(piece, slice(None), window, columns)[None])
+            first += piece.levels
+        return parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+    def _space(self, piece: Piece, levels: slice, window: Window, columns: int) -> Raw:
+        """Read rows and columns in SI, in two pieces where the window goes round."""
+        values = self._stored(piece.array[levels], window, columns)
+        return values if piece.factor == 1.0 else np.asarray(values, np.float64) * piece.factor
+
+    def _stored(self, array: Any, window: Window, columns: int) -> Raw:
+        if self.is_mesh:
+            return np.asarray(array.values)[..., None, :]
+        rows = array[..., window.y0 : window.y1, :]
+        x1 = window.x0 + window.width
+        parts = [rows[..., window.x0 : min(x1, columns)].values]
+        if x1 > columns:
+            parts.append(rows[..., : x1 - columns].values)
+        return np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
+
+    def _centred(self, window: Window, columns: int) -> Raw:
+        """Average a staggered variable with its neighbour behind; the first has none."""
+        dy, dx = self.shift
+        y0, x0 = max(0, window.y0 - dy), max(0, window.x0 - dx)
+        wide = window._replace(y0=y0, x0=x0, width=window.width + window.x0 - x0)
+        values = self._levels(wide, columns)
+        axis = -2 if dy else -1
+        if y0 == window.y0 and x0 == window.x0:
+            edge = np.full_like(np.take(values, [0], axis=axis), np.nan)
+            values = np.concatenate([edge, values], axis=axis)
+        if dy:
+            return 0.5 * (values[..., 1:, :] + values[..., :-1, :])
+        return 0.5 * (values[..., 1:] + values[..., :-1])
+
+
+Make: TypeAlias = Callable[[Sequence[FloatArray], Window], Sequence[FloatArray]]
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """One canonical variable, or both components of a vector, made from variables of files.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Canonical names made.
+    variables : tuple of Variable
+        What they are made from.
+    make : callable
+        ``make(arrays, window) -> arrays``: unit conversion, components, rotation.
+    source : str
+        File names.
+    layers : int
+        Values that are read over the depth for each one that is made.
+    """
+
+    names: tuple[str, ...]
+    variables: tuple[Variable, ...]
+    make: Make
+    source: str
+    layers: int = 1
+
+    def read(self, window: Window, columns: int) -> dict[str, Raw]:
+        """Return arrays (levels, places) by canonical name, checked for sense."""
+        at_once = max(1, LARGEST_LAYERED // max(1, self.layers * window.size // _count(window)))
+        if self.layers == 1 or _count(window) <= at_once:
+            return self._read(window, columns)
+        parts = [
+            self._read(window._replace(t0=t, t1=min(t + at_once, window.t1)), columns)
+            for t in range(window.t0, window.t1, at_once)
+        ]
+        return {name: np.concatenate([part[name] for part in parts]) for name in self.names}
+
+    def _read(self, window: Window, columns: int) -> dict[str, Raw]:
+        raws = [np.asarray(v.read(window, columns), np.float64) for v in self.variables]
+        kind = np.float64 if any(v.is_double for v in self.variables) else np.float32
+        made = {}
+        for name, value in zip(self.names, self.make(raws, window)):
+            plausible_values.check_plausible(
+                name, value, [v.name for v in self.variables], self.source
+            )
+            made[name] = np.ascontiguousarray(value.reshape(value.shape[0], -1), kind)
+        return made
+
+
+def _count(window: Window) -> int:
+    return max(1, window.t1 - window.t0)
+
+
+class Block(NamedTuple):
+    """What was read: values (levels, places) by name, for a window."""
+
+    window: Window
+    values: dict[str, Raw]
+
+
+@dataclass
+class BlockCache:
+    """The last block read of each quantity.
+
+    Attributes
+    ----------
+    shape : tuple of int
+        Levels, rows and columns of the whole.
+    wraps : bool
+        Whether columns go round.
+    """
+
+    shape: tuple[int, int, int]
+    wraps: bool
+    blocks: dict[tuple[str, ...], Block] = field(default_factory=dict)
+    misses: dict[tuple[str, ...], int] = field(default_factory=dict)
+
+    def block(self, quantity: Quantity, wanted: Window) -> Block:
+        """Return a block that holds the wanted window, reading it if need be."""
+        key = quantity.names
+        kept = self.blocks.get(key)
+        columns = self.shape[2]
+        if kept is not None and kept.window.holds(wanted, columns):
+            return kept
+        misses = self.misses[key] = self.misses.get(key, -1) + 1
+        window = self._grown(wanted, misses)
+        if kept is not None:
+            both = self._union(window, kept.window)
+            window = both if both.size <= LARGEST_UNION else window
+        found = Block(window, quantity.read(window, columns))
+        self.blocks[key] = found
+        return found
+
+    def _grown(self, window: Window, misses: int) -> Window:
+        """Return the window with a margin: none at first, a quarter of its size per later read."""
+        if misses == 0:
+            return window
+        nt, ny, nx = self.shape
+        dt = 1 + (window.t1 - window.t0) // 4
+        dy = 2 + (window.y1 - window.y0) // 4
+        dx = 2 + window.width // 4
+        x0, width = _columns(window.x0 - dx, window.width + 2 * dx, nx, self.wraps)
+        return Window(
+            max(0, window.t0 - dt),
+            min(nt, window.t1 + dt),
+            max(0, window.y0 - dy),
+            min(ny, window.y1 + dy),
+            x0,
+            width,
+        )
+
+    def _union(self, a: Window, b: Window) -> Window:
+        """Return the least window that holds both."""
+        nx = self.shape[2]
+        x0, width = _hull((a.x0, a.width), (b.x0, b.width), nx, self.wraps)
+        return Window(min(a.t0, b.t0), max(a.t1, b.t1), min(a.y0, b.y0), max(a.y1, b.y1), x0, width)
+
+
+def _columns(x0: int, width: int, columns: int, wraps: bool) -> tuple[int, int]:
+    """Return a range of columns brought into the grid."""
+    if wraps:
+        return (0, columns) if width >= columns else (x0 % columns, width)
+    end = min(columns, x0 + width)
+    return max(0, x0), end - max(0, x0)
+
+
+def _hull(a: tuple[int, int], b: tuple[int, int], columns: int, wraps: bool) -> tuple[int, int]:
+    """Return the shortest range of columns that holds two ranges."""
+    if not wraps:
+        x0 = min(a[0], b[0])
+        return x0, max(a[0] + a[1], b[0] + b[1]) - x0
+    best = (0, columns)
+    for first, second in ((a, b), (b, a)):
+        offset = (second[0] - first[0]) % columns
+        width = max(first[1], offset + second[1])
+        if width < best[1]:
+            best = (first[0], width)
+    return best

@@ -1,0 +1,129 @@
+"""Files that hold an ensemble: one dimension for the members, the rest as in any other file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from thalweg.core.errors import DatasetError
+from thalweg.sea.ensemble_layer import versions_of
+from thalweg.sea.files.conform import Draft, Drafted, Memo, OpenedFile, drafts_of
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.layer import Layer
+
+#: names of the dimension, besides whatever has the standard name "realization"
+MEMBERS: Final = (
+    "number", "member", "members", "ensemble", "ensemble_member", "realization", "realisation",
+    "ens", "nens",
+)  # fmt: skip
+
+
+def member_file(file: OpenedFile) -> MemberFile | None:
+    """Return the file as an ensemble of two or more members, or None if it holds none.
+
+    Raises
+    ------
+    DatasetError
+        If there are two such dimensions.
+    """
+    dataset = file.dataset
+    found = [
+        str(dim)
+        for dim, size in dataset.sizes.items()
+        if size > 1 and _names_members(dataset, str(dim)) and _carries_fields(dataset, dim)
+    ]
+    if len(found) > 1:
+        raise DatasetError(
+            f"{file.source} holds an ensemble along {' and along '.join(found)}.",
+            "One dimension may hold the members.",
+            "Stack them into one dimension, or select along one of them.",
+            file=file.source,
+        )
+    return MemberFile(file, found[0], Memo(), []) if found else None
+
+
+def _names_members(dataset: Any, dim: str) -> bool:
+    standard = dataset[dim].attrs.get("standard_name") if dim in dataset.variables else None
+    return standard == "realization" or dim.lower() in MEMBERS
+
+
+def _carries_fields(dataset: Any, dim: Any) -> bool:
+    """Return whether some variable has other dimensions besides this one."""
+    return any(dim in dataset[n].dims and dataset[n].ndim > 1 for n in dataset.data_vars)
+
+
+@dataclass(frozen=True, eq=False)
+class MemberFile:
+    """A file and the dimension along which it holds an ensemble.
+
+    Attributes
+    ----------
+    file : OpenedFile
+        All of it.
+    dim : str
+        The dimension.
+    memo : Memo
+        What is the same for every member: positions and meshes.
+    shared : list of Draft
+        The drafts of the first member, of which some hold for all.
+    """
+
+    file: OpenedFile
+    dim: str
+    memo: Memo
+    shared: list[Draft]
+
+    @property
+    def size(self) -> int:
+        """How many members it holds."""
+        return int(self.file.dataset.sizes[self.dim])
+
+    def drafts(self, index: int, mapping: Mapping[str, str]) -> Drafted:
+        """Return what one member holds; what no member has of its own is the same every time."""
+        whole = self.file
+        one = replace(
+            whole,
+            dataset=whole.dataset.isel({self.dim: index}),
+            source=f"{whole.source}, member {index}",
+            facts={**whole.facts, "member": index},
+        )
+        drafts, ignored = drafts_of(one, mapping, self.memo)
+        if not self.shared:
+            told = [replace(d, file=whole) for d in drafts]
+            self.shared.extend(told)
+        kept = [d if self._varies(d) else s for d, s in zip(drafts, self.shared)]
+        return kept, ignored
+
+    def _varies(self, draft: Draft) -> bool:
+        names = {v.name for quantity in draft.quantities for v in quantity.variables}
+        return any(self.dim in self.file.dataset[name].dims for name in names)
+
+
+def check_sizes(files: Sequence[MemberFile]) -> int:
+    """Return how many members the files hold.
+
+    Raises
+    ------
+    DatasetError
+        If they do not hold as many.
+    """
+    sizes = {one.size for one in files}
+    if len(sizes) > 1:
+        told = ", ".join(f"{one.file.source} {one.size}" for one in files)
+        raise DatasetError(
+            f"The files hold ensembles of different sizes: {told}.",
+            "Member i of each file belongs to member i of the others.",
+            "Open them one by one, or select as many members of each.",
+        )
+    return sizes.pop()
+
+
+def merged_versions(members: Sequence[Sequence[GridLayer]]) -> list[Layer]:
+    """Return the layers of an ensemble; what is the same for all members is one plain layer."""
+    layers: list[Layer] = []
+    for group in zip(*members):
+        first = group[0].provenance()
+        same = all(layer.provenance() == first for layer in group)
+        layers.append(group[0] if same else versions_of(group))
+    return layers

@@ -1,0 +1,257 @@
+"""Opening files: what kind they are, whether they are whole, and lazily what they hold."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError, InputError
+from thalweg.sea.files import conform, grib, netcdf3_check, time_concatenation
+from thalweg.sea.files.block_cache import READ_ERRORS, Window
+from thalweg.sea.files.conform import Drafted, OpenedFile
+from thalweg.sea.files.ensemble_members import check_sizes, member_file, merged_versions
+from thalweg.sea.files.variable_recognition import Ignored, check_mapping
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.layer import Layer
+
+HDF5: Final = b"\x89HDF\r\n\x1a\n"
+PACKED: Final = {b"PK\x03\x04": "zip", b"\x1f\x8b": "gzip", b"BZh": "bzip2", b"\xfd7zXZ": "xz"}
+UNDATED: Final[dict[str, Any]] = {"decode_times": False, "decode_timedelta": False}
+ZARR_MARKS: Final = (".zgroup", ".zmetadata", "zarr.json", ".zattrs")
+KINDS: Final = "NetCDF (classic and netCDF-4), GRIB 1 and 2, and Zarr can be read."
+FIRST_ROWS: Final = (
+    5  #: rows of a large grid that are read on opening, to see whether they make sense
+)
+SMALL_LEVEL: Final = 200_000  #: values of a level up to which all of it is read on opening
+
+
+def open_layers(
+    sources: Sequence[Any], mapping: Mapping[str, str] | None, draught: float | None = None
+) -> list[Layer]:
+    """Return the layers of files (see `Sea.open`), the first file's first.
+
+    Raises
+    ------
+    InputError
+        If nothing is given, or the mapping names variables that are in none of the files.
+    DatasetError
+        If a file is missing, damaged, ambiguous, or holds nothing that can be used.
+    """
+    if not sources:
+        raise InputError(
+            "No file was given.", "Sea.open takes one or more paths.", "For a calm sea: Sea.calm()."
+        )
+    mapping = dict(mapping or {})
+    files = [part for source in sources for part in open_file(source)]
+    if draught is not None:
+        files = [_averaged(file, _checked_draught(draught)) for file in files]
+    check_mapping(mapping, frozenset(str(n) for f in files for n in f.dataset.variables))
+    ensembles = {k: found for k, f in enumerate(files) if (found := member_file(f)) is not None}
+    if not ensembles:
+        return list(_looked_at(_drafted(files, lambda k: conform.drafts_of(files[k], mapping))))
+    plain: dict[int, Drafted] = {}
+
+    def draft(k: int, index: int) -> Drafted:
+        if k in ensembles:
+            return ensembles[k].drafts(index, mapping)
+        if k not in plain:
+            plain[k] = conform.drafts_of(files[k], mapping)
+        return plain[k]
+
+    count = check_sizes(list(ensembles.values()))
+    return merged_versions(
+        [_looked_at(_drafted(files, partial(draft, index=i))) for i in range(count)]
+    )
+
+
+def _averaged(file: OpenedFile, draught: float) -> OpenedFile:
+    return replace(file, draught=draught, facts={**file.facts, "draught_m": draught})
+
+
+def _checked_draught(draught: float) -> float:
+    number = isinstance(draught, (int, float, np.number)) and not isinstance(draught, bool)
+    if not (number and 0.0 < float(draught) < 100.0):
+        raise InputError(
+            f"A draught of {draught!r} m cannot be averaged over.",
+            "It lies between 0 and 100 m.",
+            "Correct it, or leave it out to take the surface layer.",
+            field="draught_m",
+        )
+    return float(draught)
+
+
+def _drafted(files: Sequence[OpenedFile], draft: Callable[[int], Drafted]) -> list[GridLayer]:
+    """Return the layers of files; a part of a file may hold nothing if another part does."""
+    drafts: list[conform.Draft] = []
+    ignored: dict[str, list[Ignored]] = {}
+    faults: dict[str, DatasetError] = {}
+    useful: set[str] = set()
+    for k, file in enumerate(files):
+        try:
+            found, left = draft(k)
+        except conform.NothingRecognised as fault:
+            faults.setdefault(file.source, fault)
+            continue
+        useful.add(file.source)
+        drafts += found
+        for source in {file.source, *(d.file.source for d in found)}:
+            ignored.setdefault(source, []).extend(left)
+    for source, nothing in faults.items():
+        if source not in useful:
+            raise nothing
+    return time_concatenation.layers_of(drafts, ignored)
+
+
+def _looked_at(layers: list[GridLayer]) -> list[GridLayer]:
+    for layer in layers:
+        first_look(layer)
+    return layers
+
+
+def first_look(layer: GridLayer) -> None:
+    """Read a little of the middle of each quantity, so that damage and wrong units show at once."""
+    rows, columns = layer.grid.shape
+    middle = layer.axis.times.size // 2
+    count = rows if rows * columns <= SMALL_LEVEL else min(rows, FIRST_ROWS)
+    y0 = (rows - count) // 2
+    for quantity in layer.quantities:
+        quantity.read(Window(middle, middle + 1, y0, y0 + count, 0, columns), columns)
+
+
+def open_file(source: Any) -> list[OpenedFile]:
+    """Return the datasets in a file (one, except for GRIB with several kinds of levels)."""
+    if hasattr(source, "data_vars"):
+        return [
+            OpenedFile(
+                source,
+                "dataset",
+                {"name": "dataset", "variables": sorted(map(str, source.data_vars))},
+            )
+        ]
+    if not isinstance(source, (str, os.PathLike)):
+        raise InputError(
+            f"A sea cannot be opened from {type(source).__name__!r}.",
+            "It takes paths of files or Zarr folders, or xarray datasets.",
+            "Give one of these.",
+        )
+    path = Path(source).expanduser()
+    if not path.exists():
+        raise _missing(path)
+    if path.is_dir():
+        return [_open_zarr(path)]
+    facts = _facts(path)
+    if facts["size"] == 0:
+        raise not_data(path, "is empty")
+    with _reading(path), path.open("rb") as stream:
+        head = stream.read(1024)
+    if head[:8] == HDF5:
+        return [OpenedFile(_open_netcdf(path, ("netcdf4", "h5netcdf")), path.name, facts)]
+    if head[:3] == b"CDF" and head[3:4] in (b"\x01", b"\x02", b"\x05"):
+        netcdf3_check.check_whole(path)
+        return [OpenedFile(_open_netcdf(path, ("netcdf4", "scipy")), path.name, facts)]
+    if b"GRIB" in head:
+        return [OpenedFile(d, path.name, facts) for d in grib.open_grib(path)]
+    packed = next((kind for mark, kind in PACKED.items() if head.startswith(mark)), None)
+    if packed is not None:
+        raise not_data(path, f"is packed ({packed})", "Unpack it first.")
+    raise not_data(path, "does not begin like any file of met-ocean data that is known")
+
+
+def _facts(path: Path) -> dict[str, Any]:
+    status = path.stat()
+    return {"name": path.name, "size": status.st_size, "mtime_ns": status.st_mtime_ns}
+
+
+def _missing(path: Path) -> InputError:
+    folder = path.parent
+    from thalweg.core.errors import near_matches
+
+    near = near_matches(path.name, [p.name for p in folder.iterdir()]) if folder.is_dir() else []
+    return InputError(
+        f"There is no file {str(path)!r}.",
+        f"Its folder {'exists' if folder.is_dir() else 'does not exist either'}.",
+        f"Did you mean {' or '.join(near)}?" if near else "Check the path.",
+        file=str(path),
+    )
+
+
+def not_data(path: Path, fault: str, remedy: str = "Check the file.") -> DatasetError:
+    """Return the error for a file that is not data."""
+    return DatasetError(f"{path.name} {fault}.", KINDS, remedy, file=str(path))
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn system errors on reading a path into `DatasetError`."""
+    try:
+        yield
+    except OSError as error:
+        raise DatasetError(
+            f"{path.name} cannot be read ({error.strerror or error}).",
+            KINDS,
+            "Check the rights to the file.",
+            file=str(path),
+        ) from error
+
+
+def _open_netcdf(path: Path, engines: Sequence[str]) -> Any:
+    import xarray as xr
+
+    def opener(engine: str) -> Any:
+        return xr.open_dataset(path, engine=engine, **UNDATED)
+
+    return _opened(path, engines, opener)
+
+
+def _open_zarr(path: Path) -> OpenedFile:
+    if not any((path / mark).exists() for mark in ZARR_MARKS):
+        raise not_data(path, "is a folder, but not a Zarr store")
+    import xarray as xr
+
+    def opener(engine: str) -> Any:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Failed to open Zarr store with consolidated")
+            return xr.open_dataset(path, engine=engine, chunks=None, **UNDATED)
+
+    dataset = _opened(path, ("zarr",), opener)
+    stamps = [p.stat() for p in path.rglob("*") if p.is_file()]
+    facts = {
+        "name": path.name,
+        "size": sum(s.st_size for s in stamps),
+        "mtime_ns": max(s.st_mtime_ns for s in stamps),
+    }
+    return OpenedFile(dataset, path.name, facts)
+
+
+def _opened(path: Path, engines: Sequence[str], opener: Callable[[str], Any]) -> Any:
+    """Return what the first engine that is installed makes of a file."""
+    missing: list[str] = []
+    for engine in engines:
+        try:
+            return opener(engine)
+        except (ImportError, ModuleNotFoundError):
+            missing.append(engine)
+        except READ_ERRORS as error:
+            if isinstance(error, ValueError) and "unrecognized engine" in str(error):
+                missing.append(engine)
+                continue
+            raise DatasetError(
+                f"{path.name} is damaged or incomplete ({str(error).splitlines()[0][:200]}).",
+                KINDS,
+                "Fetch the file again.",
+                file=str(path),
+            ) from error
+    raise DatasetError(
+        f"{path.name} needs a package that is not installed ({' or '.join(missing)}).",
+        KINDS,
+        f"pip install {'thalweg[zarr]' if 'zarr' in missing else missing[0]}",
+        file=os.fspath(path),
+    )

@@ -1,0 +1,193 @@
+"""From the coordinates of a variable to the grid it lies on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError
+from thalweg.sea.files import coordinates as co
+from thalweg.sea.files.ugrid import MeshLayout
+from thalweg.sea.frozen_fields import FloatArray
+from thalweg.sea.grids.point_location import Grid, RectilinearGrid, curvilinear_grid
+
+NEMO_U = ("glamu", "gphiu")
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Where the values of a variable lie.
+
+    Attributes
+    ----------
+    key : tuple
+        The same for variables on the same grid.
+    grid : Grid
+        The grid.
+    dims : tuple of str
+        Dimensions of place, rows first.
+    angle : float64 array or None
+        Angle [rad] of grid columns from east, (rows, columns); None if they run east.
+    flipped : bool
+        Whether columns must be reversed on reading.
+    mesh : MeshLayout or None
+        For meshes, how values become places.
+    """
+
+    key: tuple[str, ...]
+    grid: Grid
+    dims: tuple[str, ...]
+    angle: FloatArray | None = None
+    flipped: bool = False
+    mesh: MeshLayout | None = None
+
+
+def placement(
+    dataset: Any, array: Any, mapping: Mapping[str, str], source: str, meshes: list[MeshLayout]
+) -> Placement:
+    """Return where a variable lies.
+
+    Raises
+    ------
+    DatasetError
+        If its positions are not those of a field, with the reason.
+    """
+    for mesh in meshes:
+        if mesh.dim in array.dims:
+            return Placement(mesh.key, mesh.grid, (mesh.dim,), mesh.angle, mesh=mesh)
+    lat = _position(dataset, array, co.is_latitude, co.LATITUDES)
+    lon = _position(dataset, array, co.is_longitude, co.LONGITUDES)
+    if lat is None or lon is None:
+        return _projected(dataset, array, mapping, source)
+    if lat.ndim == 2 and lon.ndim == 2 and lat.dims == lon.dims:
+        return _curvilinear(dataset, lat, lon)
+    if lat.ndim == 1 and lon.ndim == 1 and lat.dims != lon.dims:
+        return _rectilinear(lat, lon, source)
+    raise _no_field(array, source, "lies at single points, not on a grid, and no mesh joins them")
+
+
+def _position(dataset: Any, array: Any, test: Any, order: tuple[str, ...]) -> Any:
+    """Return the latitude or longitude that fits a variable's dimensions, T points first."""
+    fitting = [
+        dataset[n]
+        for n in dataset.variables
+        if 1 <= dataset[n].ndim <= 2
+        and set(dataset[n].dims) <= set(array.dims)
+        and test(dataset[n], str(n))
+    ]
+    return min(fitting, key=lambda a: _rank(a, order), default=None)
+
+
+def _rank(array: Any, order: tuple[str, ...]) -> tuple[int, int]:
+    name = str(array.name).lower()
+    return -array.ndim, order.index(name) if name in order else 3
+
+
+def _rectilinear(lat: Any, lon: Any, source: str) -> Placement:
+    y = _axis(lat, source, "latitude")
+    x = np.unwrap(_axis(lon, source, "longitude"), period=360.0)
+    if np.abs(y).max() > 90.0 + 1e-6:
+        raise _axis_fault(source, str(lat.name), f"reaches {y[np.argmax(np.abs(y))]:g} degrees")
+    flipped = x.size > 1 and x[1] < x[0]
+    x = x[::-1] if flipped else x
+    for axis, name in ((np.sort(y) if _falls(y) else y, lat.name), (x, lon.name)):
+        if (np.diff(axis) <= 0.0).any():
+            raise _axis_fault(source, str(name), "neither increases nor decreases all along")
+    grid = RectilinearGrid(np.ascontiguousarray(y), np.ascontiguousarray(x))
+    dims = (str(lat.dims[0]), str(lon.dims[0]))
+    return Placement((*dims, str(lat.name), str(lon.name)), grid, dims, flipped=bool(flipped))
+
+
+def _falls(axis: FloatArray) -> bool:
+    return bool((np.diff(axis) < 0.0).all())
+
+
+def _axis(array: Any, source: str, what: str) -> FloatArray:
+    values = np.asarray(array.values, np.float64)
+    if str(array.attrs.get("units", "")).lower() in ("radian", "radians"):
+        values = np.degrees(values)
+    if not np.isfinite(values).all():
+        raise _axis_fault(source, str(array.name), f"has a missing {what}")
+    return values
+
+
+def _axis_fault(source: str, name: str, fault: str) -> DatasetError:
+    return DatasetError(
+        f"{source}: the axis {name!r} {fault}.",
+        "Latitudes lie between -90 and 90 degrees and axes run one way.",
+        "Repair the axis.",
+        file=source,
+        variable=name,
+    )
+
+
+def _curvilinear(dataset: Any, lat: Any, lon: Any) -> Placement:
+    y, x = np.asarray(lat.values, np.float64), np.asarray(lon.values, np.float64)
+    dims = (str(lat.dims[0]), str(lat.dims[1]))
+    key = (*dims, str(lat.name), str(lon.name))
+    rows, columns = y[:, 0], np.unwrap(x[0], period=360.0)
+    is_plain = np.array_equal(y, np.broadcast_to(rows[:, None], y.shape)) and np.array_equal(
+        x, np.broadcast_to(x[0], x.shape)
+    )
+    rising = is_plain and (np.diff(columns) > 0.0).all()
+    if rising and ((np.diff(rows) > 0.0).all() or _falls(rows)):
+        return Placement(key, RectilinearGrid(rows.copy(), columns), dims)
+    angle = co.grid_angle(y, x)
+    if _runs_backwards(dataset, dims[1]):
+        angle = angle + np.pi
+    return Placement(key, curvilinear_grid(y, x), dims, angle)
+
+
+def _runs_backwards(dataset: Any, dim: str) -> bool:
+    """Return whether the projected x coordinate falls along its dimension."""
+    if dim not in dataset.variables or dataset[dim].size < 2:
+        return False
+    first = np.asarray(dataset[dim].values[:2], float)
+    return bool(first[1] < first[0])
+
+
+def _projected(dataset: Any, array: Any, mapping: Mapping[str, str], source: str) -> Placement:
+    """Place a variable that has only projected x and y axes, by its stated projection."""
+    axes = {}
+    for name in dataset.variables:
+        axis = dataset[name]
+        standard = str(axis.attrs.get("standard_name", ""))
+        if axis.ndim == 1 and axis.dims[0] in array.dims and standard.startswith("projection_"):
+            axes[standard[11]] = axis
+    if len(axes) < 2:
+        raise _no_field(array, source, "has no positions: no latitude and longitude along it")
+    crs = co.crs_of(dataset, array, mapping, source)
+    if crs is None:
+        raise no_projection(source)
+    scale = [1000.0 if axes[k].attrs.get("units") == "km" else 1.0 for k in "xy"]
+    x, y = np.meshgrid(
+        np.asarray(axes["x"].values, float) * scale[0],
+        np.asarray(axes["y"].values, float) * scale[1],
+    )
+    lat, lon = co.to_degrees(crs, x, y)
+    dims = (str(axes["y"].dims[0]), str(axes["x"].dims[0]))
+    return Placement(dims, curvilinear_grid(lat, lon), dims, co.meridian_angle(crs, x, y))
+
+
+def no_projection(source: str) -> DatasetError:
+    """Return the error for projected positions without a projection."""
+    return DatasetError(
+        f"{source}: positions are in metres of a projection that the file does not name.",
+        "Positions need latitude and longitude, or a projection.",
+        "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
+        file=source,
+    )
+
+
+def _no_field(array: Any, source: str, fault: str) -> DatasetError:
+    return DatasetError(
+        f"{source}: {array.name!r} {fault} (dimensions {', '.join(map(str, array.dims))}).",
+        "A sea needs fields on a grid or mesh; one cannot sail on series at buoys or lines.",
+        "Give a gridded file, a mesh with its face_node_connectivity, or wrap the series in "
+        "Sea.from_functions.",
+        file=source,
+        variable=str(array.name),
+    )

@@ -1,0 +1,60 @@
+"""What values make sense: a last check that catches wrong units before a ship sails on them."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import DatasetError
+from thalweg.sea import standard_names as nm
+
+#: least and largest value that is believed, SI; generous, to catch units and fill values only
+PLAUSIBLE: Final[dict[str, tuple[float, float]]] = {
+    nm.EASTWARD_WIND: (-120.0, 120.0),
+    nm.NORTHWARD_WIND: (-120.0, 120.0),
+    "wind_speed": (0.0, 120.0),
+    nm.EASTWARD_CURRENT: (-15.0, 15.0),
+    nm.NORTHWARD_CURRENT: (-15.0, 15.0),
+    "sea_water_speed": (0.0, 15.0),
+    nm.WAVE_HEIGHT: (0.0, 40.0),
+    nm.WAVE_PERIOD: (0.0, 60.0),
+    nm.WATER_LEVEL: (-50.0, 50.0),
+    nm.BED_DEPTH: (-9500.0, 12000.0),
+    nm.PRESSURE: (80000.0, 112000.0),
+    nm.ICE: (0.0, 1.01),
+}
+SLACK: Final = 0.01  #: share of the range by which packing may overshoot
+
+
+def check_plausible(name: str, value: NDArray[Any], variables: list[str], source: str) -> None:
+    """Raise `DatasetError` if values lie outside what can be believed of a variable."""
+    if name not in PLAUSIBLE or value.size == 0:
+        return
+    low, high = PLAUSIBLE[name]
+    slack = SLACK * (high - low)
+    least, largest = _extremes(value)
+    if least >= low - slack and largest <= high + slack:
+        return
+    if np.isnan(least):
+        return
+    worst = largest if largest > high + slack else least
+    unit = nm.CANONICAL_UNITS.get(name, "")
+    raise DatasetError(
+        f"{source}: {', '.join(variables)} read as {name} reaches {worst:g} {unit}.",
+        f"Values between {low:g} and {high:g} {unit} are believed: wrong units, or missing values "
+        "that are not marked?",
+        "Correct the file's units or _FillValue, or map another variable.",
+        variable=name,
+        value=worst,
+        file=source,
+    )
+
+
+def _extremes(value: NDArray[Any]) -> tuple[float, float]:
+    least, largest = (
+        float(np.fmin.reduce(value, axis=None)),
+        float(np.fmax.reduce(value, axis=None)),
+    )
+    return least, largest

@@ -1,0 +1,323 @@
+"""UGRID: unstructured meshes of triangles, or of polygons cut into triangles.
+
+Values at nodes are linear in each triangle. Values of faces are kept at the centre of the face
+and averaged to its nodes (over the faces that are known at that moment, weighted by the inverse
+of the distance to their centres); each face is cut into triangles between its centre and its
+edges, and values are linear in those. So a field is continuous, has the file's value at every
+face centre, and is unknown throughout a face that is unknown (dry).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError
+from thalweg.kernels.geometry import field_sampling
+from thalweg.sea.files import coordinates as co
+from thalweg.sea.frozen_fields import FloatArray, IntArray, Mesh
+from thalweg.sea.grids.point_location import TriangleGrid
+
+
+@dataclass(frozen=True, eq=False)
+class Averaging:
+    """How face values become node values: faces around each node, and their weights.
+
+    Attributes
+    ----------
+    start, face : int64 array
+        Faces of node n are ``face[start[n]:start[n + 1]]``.
+    weight : float64 array
+        One per entry of ``face``.
+    """
+
+    start: IntArray
+    face: IntArray
+    weight: FloatArray
+
+    def with_nodes(self, values: FloatArray) -> FloatArray:
+        """Return face values (T, 1, F) followed by node values: (T, 1, F + N)."""
+        faces = np.ascontiguousarray(values[:, 0, :], np.float64)
+        nodes = np.empty((faces.shape[0], self.start.size - 1))
+        field_sampling.average_at_nodes(faces, self.start, self.face, self.weight, nodes)
+        return np.concatenate([faces, nodes], axis=1)[:, None, :]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshLayout:
+    """One dimension of a mesh that carries values.
+
+    Attributes
+    ----------
+    key : tuple of str
+        Name of the mesh and of the dimension.
+    dim : str
+        Dimension of nodes or of faces.
+    grid : TriangleGrid
+        Places and triangles.
+    angle : float64 array or None
+        Angle [rad] of the projection's x axis from east at each value, (1, values).
+    averaging : Averaging or None
+        For faces.
+    """
+
+    key: tuple[str, ...]
+    dim: str
+    grid: TriangleGrid
+    angle: FloatArray | None = None
+    averaging: Averaging | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Topology:
+    """A mesh as the file tells it: node positions and the nodes of each face (-1 = no more)."""
+
+    name: str
+    lat: FloatArray
+    lon: FloatArray
+    faces: IntArray
+    node_dim: str
+    face_dim: str
+
+
+#: names of connectivity in files that tell no topology (ADCIRC, FVCOM)
+_BARE = ("element", "elements", "nv", "tri")
+
+
+def topologies(dataset: Any) -> dict[str, Mapping[str, Any]]:
+    """Return the two-dimensional meshes of a dataset: name and what it tells of each.
+
+    Where no topology is told, connectivity between nodes at positions makes one.
+    """
+    told = {
+        str(n): dataset[n].attrs
+        for n in dataset.variables
+        if dataset[n].attrs.get("cf_role") == "mesh_topology"
+    }
+    if told:
+        return {
+            name: attributes
+            for name, attributes in told.items()
+            if int(attributes.get("topology_dimension", attributes.get("dimension", 2))) == 2
+        }
+    return _bare_topology(dataset)
+
+
+def _bare_topology(dataset: Any) -> dict[str, Mapping[str, Any]]:
+    for name in dataset.variables:
+        table = dataset[name]
+        role = table.attrs.get("cf_role") == "face_node_connectivity"
+        if table.ndim != 2 or not (role or str(name).lower() in _BARE):
+            continue
+        places = _bare_nodes(dataset, frozenset(map(str, table.dims)))
+        if places and min(table.shape) in (3, 4):
+            face_dim = str(table.dims[int(np.argmax(table.shape))])
+            return {
+                str(name): {
+                    "face_node_connectivity": str(name),
+                    "node_coordinates": " ".join(places),
+                    "face_dimension": face_dim,
+                }
+            }
+    return {}
+
+
+def _bare_nodes(dataset: Any, not_along: frozenset[str]) -> list[str]:
+    """Return longitude and latitude of nodes: on one dimension that is not that of the faces."""
+    along = [
+        (str(n), dataset[n])
+        for n in dataset.variables
+        if dataset[n].ndim == 1 and dataset[n].dims[0] not in not_along
+    ]
+    x = next(((n, a) for n, a in along if co.is_longitude(a, n)), None)
+    y = next(((n, a) for n, a in along if co.is_latitude(a, n)), None)
+    return [x[0], y[0]] if x and y and x[1].dims == y[1].dims else []
+
+
+def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[MeshLayout]:
+    """Return the layouts for node and face data of every two-dimensional mesh of a dataset."""
+    return [
+        layout
+        for name, attributes in topologies(dataset).items()
+        for layout in _layouts(dataset, name, attributes, mapping, source)
+    ]
+
+
+def auxiliary(dataset: Any) -> frozenset[str]:
+    """Return the variables that describe meshes and carry no field."""
+    names: set[str] = set()
+    for mesh, attributes in topologies(dataset).items():
+        names.add(mesh)
+        for key, value in attributes.items():
+            if key.endswith(("_coordinates", "_connectivity")):
+                names.update(str(value).split())
+    return frozenset(names)
+
+
+def place_dimensions(dataset: Any) -> frozenset[str]:
+    """Return the dimensions of nodes and of faces of every mesh, as far as they are told."""
+    dims: set[str] = set()
+    for attributes in topologies(dataset).values():
+        for key in ("node_coordinates", "face_coordinates", "face_node_connectivity"):
+            for name in str(attributes.get(key, "")).split()[:1]:
+                dims.update(map(str, dataset[name].dims if name in dataset.variables else ()))
+    return frozenset(dims)
+
+
+def _layouts(
+    dataset: Any,
+    name: str,
+    attributes: Mapping[str, Any],
+    mapping: Mapping[str, str],
+    source: str,
+) -> list[MeshLayout]:
+    connectivity = _needed(dataset, attributes, "face_node_connectivity", source)[0]
+    axes = _needed(dataset, attributes, "node_coordinates", source)
+    x, y, crs = _node_positions(dataset, axes, mapping, source)
+    lat, lon = (y, x) if crs is None else co.to_degrees(crs, x, y)
+    _check_positions(lat, lon, source)
+    table = dataset[connectivity]
+    face_dim = str(attributes.get("face_dimension", table.dims[0]))
+    face_dim = face_dim if face_dim in table.dims else str(table.dims[0])
+    faces = read_faces(table.transpose(face_dim, ...), lat.size, source)
+    node_dim = str(dataset[axes[0]].dims[0])
+    topology = Topology(name, lat, lon, faces, node_dim, face_dim)
+    angle = None if crs is None else co.meridian_angle(crs, x, y)
+    return [_node_layout(topology, angle), _face_layout(topology, angle)]
+
+
+def _needed(dataset: Any, attributes: Mapping[str, Any], key: str, source: str) -> list[str]:
+    names = str(attributes.get(key, "")).split()
+    if names and all(n in dataset.variables for n in names):
+        return names
+    raise DatasetError(
+        f"{source}: the mesh does not tell its {key}.",
+        "UGRID meshes with node_coordinates and face_node_connectivity can be read.",
+        "Write the file with complete UGRID topology.",
+        file=source,
+    )
+
+
+def _node_positions(
+    dataset: Any, axes: list[str], mapping: Mapping[str, str], source: str
+) -> tuple[FloatArray, FloatArray, Any]:
+    """Return x, y and the projection; without one x is longitude and y latitude."""
+    first, second = dataset[axes[0]], dataset[axes[1]]
+    if co.is_latitude(first, axes[0]) or "y" in str(first.attrs.get("standard_name", ""))[:12]:
+        first, second = second, first
+    x, y = np.asarray(first.values, np.float64), np.asarray(second.values, np.float64)
+    if co.is_longitude(first, str(first.name)) and co.is_latitude(second, str(second.name)):
+        return x, y, None
+    crs = co.crs_of(dataset, first, mapping, source)
+    if crs is not None and crs.is_geographic:
+        return x, y, None
+    if crs is None:
+        from thalweg.sea.files.grid_detection import no_projection
+
+        raise no_projection(source)
+    return x, y, crs
+
+
+def _check_positions(lat: FloatArray, lon: FloatArray, source: str) -> None:
+    if not (np.isfinite(lat).all() and np.isfinite(lon).all() and (np.abs(lat) <= 90.0).all()):
+        raise DatasetError(
+            f"{source}: nodes of the mesh have positions that do not exist.",
+            "Every node needs a latitude and a longitude.",
+            "Check the projection of the file.",
+            file=source,
+        )
+
+
+def read_faces(table: Any, nodes: int, source: str) -> IntArray:
+    """Return the nodes of each face from 0, -1 where it has no more.
+
+    The table may be of floats with NaN, hold its fill value undecoded, and count from 0 or 1.
+    """
+    raw = np.asarray(table.values, np.float64)
+    fill = table.attrs.get("_FillValue", table.encoding.get("_FillValue"))
+    if fill is not None:
+        raw = np.where(raw == float(np.asarray(fill).ravel()[0]), np.nan, raw)
+    raw = np.where(raw < 0.0, np.nan, raw)
+    given = table.attrs.get("start_index")
+    low, high = np.nanmin(raw), np.nanmax(raw)
+    start = int(given) if given is not None else int(low >= 1.0 and high == nodes)
+    if low < start or high > nodes - 1 + start:
+        if not (low >= 1.0 and high <= nodes):
+            raise DatasetError(
+                f"{source}: faces of the mesh use nodes {low:g} to {high:g} of {nodes}.",
+                "Each face must be made of nodes of the mesh.",
+                "Repair face_node_connectivity and its start_index.",
+                file=source,
+            )
+        start = 1
+    return np.where(np.isnan(raw), -1, raw - start).astype(np.int64)
+
+
+def fan(faces: IntArray) -> IntArray:
+    """Return triangles of faces, each cut from its first node."""
+    pieces = []
+    for k in range(1, faces.shape[1] - 1):
+        whole = faces[:, k + 1] >= 0
+        pieces.append(np.stack([faces[whole, 0], faces[whole, k], faces[whole, k + 1]], axis=1))
+    return np.ascontiguousarray(np.concatenate(pieces))
+
+
+def _node_layout(mesh: Topology, angle: FloatArray | None) -> MeshLayout:
+    triangles = fan(mesh.faces)
+    network = Mesh(mesh.lat, mesh.lon, triangles)
+    grid = TriangleGrid(mesh.lat, mesh.lon, triangles, (1, mesh.lat.size), network)
+    turned = None if angle is None else angle[None, :]
+    return MeshLayout((mesh.name, mesh.node_dim), mesh.node_dim, grid, turned)
+
+
+def _face_layout(mesh: Topology, angle: FloatArray | None) -> MeshLayout:
+    lat, lon = _centres(mesh)
+    count = lat.size
+    used = mesh.faces >= 0
+    following = np.roll(mesh.faces, -1, axis=1)
+    last = used.sum(axis=1) - 1
+    following[np.arange(count), last] = mesh.faces[:, 0]
+    row, column = np.nonzero(used)
+    triangles = np.stack(
+        [row, count + mesh.faces[row, column], count + following[row, column]], axis=1
+    )
+    network = Mesh(mesh.lat, mesh.lon, fan(mesh.faces))
+    grid = TriangleGrid(
+        np.concatenate([lat, mesh.lat]),
+        np.concatenate([lon, mesh.lon]),
+        np.ascontiguousarray(triangles, np.int64),
+        (1, count + mesh.lat.size),
+        network,
+    )
+    turned = None
+    if angle is not None:
+        turned = np.where(used, angle[np.maximum(mesh.faces, 0)], 0.0).sum(axis=1) / (last + 1)
+        turned = turned[None, :]
+    averaging = _averaging(mesh, lat, lon)
+    return MeshLayout((mesh.name, mesh.face_dim), mesh.face_dim, grid, turned, averaging)
+
+
+def _centres(mesh: Topology) -> tuple[FloatArray, FloatArray]:
+    """Return the mean position of the nodes of each face, across the antimeridian too."""
+    used = mesh.faces >= 0
+    number = used.sum(axis=1)
+    corner = np.maximum(mesh.faces, 0)
+    first = mesh.lon[corner[:, :1]]
+    offset = (mesh.lon[corner] - first + 180.0) % 360.0 - 180.0
+    lat = np.where(used, mesh.lat[corner], 0.0).sum(axis=1) / number
+    lon = first[:, 0] + np.where(used, offset, 0.0).sum(axis=1) / number
+    return lat, lon
+
+
+def _averaging(mesh: Topology, lat: FloatArray, lon: FloatArray) -> Averaging:
+    row, column = np.nonzero(mesh.faces >= 0)
+    node = mesh.faces[row, column]
+    order = np.argsort(node, kind="stable")
+    face, node = row[order].astype(np.int64), node[order]
+    east = (lon[face] - mesh.lon[node] + 180.0) % 360.0 - 180.0
+    distance = np.hypot(east * np.cos(np.radians(mesh.lat[node])), lat[face] - mesh.lat[node])
+    start = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=mesh.lat.size))])
+    return Averaging(start.astype(np.int64), face, 1.0 / np.maximum(distance, 1e-12))

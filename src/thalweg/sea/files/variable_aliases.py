@@ -1,0 +1,159 @@
+"""Which variable of a file is which: CF standard names first, then spellings by source.
+
+A *role* is a canonical name, or one of the other forms a quantity comes in: speed, direction,
+components along the grid, bed level, total depth.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from thalweg.sea import standard_names as nm
+
+X_WIND: Final = "x_wind"
+Y_WIND: Final = "y_wind"
+X_CURRENT: Final = "sea_water_x_velocity"
+Y_CURRENT: Final = "sea_water_y_velocity"
+BED_LEVEL: Final = "bed_level"
+
+#: CF standard names (and their old aliases) by role, besides each role's own name
+STANDARD_NAMES: Final[dict[str, str]] = {
+    "grid_eastward_wind": X_WIND,
+    "grid_northward_wind": Y_WIND,
+    "surface_eastward_sea_water_velocity": nm.EASTWARD_CURRENT,
+    "surface_northward_sea_water_velocity": nm.NORTHWARD_CURRENT,
+    "x_sea_water_velocity": X_CURRENT,
+    "y_sea_water_velocity": Y_CURRENT,
+    "eastward_water_velocity": nm.EASTWARD_CURRENT,
+    "northward_water_velocity": nm.NORTHWARD_CURRENT,
+    "direction_of_sea_water_velocity": nm.CURRENT.towards,
+    "significant_height_of_wind_and_swell_waves": nm.WAVE_HEIGHT,
+    "sea_surface_wave_period_at_variance_spectral_density_maximum": nm.WAVE_PERIOD,
+    "sea_surface_wave_peak_period": nm.WAVE_PERIOD,
+    "altitude": BED_LEVEL,
+    "height": BED_LEVEL,
+    "surface_altitude": BED_LEVEL,
+    "bedrock_altitude": BED_LEVEL,
+    "ground_level_altitude": BED_LEVEL,
+    "depth": nm.BED_DEPTH,
+    "depth_below_geoid": nm.BED_DEPTH,
+}
+
+#: spellings by source; all in lower case, in order of preference within a role
+SPELLINGS: Final[dict[str, dict[str, str]]] = {
+    "ECMWF": {
+        "u10": nm.EASTWARD_WIND, "v10": nm.NORTHWARD_WIND, "10u": nm.EASTWARD_WIND,
+        "10v": nm.NORTHWARD_WIND, "u10n": nm.EASTWARD_WIND, "v10n": nm.NORTHWARD_WIND,
+        "si10": "wind_speed", "wdir10": nm.WIND.origin, "swh": nm.WAVE_HEIGHT,
+        "mwd": nm.WAVES.origin, "pp1d": nm.WAVE_PERIOD, "msl": nm.PRESSURE, "siconc": nm.ICE,
+        "ci": nm.ICE,
+    },
+    "GFS": {
+        "ugrd10m": nm.EASTWARD_WIND, "vgrd10m": nm.NORTHWARD_WIND,
+        "ugrd_10maboveground": nm.EASTWARD_WIND, "vgrd_10maboveground": nm.NORTHWARD_WIND,
+        "u-component_of_wind_height_above_ground": nm.EASTWARD_WIND,
+        "v-component_of_wind_height_above_ground": nm.NORTHWARD_WIND,
+        "msletmsl": nm.PRESSURE, "prmslmsl": nm.PRESSURE, "prmsl": nm.PRESSURE,
+        "mslet": nm.PRESSURE, "pressure_reduced_to_msl_msl": nm.PRESSURE,
+        "htsgwsfc": nm.WAVE_HEIGHT, "dirpwsfc": nm.WAVES.origin, "perpwsfc": nm.WAVE_PERIOD,
+        "htsgw": nm.WAVE_HEIGHT, "dirpw": nm.WAVES.origin, "perpw": nm.WAVE_PERIOD,
+        "icecsfc": nm.ICE,
+    },
+    "CMEMS": {
+        "vhm0": nm.WAVE_HEIGHT, "vmdr": nm.WAVES.origin, "vtpk": nm.WAVE_PERIOD,
+        "utotal": nm.EASTWARD_CURRENT, "vtotal": nm.NORTHWARD_CURRENT, "uo": X_CURRENT,
+        "vo": Y_CURRENT, "zos": nm.WATER_LEVEL, "deptho": nm.BED_DEPTH,
+    },
+    "MET Norway": {
+        "x_wind_10m": X_WIND, "y_wind_10m": Y_WIND, "wind_speed_10m": "wind_speed",
+        "wind_direction_10m": nm.WIND.origin, "hs": nm.WAVE_HEIGHT, "tp": nm.WAVE_PERIOD,
+        "thq": nm.WAVES.origin, "p100": nm.WAVE_HEIGHT, "ff": "wind_speed", "dd": nm.WIND.origin,
+    },
+    "DHI": {
+        "significant wave height": nm.WAVE_HEIGHT, "sign. wave height": nm.WAVE_HEIGHT,
+        "hm0": nm.WAVE_HEIGHT, "peak wave period": nm.WAVE_PERIOD,
+        "mean wave direction": nm.WAVES.origin, "surface elevation": nm.WATER_LEVEL,
+        "surface_elevation": nm.WATER_LEVEL, "zeta": nm.WATER_LEVEL, "u velocity": X_CURRENT,
+        "v velocity": Y_CURRENT, "ucur": X_CURRENT, "vcur": Y_CURRENT, "wind speed": "wind_speed",
+        "wind direction": nm.WIND.origin, "wspd": "wind_speed", "wdir": nm.WIND.origin,
+        "total water depth": nm.TOTAL_DEPTH, "still water depth": nm.BED_DEPTH,
+    },
+    "52North": {"water_level": nm.WATER_LEVEL, "z": BED_LEVEL},
+    "NEMO": {
+        "uos": X_CURRENT, "vos": Y_CURRENT, "vozocrtx": X_CURRENT, "vomecrty": Y_CURRENT,
+        "sozocrtx": X_CURRENT, "somecrty": Y_CURRENT, "sossheig": nm.WATER_LEVEL,
+    },
+    "COADS": {
+        "slp": nm.PRESSURE, "uwnd": nm.EASTWARD_WIND, "vwnd": nm.NORTHWARD_WIND,
+        "mslp": nm.PRESSURE,
+    },
+    "Delft3D-FM": {
+        "mesh2d_ucx": X_CURRENT, "mesh2d_ucy": Y_CURRENT, "mesh2d_ucxa": X_CURRENT,
+        "mesh2d_ucya": Y_CURRENT, "mesh2d_s1": nm.WATER_LEVEL,
+        "mesh2d_waterdepth": nm.TOTAL_DEPTH, "mesh2d_node_z": BED_LEVEL,
+        "mesh2d_flowelem_bl": BED_LEVEL, "mesh2d_face_z": BED_LEVEL,
+    },
+    "ADCIRC": {"u-vel": nm.EASTWARD_CURRENT, "v-vel": nm.NORTHWARD_CURRENT},
+    "Matroos": {
+        "velu": nm.EASTWARD_CURRENT, "velv": nm.NORTHWARD_CURRENT, "sep": nm.WATER_LEVEL,
+    },
+    "GEBCO and ETOPO": {"elevation": BED_LEVEL, "topo": BED_LEVEL, "band1": BED_LEVEL},
+}  # fmt: skip
+
+#: standard names used only if no better candidate for the role is there
+SECOND_CHOICE: Final[dict[str, str]] = {
+    "barotropic_sea_water_x_velocity": X_CURRENT,
+    "barotropic_sea_water_y_velocity": Y_CURRENT,
+    "barotropic_eastward_sea_water_velocity": nm.EASTWARD_CURRENT,
+    "barotropic_northward_sea_water_velocity": nm.NORTHWARD_CURRENT,
+    "sea_surface_wave_from_direction_at_variance_spectral_density_maximum": nm.WAVES.origin,
+}
+
+#: names too common to insist on: with units that do not fit they are something else
+WEAK: Final = frozenset({"z", "band1", "topo", "elevation", "ff", "dd", "hs", "tp", "ci", "zeta"})
+
+#: names of a depth that changes in time, and so is that of the water, not of the bed
+MOVING_DEPTHS: Final = frozenset({"depth", "water_depth", "waterdepth", "h_water"})
+
+#: why known variables are not used
+NOT_USED: Final[dict[str, str]] = {
+    "p107": "MET Norway's local parameter 107 is a wave direction, but whether from or to is not "
+    "stated; if you know, map it: mapping={'sea_surface_wave_from_direction': 'p107'}",
+}
+
+DIMENSIONS: Final[dict[str, str]] = {
+    **dict.fromkeys((*nm.WIND.pair, *nm.CURRENT.pair, X_WIND, Y_WIND), "speed"),
+    **dict.fromkeys((X_CURRENT, Y_CURRENT, "wind_speed", "sea_water_speed"), "speed"),
+    **dict.fromkeys((v.towards for v in nm.VECTORS), "direction"),
+    **dict.fromkeys((v.origin for v in nm.VECTORS), "direction"),
+    **dict.fromkeys(
+        (nm.WAVE_HEIGHT, nm.WATER_LEVEL, nm.BED_DEPTH, nm.TOTAL_DEPTH, BED_LEVEL), "length"
+    ),
+    nm.WAVE_PERIOD: "time",
+    nm.PRESSURE: "pressure",
+    nm.ICE: "fraction",
+}
+ROLES: Final = frozenset(DIMENSIONS)
+
+
+def role_of_standard_name(name: str) -> tuple[str, int] | None:
+    """Return the role of a CF standard name and its rank (0 best), or None."""
+    if name in STANDARD_NAMES:
+        return STANDARD_NAMES[name], 0
+    if name in SECOND_CHOICE:
+        return SECOND_CHOICE[name], 1
+    if nm.is_bed_level(name):
+        return BED_LEVEL, 0
+    kept = nm.canonical(name)
+    return (kept, 0) if kept in ROLES else None
+
+
+def role_of_spelling(name: str) -> tuple[str, int, str] | None:
+    """Return the role of a file's own name, its place of preference and whose spelling it is."""
+    place = 0
+    for source, table in SPELLINGS.items():
+        for spelling, role in table.items():
+            if spelling == name.lower():
+                return role, place, source
+            place += 1
+    return None

@@ -1,0 +1,248 @@
+"""Finding the variables of a dataset: by mapping, standard name, or spelling; never by guess."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from thalweg.core.errors import DatasetError, InputError, near_matches
+from thalweg.sea import standard_names as nm
+from thalweg.sea.files import unit_conversion, variable_aliases
+from thalweg.sea.files.coordinates import time_of, wind_height_fault
+
+_BRACKETS = re.compile(r"\[([^\[\]]+)\]\s*$")
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A variable of a file that plays a role.
+
+    Attributes
+    ----------
+    role : str
+        What it is.
+    variable : str
+        Its name in the file.
+    factor : float
+        To SI (degrees for directions).
+    units : str
+        As the file spells them.
+    how : str
+        How it was recognised.
+    """
+
+    role: str
+    variable: str
+    factor: float
+    units: str
+    how: str
+
+
+@dataclass(frozen=True)
+class Ignored:
+    """A variable of a file that is not used.
+
+    Attributes
+    ----------
+    variable : str
+        Its name.
+    reason : str
+        Why not.
+    """
+
+    variable: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A variable that may play a role.
+
+    Attributes
+    ----------
+    variable : str
+        Its name.
+    rank : int
+        0 by standard name, 1 by a second-choice standard name, 2 by spelling.
+    origin, place : str, int
+        Whose spelling it is, and its place of preference there.
+    how : str
+        How it was recognised.
+    """
+
+    variable: str
+    rank: int
+    origin: str
+    place: int
+    how: str
+
+
+def recognise(
+    dataset: Any, *, mapping: Mapping[str, str], source: str, skip: frozenset[str]
+) -> tuple[dict[str, Chosen], list[Ignored]]:
+    """Return what plays which role in a dataset, and what is not used and why.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The file.
+    mapping : mapping of str to str
+        The user's word: canonical name (or role) to name in the file.
+    source : str
+        File name for messages.
+    skip : frozenset of str
+        Coordinates and other variables that carry no field.
+
+    Raises
+    ------
+    DatasetError
+        If two variables play the same role and no rule says which is meant, or a unit cannot be.
+    """
+    fields = [str(n) for n in dataset.data_vars if str(n) not in skip and dataset[n].ndim > 0]
+    fields = [n for n in fields if dataset[n].dtype.kind in "fiu"]
+    mapped = _mapped(dataset, mapping)
+    candidates: dict[str, list[Candidate]] = {}
+    ignored: list[Ignored] = []
+    for name in fields:
+        if name in mapped.values():
+            continue
+        found = _candidate(dataset, name)
+        if isinstance(found, tuple) and "wind" in found[0]:
+            fault = wind_height_fault(dataset, dataset[name])
+            found = Ignored(name, fault) if fault else found
+        if isinstance(found, Ignored):
+            ignored.append(found)
+        elif found[0] not in mapped:
+            candidates.setdefault(found[0], []).append(found[1])
+    chosen = {
+        role: _with_unit(dataset, role, name, "mapping", source) for role, name in mapped.items()
+    }
+    for role, several in candidates.items():
+        best = _best(several, role, dataset, source)
+        taken = _with_unit(dataset, role, best.variable, best.how, source)
+        if isinstance(taken, Chosen):
+            chosen[role] = taken
+        else:
+            ignored.append(taken)
+        ignored += [
+            Ignored(c.variable, f"{best.variable} is preferred as {role}")
+            for c in several
+            if c is not best
+        ]
+    return {role: c for role, c in chosen.items() if isinstance(c, Chosen)}, ignored
+
+
+def _mapped(dataset: Any, mapping: Mapping[str, str]) -> dict[str, str]:
+    """Return role to file variable for what the user mapped and this file has."""
+    return {_role_for(name): variable for name, variable in mapping.items() if variable in dataset}
+
+
+def _role_for(name: str) -> str:
+    kept = nm.canonical(name)
+    if kept in variable_aliases.ROLES:
+        return kept
+    role = variable_aliases.role_of_standard_name(name)
+    return role[0] if role else name
+
+
+def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
+    """Raise `InputError` if the mapping names a variable that is in none of the files."""
+    for name, variable in mapping.items():
+        if name != "crs" and variable not in present:
+            near = near_matches(variable, present)
+            raise InputError(
+                f"The mapping wants {name!r} from {variable!r}, which is in none of the files.",
+                f"They hold: {', '.join(sorted(present))}.",
+                f"Did you mean {' or '.join(map(repr, near))}?" if near else "Check the name.",
+                field=name,
+                value=variable,
+            )
+
+
+def _candidate(dataset: Any, name: str) -> tuple[str, Candidate] | Ignored:
+    """Return the role a variable may play, or why none."""
+    array = dataset[name]
+    standard = "_".join(str(array.attrs.get("standard_name", "")).lower().split())
+    spelled = variable_aliases.role_of_spelling(name)
+    if name.lower() in variable_aliases.NOT_USED:
+        return Ignored(name, variable_aliases.NOT_USED[name.lower()])
+    if standard and standard != "unknown":
+        role = variable_aliases.role_of_standard_name(standard)
+        if role is None:
+            return Ignored(name, f"standard_name {standard!r} is not one that is used")
+        origin, place = (
+            ("", 0) if not spelled or spelled[0] != role[0] else (spelled[2], spelled[1])
+        )
+        return role[0], Candidate(name, role[1], origin, place, f"standard_name {standard}")
+    if (
+        spelled is None
+        and name.lower() in variable_aliases.MOVING_DEPTHS
+        and _moves(dataset, array)
+    ):
+        told = f"spelled {name}, and changes in time: depth below the moving surface"
+        return nm.TOTAL_DEPTH, Candidate(name, 2, "", 0, told)
+    if spelled is None:
+        return Ignored(name, "no standard_name, and no spelling that is known")
+    return spelled[0], Candidate(name, 2, spelled[2], spelled[1], f"spelled as by {spelled[2]}")
+
+
+def _moves(dataset: Any, array: Any) -> bool:
+    clock = time_of(dataset, array)
+    return clock is not None and array.sizes.get(clock.dims[0], 1) > 1
+
+
+def _best(several: list[Candidate], role: str, dataset: Any, source: str) -> Candidate:
+    """Return the candidate of best rank; of equals, the first in its source's order.
+
+    Standard names go before spellings. Among equals there is a rule only if all are spellings of
+    one source (CMEMS's total before its partial currents, nodes before faces of a mesh).
+    """
+    least = min(c.rank for c in several)
+    tied = sorted((c for c in several if c.rank == least), key=lambda c: c.place)
+    if len(tied) == 1 or (tied[0].origin and len({c.origin for c in tied}) == 1):
+        return tied[0]
+    raise DatasetError(
+        f"{source}: {role} could be any of {', '.join(c.variable for c in tied)}.",
+        "Nothing in the file says which one is meant: "
+        + "; ".join(f"{c.variable}: {_title(dataset[c.variable])}" for c in tied)
+        + ".",
+        f"Choose one: Sea.open(..., mapping={{{role!r}: {tied[0].variable!r}}}).",
+        variable=role,
+        candidates=[c.variable for c in tied],
+        file=source,
+    )
+
+
+def _title(array: Any) -> str:
+    return str(array.attrs.get("long_name") or array.attrs.get("standard_name") or "no long_name")
+
+
+def _with_unit(dataset: Any, role: str, name: str, how: str, source: str) -> Chosen | Ignored:
+    """Return the variable with its factor to SI, or raise if the unit cannot be."""
+    attributes = dataset[name].attrs
+    unit = str(attributes.get("units", "")).strip()
+    if unit_conversion.is_unsaid(unit):
+        bracketed = _BRACKETS.search(str(attributes.get("long_name", "")))
+        unit = bracketed[1] if bracketed else ""
+    dimension = variable_aliases.DIMENSIONS.get(role)
+    if (
+        dimension is None
+        or not unit
+        or (dimension == "fraction" and unit_conversion.is_unsaid(unit))
+    ):
+        return Chosen(role, name, 1.0, unit, how)
+    factor = unit_conversion.factor(unit, dimension)
+    if factor is not None:
+        return Chosen(role, name, factor, unit, how)
+    if name.lower() in variable_aliases.WEAK and how.startswith("spelled"):
+        return Ignored(name, f"units {unit!r} are not those of {role}")
+    raise DatasetError(
+        f"{source}: {name!r} is taken for {role}, but its units are {unit!r}.",
+        f"A {dimension} is needed.",
+        "Correct the units in the file, or map another variable.",
+        variable=role,
+        units=unit,
+        file=source,
+    )

@@ -1,0 +1,268 @@
+"""Layers over the water column in files, and their mean from the surface down to a draught.
+
+A ship feels the current over its draught, not that of the top layer. Sigma layers are shares of the
+water depth of the moment, z layers lie at fixed depths below datum; the top one reaches up to the
+moving surface. A layer counts with the part of it that lies within the draught, as far as it holds
+water; where the draught reaches below the bed, the mean is that of the whole column.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError
+from thalweg.sea.files import unit_conversion
+from thalweg.sea.frozen_fields import FloatArray
+
+SIGMA: Final = "ocean_sigma_coordinate"
+HEIGHTS: Final = ("altitude", "height", "height_above_mean_sea_level", "height_above_geoid")
+DEPTHS: Final = ("depth", "depth_below_geoid", "depth_below_mean_sea_level")
+_ROUND: Final = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Layers:
+    """The layers of a file along one dimension.
+
+    Attributes
+    ----------
+    dim : str
+        The dimension.
+    is_sigma : bool
+        Whether edges are shares of the water depth (0 surface, 1 bed); else depths below datum [m].
+    top, bottom : float64 array (L,)
+        Upper and lower edge of each layer.
+    """
+
+    dim: str
+    is_sigma: bool
+    top: FloatArray
+    bottom: FloatArray
+
+    @property
+    def surface(self) -> int:
+        """The layer next to the surface."""
+        return int(np.argmin(self.top))
+
+    def describe(self) -> str:
+        """Return their number and kind in words."""
+        return f"{self.top.size} {'sigma' if self.is_sigma else 'z'} layers"
+
+    def shares(self, draught: float, column: FloatArray) -> FloatArray:
+        """Return what each layer has of the water within a draught [m].
+
+        Parameters
+        ----------
+        draught : float
+            From the surface down [m].
+        column : float64 array (T, Y, X)
+            Water depth of the moment [m] for sigma layers, water level [m above datum] for others.
+
+        Returns
+        -------
+        float64 array (T, L, Y, X)
+            Thickness within the draught [m]; for water without depth all of it in the top layer.
+        """
+        high, low = (e[None, :, None, None] for e in (self.top, self.bottom))
+        wide = column[:, None]
+        if self.is_sigma:
+            upper, lower = high * wide, low * wide
+        else:
+            upper, lower = high + wide, low + wide
+            upper[:, self.surface] = 0.0
+        thick = np.clip(np.minimum(lower, draught) - np.maximum(upper, 0.0), 0.0, None)
+        if self.is_sigma:
+            first = (np.arange(self.top.size) == self.surface)[None, :, None, None]
+            thick = np.where(wide > 0.0, thick, np.where(first & ~np.isnan(wide), 1.0, 0.0))
+        return np.asarray(thick)
+
+
+def averaging(
+    layers: Layers, draught: float, depth: Callable[[Sequence[FloatArray]], FloatArray]
+) -> Callable[[Sequence[FloatArray]], Sequence[FloatArray]]:
+    """Return what makes the mean over the draught of two components.
+
+    Parameters
+    ----------
+    layers : Layers
+    draught : float
+        [m].
+    depth : callable
+        Of all arrays, the two components (T, L, Y, X) first: what `Layers.shares` needs.
+    """
+
+    def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
+        shares = layers.shares(draught, depth(arrays))
+        return [_mean(values, shares) for values in arrays[:2]]
+
+    return combine
+
+
+def _mean(values: FloatArray, shares: FloatArray) -> FloatArray:
+    """Return the weighted mean over layers (axis 1) of what is known."""
+    weight = np.where(np.isnan(values), 0.0, np.broadcast_to(shares, values.shape))
+    total = weight.sum(axis=1)
+    summed = np.where(weight > 0.0, values * weight, 0.0).sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(total > 0.0, summed / total, np.nan)
+
+
+def level_coordinate(dataset: Any, dim: str) -> Any:
+    """Return the coordinate of levels along a dimension: its own, or one that is told as such."""
+    if dim in dataset.variables:
+        return dataset[dim]
+    along = [dataset[n] for n in dataset.variables if dataset[n].dims == (dim,)]
+    vertical = (a for a in along if is_sigma(a) or "positive" in a.attrs or _is_depth(a))
+    return next(vertical, None)
+
+
+def is_sigma(coordinate: Any) -> bool:
+    """Return whether a coordinate is a share of the water depth."""
+    standard = str(coordinate.attrs.get("standard_name", ""))
+    if standard:
+        return standard == SIGMA
+    return "sigma" in str(coordinate.name).lower()
+
+
+def _is_depth(coordinate: Any) -> float | None:
+    """Return the sign that makes a coordinate a depth below datum, or None if it is none."""
+    standard = str(coordinate.attrs.get("standard_name", ""))
+    positive = str(coordinate.attrs.get("positive", "")).lower()
+    unit = str(coordinate.attrs.get("units", ""))
+    if (
+        unit
+        and not unit_conversion.is_unsaid(unit)
+        and unit_conversion.factor(unit, "length") is None
+    ):
+        return None
+    if positive in ("up", "down"):
+        return 1.0 if positive == "down" else -1.0
+    if standard in HEIGHTS:
+        return -1.0
+    named = str(coordinate.name).lower().startswith("depth")
+    return 1.0 if standard in DEPTHS or (named and not standard) else None
+
+
+def find_layers(dataset: Any, array: Any, keep: frozenset[str], source: str) -> Layers | None:
+    """Return the layers of a variable, None if it has none.
+
+    Parameters
+    ----------
+    dataset, array
+        The file and one of its variables.
+    keep : frozenset of str
+        Its dimensions of time and place.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If its layers lie neither at shares of the depth nor at depths.
+    """
+    dims = [str(d) for d in array.dims if d not in keep and array.sizes[d] > 1]
+    if len(dims) != 1:
+        return None
+    coordinate = level_coordinate(dataset, dims[0])
+    if coordinate is None:
+        raise _unknown_layers(array, dims[0], "have no coordinate", source)
+    values = np.asarray(coordinate.values, float)
+    if is_sigma(coordinate):
+        return _sigma(dataset, coordinate, dims[0], values)
+    sign = _is_depth(coordinate)
+    if sign is None:
+        what = coordinate.attrs.get("standard_name") or coordinate.name
+        raise _unknown_layers(array, dims[0], f"are those of {what!r}", source)
+    unit = str(coordinate.attrs.get("units", ""))
+    scale = (
+        1.0 if unit_conversion.is_unsaid(unit) else unit_conversion.factor(unit, "length") or 1.0
+    )
+    top, bottom = _edges(dataset, coordinate, sign * scale, sign * scale * values)
+    return Layers(dims[0], False, top, bottom)
+
+
+def _sigma(dataset: Any, coordinate: Any, dim: str, values: FloatArray) -> Layers:
+    """Return layers at shares of the depth, told downwards or upwards, from 0 or from -1."""
+    sign, offset = _sigma_sense(coordinate, values)
+    top, bottom = _edges(dataset, coordinate, sign, sign * values + offset, offset, (0.0, 1.0))
+    return Layers(dim, True, top, bottom)
+
+
+def _sigma_sense(coordinate: Any, values: FloatArray) -> tuple[float, float]:
+    """Return the sign and offset that make sigma a share of the depth, 0 at the surface."""
+    if values.min() < -_ROUND:  # the convention: 0 at the surface, -1 at the bed
+        return -1.0, 0.0
+    down = str(coordinate.attrs.get("positive", "up")).lower() == "down"
+    return (1.0, 0.0) if down else (-1.0, 1.0)
+
+
+def surface_of(coordinate: Any) -> int:
+    """Return the place of the level nearest to the surface."""
+    values = np.asarray(coordinate.values, float)
+    if is_sigma(coordinate):
+        sign, offset = _sigma_sense(coordinate, values)
+        return int(np.argmin(sign * values + offset))
+    return int(np.argmin(np.abs(values)))
+
+
+def _edges(
+    dataset: Any,
+    coordinate: Any,
+    sign: float,
+    middle: FloatArray,
+    offset: float = 0.0,
+    ends: tuple[float, float] | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Return upper and lower edges: as told, else half-way between the layers' middles."""
+    told = _told_edges(dataset, coordinate)
+    if told is not None:
+        edges = sign * told + offset
+        return edges.min(axis=1), edges.max(axis=1)
+    order = np.argsort(middle)
+    inner = 0.5 * (middle[order][1:] + middle[order][:-1])
+    first = 0.0 if ends is None else ends[0]
+    last = 2.0 * middle[order][-1] - inner[-1] if ends is None else ends[1]
+    rims = np.concatenate([[min(first, float(middle.min()))], inner, [last]])
+    top, bottom = np.empty_like(middle), np.empty_like(middle)
+    top[order], bottom[order] = rims[:-1], rims[1:]
+    return top, bottom
+
+
+def _told_edges(dataset: Any, coordinate: Any) -> FloatArray | None:
+    """Return edges (L, 2) from bounds, or from the interfaces that belong to the layers."""
+    bounds = str(coordinate.attrs.get("bounds", ""))
+    if bounds in dataset.variables and dataset[bounds].shape == (coordinate.size, 2):
+        return np.asarray(dataset[bounds].values, float)
+    name = str(coordinate.name)
+    for twin in (name.replace("layer", "interface"), name.replace("siglay", "siglev")):
+        if twin != name and twin in dataset.variables:
+            rims = np.asarray(dataset[twin].values, float)
+            if rims.shape == (coordinate.size + 1,):
+                return np.stack([rims[:-1], rims[1:]], axis=1)
+    return None
+
+
+def _unknown_layers(array: Any, dim: str, fault: str, source: str) -> DatasetError:
+    return DatasetError(
+        f"{source}: the layers of {array.name!r} along {dim!r} {fault}; they cannot be averaged.",
+        "Sigma layers (ocean_sigma_coordinate, 0 at the surface to -1) and depths or heights with "
+        "units and a direction (positive up or down) can be.",
+        "Add the coordinate to the file, or leave out draught_m to take the surface layer.",
+        file=source,
+        variable=str(array.name),
+    )
+
+
+def no_depth_of_layers(names: Sequence[str], source: str) -> DatasetError:
+    """Return the error for sigma layers in water whose depth the file does not tell."""
+    return DatasetError(
+        f"{source}: {' and '.join(names)} lie in sigma layers, and no depth on the same grid tells "
+        "how thick they are.",
+        "It takes a bed level or bed depth (and a water level), or a total depth, where they lie.",
+        "Add it to the file, or leave out draught_m to take the surface layer.",
+        file=source,
+    )

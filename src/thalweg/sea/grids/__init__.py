@@ -1,0 +1,1 @@
+"""Gridded layers: location of points in grids and interpolation."""

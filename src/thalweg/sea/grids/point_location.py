@@ -1,0 +1,351 @@
+"""Where a point lies in a grid: corners and weights, for every kind of grid alike.
+
+A grid has ``shape`` (rows, columns) of places that hold values (a mesh has one row), and
+``locate`` returns for points the flat places of the corners around them and the weights.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.kernels.geometry import field_sampling
+from thalweg.sea.frozen_fields import Area, FloatArray, IntArray, Mesh
+
+CROWD = 12.0  #: triangles in a typical bin above which bins are made smaller ...
+MOST_BINS, MOST_ITEMS = 1500, 20.0  #: ... up to so many a side, or entries for each triangle
+RIM = 2e-5  #: [deg] how far outside a point may lie and still count: float32 rounding of axes
+
+
+class Located(NamedTuple):
+    """Corners around points: flat places (N, C), -1 first where outside; weights (N, C)."""
+
+    corner: IntArray
+    weight: FloatArray
+
+
+class Grid(Protocol):
+    """Anything that can say where points lie in it."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of places."""
+        ...
+
+    @property
+    def wraps(self) -> bool:
+        """Whether the last column is followed by the first."""
+        ...
+
+    @property
+    def area(self) -> Area:
+        """The box around the grid."""
+        ...
+
+    @property
+    def spacing(self) -> float:
+        """Typical spacing [deg]."""
+        ...
+
+    def locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+        """Return corners and weights for points [deg]."""
+        ...
+
+    def mesh(self) -> Mesh | None:
+        """Return nodes and triangles, if the grid is a mesh."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class RectilinearGrid:
+    """Latitude and longitude axes; bilinear in a cell.
+
+    Attributes
+    ----------
+    lat : float64 array (Y,)
+        Strictly increasing or decreasing [deg].
+    lon : float64 array (X,)
+        Strictly increasing [deg], unwrapped (may pass 180 or 360).
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.lat.size, self.lon.size
+
+    @cached_property
+    def wraps(self) -> bool:
+        """Whether the axis goes once around the world."""
+        if self.lon.size < 3:
+            return False
+        step = float(np.median(np.diff(self.lon)))
+        return bool(abs(self.lon[-1] + step - self.lon[0] - 360.0) < 0.5 * step)
+
+    @cached_property
+    def area(self) -> Area:
+        """The box from the first to the last row and column; the world around if it wraps."""
+        south, north = float(self.lat.min()), float(self.lat.max())
+        if self.wraps:
+            return Area(south, north, -180.0, 180.0)
+        return Area(south, north, float(self.lon[0]), float(self.lon[-1]))
+
+    @property
+    def spacing(self) -> float:
+        """Median spacing of latitudes [deg]."""
+        return float(np.median(np.abs(np.diff(self.lat)))) if self.lat.size > 1 else 0.0
+
+    def mesh(self) -> Mesh | None:
+        """A grid of axes is no mesh."""
+        return None
+
+    def locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+        """Return the four corners of each point's cell and the bilinear weights."""
+        row, fy, inside_y = _on_axis(self._rows, lat)
+        if self.lat.size > 1 and self.lat[1] < self.lat[0]:
+            row, step = self.lat.size - 1 - row, -1
+        else:
+            step = 1
+        column, fx, inside_x = _on_axis(self._columns, (lon - self._west) % 360.0 + self._west)
+        below = np.clip(row + step, 0, self.lat.size - 1)
+        right = (
+            (column + 1) % self.lon.size
+            if self.wraps
+            else np.minimum(column + 1, self.lon.size - 1)
+        )
+        columns = self.lon.size
+        index = np.empty((lat.size, 4), np.int64)
+        index[:, 0] = row * columns + column
+        index[:, 1] = row * columns + right
+        index[:, 2] = below * columns + column
+        index[:, 3] = below * columns + right
+        weight = np.empty((lat.size, 4))
+        weight[:, 0] = (1.0 - fy) * (1.0 - fx)
+        weight[:, 1] = (1.0 - fy) * fx
+        weight[:, 2] = fy * (1.0 - fx)
+        weight[:, 3] = fy * fx
+        index[~(inside_y & inside_x), 0] = -1
+        return Located(index, weight)
+
+    @cached_property
+    def _rows(self) -> FloatArray:
+        return np.sort(self.lat)
+
+    @cached_property
+    def _columns(self) -> FloatArray:
+        return np.append(self.lon, self.lon[0] + 360.0) if self.wraps else self.lon
+
+    @property
+    def _west(self) -> float:
+        return float(self.lon[0]) - RIM
+
+
+def _on_axis(axis: FloatArray, value: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
+    """Return the place before each value on an increasing axis, the way to the next, and inside."""
+    inside = (value >= axis[0] - RIM) & (value <= axis[-1] + RIM)
+    if axis.size == 1:
+        return np.zeros(value.shape, np.int64), np.zeros(value.shape), inside
+    place = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
+    fraction = (value - axis[place]) / (axis[place + 1] - axis[place])
+    return place, np.where(inside, np.clip(fraction, 0.0, 1.0), 0.0), inside
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleGrid:
+    """Places joined by triangles; linear (barycentric) in each, in the plane of lon and lat.
+
+    Around a pole, where that plane has no meaning, a polar stereographic plane is used.
+
+    Attributes
+    ----------
+    lat, lon : float64 array (M,)
+        Places that hold values [deg].
+    triangles : int64 array (K, 3)
+        Flat places.
+    shape : tuple of int
+        Rows and columns of places (1 row for a mesh).
+    network : Mesh or None
+        Nodes and triangles for others to build on.
+    """
+
+    lat: FloatArray
+    lon: FloatArray
+    triangles: IntArray
+    shape: tuple[int, int]
+    network: Mesh | None = None
+    wraps: bool = False
+
+    @cached_property
+    def area(self) -> Area:
+        """The box around all places."""
+        known = np.isfinite(self.lat) & np.isfinite(self.lon)
+        south, north = float(self.lat[known].min()), float(self.lat[known].max())
+        west, width = _narrowest(self.lon[known])
+        return Area(south, north, west, west + width)
+
+    @cached_property
+    def spacing(self) -> float:
+        """Square root of twice the median area of triangles [deg of latitude]."""
+        a, b, c = (self.triangles[:, k] for k in range(3))
+        shrink = np.cos(np.radians(self.lat[a]))
+        x1, x2 = (_wrap(self.lon[k] - self.lon[a]) * shrink for k in (b, c))
+        y1, y2 = self.lat[b] - self.lat[a], self.lat[c] - self.lat[a]
+        twice = np.abs(x1 * y2 - x2 * y1)
+        return float(np.sqrt(np.nanmedian(twice))) if np.isfinite(twice).any() else 0.0
+
+    def mesh(self) -> Mesh | None:
+        """Return nodes and triangles, if the grid is a mesh."""
+        return self.network
+
+    def locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+        """Return the three corners of each point's triangle and the barycentric weights."""
+        last = self._last.get("points")
+        if last and np.array_equal(last[0], lat) and np.array_equal(last[1], lon):
+            return last[2]
+        found = self._locate(lat, lon)
+        self._last["points"] = (lat.copy(), lon.copy(), found)
+        return found
+
+    @cached_property
+    def _last(self) -> dict[str, tuple[FloatArray, FloatArray, Located]]:
+        """What was asked last: several layers lie on one mesh and are asked for the same points."""
+        return {}
+
+    def _locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+        x, y = self._plane.of(lat, lon)
+        triangle = np.empty(lat.size, np.int64)
+        weight = np.zeros((lat.size, 3))
+        bins = self._bins
+        field_sampling.find_triangles(
+            x, y, bins.x, bins.y, bins.frame, bins.shape, bins.start, bins.items, triangle, weight
+        )
+        index = bins.corners[np.maximum(triangle, 0)]
+        index[triangle < 0, 0] = -1
+        return Located(index, weight)
+
+    @cached_property
+    def _plane(self) -> Plane:
+        known = np.isfinite(self.lat)
+        largest, least = float(self.lat[known].max()), float(self.lat[known].min())
+        if largest > 85.0 and least > 0.0:
+            return Plane(1, 0.0)
+        if least < -85.0 and largest < 0.0:
+            return Plane(-1, 0.0)
+        return Plane(0, self.area.west)
+
+    @cached_property
+    def _bins(self) -> Bins:
+        return make_bins(self._plane, self.lat, self.lon, self.triangles)
+
+
+class Plane(NamedTuple):
+    """A flat map: pole 0 is plain lon and lat from a west edge, +-1 polar stereographic."""
+
+    pole: int
+    west: float
+
+    def of(self, lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return x and y of positions [deg]."""
+        if self.pole == 0:
+            return (lon - self.west + RIM) % 360.0 + self.west - RIM, lat
+        radius = 2.0 * np.degrees(np.tan(0.5 * np.radians(90.0 - self.pole * lat)))
+        return radius * np.sin(np.radians(lon)), -radius * np.cos(np.radians(lon))
+
+
+class Bins(NamedTuple):
+    """Triangles sorted into square bins of the plane."""
+
+    x: FloatArray
+    y: FloatArray
+    corners: IntArray
+    frame: FloatArray
+    shape: tuple[int, int]
+    start: IntArray
+    items: IntArray
+
+
+def make_bins(plane: Plane, lat: FloatArray, lon: FloatArray, triangles: IntArray) -> Bins:
+    """Sort triangles into bins; those with unknown corners or around a pole are left out."""
+    x, y = plane.of(lat[triangles], lon[triangles])
+    if plane.pole == 0:
+        x = x[:, :1] + _wrap(x - x[:, :1])
+    whole = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
+    whole &= (x.max(axis=1) - x.min(axis=1)) < 180.0
+    if not whole.any():  # nothing can be found in a single point
+        x, y, whole = np.zeros_like(x), np.zeros_like(y), np.arange(len(x)) == 0
+    x, y, corners = x[whole], y[whole], triangles[whole]
+    if plane.pole == 0:
+        x, y, corners = _over_the_seam(plane, x, y, corners)
+    frame, counts = _fine_enough(x, y)
+    n = len(counts)
+    start = np.concatenate([[0], np.cumsum(counts.ravel())]).astype(np.int64)
+    items = np.empty(start[-1], np.int64)
+    field_sampling.fill_bins(x, y, frame, (n, n), start[:-1].copy(), items)
+    return Bins(x, y, np.ascontiguousarray(corners), frame, (n, n), start, items)
+
+
+def _fine_enough(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return bins, as many as triangles or more where these crowd in some, and their counts.
+
+    Coastal meshes have small triangles in a bay and large ones off it: what counts is how many
+    triangles a point in a small one has to be compared with.
+    """
+    n = max(1, int(np.sqrt(len(x))))
+    low, high = (x.min(), y.min()), (x.max(), y.max())
+    while True:
+        width, height = max((high[0] - low[0]) / n, 1e-9), max((high[1] - low[1]) / n, 1e-9)
+        frame = np.array([low[0], low[1], width, height])
+        counts = np.zeros((n, n), np.int64)
+        field_sampling.count_bins(x, y, frame, counts)
+        total = float(counts.sum())
+        crowd = float((counts.astype(np.float64) ** 2).sum()) / total
+        if crowd <= CROWD or n >= MOST_BINS or total > MOST_ITEMS * max(len(x), 1000):
+            return frame, counts
+        n *= 2
+
+
+def _over_the_seam(
+    plane: Plane, x: FloatArray, y: FloatArray, corners: IntArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Repeat triangles that stick out over either edge of the map on its other side."""
+    right = x.max(axis=1) > plane.west + 360.0 - 2.0 * RIM
+    left = x.min(axis=1) < plane.west - RIM + 1e-9  # points begin a rim before the edge
+    return (
+        np.concatenate([x, x[right] - 360.0, x[left] + 360.0]),
+        np.concatenate([y, y[right], y[left]]),
+        np.concatenate([corners, corners[right], corners[left]]),
+    )
+
+
+def _wrap(lon: FloatArray) -> FloatArray:
+    return (lon + 180.0) % 360.0 - 180.0
+
+
+def _narrowest(lon: FloatArray) -> tuple[float, float]:
+    """Return west edge in [-180, 180) and width of the narrowest range that holds longitudes."""
+    ordered = np.unique(lon % 360.0)
+    gaps = np.diff(np.append(ordered, ordered[0] + 360.0))
+    k = int(np.argmax(gaps))
+    west = float(ordered[(k + 1) % ordered.size])
+    return (west + 180.0) % 360.0 - 180.0, 360.0 - float(gaps[k])
+
+
+def curvilinear_grid(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
+    """Return the grid of 2-D coordinates: each cell is cut into two triangles."""
+    rows, columns = lat.shape
+    place = np.arange(rows * columns, dtype=np.int64).reshape(rows, columns)
+    a, b = place[:-1, :-1].ravel(), place[:-1, 1:].ravel()
+    c, d = place[1:, 1:].ravel(), place[1:, :-1].ravel()
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return TriangleGrid(
+        np.ascontiguousarray(lat, np.float64).ravel(),
+        np.ascontiguousarray(lon, np.float64).ravel(),
+        triangles,
+        (rows, columns),
+    )

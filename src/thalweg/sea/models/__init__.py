@@ -1,0 +1,1 @@
+"""Analytic fields: cyclones, wind sea, current profiles, functions."""

@@ -1,0 +1,316 @@
+"""Layers given by formulas instead of files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.sea import standard_names as nm
+from thalweg.sea.frozen_fields import WORLD, Area, Coverage, FloatArray, Mesh
+from thalweg.sea.layer import Samples, nan_pairs
+
+FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]
+Evaluate: TypeAlias = Callable[[Sequence[str], FloatArray, FloatArray, FloatArray], Samples]
+
+LONGEST_STEP = 600.0  #: [s] longest automatic step when a formula is frozen
+FEWEST_STEPS = 200  #: automatic steps across a short window
+MOST_STEPS = 2000  #: automatic steps across a long window
+
+
+@dataclass(frozen=True, eq=False)
+class FunctionLayer:
+    """A layer whose values are computed when asked for.
+
+    Attributes
+    ----------
+    variables : frozenset of str
+        Canonical names.
+    evaluate : callable
+        ``evaluate(names, time, lat, lon) -> {name: array}`` on arrays of one shape.
+    label : str
+        A word for where the values come from.
+    area : Area
+        Outside it everything is unknown.
+    period : tuple of float or None
+        First and last time [s]; outside it everything is unknown.
+    time_step : float or None
+        Step [s] at which the formula is frozen; 0 for a field that never changes; None to
+        choose by the window asked for (see `automatic_times`).
+    facts : mapping
+        Further plain facts for the provenance.
+    """
+
+    variables: frozenset[str]
+    evaluate: Evaluate
+    label: str = "formula"
+    area: Area = WORLD
+    period: tuple[float, float] | None = None
+    time_step: float | None = None
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+    def sample(
+        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values at points of one shape; NaN outside the area and the period."""
+        known = self._covers(time, lat, lon)
+        values = self.evaluate(names, time, lat, lon)
+        if known is not None:
+            values = {name: np.where(known, value, np.nan) for name, value in values.items()}
+        return nan_pairs(values, [v.pair for v in nm.VECTORS])
+
+    def series(
+        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values (S, T) at stations for all times."""
+        shape = (lat.size, times.size)
+        if self.time_step == 0.0 and self.period is None:
+            still = self.sample(names, np.zeros(lat.shape), lat, lon)
+            return {name: np.broadcast_to(v[:, None], shape) for name, v in still.items()}
+        time = np.ascontiguousarray(np.broadcast_to(times, shape))
+        wide = [np.ascontiguousarray(np.broadcast_to(a[:, None], shape)) for a in (lat, lon)]
+        return self.sample(names, time, wide[0], wide[1])
+
+    def times(self, start: float, end: float) -> FloatArray:
+        """Return the times at which the formula is frozen over a window."""
+        if self.period is not None:
+            start, end = max(start, self.period[0]), min(end, self.period[1])
+        if end < start:
+            return np.empty(0)
+        if self.time_step == 0.0 or end == start:
+            return np.array([start, end]) if end > start else np.array([start])
+        return automatic_times(start, end, self.time_step)
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return whether positions lie in the area."""
+        return self.area.covers(lat, lon)
+
+    def coverage(self) -> list[Coverage]:
+        """Return one row per variable."""
+        a, (start, end) = self.area, self.period or (None, None)
+        step = self.time_step or None
+        return [
+            Coverage(n, a.south, a.north, a.west, a.east, start, end, step, None, self.label)
+            for n in sorted(self.variables)
+        ]
+
+    def mesh(self) -> Mesh | None:
+        """Formulas have no mesh."""
+        return None
+
+    def provenance(self) -> Mapping[str, Any]:
+        """Return the names, area and period; formulas have no more identity than that."""
+        a = self.area
+        return {
+            "kind": "formula",
+            "label": self.label,
+            "variables": sorted(self.variables),
+            "area": [a.south, a.north, a.west, a.east],
+            "period": list(self.period) if self.period else None,
+            "time_step": self.time_step,
+            **self.facts,
+        }
+
+    def _covers(self, time: FloatArray, lat: FloatArray, lon: FloatArray) -> Any:
+        known = None
+        if self.area is not WORLD:
+            known = self.area.covers(lat, lon)
+        if self.period is not None:
+            inside = (time >= self.period[0]) & (time <= self.period[1])
+            known = inside if known is None else known & inside
+        return known
+
+
+def automatic_times(start: float, end: float, time_step: float | None = None) -> FloatArray:
+    """Return uniform times over [start, end] for freezing a formula.
+
+    With ``time_step`` None the step is ``min(600 s, window / 200)``, but never so short that
+    there are more than 2000 steps. A given step is kept (the last one is fitted to the end).
+    """
+    window = end - start
+    if time_step is None:
+        time_step = max(min(LONGEST_STEP, window / FEWEST_STEPS), window / MOST_STEPS)
+    steps = max(1, int(np.ceil(window / time_step - 1e-9)))
+    return np.linspace(start, end, steps + 1)
+
+
+def constant_layer(values: Mapping[str, float], label: str) -> FunctionLayer:
+    """Return a layer with the same values everywhere and always."""
+
+    def evaluate(
+        names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        return {name: np.full(time.shape, values[name]) for name in names}
+
+    facts = {"values": dict(values)}
+    return FunctionLayer(frozenset(values), evaluate, label, time_step=0.0, facts=facts)
+
+
+def layer_of_functions(
+    functions: Mapping[str, FieldFunction],
+    *,
+    area: Area = WORLD,
+    period: tuple[float, float] | None = None,
+    time_step: float | None = None,
+) -> FunctionLayer:
+    """Return a layer for functions by name, with speeds and directions turned to components."""
+    makers = _makers(functions)
+
+    def evaluate(
+        names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        done: Samples = {}
+        for name in names:
+            if name not in done:
+                done.update(makers[name](time, lat, lon))
+        return {name: done[name] for name in names}
+
+    return FunctionLayer(frozenset(makers), evaluate, "formula", area, period, time_step)
+
+
+Maker: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], Samples]
+
+
+def _makers(functions: Mapping[str, FieldFunction]) -> dict[str, Maker]:
+    """Return, for each canonical variable, what computes it (and its partner)."""
+    given = {name: _checked(name, function) for name, function in functions.items()}
+    makers: dict[str, Maker] = {}
+    for vector in nm.VECTORS:
+        _take_vector(vector, given, makers)
+    _take_bed(given, makers)
+    for name, function in given.items():
+        kept = nm.canonical(name)
+        if kept in makers:
+            raise _twice(kept, name)
+        makers[kept] = _single(kept, function)
+    return makers
+
+
+def _take_vector(
+    vector: nm.Vector, given: dict[str, FieldFunction], makers: dict[str, Maker]
+) -> None:
+    """Move what belongs to one vector from ``given`` to ``makers``."""
+    have = [name for name in vector.pair if name in given]
+    directions = [d for d in (vector.towards, vector.origin) if d in given]
+    if len(have) == 1:
+        missing = next(name for name in vector.pair if name not in have)
+        raise InputError(
+            f"The sea is given {have[0]!r} without {missing!r}.",
+            "A vector needs both components, or a speed and a direction.",
+            f"Add a function for {missing!r}; one that returns 0.0 will do if it is zero.",
+            missing=missing,
+        )
+    if len(have) == 2:
+        again = [*directions, *(s for s in (vector.speed,) if s in given)]
+        if again:
+            raise _twice(have[0], again[0])
+        for name in vector.pair:
+            makers[name] = _single(name, given.pop(name))
+        return
+    if not directions:
+        return
+    if len(directions) == 2:
+        raise _twice(directions[0], directions[1])
+    speed = given.pop(vector.speed, None) if vector.speed else _unit
+    if speed is None:
+        raise InputError(
+            f"The sea is given {directions[0]!r} without {vector.speed!r}.",
+            "A direction needs a speed.",
+            f"Add a function for {vector.speed!r}.",
+            missing=vector.speed,
+        )
+    maker = _polar(vector, speed, given.pop(directions[0]), directions[0] == vector.origin)
+    makers[vector.east] = makers[vector.north] = maker
+
+
+def _take_bed(given: dict[str, FieldFunction], makers: dict[str, Maker]) -> None:
+    """Turn bed levels (positive up) and depths below the moving surface into bed depths."""
+    for name in [n for n in given if nm.is_bed_level(n)]:
+        if nm.BED_DEPTH in makers:
+            raise _twice(nm.BED_DEPTH, name)
+        makers[nm.BED_DEPTH] = _single(nm.BED_DEPTH, _difference(_zero, given.pop(name)))
+    total = given.pop(nm.TOTAL_DEPTH, None)
+    if total is None:
+        return
+    if any(nm.canonical(name) == nm.BED_DEPTH for name in given) or nm.BED_DEPTH in makers:
+        raise _twice(nm.BED_DEPTH, nm.TOTAL_DEPTH)
+    level = next((f for name, f in given.items() if nm.canonical(name) == nm.WATER_LEVEL), None)
+    bed = total if level is None else _difference(total, level)
+    makers[nm.BED_DEPTH] = _single(nm.BED_DEPTH, bed)
+
+
+def _single(name: str, function: FieldFunction) -> Maker:
+    return lambda time, lat, lon: {name: np.asarray(function(time, lat, lon))}
+
+
+def _difference(first: FieldFunction, second: FieldFunction) -> FieldFunction:
+    return lambda time, lat, lon: np.subtract(first(time, lat, lon), second(time, lat, lon))
+
+
+def _polar(
+    vector: nm.Vector, speed: FieldFunction, direction: FieldFunction, is_origin: bool
+) -> Maker:
+    sign = -1.0 if is_origin else 1.0
+
+    def make(time: FloatArray, lat: FloatArray, lon: FloatArray) -> Samples:
+        length = np.asarray(speed(time, lat, lon))
+        angle = np.radians(np.asarray(direction(time, lat, lon)))
+        return {
+            vector.east: sign * length * np.sin(angle),
+            vector.north: sign * length * np.cos(angle),
+        }
+
+    return make
+
+
+def _unit(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+    return np.ones(time.shape)
+
+
+def _zero(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+    return np.zeros(time.shape)
+
+
+def _checked(name: str, function: FieldFunction) -> FieldFunction:
+    """Wrap a user's function so that it always returns a float array of the asked shape."""
+    if not callable(function):
+        raise InputError(
+            f"The sea's {name!r} is a {type(function).__name__}, not a function.",
+            "Give a function f(time_s, lat, lon) that returns an array or a number.",
+            f"For a constant write {{{name!r}: lambda time, lat, lon: {function!r}}}.",
+            field=name,
+        )
+
+    def call(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        result = function(time, lat, lon)
+        try:
+            value = np.asarray(result, dtype=np.float64)
+            return value if value.shape == time.shape else np.broadcast_to(value, time.shape).copy()
+        except (TypeError, ValueError):
+            raise InputError(
+                f"The function for {name!r} returned {_describe(result)} "
+                f"when asked at arrays of shape {time.shape}.",
+                "It must return real numbers of that shape, or one number.",
+                "Write it with NumPy operations on time, lat and lon.",
+                field=name,
+            ) from None
+
+    return call
+
+
+def _describe(result: object) -> str:
+    shape = getattr(result, "shape", None)
+    return f"an array of shape {shape}" if shape is not None else f"a {type(result).__name__}"
+
+
+def _twice(name: str, other: str) -> InputError:
+    return InputError(
+        f"The sea is given {name!r} twice: {other!r} is another spelling of it.",
+        "Each variable can be given once.",
+        "Remove one of the two functions.",
+        field=name,
+    )

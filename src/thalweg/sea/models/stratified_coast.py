@@ -1,0 +1,179 @@
+"""An analytic current along a stratified coast, such as that of Holland.
+
+A tide that turns as an ellipse and changes over the water column (Prandle, 1982), with the density
+current of fresh water from a river on top (Heaps, 1972), both fading away from the coast and
+averaged over the draught of the ship. From neap tide (stratified: the ellipse at the surface is
+wide and turns clockwise) to spring tide (mixed: the tide runs to and fro along the coast), after
+Schless (2023), *Going with the flow*, Table 4.9 and eqs. 3.73-3.74.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.time import TimeLike, parse_time
+from thalweg.sea import standard_names as nm
+from thalweg.sea.frozen_fields import FloatArray
+from thalweg.sea.models.current_profiles import WaterColumn, density_mean, tidal_mean, tidal_profile
+
+Field: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+
+EARTH: Final = 6371008.8  #: [m] mean radius
+M2_PERIOD: Final = 44700.0  #: [s] the period of Schless (2023), sec. 4.3.1
+DECAY: Final = 50e3  #: [m] offshore distance over which currents fall to 1/e (eq. 3.73)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A tidal ellipse at the surface, long axis along the coast (Schless, 2023, Table 4.9).
+
+    Attributes
+    ----------
+    alongshore, cross_shore : float
+        Amplitudes at the surface [m/s]; the ellipse is run through clockwise.
+    """
+
+    alongshore: float
+    cross_shore: float
+
+    @property
+    def ellipticity(self) -> float:
+        """Short over long axis."""
+        return self.cross_shore / self.alongshore
+
+
+SCENARIOS: Final[dict[str, Scenario]] = {
+    "neap": Scenario(0.7, 0.35),
+    "neap-to-mean": Scenario(0.8, 0.2),
+    "mean-to-spring": Scenario(0.9, 0.1125),
+    "spring": Scenario(1.0, 0.0625),
+}
+
+
+def north_sea_current(
+    scenario: str | Scenario = "neap",
+    *,
+    coast: tuple[float, float],
+    onshore_deg: float,
+    flood: TimeLike,
+    draught: float = 0.0,
+    column: WaterColumn | None = None,
+    density_gradient: float = -2e-4,
+    decay: float = DECAY,
+) -> dict[str, Field]:
+    """Return functions of the current for `Sea.from_functions`.
+
+    Parameters
+    ----------
+    scenario : str or Scenario
+        "neap", "neap-to-mean", "mean-to-spring", "spring" or an ellipse at the surface.
+    coast : (float, float)
+        A point (lat, lon) [deg] of the coast, which is straight.
+    onshore_deg : float
+        Direction [deg] from the sea at right angles to the coast; the current along the coast
+        counts positive to the left of it (north, for a coast that faces west).
+    flood : time
+        A time at which the surface tide runs strongest along the coast.
+    draught : float
+        Depth [m] over which the current is averaged; 0 for the surface.
+    column : WaterColumn, optional
+        The water column; by default 25 m at neap tide off the Rhine, with the M2 period of
+        44,700 s. Its ``frequency`` is that of the tide.
+    density_gradient : float
+        Of the density current [kg/m4]; 0 leaves it out.
+    decay : float
+        Offshore distance [m] over which the currents fall to 1/e; infinite for none. On land
+        they keep their values at the coast.
+
+    Returns
+    -------
+    dict of str to callable
+        East and north components ``f(time, lat, lon)`` [m/s].
+
+    Raises
+    ------
+    InputError
+        If the draught is greater than the depth, or a number makes no sense.
+
+    Examples
+    --------
+    >>> from thalweg.sea import Sea
+    >>> sea = Sea.from_functions(
+    ...     north_sea_current("neap", coast=(52.1, 4.26), onshore_deg=90.0, flood=0.0, draught=5.0)
+    ... )
+    >>> [round(float(v), 2) for v in sea.sample(list(nm.CURRENT.pair), 0.0, 52.1, 4.26).values()]
+    [-0.05, 0.94]
+    """
+    water = column or WaterColumn(frequency=2.0 * np.pi / M2_PERIOD)
+    if not (decay > 0.0 and np.isfinite(onshore_deg)):
+        raise InputError(
+            f"A decay over {decay!r} m towards {onshore_deg!r} degrees cannot be.",
+            "The distance is positive (infinite for none), the direction in degrees.",
+            "Correct it.",
+        )
+    plus, minus = phasors(scenario, water, draught)
+    steady = (
+        complex(*density_mean(draught, water, density_gradient=density_gradient))
+        if density_gradient
+        else 0j
+    )
+    start = parse_time(flood)
+    bearing = np.radians(onshore_deg)
+    onshore = complex(np.sin(bearing), np.cos(bearing))  # east + i north of the axis to the coast
+
+    def current(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+        angle = water.frequency * (time - start)
+        turned = plus * np.exp(1j * angle) + minus * np.exp(-1j * angle) + steady
+        offshore = np.maximum(0.0, -_along(lat, lon, coast, onshore))
+        return np.asarray(turned * onshore * np.exp(-offshore / decay))
+
+    return {
+        nm.EASTWARD_CURRENT: lambda time, lat, lon: current(time, lat, lon).real,
+        nm.NORTHWARD_CURRENT: lambda time, lat, lon: current(time, lat, lon).imag,
+    }
+
+
+def phasors(
+    scenario: str | Scenario, column: WaterColumn, draught: float = 0.0
+) -> tuple[complex, complex]:
+    """Return the anticlockwise and clockwise phasors [m/s] of the tide over a draught.
+
+    The depth-mean phasors W are those for which the profiles reach the scenario's ellipse at the
+    surface: with the x axis onshore and y along the coast, ``i (M + m) / 2`` and ``i (M - m) / 2``
+    with M along the coast and m = - cross-shore amplitude (clockwise).
+    """
+    ellipse = _scenario(scenario)
+    long, short = ellipse.alongshore, -ellipse.cross_shore
+    surface = tidal_profile(column.depth, column)
+    hull = tidal_mean(draught, column)
+    plus = 0.5j * (long + short) * hull[0] / complex(surface[0])
+    minus = 0.5j * (long - short) * hull[1] / complex(surface[1])
+    return plus, minus
+
+
+def _scenario(scenario: str | Scenario) -> Scenario:
+    if isinstance(scenario, str):
+        if scenario not in SCENARIOS:
+            raise unknown_name("North Sea scenario", scenario, SCENARIOS)
+        return SCENARIOS[scenario]
+    if not (scenario.alongshore > 0.0 and 0.0 <= scenario.cross_shore <= scenario.alongshore):
+        raise InputError(
+            f"{scenario} is no ellipse along the coast.",
+            "The current along the coast is positive and not less than that across.",
+            "Correct it.",
+        )
+    return scenario
+
+
+def _along(
+    lat: FloatArray, lon: FloatArray, coast: tuple[float, float], onshore: complex
+) -> FloatArray:
+    """Return the distance [m] from the coast along the onshore axis; negative at sea."""
+    north = np.radians(lat - coast[0])
+    east = np.radians((lon - coast[1] + 180.0) % 360.0 - 180.0) * np.cos(np.radians(coast[0]))
+    return np.asarray(EARTH * (east * onshore.real + north * onshore.imag))

@@ -1,0 +1,247 @@
+"""Maps of a sea, one panel for each main quantity."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.time import format_time
+from thalweg.sea import standard_names as nm
+from thalweg.sea.frozen_fields import Area, FloatArray
+from thalweg.sea.grids.gridded_layer import GridLayer
+
+if TYPE_CHECKING:
+    from thalweg.sea.sea import Sea
+
+LONG_SIDE: Final = 320  #: raster points along the longer side of a panel
+ARROWS: Final = 20  #: arrows along the longer side
+TRIALS: Final = 25  #: times looked at to find the most eventful one
+INK, PAPER, UNKNOWN = "#1f2a37", "#ffffff", "#e3e6ea"
+
+Line = tuple[FloatArray, FloatArray]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """How one quantity is drawn.
+
+    Attributes
+    ----------
+    title, unit : str
+        Words.
+    values : str
+        Name of what is coloured.
+    arrows : tuple of str
+        Names of a vector drawn as arrows; empty for none.
+    colours : str
+        Matplotlib colour map.
+    around_zero : bool
+        Whether colours are centred on zero.
+    """
+
+    title: str
+    unit: str
+    values: str
+    arrows: tuple[str, ...]
+    colours: str
+    around_zero: bool = False
+
+
+PANELS: Final = (
+    Panel("Significant wave height", "m", nm.WAVE_HEIGHT, nm.WAVES.pair, "YlGnBu"),
+    Panel("Wind at 10 m", "m/s", "wind_speed", nm.WIND.pair, "BuPu"),
+    Panel("Surface current", "m/s", "sea_water_speed", nm.CURRENT.pair, "GnBu"),
+    Panel("Water level", "m", nm.WATER_LEVEL, (), "RdBu_r", True),
+    Panel("Peak wave period", "s", nm.WAVE_PERIOD, (), "PuBuGn"),
+    Panel("Sea ice", "fraction", nm.ICE, (), "Blues_r"),
+    Panel("Depth below datum", "m", nm.BED_DEPTH, (), "Blues"),
+    Panel("Air pressure", "hPa", nm.PRESSURE, (), "cividis"),
+)
+
+
+def draw(
+    sea: Sea,
+    path: str | os.PathLike[str],
+    *,
+    time: float | None = None,
+    area: Area | None = None,
+    coastline: Sequence[Line] = (),
+) -> None:
+    """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    sea.check_single()
+    panels = [p for p in PANELS if sea.knows(p.values)]
+    if not panels:
+        raise InputError(
+            "There is nothing to draw in this sea.",
+            f"It holds {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            "Open a file with wind, waves, currents, level or depth.",
+        )
+    area = area or _area(sea)
+    lat, lon = _raster(area, LONG_SIDE)
+    time = _eventful(sea, panels, lat, lon) if time is None else time
+    columns = min(len(panels), 3 if len(panels) > 4 else 2)
+    rows = math.ceil(len(panels) / columns)
+    shape = _shape(area)
+    width = 5.2 * columns
+    height = (4.2 * shape + 0.75) * rows + 0.45
+    figure = Figure(figsize=(width, height), dpi=130, facecolor=PAPER, layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axis, panel in zip(axes, panels):
+        _panel(figure, axis, sea, panel, (time, lat, lon), area)
+        for line in coastline:
+            _coast(axis, line, area)
+    for axis in axes[len(panels) :]:
+        axis.set_axis_off()
+    sources = ", ".join(dict.fromkeys(row.source for row in sea.coverage()))
+    title = f"{format_time(time).replace('T', '  ').replace(':00Z', ' UTC')}     {_short(sources)}"
+    figure.suptitle(title, x=0.012, ha="left", fontsize=10, color=INK)
+    figure.savefig(path, format="png")
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 90 else text[:87] + "..."
+
+
+def _area(sea: Sea) -> Area:
+    """Return the box of the smallest layer of files; the world if there are only formulas."""
+    boxes = [layer.area for layer in sea.layers if isinstance(layer, GridLayer)]
+    boxes = boxes or [layer.area for layer in sea.layers]
+    return min(boxes, key=lambda a: (a.north - a.south) * (a.east - a.west))
+
+
+def _shape(area: Area) -> float:
+    """Return height over width of the map, within what fits a page."""
+    width = (area.east - area.west) * math.cos(math.radians(0.5 * (area.south + area.north)))
+    return min(2.0, max(0.35, (area.north - area.south) / max(width, 1e-6)))
+
+
+def _raster(area: Area, count: int) -> tuple[FloatArray, FloatArray]:
+    shape = _shape(area)
+    ny, nx = (count, int(count / shape)) if shape > 1.0 else (int(count * shape), count)
+    return np.linspace(area.south, area.north, max(ny, 8)), np.linspace(
+        area.west, area.east, max(nx, 8)
+    )
+
+
+def _eventful(sea: Sea, panels: Sequence[Panel], lat: FloatArray, lon: FloatArray) -> float:
+    """Return the time at which the first quantity that changes is largest."""
+    for panel in panels:
+        start, end = sea.period_of([panel.values])
+        if not (np.isfinite(start) and np.isfinite(end)):
+            continue
+        native = sea.times(start, end, names=[panel.values])
+        native = native[(native >= start) & (native <= end)]
+        trials = native[np.unique(np.linspace(0, native.size - 1, TRIALS).round().astype(int))]
+        grid = np.meshgrid(lat[::8], lon[::8], indexing="ij")
+        values = sea.series([panel.values], trials, grid[0].ravel(), grid[1].ravel())[panel.values]
+        if np.isfinite(values).any():
+            return float(trials[np.argmax(np.fmax.reduce(values, axis=0))])
+    return 0.0
+
+
+def _panel(
+    figure: Any,
+    axis: Any,
+    sea: Sea,
+    panel: Panel,
+    points: tuple[float, FloatArray, FloatArray],
+    area: Area,
+) -> None:
+    """Draw one quantity: colours, arrows, a colour bar and a grid of positions."""
+    time, lat, lon = points
+    values = sea.sample([panel.values], time, lat[:, None], lon[None, :])[panel.values]
+    if panel.unit == "hPa":
+        values = values / 100.0
+    low, high = _limits(values, panel)
+    colours = axis.pcolormesh(
+        lon,
+        lat,
+        values,
+        cmap=panel.colours,
+        vmin=low,
+        vmax=high,
+        shading="nearest",
+        rasterized=True,
+    )
+    axis.set_facecolor(UNKNOWN)
+    if panel.arrows and sea.knows(panel.arrows[0]):
+        _arrows(axis, sea, panel, time, area)
+    bar = figure.colorbar(colours, cax=axis.inset_axes([1.02, 0.0, 0.028, 1.0]))
+    bar.outline.set_visible(False)
+    bar.ax.tick_params(labelsize=8, colors=INK, length=2)
+    bar.set_label(panel.unit, fontsize=8, color=INK)
+    axis.set_title(panel.title, fontsize=10, loc="left", color=INK)
+    axis.set_xlim(area.west, area.east)
+    axis.set_ylim(area.south, area.north)
+    axis.set_aspect(1.0 / math.cos(math.radians(0.5 * (area.south + area.north))))
+    axis.xaxis.set_major_formatter(lambda x, _: _degrees((x + 180.0) % 360.0 - 180.0, "EW"))
+    axis.yaxis.set_major_formatter(lambda y, _: _degrees(y, "NS"))
+    axis.locator_params(nbins=6)
+    axis.tick_params(labelsize=8, colors=INK, length=2)
+    axis.grid(color="white", linewidth=0.4, alpha=0.6)
+    for side in axis.spines.values():
+        side.set_linewidth(0.5)
+        side.set_color("#9aa3af")
+    if not np.isfinite(values).any():
+        axis.text(
+            0.5, 0.5, "no data at this time", transform=axis.transAxes, ha="center", color=INK
+        )
+
+
+def _limits(values: FloatArray, panel: Panel) -> tuple[float, float]:
+    known = values[np.isfinite(values)]
+    if known.size == 0:
+        return 0.0, 1.0
+    whole = panel.values in (nm.WAVE_HEIGHT, "wind_speed", nm.WAVE_PERIOD)
+    low, high = np.percentile(known, [0.0, 100.0] if whole else [0.5, 99.5])
+    if panel.around_zero:
+        reach = max(abs(float(low)), abs(float(high)), 0.05)
+        return -reach, reach
+    starts_at_zero = bool(panel.arrows) or panel.values in (nm.ICE, nm.BED_DEPTH)
+    low = 0.0 if starts_at_zero else float(low)
+    return low, max(float(high), low + 1e-3)
+
+
+def _arrows(axis: Any, sea: Sea, panel: Panel, time: float, area: Area) -> None:
+    lat, lon = _raster(area, ARROWS)
+    lat, lon = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
+    got = sea.sample(list(panel.arrows), time, lat[:, None], lon[None, :])
+    u, v = (got[n] for n in panel.arrows)
+    speed = np.hypot(u, v)
+    known = speed > 1e-6
+    if not known.any():
+        return
+    typical = float(np.percentile(speed[known], 95))
+    if panel.values == nm.WAVE_HEIGHT:
+        u, v, typical = u / np.where(known, speed, 1.0), v / np.where(known, speed, 1.0), 1.0
+    rows, columns = np.nonzero(known)
+    axis.quiver(
+        lon[columns], lat[rows], u[known], v[known],
+        scale=typical * ARROWS * 1.25,
+        color=INK, alpha=0.8, width=0.0028, headwidth=3.6, headlength=4.2, headaxislength=3.8,
+        pivot="middle",
+    )  # fmt: skip
+
+
+def _coast(axis: Any, line: Line, area: Area) -> None:
+    lat, lon = line
+    middle = 0.5 * (area.west + area.east)
+    lon = (np.asarray(lon) - middle + 180.0) % 360.0 - 180.0 + middle
+    broken = np.where(np.abs(np.diff(lon, prepend=lon[:1])) > 180.0, np.nan, lon)
+    axis.plot(broken, lat, color="#6b7280", linewidth=0.6)
+
+
+def _degrees(value: float, letters: str) -> str:
+    if abs(value) < 1e-9:
+        return "0°"
+    return f"{abs(value):g}°{letters[0] if value > 0 else letters[1]}"

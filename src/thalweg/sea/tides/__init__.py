@@ -1,0 +1,1 @@
+"""Tides: astronomy, harmonic analysis and prediction, records and constituent files."""

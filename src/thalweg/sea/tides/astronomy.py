@@ -1,0 +1,57 @@
+"""Mean longitudes of moon and sun, the clock of the tide.
+
+Polynomials of the Explanatory Supplement to the Astronomical Ephemeris (1961, pp. 98 and 107), as
+used by Foreman (1977), T_TIDE and UTide.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from thalweg.sea.frozen_fields import FloatArray
+
+DAY: Final = 86400.0
+HOUR: Final = 3600.0
+EPOCH: Final = -2209032000.0  #: [s since 1970] 1899-12-31T12:00Z, where the polynomials start
+
+# degrees; per day, per (10^4 day)^2, per (10^4 day)^3 from the epoch
+_LONGITUDES: Final = np.array(
+    [
+        [270.434164, 13.1763965268, -0.0000850, 0.000000039],  # s, the moon
+        [279.696678, 0.9856473354, 0.00002267, 0.0],  # h, the sun
+        [334.329556, 0.1114040803, -0.0007739, -0.00000026],  # p, the lunar perigee
+        [-259.183275, 0.0529539222, -0.0001557, -0.000000050],  # N', minus the node
+        [281.220844, 0.0000470684, 0.0000339, 0.000000070],  # p1, the perihelion
+    ]
+)
+
+
+def mean_longitudes(times: FloatArray) -> FloatArray:
+    """Return the hour angle of the mean sun and the mean longitudes.
+
+    Parameters
+    ----------
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+
+    Returns
+    -------
+    float64 array (6, T)
+        In cycles: T (solar time, 0 at midnight), s (moon), h (sun), p (lunar perigee), N' (minus
+        the longitude of the moon's ascending node) and p1 (perihelion).
+    """
+    day = (times - EPOCH) / DAY
+    scaled = day / 1e4
+    powers = np.stack([np.ones_like(day), day, scaled**2, scaled**3])
+    longitude = (_LONGITUDES @ powers / 360.0) % 1.0
+    return np.vstack([(times / DAY) % 1.0, longitude])
+
+
+def rates() -> FloatArray:
+    """Return the rates of the six arguments of `mean_longitudes` [cycles per hour] (about 2000)."""
+    day = (946684800.0 - EPOCH) / DAY
+    c = _LONGITUDES
+    daily = c[:, 1] + 2e-4 * c[:, 2] * day / 1e4 + 3e-4 * c[:, 3] * (day / 1e4) ** 2
+    return np.append(1.0, daily / 360.0) / 24.0

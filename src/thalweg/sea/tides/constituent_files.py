@@ -1,0 +1,282 @@
+"""Reading and writing tidal constituents.
+
+* Component files of Rijkswaterstaat (hatyan): phases for clock times in MET (UTC+1), amplitudes in
+  the unit the file names, the mean above the datum.
+* JSON sets of stations as in the neaps tide database (NOAA, TICON-4, Kartverket), heights in metres
+  or currents in knots along the direction of flood, Greenwich phases in UTC.
+* Thalweg's own JSON (what ``thalweg tides analyse --out`` writes).
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+import re
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError, InputError, ThalwegWarning, unknown_name
+from thalweg.core.units import KNOT
+from thalweg.sea import standard_names as nm
+from thalweg.sea.tides import schureman
+from thalweg.sea.tides.constituents import Constituents
+from thalweg.sea.tides.noos_dia_series import LENGTHS, MET
+
+FORMAT: Final = "thalweg-constituents-1"
+_PATIENCE = 1e-4  #: [deg/h] how far a printed speed may lie from that of its name
+
+
+def read_constituents(path: str | Path, *, station: str | None = None) -> Constituents:
+    """Return the constituents of a file, of whatever kind.
+
+    Parameters
+    ----------
+    path : path
+        A hatyan component file, a JSON set of stations or Thalweg's JSON; may be gzipped.
+    station : str, optional
+        Id or name of a station, for files that hold many.
+
+    Raises
+    ------
+    DatasetError
+        If the file is none of these.
+    InputError
+        If the station is not in the file, or none is named where there are many.
+    """
+    text = _text(Path(path))
+    source = Path(path).name
+    if not text.lstrip().startswith(("[", "{")):
+        return _only(_hatyan(text, source), station, source)
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise _fault(source, f"is broken JSON ({error})") from error
+    if isinstance(data, list):
+        return station_of(data, station, source)
+    return _only(from_dict(data, source), station, source)
+
+
+def _only(constants: Constituents, station: str | None, source: str) -> Constituents:
+    """Return constants of a file that is no set of stations, if they are those asked for."""
+    told = [str(constants.facts[k]) for k in ("station", "name") if constants.facts.get(k)]
+    if station is None or station in told:
+        return constants
+    raise InputError(
+        f"{source} is no set of stations, and {station!r} is asked of it.",
+        f"It holds {' or '.join(told) or 'constants without a name'}.",
+        "Leave the station out.",
+        file=source,
+    )
+
+
+def write_constituents(constituents: Constituents, path: str | Path) -> None:
+    """Write constituents as JSON; `read_constituents` gives them back."""
+    text = json.dumps(as_dict(constituents), indent=1, allow_nan=False)
+    Path(path).write_text(text, encoding="utf-8")
+
+
+def as_dict(constituents: Constituents) -> dict[str, Any]:
+    """Return constituents as plain data; what is unknown is null."""
+    return {
+        "format": FORMAT,
+        "convention": constituents.convention,
+        "names": list(constituents.names),
+        "lat": _plain(constituents.lat),
+        "lon": _plain(constituents.lon),
+        "variables": {
+            name: {
+                "amplitude": [_plain(row) for row in constituents.amplitude[name]],
+                "phase_deg": [_plain(row) for row in constituents.phase[name]],
+                "mean": _plain(constituents.mean[name]),
+            }
+            for name in sorted(constituents.variables)
+        },
+        "facts": dict(constituents.facts),
+    }
+
+
+def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constituents:
+    """Return constituents from the plain data of `as_dict`."""
+    if data.get("format") != FORMAT:
+        raise _fault(source, f"is not of the format {FORMAT}")
+    try:
+        nodes, parts = len(data["lat"]), data["variables"]
+        if not (parts and data["names"]):
+            raise _fault(source, "holds no constituents")
+        shape = (len(data["names"]), nodes)
+        return Constituents(
+            tuple(str(n) for n in data["names"]),
+            {n: np.array(v["amplitude"], float).reshape(shape) for n, v in parts.items()},
+            {n: np.array(v["phase_deg"], float).reshape(shape) for n, v in parts.items()},
+            {n: np.array(v["mean"], float).reshape(nodes) for n, v in parts.items()},
+            np.array(data["lat"], float),
+            np.array(data["lon"], float),
+            str(data["convention"]),
+            dict(data.get("facts", {})),
+        )
+    except (KeyError, TypeError, AttributeError) as error:
+        raise _fault(source, f"lacks a part ({error})") from error
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise _fault(source, f"holds arrays that do not fit ({error})") from error
+
+
+def station_of(
+    stations: Sequence[Mapping[str, Any]], wanted: str | None, source: str = "stations"
+) -> Constituents:
+    """Return the constituents of one station of a JSON set (see the module)."""
+    try:
+        names = {str(s["id"]): s for s in stations}
+        for s in stations:
+            names.setdefault(str(s.get("name", "")), s)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise _fault(source, f"is a list, but not of stations with an id ({error!r})") from error
+    if not names:
+        raise _fault(source, "holds no station")
+    if wanted is None and len(stations) != 1:
+        raise InputError(
+            f"{source} holds {len(stations)} stations and none is named.",
+            f"For example {', '.join(list(names)[:3])}.",
+            "Name one by its id or name (on the command line --station).",
+            file=source,
+        )
+    if wanted is not None and wanted not in names:
+        raise unknown_name("station", wanted, names)
+    one = names[wanted] if wanted is not None else stations[0]
+    try:
+        return _station(one, source)
+    except InputError:
+        raise
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        raise _fault(source, f"holds a broken station {one['id']!r} ({error!r})") from error
+
+
+def _station(data: Mapping[str, Any], source: str) -> Constituents:
+    is_current = data.get("kind") == "current" or "current" in data
+    table: dict[str, tuple[float, float]] = {}
+    left_out: dict[str, float] = {}
+    for name, size, lag in data["constituents"]:
+        if not size:
+            continue
+        if _known(str(name)):
+            table[schureman.species(str(name)).name] = (float(size), float(lag))
+        else:
+            left_out[str(name)] = float(size)
+    if not table:
+        raise _fault(source, f"holds no constituents for the station {data['id']!r}")
+    if left_out:
+        told = ", ".join(f"{n} ({a:g})" for n, a in left_out.items())
+        warnings.warn(
+            f"{source}: constituents without a known argument are left out: {told}.",
+            ThalwegWarning,
+            stacklevel=4,
+        )
+    facts = {
+        "source": str(data.get("source", source)),
+        "station": str(data["id"]),
+        "name": str(data.get("name", "")),
+        "license": str(data.get("license", "")),
+        "left_out": left_out,
+    }
+    lat, lon = float(data["lat"]), float(data["lon"])
+    if is_current:
+        return _current(data["current"], table, facts, (lat, lon))
+    return Constituents.single(nm.WATER_LEVEL, table, lat=lat, lon=lon, facts=facts)
+
+
+def _current(
+    current: Mapping[str, Any],
+    table: Mapping[str, tuple[float, float]],
+    facts: Mapping[str, Any],
+    place: tuple[float, float],
+) -> Constituents:
+    """Turn a tidal current along the direction of flood [kn] into east and north [m/s]."""
+    flood = math.radians(float(current["flood_direction"]))
+    mean = float(current.get("mean_flow") or 0.0) * KNOT
+    size = np.array([a for a, _ in table.values()])[:, None] * KNOT
+    phase = np.array([g for _, g in table.values()])[:, None]
+    parts = {nm.EASTWARD_CURRENT: math.sin(flood), nm.NORTHWARD_CURRENT: math.cos(flood)}
+    return Constituents(
+        tuple(table),
+        {n: size * abs(part) for n, part in parts.items()},
+        {n: (phase + (180.0 if part < 0.0 else 0.0)) % 360.0 for n, part in parts.items()},
+        {n: np.array([mean * part]) for n, part in parts.items()},
+        np.array([place[0]]),
+        np.array([place[1]]),
+        "schureman",
+        dict(facts),
+    )
+
+
+def _hatyan(text: str, source: str) -> Constituents:
+    """Read a component file; only water levels are known in this form."""
+    header = dict(re.findall(r"^(STAT|MIDD|NCOM)\s+(.*?)\s*$", text, re.M))
+    rows = re.findall(r"^COMP\s+\d+\s+([\d.]+)\s+(\S+)\s+(\S+)\s+(\S+)\s*$", text, re.M)
+    station = header.get("STAT", "").split()
+    if not rows or len(station) < 4:
+        raise _fault(source, "has no STAT line or no components")
+    unit = station[3]
+    if unit not in LENGTHS:
+        raise _fault(source, f"gives heights in {unit!r}")
+    try:
+        count, mean = int(header.get("NCOM", len(rows))), float(header.get("MIDD", 0.0))
+        numbers = [(name, float(v), float(size), float(lag)) for v, size, lag, name in rows]
+    except ValueError as error:
+        raise _fault(source, f"holds a constant that is no number ({error})") from error
+    if len(rows) != count:
+        raise _fault(source, f"tells of {count} components and has {len(rows)}")
+    table = {}
+    for name, speed, size, lag in numbers:
+        hourly = schureman.frequency(name) * 360.0
+        if abs(hourly - speed) > _PATIENCE:
+            raise _fault(source, f"gives {name} a speed of {speed:g}, not {hourly:.6f} deg/h")
+        table[name] = (size * LENGTHS[unit], (lag - hourly * MET) % 360.0)
+    return Constituents.single(
+        nm.WATER_LEVEL,
+        table,
+        mean=mean * LENGTHS[unit],
+        convention="rws",
+        facts={"source": source, "station": station[0], "datum": station[2]},
+    )
+
+
+def _known(name: str) -> bool:
+    try:
+        schureman.species(name)
+    except InputError:
+        return False
+    return True
+
+
+def _text(path: Path) -> str:
+    try:
+        raw = path.read_bytes()
+        raw = gzip.decompress(raw) if raw[:2] == b"\x1f\x8b" else raw
+        return raw.decode("utf-8", errors="replace")
+    except (OSError, EOFError) as error:
+        raise DatasetError(
+            f"{path} cannot be read ({error}).",
+            "A file of tidal constituents is needed.",
+            "Check the path.",
+            file=str(path),
+        ) from error
+
+
+def _plain(values: Any) -> list[float | None]:
+    return [float(v) if np.isfinite(v) else None for v in np.asarray(values, float)]
+
+
+def _fault(source: str, fault: str) -> DatasetError:
+    return DatasetError(
+        f"{source} {fault}.",
+        "Constituents can be read from hatyan component files, JSON sets of stations and "
+        "Thalweg's own JSON.",
+        "Check the file.",
+        file=source,
+    )

@@ -1,0 +1,246 @@
+"""Tidal constituents at one or many nodes, and what they predict for any time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.sea.frozen_fields import FloatArray
+from thalweg.sea.tides import foreman, schureman
+from thalweg.sea.tides.astronomy import DAY
+
+Complex = NDArray[np.complex128]
+
+CONVENTIONS: Final = ("foreman", "schureman", "rws")
+CHUNK: Final = 1 << 14  #: times for which arguments are made at once
+STEADY: Final = DAY  #: [s] nodal corrections are made at this step and are linear between
+
+
+@dataclass(frozen=True, eq=False)
+class Constituents:
+    """Harmonic constants of one or more variables at one or more nodes.
+
+    The tide is ``mean + sum f A cos(V + u - g)`` with the argument V at Greenwich, so it holds at
+    any time without a time of reference.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Constituents, C of them.
+    amplitude : mapping of str to float64 array (C, N)
+        By variable (canonical name), in the unit of the variable.
+    phase : mapping of str to float64 array (C, N)
+        Greenwich phase lag g [deg], for times in UTC.
+    mean : mapping of str to float64 array (N,)
+        Mean over the record, or the level of the mean above datum.
+    lat, lon : float64 array (N,)
+        Positions [deg]; NaN where unknown.
+    convention : {"foreman", "schureman", "rws"}
+        Whose arguments and nodal corrections belong to the constants: UTide's (analysis), or
+        Schureman's (published tables), or the latter as Rijkswaterstaat uses them.
+    facts : mapping
+        Plain facts about the source.
+    """
+
+    names: tuple[str, ...]
+    amplitude: Mapping[str, FloatArray]
+    phase: Mapping[str, FloatArray]
+    mean: Mapping[str, FloatArray]
+    lat: FloatArray
+    lon: FloatArray
+    convention: str = "schureman"
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.convention not in CONVENTIONS:
+            raise unknown_name("tidal convention", self.convention, CONVENTIONS)
+        nodes = self.lat.size
+        for name in self.amplitude:
+            shapes = (self.amplitude[name].shape, self.phase[name].shape, self.mean[name].shape)
+            if shapes != ((len(self.names), nodes),) * 2 + ((nodes,),):
+                raise InputError(
+                    f"The constants of {name!r} have shapes {shapes}.",
+                    f"{len(self.names)} constituents at {nodes} nodes are named.",
+                    "Give one amplitude and phase per constituent and node, and a mean per node.",
+                    field=name,
+                )
+        for constituent in self.names:
+            self._frequency(constituent)
+
+    @classmethod
+    def single(
+        cls,
+        variable: str,
+        table: Mapping[str, tuple[float, float]],
+        *,
+        mean: float = 0.0,
+        lat: float = np.nan,
+        lon: float = np.nan,
+        convention: str = "schureman",
+        facts: Mapping[str, Any] | None = None,
+    ) -> Constituents:
+        """Return constants of one variable at one place.
+
+        Parameters
+        ----------
+        variable : str
+            Canonical name, such as ``sea_surface_height_above_geopotential_datum``.
+        table : mapping of str to (float, float)
+            Amplitude and Greenwich phase lag [deg] by constituent.
+        mean : float
+            Level of the mean.
+        lat, lon : float
+            Position [deg].
+        convention, facts
+            As the attributes.
+        """
+        pairs = np.array(list(table.values()), float).reshape(-1, 2)
+        if not (np.isfinite(pairs).all() and (pairs[:, 0] >= 0.0).all()):
+            raise InputError(
+                "An amplitude is negative, or a constant is not a number.",
+                "Amplitudes are zero or more, phases are in degrees.",
+                "Correct the table.",
+            )
+        return cls(
+            tuple(table),
+            {variable: pairs[:, :1]},
+            {variable: pairs[:, 1:]},
+            {variable: np.array([float(mean)])},
+            np.array([float(lat)]),
+            np.array([float(lon)]),
+            convention,
+            dict(facts or {}),
+        )
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Canonical names of what is predicted."""
+        return frozenset(self.amplitude)
+
+    @property
+    def latitude(self) -> float:
+        """The one latitude [deg] at which nodal corrections are made, in analysis as after it."""
+        known = self.lat[np.isfinite(self.lat)]
+        return float(known.mean()) if known.size else 45.0
+
+    def frequencies(self) -> FloatArray:
+        """Return the frequencies (C,) [cycles per hour]."""
+        return np.array([self._frequency(n) for n in self.names])
+
+    def _frequency(self, name: str) -> float:
+        foremanlike = self.convention == "foreman"
+        return foreman.frequency(name) if foremanlike else schureman.frequency(name)
+
+    def coefficients(self, variable: str) -> Complex:
+        """Return ``A exp(-i g)`` (C, N) of a variable."""
+        phase = np.radians(self.phase[variable])
+        return np.asarray(self.amplitude[variable] * np.exp(-1j * phase))
+
+    def predict(
+        self,
+        variable: str,
+        times: ArrayLike,
+        *,
+        only: Sequence[str] | None = None,
+        nodal_time: float | None = None,
+    ) -> FloatArray:
+        """Return the tide at every node.
+
+        Parameters
+        ----------
+        variable : str
+            Canonical name.
+        times : array_like (T,)
+            Seconds since 1970-01-01T00:00Z.
+        only : sequence of str, optional
+            Constituents to use; all by default.
+        nodal_time : float, optional
+            One time [s since epoch] whose nodal corrections hold for all, as in printed tables
+            (the middle of the year); by default they follow the times.
+
+        Returns
+        -------
+        float64 array (N, T)
+            Mean included.
+        """
+        if variable not in self.amplitude:
+            raise unknown_name("tidal variable", variable, self.amplitude)
+        moments = np.asarray(times, np.float64).ravel()
+        chosen = self if only is None else self.picked(only)
+        coefficient = chosen.coefficients(variable)
+        result = np.empty((self.lat.size, moments.size))
+        for first in range(0, moments.size, CHUNK):
+            part = slice(first, first + CHUNK)
+            wave = phasors(
+                chosen.names, moments[part], chosen.latitude, chosen.convention, nodal_time
+            )
+            result[:, part] = chosen.mean[variable][:, None] + tide(coefficient.T, wave.T)
+        return result
+
+    def picked(self, only: Sequence[str]) -> Constituents:
+        """Return the constants of some constituents."""
+        missing = [n for n in only if n not in self.names]
+        if missing:
+            raise unknown_name("constituent here", missing[0], self.names)
+        rows = [self.names.index(n) for n in only]
+        amplitude = {v: a[rows] for v, a in self.amplitude.items()}
+        phase = {v: g[rows] for v, g in self.phase.items()}
+        return replace(self, names=tuple(only), amplitude=amplitude, phase=phase)
+
+    def table(self, variable: str, node: int = 0) -> list[dict[str, float | str]]:
+        """Return name, period [h], amplitude and phase [deg] at a node, largest first."""
+        size, phase = self.amplitude[variable][:, node], self.phase[variable][:, node]
+        rows: list[dict[str, float | str]] = [
+            {
+                "name": name,
+                "period_h": float(1.0 / f) if f > 0.0 else float("inf"),
+                "amplitude": float(a),
+                "phase_deg": float(g % 360.0),
+            }
+            for name, f, a, g in zip(self.names, self.frequencies(), size, phase)
+        ]
+        return sorted(rows, key=lambda r: -float(r["amplitude"]))
+
+
+def tide(coefficient: Complex, wave: Complex) -> FloatArray:
+    """Return the real part of a product of complex matrices (N, C) and (C, T), as one real one."""
+    left = np.concatenate([coefficient.real, -coefficient.imag], axis=1)
+    right = np.concatenate([wave.real, wave.imag], axis=0)
+    return np.asarray(left @ right, np.float64)
+
+
+def phasors(
+    names: tuple[str, ...],
+    times: FloatArray,
+    latitude: float,
+    convention: str,
+    nodal_time: float | None = None,
+) -> Complex:
+    """Return ``f exp(i (V + u))`` (T, C): the tide of unit constants.
+
+    The argument V is exact; f and u, which move by less than a degree a day, are made once a day
+    and are linear between.
+    """
+    if convention == "foreman":
+        angle = foreman.arguments(names, times)
+    else:
+        angle = schureman.arguments(names, times)
+    when = times if nodal_time is None else np.full(1, float(nodal_time))
+    return np.asarray(np.exp(2j * np.pi * angle) * _nodal(names, when, latitude, convention))
+
+
+def _nodal(names: tuple[str, ...], times: FloatArray, latitude: float, convention: str) -> Complex:
+    day = np.floor(times / STEADY)
+    days, place = np.unique(np.concatenate([day, day + 1.0]), return_inverse=True)
+    if convention == "foreman":
+        factor = foreman.nodal(names, days * STEADY, latitude)
+    else:
+        factor = schureman.nodal(names, days * STEADY, rws=convention == "rws")
+    before, after = factor[place[: times.size]], factor[place[times.size :]]
+    way = (times / STEADY - day)[:, None]
+    return np.asarray((1.0 - way) * before + way * after)

@@ -1,0 +1,160 @@
+"""Tidal constituents after Foreman, with the tables of UTide.
+
+Foreman (1977), *Manual for Tidal Heights Analysis and Prediction*; nodal ("satellite") corrections
+at exact times, as UTide (Codiga, 2011) makes them. Needs the optional package ``utide``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.sea.frozen_fields import FloatArray, IntArray
+from thalweg.sea.tides.astronomy import mean_longitudes
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """What UTide knows of each constituent.
+
+    Attributes
+    ----------
+    index : dict of str to int
+        Row of each name.
+    frequency : float64 array (K,)
+        Cycles per hour.
+    separation : float64 array (K,)
+        Distance [cycles per hour] to the nearest constituent that goes before it.
+    doodson : float64 array (K, 7)
+        Multiples of (tau, s, h, p, N', p1) and phase [cycles]; NaN for compounds.
+    satellites : tuple of arrays
+        Constituent, multiples of (p, N', p1), phase, ratio, latitude rule of each satellite.
+    compounds : dict of int to (int64 array, float64 array)
+        Constituents and multiples that make up the compound in a row.
+    """
+
+    index: dict[str, int]
+    frequency: FloatArray
+    separation: FloatArray
+    doodson: FloatArray
+    satellites: tuple[IntArray, FloatArray, FloatArray, FloatArray, IntArray]
+    compounds: dict[int, tuple[IntArray, FloatArray]]
+
+
+@lru_cache(maxsize=1)
+def tables() -> Tables:
+    """Return the tables of UTide.
+
+    Raises
+    ------
+    InputError
+        If ``utide`` is not installed.
+    """
+    data = _constants()
+    const, sat, shallow = data.const, data.sat, data.shallow
+    names = [str(n) for n in const.name]
+    first = np.asarray(const.ishallow, float)
+    count = np.asarray(const.nshallow, float)
+    compounds = {}
+    for k in np.flatnonzero(np.isfinite(first)):
+        rows = int(first[k]) - 1 + np.arange(int(count[k]))
+        compounds[int(k)] = (
+            np.asarray(shallow.iname)[rows].astype(np.int64) - 1,
+            np.asarray(shallow.coef, float)[rows],
+        )
+    return Tables(
+        {name: k for k, name in enumerate(names)},
+        np.asarray(const.freq, float),
+        np.asarray(const.df, float),
+        np.column_stack([const.doodson, const.semi]).astype(float),
+        (
+            np.asarray(sat.iconst).astype(np.int64) - 1,
+            np.asarray(sat.deldood, float),
+            np.asarray(sat.phcorr, float),
+            np.asarray(sat.amprat, float),
+            np.asarray(sat.ilatfac).astype(np.int64),
+        ),
+        compounds,
+    )
+
+
+def _constants() -> Any:
+    try:
+        from utide._ut_constants import ut_constants  # type: ignore[import-untyped]
+    except ImportError:
+        raise InputError(
+            "Analysing tides, and predicting from an analysis, needs the package utide, which is "
+            "not installed.",
+            "Published constituents can be read and predicted without it.",
+            "Install it with: pip install 'thalweg[tides]'.",
+            package="utide",
+        ) from None
+    return ut_constants
+
+
+def row(name: str) -> int:
+    """Return the row of a constituent in the tables."""
+    index = tables().index
+    plain = name.strip().upper()
+    if plain not in index:
+        raise unknown_name("tidal constituent", name, index)
+    return index[plain]
+
+
+def frequency(name: str) -> float:
+    """Return the frequency [cycles per hour] of a constituent."""
+    return float(tables().frequency[row(name)])
+
+
+def arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
+    """Return the equilibrium arguments V [cycles] (T, C) at times [s since epoch]."""
+    table, longitude = tables(), mean_longitudes(times)
+    longitude[0] = longitude[0] + longitude[2] - longitude[1]
+    columns = []
+    for name in names:
+        k = row(name)
+        members, multiples = table.compounds.get(k, (np.array([k]), np.ones(1)))
+        value = np.zeros(times.size)
+        for member, multiple in zip(members, multiples):
+            line = table.doodson[member]
+            value += multiple * np.fmod(line[:6] @ longitude + line[6], 1.0)
+        columns.append(value)
+    return np.stack(columns, axis=1) if columns else np.empty((times.size, 0))
+
+
+def nodal(names: tuple[str, ...], times: FloatArray, latitude: float) -> Complex:
+    """Return the nodal corrections F exp(i U) (T, C) at a latitude [deg]."""
+    table = tables()
+    columns = []
+    for name in names:
+        k = row(name)
+        members, multiples = table.compounds.get(k, (np.array([k]), np.ones(1)))
+        value = np.ones(times.size, np.complex128)
+        for member, multiple in zip(members, multiples):
+            factor = _satellites(int(member), times, latitude)
+            turn = np.exp(1j * multiple * np.angle(factor))
+            value *= np.abs(factor) ** abs(multiple) * turn
+        columns.append(value)
+    return np.stack(columns, axis=1) if columns else np.empty((times.size, 0), np.complex128)
+
+
+def _satellites(k: int, times: FloatArray, latitude: float) -> Complex:
+    constituent, multiples, phase, ratio, rule = tables().satellites
+    mine = constituent == k
+    if not mine.any():
+        return np.ones(times.size, np.complex128)
+    sine = np.sin(np.radians(np.copysign(max(abs(latitude), 5.0), latitude)))
+    size = ratio[mine] * np.select(
+        [rule[mine] == 1, rule[mine] == 2],
+        [0.36309 * (1.0 - 5.0 * sine**2) / sine, 2.59808 * sine],
+        1.0,
+    )
+    turn = multiples[mine] @ mean_longitudes(times)[3:6] + phase[mine][:, None]
+    return 1.0 + (size[:, None] * np.exp(2j * np.pi * turn)).sum(axis=0)

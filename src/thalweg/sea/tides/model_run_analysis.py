@@ -1,0 +1,192 @@
+"""Tides of a model run: every node of a layer analysed, and kept on disk."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import warnings
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from thalweg.core.cache_folder import cache_folder
+from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.sea import standard_names as nm
+from thalweg.sea.files.block_cache import Window
+from thalweg.sea.frozen_fields import FloatArray
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.point_location import RectilinearGrid
+from thalweg.sea.layer import Layer
+from thalweg.sea.tides import harmonic_analysis
+from thalweg.sea.tides.constituents import Constituents
+
+if TYPE_CHECKING:
+    from thalweg.sea.sea import Sea
+
+TIDAL: Final = (nm.EASTWARD_CURRENT, nm.NORTHWARD_CURRENT, nm.WATER_LEVEL)
+VERSION: Final = 1  #: of the cached analyses
+
+
+def has_tides(layer: Layer) -> bool:
+    """Return whether a layer holds currents or water levels over time at nodes."""
+    if not isinstance(layer, GridLayer) or layer.period is None:
+        return False
+    return bool(set(TIDAL) & layer.variables)
+
+
+def tidal_analysis(
+    sea: Sea,
+    *,
+    constituents: Sequence[str] | None = None,
+    rayleigh: float = harmonic_analysis.RAYLEIGH,
+    progress: harmonic_analysis.Progress | None = None,
+    cache: bool = True,
+) -> harmonic_analysis.TideAnalysis:
+    """Return the tides of the first layer of a sea that has any; as `analyse_layer`.
+
+    Warns
+    -----
+    ThalwegWarning
+        If other layers hold currents or levels, too.
+    """
+    sea.check_single()
+    tidal = [x for x in sea.layers if isinstance(x, GridLayer) and has_tides(x)]
+    if not tidal:
+        raise no_tides()
+    layer = tidal[0]
+    left = sorted(set(TIDAL) & {name for other in tidal[1:] for name in other.variables})
+    if left:
+        warnings.warn(
+            f"{', '.join(left)} on another grid or at other times is not analysed; Sea.from_tides "
+            "takes it along.",
+            ThalwegWarning,
+            stacklevel=2,
+        )
+    return analyse_layer(
+        layer, constituents=constituents, rayleigh=rayleigh, progress=progress, cache=cache
+    )
+
+
+def no_tides() -> InputError:
+    """Return the error for a sea without anything to analyse."""
+    return InputError(
+        "The sea holds no currents or water levels on a grid or mesh over time.",
+        "Tides are analysed at the nodes of files opened with Sea.open.",
+        "Open the model run, or give Constituents.",
+    )
+
+
+def analyse_layer(
+    layer: GridLayer,
+    *,
+    constituents: Sequence[str] | None = None,
+    rayleigh: float = harmonic_analysis.RAYLEIGH,
+    progress: harmonic_analysis.Progress | None = None,
+    cache: bool = True,
+) -> harmonic_analysis.TideAnalysis:
+    """Return the tides of currents and water level at every place of a layer, kept on disk."""
+    times = layer.axis.times
+    names = harmonic_analysis.chosen_constituents(times, constituents, rayleigh)
+    rows, columns = layer.grid.shape
+    lat, lon = _positions(layer.grid)
+    path = _cache_path(layer, names) if cache else None
+    kept = _read_cache(path, lat, lon) if path else None
+    if kept is not None:
+        return kept
+    window = Window(0, times.size, 0, rows, 0, columns)
+    series: dict[str, Any] = {}
+    for quantity in layer.quantities:
+        if set(quantity.names) & set(TIDAL):
+            values = quantity.read(window, columns)
+            series.update({n: values[n].T for n in quantity.names if n in TIDAL})
+    analysis = harmonic_analysis.analyse(
+        times, series, lat=lat, lon=lon, constituents=names, rayleigh=rayleigh, progress=progress
+    )
+    if path is not None:
+        _write_cache(path, analysis)
+    return analysis
+
+
+def _positions(grid: Any) -> tuple[FloatArray, FloatArray]:
+    """Return the position of every place, flat."""
+    lat, lon = np.array(grid.lat, np.float64), np.array(grid.lon, np.float64)
+    rows, columns = grid.shape
+    if isinstance(grid, RectilinearGrid):
+        return lat.repeat(columns), np.tile(lon, rows)
+    return lat.ravel(), lon.ravel()
+
+
+def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:
+    key = [
+        VERSION,
+        dict(layer.provenance()),
+        list(names),
+        harmonic_analysis.LEAST_KNOWN,
+        _glance(layer),
+    ]
+    text = json.dumps(key, sort_keys=True, default=str)
+    return cache_folder("tides") / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
+
+
+def _glance(layer: GridLayer) -> str:
+    """Return a digest of the middle time: files may share name, size and time of change."""
+    rows, columns = layer.grid.shape
+    middle = layer.axis.times.size // 2
+    digest = hashlib.sha256(np.ascontiguousarray(layer.axis.times).tobytes())
+    for quantity in layer.quantities:
+        if set(quantity.names) & set(TIDAL):
+            values = quantity.read(Window(middle, middle + 1, 0, rows, 0, columns), columns)
+            for name in quantity.names:
+                digest.update(np.ascontiguousarray(values[name]).tobytes())
+    return digest.hexdigest()
+
+
+def _write_cache(path: Path, analysis: harmonic_analysis.TideAnalysis) -> None:
+    constants = analysis.constituents
+    arrays: dict[str, Any] = {
+        "names": np.array(constants.names),
+        "record": np.array([analysis.start, analysis.end]),
+    }
+    for name in constants.variables:
+        arrays[f"amplitude:{name}"] = constants.amplitude[name]
+        arrays[f"phase:{name}"] = constants.phase[name]
+        arrays[f"mean:{name}"] = constants.mean[name]
+        arrays[f"share:{name}"] = analysis.tidal_share[name]
+        arrays[f"variance:{name}"] = analysis.variance[name]
+    partial = path.with_name(f"{path.stem}.{os.getpid()}.part.npz")
+    try:
+        np.savez(partial, **arrays)
+        os.replace(partial, path)
+    except OSError:
+        partial.unlink(missing_ok=True)
+
+
+def _read_cache(
+    path: Path, lat: FloatArray, lon: FloatArray
+) -> harmonic_analysis.TideAnalysis | None:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            held = {key: file[key] for key in file.files}
+        parts: dict[str, dict[str, FloatArray]] = {}
+        for key, value in held.items():
+            kind, _, name = key.partition(":")
+            parts.setdefault(kind, {})[name] = value
+        constants = Constituents(
+            tuple(str(n) for n in held["names"]),
+            parts["amplitude"],
+            parts["phase"],
+            parts["mean"],
+            lat,
+            lon,
+            "foreman",
+        )
+        start, end = (float(x) for x in held["record"])
+        return harmonic_analysis.TideAnalysis(
+            constants, parts["share"], parts["variance"], start, end
+        )
+    except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
+        return None

@@ -1,0 +1,292 @@
+"""The sea from tidal constituents: currents and water level at any date."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.sea import standard_names as nm
+from thalweg.sea.frozen_fields import WORLD, Area, Coverage, FloatArray, Mesh
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.point_location import Grid, Located, TriangleGrid
+from thalweg.sea.layer import Samples, nan_pairs
+from thalweg.sea.models.function_layer import automatic_times
+from thalweg.sea.tides import harmonic_analysis
+from thalweg.sea.tides.constituents import Complex, Constituents, phasors, tide
+from thalweg.sea.tides.model_run_analysis import analyse_layer, has_tides, no_tides
+
+if TYPE_CHECKING:
+    from thalweg.sea.sea import Sea
+
+TIME_STEP: Final = 600.0  #: [s] step at which kernels get the tide
+BLOCK: Final = 1 << 13  #: points predicted at once
+
+
+@dataclass(frozen=True, eq=False)
+class TidalLayer:
+    """Constituents on a grid: linear in space between nodes, exact at any time.
+
+    Attributes
+    ----------
+    constituents : Constituents
+        Constants at the places of the grid.
+    grid : Grid or None
+        Where the nodes lie; None for one node that holds for a whole area.
+    box : Area
+        The area, if there is no grid.
+    time_step : float
+        Step [s] at which kernels get the tide.
+    source : str
+        A word for where the constants come from.
+    facts : mapping
+        Further plain facts for the provenance.
+    """
+
+    constituents: Constituents
+    grid: Grid | None
+    box: Area = WORLD
+    time_step: float = TIME_STEP
+    source: str = "tidal constituents"
+    facts: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Canonical names of what is predicted."""
+        return self.constituents.variables
+
+    @property
+    def area(self) -> Area:
+        """The box around the nodes."""
+        return self.box if self.grid is None else self.grid.area
+
+    @property
+    def period(self) -> tuple[float, float] | None:
+        """The tide holds always."""
+        return None
+
+    @cached_property
+    def _waves(self) -> dict[str, Complex]:
+        """Coefficients (N, C) by variable."""
+        return {
+            n: np.ascontiguousarray(self.constituents.coefficients(n).T) for n in self.variables
+        }
+
+    def sample(
+        self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values at points (N,); NaN outside the grid and where nodes have no tide."""
+        result = {name: np.full(time.shape, np.nan) for name in names}
+        for first in range(0, time.size, BLOCK):
+            part = slice(first, first + BLOCK)
+            moments, which = np.unique(time[part], return_inverse=True)
+            wave = self._phasors(moments)[which.ravel()]
+            located = self._locate(lat[part], lon[part])
+            for name in names:
+                mean, coefficient = self._at(name, located)
+                turned = coefficient.real * wave.real - coefficient.imag * wave.imag
+                result[name][part] = mean + turned.sum(axis=1)
+        return nan_pairs(result, [v.pair for v in nm.VECTORS])
+
+    def series(
+        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> Samples:
+        """Return values (S, T) at stations for all times."""
+        result = {name: np.empty((lat.size, times.size)) for name in names}
+        located = self._locate(lat, lon)
+        held = {name: self._at(name, located) for name in names}
+        for first in range(0, times.size, BLOCK):
+            part = slice(first, first + BLOCK)
+            wave = self._phasors(times[part]).T
+            for name, (mean, coefficient) in held.items():
+                result[name][:, part] = mean[:, None] + tide(coefficient, wave)
+        return nan_pairs(result, [v.pair for v in nm.VECTORS])
+
+    def times(self, start: float, end: float) -> FloatArray:
+        """Return the times at which the tide is frozen over a window."""
+        return automatic_times(start, end, self.time_step) if end > start else np.array([start])
+
+    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+        """Return whether positions lie in the grid or the area."""
+        return np.asarray(self._locate(lat, lon).corner[:, 0] >= 0)
+
+    def coverage(self) -> list[Coverage]:
+        """Return one row per variable; the tide is known always."""
+        a = self.area
+        spacing = self.grid.spacing if self.grid is not None else None
+        return [
+            Coverage(n, a.south, a.north, a.west, a.east, None, None, None, spacing, self.source)
+            for n in sorted(self.variables)
+        ]
+
+    def mesh(self) -> Mesh | None:
+        """Return the mesh, if the grid is one."""
+        return None if self.grid is None else self.grid.mesh()
+
+    def provenance(self) -> Mapping[str, Any]:
+        """Return the constituents, a hash of their values, and where they come from."""
+        constants = self.constituents
+        digest = hashlib.sha256()
+        for name in sorted(self.variables):
+            for part in (constants.amplitude, constants.phase, constants.mean):
+                digest.update(np.ascontiguousarray(part[name]).tobytes())
+        return {
+            "kind": "tide",
+            "source": self.source,
+            "variables": sorted(self.variables),
+            "constituents": list(constants.names),
+            "convention": constants.convention,
+            "values": digest.hexdigest()[:32],
+            "time_step": self.time_step,
+            **self.facts,
+        }
+
+    def _phasors(self, times: FloatArray) -> Complex:
+        known = np.where(np.isfinite(times), times, 0.0)
+        constants = self.constituents
+        wave = _kept_phasors(
+            constants.names, known.tobytes(), constants.latitude, constants.convention
+        )
+        if not np.isfinite(times).all():
+            wave = np.where(np.isfinite(times)[:, None], wave, np.nan)
+        return wave
+
+    def _locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+        if self.grid is not None:
+            return self.grid.locate(lat, lon)
+        inside = np.where(self.box.covers(lat, lon), 0, -1).astype(np.int64)
+        return Located(inside[:, None], np.ones((lat.size, 1)))
+
+    def _at(self, name: str, located: Located) -> tuple[FloatArray, Complex]:
+        """Return mean (N,) and coefficients (N, C) at located points; NaN outside."""
+        corner, weight = located.corner, located.weight
+        mean, wave = self.constituents.mean[name], self._waves[name]
+        level = np.zeros(corner.shape[0])
+        coefficient = np.zeros((corner.shape[0], wave.shape[1]), np.complex128)
+        for k in range(corner.shape[1]):
+            node, share = np.maximum(corner[:, k], 0), weight[:, k]
+            used = share != 0.0
+            level[used] += share[used] * mean[node[used]]
+            coefficient[used] += share[used, None] * wave[node[used]]
+        level[corner[:, 0] < 0] = np.nan
+        return level, coefficient
+
+
+@lru_cache(maxsize=8)
+def _kept_phasors(
+    names: tuple[str, ...], times: bytes, latitude: float, convention: str
+) -> Complex:
+    """Return phasors for times given as bytes, kept for the next stations with the same times."""
+    wave = phasors(names, np.frombuffer(times), latitude, convention)
+    wave.flags.writeable = False
+    return wave
+
+
+def tidal_sea(
+    source: Sea | Constituents | harmonic_analysis.TideAnalysis,
+    *,
+    constituents: Sequence[str] | None = None,
+    area: Area | None = None,
+    rayleigh: float = harmonic_analysis.RAYLEIGH,
+    progress: harmonic_analysis.Progress | None = None,
+    cache: bool = True,
+) -> Sea:
+    """Return a sea of tides; see `Sea.from_tides`."""
+    from thalweg.sea.sea import Sea as SeaClass
+
+    if isinstance(source, harmonic_analysis.TideAnalysis):
+        source = source.constituents
+    if isinstance(source, Constituents):
+        chosen = source if constituents is None else source.picked(constituents)
+        return SeaClass((_of_constituents(chosen, area),))
+    if area is not None:
+        raise _own_places()
+    source.check_single()
+    layers: list[Any] = []
+    for layer in source.layers:
+        if isinstance(layer, GridLayer) and has_tides(layer):
+            layers.append(_of_layer(layer, constituents, rayleigh, progress, cache))
+        elif layer.period is None:
+            layers.append(layer)
+    if not any(isinstance(layer, TidalLayer) for layer in layers):
+        raise no_tides()
+    return SeaClass(tuple(layers), source.assumptions)
+
+
+def _of_layer(
+    layer: GridLayer,
+    constituents: Sequence[str] | None,
+    rayleigh: float,
+    progress: harmonic_analysis.Progress | None,
+    cache: bool,
+) -> TidalLayer:
+    analysis = analyse_layer(
+        layer, constituents=constituents, rayleigh=rayleigh, progress=progress, cache=cache
+    )
+    shares = {n: round(analysis.share(n), 4) for n in analysis.variance}
+    facts = {
+        "analysed": dict(layer.provenance()),
+        "tidal_share": shares,
+        "record": [analysis.start, analysis.end],
+    }
+    return TidalLayer(
+        analysis.constituents, layer.grid, source=f"tide of {layer.source}", facts=facts
+    )
+
+
+def _of_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
+    facts = dict(constants.facts)
+    source = str(facts.get("source", "tidal constituents"))
+    pair = nm.CURRENT.pair
+    if len(constants.variables & set(pair)) == 1:
+        raise InputError(
+            "Constituents of one component of the current are given without the other.",
+            "A current needs east and north.",
+            f"Give both {pair[0]} and {pair[1]}.",
+        )
+    if constants.lat.size == 1:
+        if area is None:
+            raise InputError(
+                "One station does not tell where its tide holds.",
+                "It can be taken for a whole area, on your word.",
+                "Give area=(south, north, west, east) in degrees.",
+            )
+        return TidalLayer(constants, None, area, source=source, facts=facts)
+    if area is not None:
+        raise _own_places()
+    grid = _triangulated(constants.lat, constants.lon)
+    return TidalLayer(constants, grid, source=source, facts=facts)
+
+
+def _own_places() -> InputError:
+    return InputError(
+        "An area is given for tides that have places of their own.",
+        "It tells where the tide of a single station holds.",
+        "Leave the area out.",
+    )
+
+
+def _triangulated(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
+    """Return a mesh over scattered nodes."""
+    from scipy.spatial import Delaunay, QhullError
+
+    try:
+        if not (np.isfinite(lat).all() and np.isfinite(lon).all()):
+            raise ValueError
+        centre = float(np.cos(np.radians(lat.mean())))
+        east = (lon - lon[0] + 180.0) % 360.0 - 180.0
+        triangles = Delaunay(np.column_stack([east * centre, lat])).simplices
+    except (QhullError, ValueError):
+        raise InputError(
+            f"{lat.size} nodes make no triangles: too few, in one line, or without positions.",
+            "Between three or more nodes the tide is linear.",
+            "Give more nodes, or one station with an area.",
+        ) from None
+    triangles = np.ascontiguousarray(triangles, np.int64)
+    return TriangleGrid(lat, lon, triangles, (1, lat.size), Mesh(lat, lon, triangles))

@@ -1,0 +1,237 @@
+"""Records of water level and current at one place, for harmonic analysis.
+
+What a file is shows in what it holds, not in its name: CSV with a header, NOOS series (Matroos),
+DIA files of Rijkswaterstaat (Donar), or two bare columns of days and levels. Any may be gzipped.
+"""
+
+from __future__ import annotations
+
+import gzip
+import io
+import re
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError, InputError
+from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.sea import standard_names as nm
+from thalweg.sea.files import plausible_values
+from thalweg.sea.frozen_fields import FloatArray
+from thalweg.sea.tides.astronomy import DAY
+from thalweg.sea.tides.noos_dia_series import LENGTHS, Series, is_dia, is_noos, read_dia, read_noos
+
+#: Columns of a record, lower case, and what they are (metres above datum, m/s towards).
+COLUMNS: Final[dict[str, str]] = {
+    **dict.fromkeys(("water_level", "water_level_m", "level", "level_m"), nm.WATER_LEVEL),
+    nm.WATER_LEVEL: nm.WATER_LEVEL,
+    **dict.fromkeys(("current_east", "current_east_m_s", nm.EASTWARD_CURRENT), nm.EASTWARD_CURRENT),
+    **dict.fromkeys(
+        ("current_north", "current_north_m_s", nm.NORTHWARD_CURRENT), nm.NORTHWARD_CURRENT
+    ),
+}
+TIMES: Final = ("time", "time_utc", "datetime")
+GZIP: Final = b"\x1f\x8b"
+BINARY: Final = (b"CDF", b"\x89HDF", b"GRIB")  #: how files begin that are opened as a sea
+_CONSTITUENTS: Final = re.compile(r"\A\s*[\[{]|^COMP\s+\d", re.M)
+#: first days that bare day numbers are counted from
+FIRST_DAYS: Final = ("1700-01-01", "1858-11-17", "1899-12-30", "1900-01-01", "1970-01-01")
+EPOCH_YEARS: Final = (1850, 2100)  #: years a record is likely to be of, for hints only
+
+
+@dataclass(frozen=True, eq=False)
+class TideRecord:
+    """A record at one place.
+
+    Attributes
+    ----------
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+    series : dict of str to float64 array (T,)
+        Water level [m above datum] and current [m/s towards] by canonical name, NaN where unknown.
+    position : (float, float) or None
+        Latitude and longitude [deg], if the file tells them.
+    told : str
+        What kind of file it is, and of which place, as far as it says.
+    """
+
+    times: FloatArray
+    series: dict[str, FloatArray]
+    position: tuple[float, float] | None
+    told: str
+
+
+def is_record(path: str | Path) -> bool:
+    """Return whether a path is a file of text (a record), not one to open as a sea."""
+    path = Path(path)
+    if not path.is_file():
+        return False
+    head = _read(path, 1024)
+    return not (head.startswith(BINARY[:2]) or BINARY[2] in head or b"\0" in head)
+
+
+def read_record(
+    path: str | Path, *, unit: str | None = None, days_since: TimeLike | None = None
+) -> TideRecord:
+    """Return the record in a file.
+
+    Parameters
+    ----------
+    path : path
+        * CSV with a header: ``time`` (ISO 8601, UTC where no zone is written) and some of
+          ``water_level`` [m], ``current_east`` and ``current_north`` [m/s]. Empty cells are gaps.
+        * a NOOS series of water level, as Matroos writes it;
+        * a DIA file with one series of water level at equal steps (clock UTC+1);
+        * two columns of numbers without a header: days and water level.
+    unit : {"m", "dm", "cm", "mm"}, optional
+        Of bare columns, which do not tell it.
+    days_since : time, optional
+        From when the days of bare columns count, which they do not tell either.
+
+    Raises
+    ------
+    InputError
+        If bare columns come without unit and first day, or these are given for another file.
+    DatasetError
+        If the file cannot be read, is of none of these kinds, lacks a column, holds a cell that is
+        no time or number, or levels that cannot be.
+    """
+    path = Path(path)
+    source = path.name
+    text = _read(path).decode("utf-8", errors="replace")
+    table = _bare_columns(text)
+    if table is not None:
+        record = _bare(table, source, unit, days_since)
+    elif unit is not None or days_since is not None:
+        raise InputError(
+            f"{source} tells its own unit and times, and others are given.",
+            "Unit and first day are for two columns of numbers without a header.",
+            "Leave them out.",
+        )
+    elif is_dia(text):
+        record = _of_series(read_dia(text, source))
+    elif is_noos(text):
+        record = _of_series(read_noos(text, source))
+    elif _CONSTITUENTS.search(text):
+        raise DatasetError(
+            f"{source} holds tidal constituents, not a record.",
+            "They are what an analysis finds.",
+            "Predict from them: thalweg tides predict.",
+            file=source,
+        )
+    else:
+        record = _csv(text, source)
+    for name, values in record.series.items():
+        plausible_values.check_plausible(name, values, [told_name(name)], source)
+    return record
+
+
+def told_name(name: str) -> str:
+    """Return a canonical name in words."""
+    return name.split("_above_")[0].replace("_", " ")
+
+
+def _of_series(series: Series) -> TideRecord:
+    return TideRecord(series.times, {nm.WATER_LEVEL: series.level}, series.position, series.told)
+
+
+def _read(path: Path, most: int = -1) -> bytes:
+    """Return the first bytes of a file, unpacked."""
+    try:
+        with path.open("rb") as stream:
+            packed = stream.read(2) == GZIP
+        with gzip.open(path) if packed else path.open("rb") as stream:
+            return stream.read(most)
+    except (OSError, EOFError, zlib.error) as error:
+        raise DatasetError(
+            f"{path.name} cannot be read ({error}).",
+            "A record of water level or current is needed.",
+            "Check the path.",
+            file=str(path),
+        ) from error
+
+
+def _bare_columns(text: str) -> FloatArray | None:
+    """Return two columns of numbers (T, 2), NaN where one is not given; None for other text."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    if len(lines) < 3:
+        return None
+    parts = [line.replace(",", " ").replace(";", " ").split() for line in lines]
+    if any(len(row) != 2 for row in parts):
+        return None
+    try:
+        numbers = np.array(parts, np.float64)
+    except ValueError:
+        return None
+    return None if (numbers[:, 0] >= 1e11).all() else numbers  # those are dates: 201801010000
+
+
+def _bare(
+    table: FloatArray, source: str, unit: str | None, days_since: TimeLike | None
+) -> TideRecord:
+    if unit is None or days_since is None:
+        raise _untold(table, source)
+    if unit not in LENGTHS:
+        raise InputError(
+            f"Levels in {unit!r} cannot be read.", f"Units are {', '.join(LENGTHS)}.", "Choose one."
+        )
+    day = parse_time(days_since)
+    times = day + np.round(table[:, 0] * DAY, 0)
+    told = f"two columns: days since {format_time(day)[:10]}, water level in {unit}"
+    return TideRecord(times, {nm.WATER_LEVEL: table[:, 1] * LENGTHS[unit]}, None, told)
+
+
+def _untold(table: FloatArray, source: str) -> InputError:
+    """Return the error for bare columns, with the dates that the usual first days would give."""
+    first = float(table[0, 0])
+    near = []
+    for day in FIRST_DAYS:
+        start = parse_time(day) + first * DAY
+        if parse_time(f"{EPOCH_YEARS[0]}-01-01") <= start < parse_time(f"{EPOCH_YEARS[1]}-01-01"):
+            near.append(f"{format_time(start)[:10]} since {day}")
+    return InputError(
+        f"{source} holds two columns of numbers and does not tell what they are.",
+        f"Day {first:g} is {', or '.join(near)}; levels may be in {', '.join(LENGTHS)}."
+        if near
+        else f"Days are counted from some date; levels may be in {', '.join(LENGTHS)}.",
+        "Say both, for example --days-since 1700-01-01 --unit mm, or write CSV with a header.",
+        file=source,
+    )
+
+
+def _csv(text: str, source: str) -> TideRecord:
+    import pandas as pd
+
+    try:
+        table = pd.read_csv(io.StringIO(text), comment="#", skipinitialspace=True)
+    except (ValueError, pd.errors.ParserError) as error:
+        raise _fault(source, f"cannot be read ({error})") from error
+    by_name = {str(c).strip().lower(): c for c in table.columns}
+    when = next((by_name[n] for n in TIMES if n in by_name), None)
+    found = {kept: by_name[n] for n, kept in COLUMNS.items() if n in by_name}
+    if when is None or not found:
+        named = [n[:30] for n in by_name]
+        more = f" and {len(named) - 8} more" if len(named) > 8 else ""
+        raise _fault(source, f"has the columns {', '.join(named[:8]) or 'none'}{more}")
+    try:
+        times = pd.to_datetime(table[when], utc=True, format="ISO8601")
+        series = {n: table[c].to_numpy(np.float64, na_value=np.nan) for n, c in found.items()}
+    except ValueError as error:
+        raise _fault(source, f"holds a cell that is no time or number ({error})") from error
+    moments = times.dt.tz_localize(None).to_numpy("datetime64[ns]")
+    if np.isnat(moments).any():
+        raise _fault(source, "has a row without a time")
+    return TideRecord(moments.astype(np.int64) / 1e9, series, None, "CSV")
+
+
+def _fault(source: str, fault: str) -> DatasetError:
+    return DatasetError(
+        f"{source} {fault}.",
+        "A record is CSV with a column time (ISO 8601) and water_level [m], or current_east and "
+        "current_north [m/s]; a NOOS series; a DIA file; or two columns of days and levels.",
+        "Rename the columns or convert the units.",
+        file=source,
+    )

@@ -1,0 +1,162 @@
+"""The best moment to depart inside a window of times."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.search.earliest_arrival import Method, Objective, check_request, solve
+from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
+from thalweg.search.search_problem import Problem, problem
+from thalweg.search.search_result import SearchResult
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+    from thalweg.sea.frozen_fields import StationFields
+    from thalweg.ship.tables.performance_table import PerformanceTable
+
+_MOST_DEPARTURES = 97  # of the first pass
+_MOST_FROM_BERTHS = 25  # where every departure is a search by waves
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+_EQUAL = 1e-3  # costs closer than this are equal [s or m]
+
+
+def best_departure(
+    network: Network,
+    fields: StationFields,
+    table: PerformanceTable | TableArrays,
+    *,
+    start: int,
+    goal: int,
+    window: tuple[float, float],
+    setting: int,
+    limits: ArrayLike,
+    top_speed: float,
+    objective: Objective = "time",
+    wait: bool = True,
+    arrive_by: float | None = None,
+    method: Method = "astar",
+    step: float | None = None,
+    tolerance: float = 60.0,
+) -> SearchResult:
+    """Find the departure inside a window that makes the voyage cheapest.
+
+    Parameters
+    ----------
+    network, fields, table, start, goal, setting, limits, top_speed
+        As in `thalweg.search.earliest_arrival`.
+    objective, wait, arrive_by, method
+        As in `thalweg.search.earliest_arrival`.
+    window : tuple of float
+        Earliest and latest departure [s].
+    step : float, optional
+        Spacing of the departures tried [s]. By default the times of the fields inside the window,
+        but not more than 96 even steps (24 where the ship may wait at some nodes only).
+    tolerance : float
+        The best departure is refined to this [s].
+
+    Returns
+    -------
+    SearchResult
+        Of the departure with the least cost (by time: the shortest voyage); of equal ones the
+        shortest, then the earliest. If none succeeds, the result of the earliest departure.
+
+    Raises
+    ------
+    InputError
+        If the window ends before it begins, or as in `earliest_arrival`.
+
+    Notes
+    -----
+    Each departure tried is searched exactly; between them the best one's neighbourhood is
+    searched by golden section. So the answer is the best of its samples; a shorter optimum that
+    lies wholly between two samples elsewhere can be missed. A ship that would wait at the start
+    leaves when the waiting ends.
+    """
+    first, last = float(window[0]), float(window[1])
+    if not (math.isfinite(first) and math.isfinite(last) and first <= last):
+        raise InputError(
+            f"The departure window from {first} to {last} is empty.",
+            "It ends no earlier than it begins.",
+            "Exchange the two times.",
+        )
+    check_request(network.n_nodes, start, goal, first, objective, method)
+    berths = wait and objective == "time" and berths_matter(network)
+    given = problem(
+        network,
+        fields,
+        table,
+        setting=setting,
+        limits=limits,
+        top_speed=top_speed,
+        ends=(start, goal) if wait and not berths else None,
+    )
+
+    def sail(depart: float) -> SearchResult:
+        if berths:
+            return earliest_from_berths(
+                network, given, start=start, goal=goal, depart=depart, limits=limits,
+                arrive_by=arrive_by,
+            )  # fmt: skip
+        return solve(
+            network,
+            given,
+            start=start,
+            goal=goal,
+            depart=depart,
+            objective=objective,
+            wait=wait,
+            arrive_by=arrive_by,
+            method=method,
+        )
+
+    most = _MOST_FROM_BERTHS if berths else _MOST_DEPARTURES
+    departures = _departures(given, first, last, step, most)
+    tried = [sail(t) for t in departures]
+    tried += [sail(t) for t in _after_waiting(tried, last)]
+    best = min(tried, key=_rank)
+    if not best.found:
+        return tried[0]
+    near = int(np.searchsorted(departures, best.depart))
+    low = departures[max(near - 1, 0)]
+    high = departures[min(near + 1, len(departures) - 1)]
+    while high - low > tolerance:
+        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        pair = sail(left), sail(right)
+        best = min((best, *pair), key=_rank)
+        if _rank(pair[0]) <= _rank(pair[1]):
+            high = right
+        else:
+            low = left
+    return best
+
+
+def _departures(
+    given: Problem, first: float, last: float, step: float | None, most: int
+) -> NDArray[np.float64]:
+    if step is not None and step > 0.0:
+        count = max(2, math.ceil((last - first) / step) + 1)
+        return np.unique(np.linspace(first, last, count))
+    times = given.sea.times
+    inside = times[(times > first) & (times < last)]
+    if len(inside) + 2 > most:
+        return np.linspace(first, last, most)
+    return np.unique(np.concatenate(([first], inside, [last])))
+
+
+def _after_waiting(tried: list[SearchResult], last: float) -> list[float]:
+    """Return when ships that waited at the start left it."""
+    left = {float(r.path_depart[0]) for r in tried if r.found and r.path_depart[0] > r.depart}
+    return sorted(t for t in left if t <= last)
+
+
+def _rank(result: SearchResult) -> tuple[float, float, float]:
+    if not result.found:
+        return math.inf, math.inf, math.inf
+    cost = round(result.cost / _EQUAL)
+    return cost, round(result.duration / _EQUAL), result.depart

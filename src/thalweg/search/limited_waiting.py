@@ -1,0 +1,356 @@
+"""Earliest arrival where a ship may wait at some nodes only: wave after wave from its berths.
+
+Where waiting is allowed everywhere the earliest label of a node is the best one. Where it is not,
+an early ship may stand before a closed bar with nowhere to stay, and the one that left its
+anchorage later passes. So a ship leaves the places where it may wait in waves, from all those it
+has reached and still lies safely at, and sails without waiting; what a wave reaches may send later
+ones.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, REASONS
+from thalweg.kernels.leg.edge_sailing import NetworkArrays
+from thalweg.kernels.search.label_setting import (
+    RELAXED,
+    SAILED,
+    SETTLED,
+    Labels,
+    Query,
+    label_setting,
+    new_labels,
+    new_workspace,
+)
+from thalweg.search.search_problem import SHRINK, Problem, canal_speed, distance_bounds
+from thalweg.search.search_result import SearchResult, SearchWork
+from thalweg.search.tidal_states import node_times_afloat
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+
+FloatArray = NDArray[np.float64]
+
+STEP = 600.0  #: longest time between two waves [s]
+LEAST_WAVES = 24  #: ... and at least so many over the time looked at
+_EQUAL = 1e-6  # arrivals closer than this are one [s]
+_HALVINGS = 10  # of the step before the best wave, in which an earlier one is looked for
+
+
+class Stay(NamedTuple):
+    """Lying at a node: since when, until when at most [s], and by which wave it was reached."""
+
+    arrive: float
+    until: float
+    wave: int
+
+
+class Wave(NamedTuple):
+    """A departure [s] from all nodes where a ship then lies, and by which stay it lies there."""
+
+    time: float
+    stays: dict[int, Stay]
+
+
+@dataclass
+class Sweep:
+    """What waves have found so far.
+
+    Attributes
+    ----------
+    network : Network
+    given : Problem
+    goal : int
+    depart, horizon : float
+        [s].
+    stays : dict
+        By node, one for each time it is afloat.
+    waves : list of Wave
+    counts, refused : int64 array
+        Of all searches.
+    """
+
+    network: Network
+    given: Problem
+    goal: int
+    depart: float
+    horizon: float
+    stays: dict[int, list[Stay]] = field(default_factory=dict)
+    waves: list[Wave] = field(default_factory=list)
+    counts: NDArray[np.int64] = field(default_factory=lambda: np.zeros(3, np.int64))
+    refused: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+
+    def present(self, time: float) -> dict[int, Stay]:
+        """Return the nodes where a ship can lie at a time, and how it came there."""
+        found = {}
+        for node, stays in self.stays.items():
+            here = [s for s in stays if s.arrive <= time <= s.until]
+            if here:
+                found[node] = here[0]
+        return found
+
+    def send(self, time: float, sources: Sequence[int], goal: int, horizon: float) -> Labels:
+        """Sail without waiting from several nodes at one time."""
+        start = len(self.given.network.station)
+        arrays = _with_source(self.given.network, sources, max(self.goal, 0))
+        return self.search(arrays, start, time, goal, horizon, wait=False)
+
+    def search(
+        self,
+        arrays: NetworkArrays,
+        start: int,
+        time: float,
+        goal: int,
+        horizon: float,
+        *,
+        wait: bool,
+    ) -> Labels:
+        """Search from one state of a network."""
+        count = len(arrays.station)
+        away = np.zeros(count)
+        if goal >= 0:
+            lat, lon = self.network.lat, self.network.lon
+            bounds = distance_bounds(lat, lon, float(lat[goal]), float(lon[goal]))
+            away[: self.network.n_nodes] = bounds
+        soonest = SHRINK / max(self.given.fastest, canal_speed(self.network))
+        query = Query(
+            start=start, goal=goal, depart=time, horizon=horizon, by_distance=False, wait=wait,
+            slowness=SHRINK / self.given.fastest, per_metre=soonest,
+        )  # fmt: skip
+        labels, memory = new_labels(count), new_workspace(count)
+        label_setting(arrays, self.given.sea, self.given.ship, query, away, labels, memory)
+        self.counts = self.counts + memory.counts[: len(self.counts)]
+        if not len(self.refused):
+            self.refused = np.zeros_like(memory.refused)
+        self.refused = self.refused + memory.refused
+        return labels
+
+
+def berths_matter(network: Network) -> bool:
+    """Return whether a ship may wait at some nodes but not at all of them."""
+    return not bool(np.all(network.can_wait))
+
+
+def earliest_from_berths(
+    network: Network, given: Problem, *, start: int, goal: int, depart: float,
+    limits: ArrayLike, arrive_by: float | None = None, step: float = STEP,
+) -> SearchResult:  # fmt: skip
+    """Find the way of least time where waiting is allowed at some nodes only.
+
+    Parameters
+    ----------
+    network : Network
+        Its ``can_wait`` tells where, of the start too.
+    given : Problem
+        Gathered without times afloat (``ends=None``).
+    start, goal : int
+    depart : float
+        [s].
+    limits : array_like
+        As in `thalweg.search.earliest_arrival`.
+    arrive_by : float, optional
+        [s].
+    step : float, optional
+        Longest time between two waves [s].
+
+    Returns
+    -------
+    SearchResult
+        Its cost is the time from departure to arrival; penalty factors only steer single waves.
+
+    Notes
+    -----
+    Exact on the network but for the times of waves: the last wait ends within a thousandth of a
+    step of the best moment, earlier waits within a step; an opening shorter than a step between two
+    waves can be missed. No further wave is sent once a ship that may wait anywhere would arrive no
+    sooner: in open water the first one is the only one.
+    """
+    horizon = math.inf if arrive_by is None else float(arrive_by)
+    end = min(horizon, float(given.sea.times[-1]))
+    sweep = Sweep(network, given, goal, depart, end)
+    sweep.stays[start] = [Stay(depart, math.inf if network.can_wait[start] else depart, -1)]
+    afloat = _afloat(network, given, np.asarray(limits, float), start)
+    reached = np.full(network.n_nodes, math.inf)
+    best, best_wave = math.inf, -1
+    least = _waiting_anywhere(sweep, start)
+    for time in _departures(depart, end, step):
+        sources = sweep.present(time)
+        if time >= min(best, end) or _soonest(sweep, sources, time) >= best:
+            break
+        if sweep.waves and (best <= least + _EQUAL or least == math.inf):
+            break
+        sweep.waves.append(Wave(float(time), sources))
+        safe = all(any(s.until == math.inf for s in sweep.stays.get(n, ())) for n in afloat)
+        labels = sweep.send(float(time), list(sources), goal if safe else -1, min(end, best))
+        arrival = labels.time[: network.n_nodes]
+        settled = labels.settled[: network.n_nodes]
+        np.minimum(reached, np.where(settled, arrival, math.inf), out=reached)
+        _moor(sweep, arrival, settled, afloat)
+        if settled[goal] and arrival[goal] < best:
+            best, best_wave = float(arrival[goal]), len(sweep.waves) - 1
+    if best_wave >= 0:
+        best_wave = _earlier(sweep, best_wave, best)
+    return _answer(sweep, start, best_wave, reached)
+
+
+def _waiting_anywhere(sweep: Sweep, start: int) -> float:
+    """Return when a ship would arrive that may wait anywhere, afloat or not: no wave is sooner."""
+    network = sweep.given.network
+    free = network._replace(
+        can_wait=np.ones_like(network.can_wait), factor=np.ones_like(network.factor)
+    )
+    labels = sweep.search(free, start, sweep.depart, sweep.goal, sweep.horizon, wait=True)
+    return float(labels.time[sweep.goal])
+
+
+def _departures(depart: float, end: float, step: float) -> FloatArray:
+    span = max(end - depart, 0.0)
+    count = max(LEAST_WAVES, math.ceil(span / step))
+    return np.asarray(depart + np.arange(count + 1) * (span / count if count else 0.0))
+
+
+def _soonest(sweep: Sweep, sources: dict[int, Stay], time: float) -> float:
+    """Return a time before which no wave that leaves now can be at the goal."""
+    network, goal = sweep.network, sweep.goal
+    nodes = np.flatnonzero(network.can_wait)
+    nodes = nodes[nodes != goal]  # who is there leaves no more
+    nodes = np.union1d(nodes, list(sources)).astype(np.int64)
+    lat, lon = network.lat, network.lon
+    away = distance_bounds(lat[nodes], lon[nodes], float(lat[goal]), float(lon[goal]))
+    fastest = max(sweep.given.fastest, canal_speed(network))
+    return time + float(away.min()) * SHRINK / fastest if len(nodes) else math.inf
+
+
+def _afloat(
+    network: Network, given: Problem, limits: FloatArray, start: int
+) -> dict[int, FloatArray]:
+    """Return the times (begin, end) during which a ship lies safely at each node of waiting."""
+    nodes = np.flatnonzero(network.can_wait)
+    nodes = nodes[nodes != start]
+    always = np.array([[-math.inf, math.inf]])
+    required = float(limits[LIMIT_REQUIRED_DEPTH])
+    spans = node_times_afloat(given.network, given.sea, required, nodes)
+    if spans is None:
+        return {int(node): always for node in nodes}
+    return {
+        int(node): np.column_stack([spans.begin[spans.node == node], spans.end[spans.node == node]])
+        for node in nodes
+    }
+
+
+def _moor(
+    sweep: Sweep,
+    arrival: FloatArray,
+    settled: NDArray[np.bool_],
+    afloat: dict[int, FloatArray],
+) -> None:
+    """Note where the last wave can stay, if no ship lies there as early in that time afloat."""
+    wave = len(sweep.waves) - 1
+    for node, spans in afloat.items():
+        if not settled[node] or node == sweep.goal:
+            continue
+        time = float(arrival[node])
+        span = spans[(spans[:, 0] <= time) & (time <= spans[:, 1])]
+        if not len(span):
+            continue
+        stays = sweep.stays.setdefault(node, [])
+        same = [s for s in stays if s.until == span[0, 1]]
+        if same and same[0].arrive <= time:
+            continue
+        sweep.stays[node] = [s for s in stays if s.until != span[0, 1]]
+        sweep.stays[node].append(Stay(time, float(span[0, 1]), wave))
+
+
+def _earlier(sweep: Sweep, wave: int, best: float) -> int:
+    """Look between the best wave and the one before for an earlier one; return the best."""
+    if wave == 0:
+        return wave
+    low, high = sweep.waves[wave - 1].time, sweep.waves[wave].time
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        sources = sweep.present(middle)
+        labels = sweep.send(middle, list(sources), sweep.goal, best)
+        if labels.settled[sweep.goal] and labels.time[sweep.goal] <= best:
+            best, high = float(labels.time[sweep.goal]), middle
+            sweep.waves.append(Wave(middle, sources))
+            wave = len(sweep.waves) - 1
+        else:
+            low = middle
+    return wave
+
+
+def _answer(sweep: Sweep, start: int, wave: int, reached: FloatArray) -> SearchResult:
+    """Put the way together, from the goal back from berth to berth."""
+    nodes: list[int] = []
+    arrive: list[float] = []
+    leave: list[float] = []
+    to = sweep.goal
+    while wave >= 0:
+        sent = sweep.waves[wave]
+        labels = sweep.send(sent.time, list(sent.stays), to, math.inf)
+        path = _path(labels, to, len(sweep.given.network.station))
+        times = labels.time[path]
+        berth = sent.stays[path[0]]
+        nodes = [*path, *nodes[1:]]
+        arrive = [berth.arrive, *times[1:].tolist(), *arrive[1:]]
+        leave = [sent.time, *times[1:-1].tolist(), *(leave or [float(times[-1])])]
+        to, wave = path[0], berth.wave
+    counts = sweep.counts
+    work = SearchWork(
+        settled=int(counts[SETTLED]),
+        relaxed=int(counts[RELAXED]),
+        sailed=int(counts[SAILED]),
+        refused={REASONS[c]: int(n) for c, n in enumerate(sweep.refused) if n > 0 and c > 0},
+    )
+    lat, lon = sweep.network.lat, sweep.network.lon
+    known = np.flatnonzero(np.isfinite(reached))
+    goal = sweep.goal
+    away = distance_bounds(lat[known], lon[known], float(lat[goal]), float(lon[goal]))
+    return SearchResult(
+        path=np.array(nodes, np.int64),
+        path_arrive=np.array(arrive),
+        path_depart=np.array(leave),
+        cost=arrive[-1] - sweep.depart if nodes else math.inf,
+        node_arrival=reached,
+        nearest_node=int(known[np.argmin(away)]) if len(known) else start,
+        work=work,
+    )
+
+
+def _path(labels: Labels, goal: int, source: int) -> list[int]:
+    """Return the nodes from the first after the source to the goal."""
+    nodes = [goal]
+    while int(labels.before[nodes[-1]]) != source:
+        nodes.append(int(labels.before[nodes[-1]]))
+    return nodes[::-1]
+
+
+def _with_source(network: NetworkArrays, nodes: Sequence[int], place: int) -> NetworkArrays:
+    """Return the network with one state more, from which all given nodes are reached at once."""
+    edges = len(nodes)
+
+    def more(values: NDArray, extra: object) -> NDArray:  # type: ignore[type-arg]
+        return np.append(values, np.full(edges, extra)).astype(values.dtype)
+
+    return network._replace(
+        indptr=np.append(network.indptr, network.indptr[-1] + edges),
+        target=np.append(network.target, np.asarray(nodes)).astype(network.target.dtype),
+        length=more(network.length, 0.0),
+        course=more(network.course, 0.0),
+        depth=more(network.depth, math.inf),
+        factor=more(network.factor, 1.0),
+        fixed_time=more(network.fixed_time, 0.0),
+        via_ptr=np.append(network.via_ptr, np.full(edges, network.via_ptr[-1])),
+        can_wait=np.append(network.can_wait, False),
+        station=np.append(network.station, place).astype(network.station.dtype),
+        opens=np.append(network.opens, -math.inf),
+        closes=np.append(network.closes, math.inf),
+        until=np.append(network.until, math.inf),
+    )

@@ -1,0 +1,1 @@
+"""The exact Pareto front on a network, and the lower front that bounds it."""

@@ -1,0 +1,301 @@
+"""How a front divides time: bins, slices of the tables of edges, windows of nodes, and memory."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels.codes import COUNT
+from thalweg.kernels.pareto.edge_tables import Blocks, sail_departures
+from thalweg.kernels.pareto.time_expanded_labels import COUNTS as AGENDA_COUNTS
+from thalweg.kernels.pareto.time_expanded_labels import Agenda, BinLabels, Clock, Target
+from thalweg.search.pareto.front_problem import Bounds, Gathered, Request, new_work
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+#: What the tables of edges may be off from the legs, as a share of their duration or cost.
+TABLE_TOLERANCE = 1e-3
+_FINE, _CHEAP = 0.02 * TABLE_TOLERANCE, 3e7  # [bytes]
+_MOST_BINS = 2000
+_COARSEST_BINS = 250
+_MOST_RELAXED = 4e9  # that bins chosen here may allow for; a good third of them come about
+_AMPLE = 1e9  # tables are not made larger than that for the sake of finer slices [bytes]
+_AT_THE_END = 0.05  # of the horizon: longer than edges take
+_WORTH = 0.4  # of the error left by halving steps, at most, if the sea is smooth: a quarter is due
+_SAMPLED = 400  # edges looked at to choose the slices
+_LABEL_BYTES = 20
+_NICE = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 90.0, 120.0, 180.0, 240.0]
+_NICE += [300.0, 450.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0]
+
+
+class Windows(NamedTuple):
+    """Bins of every state between which a label may be of use; none when last < first."""
+
+    first: NDArray[np.int32]
+    last: NDArray[np.int32]
+
+    @property
+    def bins(self) -> int:
+        """Number of labels."""
+        return int(np.maximum(self.last.astype(np.int64) - self.first + 1, 0).sum())
+
+
+class Plan(NamedTuple):
+    """A division of time that fits the memory.
+
+    Attributes
+    ----------
+    clock : Clock
+    windows : Windows
+    slices : float64[K]
+        [s after departure].
+    table_error : float
+        95th percentile of the difference to the legs, as a share.
+    memory : int
+        [bytes]
+    """
+
+    clock: Clock
+    windows: Windows
+    slices: FloatArray
+    table_error: float
+    memory: int
+
+
+def make_plan(
+    got: Gathered,
+    request: Request,
+    bounds: Bounds,
+    earliest: FloatArray,
+    *,
+    bin_s: float | None,
+    memory_limit: float,
+) -> Plan:
+    """Choose bins and slices within the memory.
+
+    Parameters
+    ----------
+    got : Gathered
+    request : Request
+    bounds : Bounds
+    earliest : float64[N]
+        Earliest arrival at every state [s].
+    bin_s : float, optional
+        Width of the bins [s]; by default the horizon is divided into at most 2000, into fewer
+        where the memory does not allow that or the relaxations would be too many.
+    memory_limit : float
+        [bytes]
+
+    Raises
+    ------
+    InputError
+        If the bins do not fit the memory; it says what they would take.
+    """
+    width = _nice(request.horizon / _MOST_BINS) if bin_s is None else float(bin_s)
+    while True:
+        clock = _clock(request, width)
+        windows = _windows(clock, bounds, earliest - request.depart)
+        coarsest = clock.count <= _COARSEST_BINS
+        if bin_s is None and not coarsest and _relaxations(got, windows) > _MOST_RELAXED:
+            width = _nice(width * 1.5)
+            continue
+        slices, error, memory = _slices(got, request, clock, windows, memory_limit)
+        if memory <= memory_limit:
+            return Plan(clock, windows, slices, error, memory)
+        if bin_s is not None or coarsest:
+            raise _too_much(got, clock, memory, memory_limit)
+        width = _nice(width * 1.5)
+
+
+def _nice(width: float) -> float:
+    fitting = [nice for nice in _NICE if nice >= width * (1 - 1e-9)]
+    return fitting[0] if fitting else math.ceil(width / 3600.0) * 3600.0
+
+
+def _clock(request: Request, width: float) -> Clock:
+    count = int(request.horizon / width) + 1
+    return Clock(width, request.horizon, count, max(1, round(math.sqrt(count / 2))), request.wait)
+
+
+def _windows(clock: Clock, bounds: Bounds, soonest: FloatArray) -> Windows:
+    """Return the bins of each state; the tables may be early by a little."""
+    early = np.maximum(0.995 * soonest - 0.5 * clock.width, 0.0)
+    late = clock.latest - bounds.time
+    known = np.isfinite(early) & np.isfinite(late) & (late >= early)
+    first = np.where(known, np.where(known, early, 0.0) // clock.width, 1).astype(np.int32)
+    last = np.where(known, np.where(known, late, 0.0) // clock.width, 0).astype(np.int32)
+    return Windows(first, np.minimum(last, clock.count - 1))
+
+
+def _slices(
+    got: Gathered, request: Request, clock: Clock, windows: Windows, memory_limit: float
+) -> tuple[FloatArray, float, int]:
+    """Return the coarsest slices that are exact enough, finer ones where they cost little.
+
+    If none that fit the memory and take a bearable time are exact enough, the finest that do, or
+    the sea's own times where finer ones help little: jumps are not known better for them.
+    """
+    ladder = _ladder(got.world.sea.times - request.depart, clock.latest)
+    most, own = min(memory_limit, _AMPLE), len(got.world.sea.times) + 2
+    chosen, error, memory, fine = ladder[0], math.inf, 0, False
+    for slices in ladder:
+        needed = _memory(got, clock, windows, slices)
+        if error <= TABLE_TOLERANCE and (fine or needed > _CHEAP):
+            break
+        if error < math.inf and needed > most:
+            break
+        before = error
+        error, shut = _table_error(got, request, windows, clock, slices)
+        if len(slices) > own and error > _WORTH * before and needed > _CHEAP:
+            error = before
+            break
+        chosen, memory = slices, needed
+        fine = error <= _FINE and not shut
+    return chosen, error, memory
+
+
+def _ladder(times: FloatArray, horizon: float) -> list[FloatArray]:
+    """Return slices from coarse to fine: every n-th time of the sea, then parts of its steps."""
+    inside = times[(times > 0.0) & (times < horizon)]
+    # edges left at the end of the data cannot be sailed; those before are not judged by them
+    own = np.unique(np.concatenate(([0.0], inside, [(1.0 - _AT_THE_END) * horizon, horizon])))
+    rungs = []
+    stride = 1 << max(0, int(math.log2(max(len(own) / 8.0, 1.0))))
+    while stride > 1:
+        rungs.append(np.append(own[:-1:stride], horizon))
+        stride //= 2
+    rungs.append(own)
+    for parts in (2, 4, 8):
+        within = own[:-1, None] + np.diff(own)[:, None] * (np.arange(parts) / parts)
+        rungs.append(np.append(within.ravel(), horizon))
+    return rungs
+
+
+def _relaxations(got: Gathered, windows: Windows) -> float:
+    """Return how many relaxations the windows allow for."""
+    bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
+    return float((bins * np.diff(got.world.network.indptr)).sum()) * len(got.world.ship.settings)
+
+
+def slice_windows(clock: Clock, windows: Windows, slices: FloatArray) -> tuple[IntArray, IntArray]:
+    """Return the first slice of each state and how many it has."""
+    begin = np.minimum(windows.first * clock.width, clock.latest)
+    end = np.minimum((windows.last + 1) * clock.width, clock.latest)
+    first = np.searchsorted(slices, begin, side="right") - 1
+    last = np.minimum(np.searchsorted(slices, end, side="right"), len(slices) - 1)
+    first = np.minimum(first, len(slices) - 2)
+    count = np.where(windows.last >= windows.first, last - first + 1, 0)
+    return first.astype(np.int64), count.astype(np.int64)
+
+
+def _memory(got: Gathered, clock: Clock, windows: Windows, slices: FloatArray) -> int:
+    _, count = slice_windows(clock, windows, slices)
+    degree = np.diff(got.world.network.indptr)
+    values = int((count * degree).sum()) * 2 * len(got.world.ship.settings) * 4
+    slack = int((count * degree).sum()) * 13
+    return values + slack + int(count.sum()) * 2 + windows.bins * _LABEL_BYTES + 200 * len(degree)
+
+
+def _table_error(
+    got: Gathered, request: Request, windows: Windows, clock: Clock, slices: FloatArray
+) -> tuple[float, bool]:
+    """Return how far legs amid two slices are from the mean of the two, as a share.
+
+    Also whether any is shut at one of the slices or amid them, and open at another.
+    """
+    rng = np.random.default_rng(0)
+    usable = windows.last >= windows.first
+    usable &= np.diff(got.world.network.indptr) > 0
+    nodes = np.flatnonzero(usable)
+    if len(nodes) == 0:
+        return 0.0, False
+    nodes = rng.choice(nodes, _SAMPLED)
+    net = got.world.network
+    degree = np.diff(net.indptr)[nodes]
+    edges = net.indptr[nodes] + rng.integers(0, degree)
+    choices = rng.integers(0, len(got.world.ship.settings), _SAMPLED)
+    span = (windows.last - windows.first + 1)[nodes]
+    when = (windows.first[nodes] + rng.random(_SAMPLED) * span) * clock.width
+    k = np.clip(np.searchsorted(slices, when, side="right") - 1, 0, len(slices) - 2)
+    begin, end = slices[k], slices[k + 1]
+    found = []
+    for t in (begin, 0.5 * (begin + end), end):
+        out = np.empty((_SAMPLED, 2))
+        departures = np.ascontiguousarray(request.depart + t)
+        sail_departures(got.world, edges, nodes, choices, departures, out, new_work())
+        found.append(out)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = np.abs(0.5 * (found[0] + found[2]) / found[1] - 1.0)
+    open_ = [np.isfinite(out[:, 0]) for out in found]
+    shut = bool(((open_[0] | open_[1] | open_[2]) & ~(open_[0] & open_[1] & open_[2])).any())
+    off = off[np.isfinite(off).all(axis=1)]
+    return (float(np.quantile(off, 0.95)) if off.size else 0.0), shut
+
+
+def _too_much(got: Gathered, clock: Clock, memory: int, limit: float) -> InputError:
+    net = got.world.network
+    return InputError(
+        f"A front over {len(net.station):,} nodes and {len(net.target):,} edges with "
+        f"{len(got.world.ship.settings)} settings in bins of {clock.width:g} s would take "
+        f"{memory / 1e9:.3g} GB of memory.",
+        f"At most {limit / 1e9:.3g} GB may be taken.",
+        "Take a coarser network, fewer settings, a wider bin_s or an earlier latest arrival, or "
+        "raise memory_limit.",
+        memory=memory,
+        limit=float(limit),
+    )
+
+
+def new_blocks(got: Gathered, plan: Plan) -> Blocks:
+    """Return tables of edges, not filled yet."""
+    first, count = slice_windows(plan.clock, plan.windows, plan.slices)
+    degree = np.diff(got.world.network.indptr)
+    size = count * degree * 2 * len(got.world.ship.settings)
+    return Blocks(
+        times=plan.slices,
+        first=first,
+        count=count,
+        place=np.concatenate(([0], np.cumsum(count)[:-1])).astype(np.int64),
+        offset=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),
+        state=np.zeros(int(count.sum()), np.uint8),
+        values=np.empty(int(size.sum()), np.float32),
+        refused=np.zeros(COUNT, np.int64),
+        sailed=np.zeros(1, np.int64),
+    )
+
+
+def new_bin_labels(windows: Windows) -> BinLabels:
+    """Return labels of which none is set."""
+    bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
+    total, count = int(bins.sum()), len(bins)
+    return BinLabels(
+        first=windows.first,
+        last=windows.last,
+        place=np.concatenate(([0], np.cumsum(bins)[:-1])).astype(np.int64),
+        cost=np.full(total, np.inf, np.float32),
+        when=np.empty((total, 2), np.float32),
+        source=np.empty((total, 2), np.int32),
+        best=np.full(count, np.inf),
+        best_at=np.full((count, 2), np.inf),
+        done=np.full((count, 2), -1.0),
+    )
+
+
+def new_target(goal: int, bounds: Bounds, clock: Clock) -> Target:
+    """Return the goal with nothing known of arriving there."""
+    return Target(
+        goal, np.full(clock.count + 1, np.inf), bounds.time, bounds.rates,
+        np.ascontiguousarray(bounds.floor),
+    )  # fmt: skip
+
+
+def new_agenda(windows: Windows) -> Agenda:
+    """Return the nodes in the order in which their bins begin."""
+    used = np.flatnonzero(windows.last >= windows.first)
+    order = used[np.argsort(windows.first[used], kind="stable")].astype(np.int32)
+    return Agenda(order, np.empty(len(order), np.int32), np.zeros(AGENDA_COUNTS, np.int64))

@@ -1,0 +1,355 @@
+"""What the front is searched in: network, sea, a ship with settings, prices, and bounds."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels.codes import (
+    AXES,
+    AXIS_DEPTH,
+    CHANNELS,
+    CURRENT_EAST,
+    CURRENT_NORTH,
+    SPEED_FIELD,
+)
+from thalweg.kernels.leg.edge_sailing import ShipArrays
+from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed, table_value
+from thalweg.kernels.network.graph_building import static_distances
+from thalweg.kernels.pareto.edge_tables import PricedShip, Prices, World, fastest_flow
+from thalweg.kernels.search.label_setting import Query, label_setting, new_labels, new_workspace
+from thalweg.search.search_problem import SHRINK, Problem, plain, problem, ship_arrays
+from thalweg.search.tidal_states import tidal_states
+from thalweg.ship.tables.table_bounds import extreme
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+    from thalweg.sea.frozen_fields import StationFields
+    from thalweg.ship.tables.performance_table import PerformanceTable
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_MOST_RATES = 10
+
+
+class Request(NamedTuple):
+    """What was asked, as `thalweg.search.front` takes it; times in seconds since epoch."""
+
+    start: int
+    goal: int
+    depart: float
+    latest: float
+    settings: IntArray
+    weight: FloatArray
+    time_price: float
+    waiting_rate: float
+    wait: bool
+
+    @property
+    def horizon(self) -> float:
+        """Time from departure to the latest arrival [s]."""
+        return self.latest - self.depart
+
+
+class Gathered(NamedTuple):
+    """The world of a front with its bounds.
+
+    Attributes
+    ----------
+    world : World
+    given : Problem
+        For the search of the earliest arrival, at the highest setting.
+    whole : Problem
+        The same with one state for each node.
+    origin : int64[E]
+        Edge of the network that each edge of the world comes from.
+    tails : int64[E]
+        State that each edge leaves.
+    fastest, thriftiest : float64[S]
+        Greatest speed through water [m/s] and least fuel rate [kg/s] of each setting.
+    """
+
+    world: World
+    given: Problem
+    whole: Problem
+    origin: IntArray
+    tails: IntArray
+    fastest: FloatArray
+    thriftiest: FloatArray
+
+
+def gather(
+    network: Network,
+    fields: StationFields,
+    table: PerformanceTable | TableArrays,
+    fuel: PerformanceTable | TableArrays,
+    *,
+    request: Request,
+    limits: ArrayLike,
+    top_speed: float | None,
+) -> Gathered:
+    """Gather the arrays that a front is searched with."""
+    ship = ship_arrays(table, int(request.settings[-1]), limits)
+    burning = ship_arrays(fuel, int(request.settings[-1]), limits).table
+    if burning.n_settings != ship.table.n_settings:
+        raise InputError(
+            f"The fuel table has {burning.n_settings} settings, the table of speeds "
+            f"{ship.table.n_settings}.",
+            "The two are tables of one ship.",
+            "Make them with tabulate and tabulate_fuel of the same ship.",
+        )
+    fastest = extreme(ship.table, np.fmax)[request.settings]
+    thriftiest = np.maximum(extreme(burning, np.fmin)[request.settings], 0.0)
+    top = float(np.nanmax(fastest)) if top_speed is None else float(top_speed)
+    whole = problem(
+        network, fields, table, setting=int(request.settings[-1]), limits=limits, top_speed=top
+    )
+    given, origin = _with_states(whole, request)
+    factor = np.ones_like(whole.network.factor)
+    whole = whole._replace(network=whole.network._replace(factor=factor))
+    if given.sea.channel_index[SPEED_FIELD] >= 0:
+        fastest = np.full(len(fastest), given.top_speed)
+    net = given.network
+    priced = PricedShip(
+        ship.table, burning, plain(request.settings, np.int64), ship.limits, ship.needs,
+        int(axes_needed(burning)),
+    )  # fmt: skip
+    prices = _prices(network, origin, priced, request)
+    tails = np.repeat(np.arange(len(net.station)), np.diff(net.indptr))
+    world = World(net, given.sea, priced, prices, request.depart)
+    return Gathered(world, given, whole, origin, tails, fastest, thriftiest)
+
+
+def _with_states(given: Problem, request: Request) -> tuple[Problem, IntArray]:
+    """Split nodes that fall dry into states; return where each edge comes from as well."""
+    net = given.network
+    numbered = net._replace(factor=np.arange(len(net.target), dtype=np.float64))
+    if request.wait:
+        keep = request.start, request.goal
+        numbered = tidal_states(numbered, given.sea, given.ship.limits, keep)
+    origin = numbered.factor.astype(np.int64)
+    net = numbered._replace(factor=np.ones(len(origin), np.float32))
+    return given._replace(network=net), origin
+
+
+def _prices(network: Network, origin: IntArray, ship: PricedShip, request: Request) -> Prices:
+    fixed_time, fee = np.asarray(network.fixed_time), np.asarray(network.fee)
+    fuel, choice = np.zeros(len(origin)), np.zeros(len(origin), np.int64)
+    fixed = fixed_time[origin]
+    if not np.isnan(fixed).all():
+        speeds, rates = still_water(ship.table, ship), still_water(ship.fuel, ship)
+        for e in np.flatnonzero(~np.isnan(fixed)):
+            enough = np.flatnonzero(speeds >= network.length[origin[e]] / fixed[e])
+            choice[e] = enough[0] if len(enough) else int(np.nanargmax(speeds))
+            fuel[e] = rates[choice[e]] * fixed[e]
+    return Prices(
+        weight=np.ascontiguousarray(request.weight[origin], float),
+        fee=np.ascontiguousarray(fee[origin], float),
+        fixed_time=np.ascontiguousarray(fixed, float),
+        fixed_fuel=fuel,
+        fixed_choice=choice,
+        time_price=request.time_price,
+        wait_rate=request.time_price + request.waiting_rate,
+    )
+
+
+def still_water(table: TableArrays, ship: PricedShip) -> FloatArray:
+    """Return the values of a table in still, deep water, by chosen setting."""
+    where = np.zeros(AXES)
+    for axes, start, step, size in zip(
+        table.part_axes, table.axis_start, table.axis_inv_step, table.axis_size
+    ):
+        for k in np.flatnonzero(axes >= 0):
+            last = start[k] + (size[k] - 1) / step[k]
+            deep = last if axes[k] == AXIS_DEPTH else 0.0
+            where[axes[k]] = min(max(where[axes[k]], start[k], deep), last)
+    at = tuple(float(x) for x in where)
+    found = [table_value(table, at, int(setting)) for setting in ship.settings]
+    return np.array([value if ok else math.nan for value, ok in found])
+
+
+class Bounds(NamedTuple):
+    """What the way from a state to the goal takes at least.
+
+    Attributes
+    ----------
+    time : float64[N]
+        [s].
+    rates : float64[R]
+        Prices of a second, 0 first.
+    floor : float64[N, R]
+        Least cost plus price times time.
+    to_goal : ToGoal
+        For other prices.
+    """
+
+    time: FloatArray
+    rates: FloatArray
+    floor: FloatArray
+    to_goal: ToGoal
+
+
+class ToGoal:
+    """Edges in the most favourable currents and weather, walked backwards from the goal.
+
+    Each edge is taken at the largest current along it in the fields, at the greatest speed and the
+    least fuel rate of each setting in any weather.
+
+    Attributes
+    ----------
+    along : float64[E]
+        Largest current along every edge in the fields [m/s].
+    """
+
+    def __init__(self, got: Gathered, goal: int) -> None:
+        net, self._got, self._goal = got.world.network, got, goal
+        self.along = np.zeros(len(net.target))
+        if min(got.world.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
+            fastest_flow(net, got.world.sea, self.along)
+        over_ground = got.fastest[:, None] + self.along[None, :]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            pace = np.where(over_ground > 0.0, net.length / over_ground, math.inf)
+        pace[~(got.fastest > 0.0)] = math.inf
+        self._quickest = pace  # (S, E) [s]
+        self._order = np.argsort(net.target, kind="stable")
+        nodes = np.arange(len(net.station) + 1)
+        self._indptr = np.searchsorted(net.target[self._order], nodes).astype(np.int64)
+        self._target = got.tails[self._order].astype(np.int32)
+
+    def time(self) -> FloatArray:
+        """Return the least time to the goal [s]."""
+        fixed = self._got.world.prices.fixed_time
+        return self._least(np.where(np.isnan(fixed), self._quickest.min(axis=0), fixed)) * SHRINK
+
+    def floor(self, rate: float) -> FloatArray:
+        """Return the least cost plus price of time to the goal."""
+        return self._least(self._costs(rate)) * (1.0 - 1e-6)
+
+    def way(self, start: int, rate: float) -> IntArray:
+        """Return the states of the way of least cost plus price of time; empty if there is none."""
+        parent = np.empty(len(self._indptr) - 1, np.int64)
+        distance = self._least(self._costs(rate), parent)
+        if not math.isfinite(distance[start]):
+            return np.empty(0, np.int64)
+        states = [start]
+        while states[-1] != self._goal:
+            states.append(int(parent[states[-1]]))
+        return np.array(states, np.int64)
+
+    def _costs(self, rate: float) -> FloatArray:
+        """Return the least cost plus price of time of every edge."""
+        prices = self._got.world.prices
+        second = prices.time_price + rate
+        least = np.full(len(prices.fee), math.inf)
+        for quickest, fuel in zip(self._quickest, self._got.thriftiest):
+            if math.isfinite(fuel):
+                np.fmin(least, quickest * (fuel * prices.weight + second), out=least)
+        still = prices.fixed_fuel * prices.weight + prices.fixed_time * second
+        least = np.where(np.isnan(prices.fixed_time), least, still)
+        return least + prices.fee
+
+    def _least(self, weights: FloatArray, parent: IntArray | None = None) -> FloatArray:
+        """Return the least sums of weights to the goal; ``parent`` is filled with what follows."""
+        count = len(self._indptr) - 1
+        distance = np.empty(count)
+        parent = np.empty(count, np.int64) if parent is None else parent
+        given = np.ascontiguousarray(weights[self._order])
+        static_distances(self._indptr, self._target, given, self._goal, -1, distance, parent)
+        return distance
+
+
+def bounds_to_goal(got: Gathered, goal: int) -> Bounds:
+    """Bound time and cost from every state to the goal."""
+    to_goal = ToGoal(got, goal)
+    weight = got.world.prices.weight
+    rates = _rates(got, float(np.median(weight)) if len(weight) else 1.0)
+    floor = np.stack([to_goal.floor(rate) for rate in rates], axis=1)
+    return Bounds(to_goal.time(), rates, floor, to_goal)
+
+
+def _rates(got: Gathered, weight: float) -> FloatArray:
+    """Return prices of time at which the thriftiest setting in still water changes, and 0."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pace = 1.0 / got.fastest
+        spent = got.thriftiest * pace * weight
+    known = np.isfinite(pace) & np.isfinite(spent)
+    hull: list[tuple[float, float]] = []
+    for point in sorted(zip(pace[known].tolist(), spent[known].tolist())):
+        if hull and point[1] >= hull[-1][1]:
+            continue
+        while len(hull) > 1 and _above(hull[-2], hull[-1], point):
+            hull.pop()
+        hull.append(point)
+    price = got.world.prices.time_price
+    slopes = [(a[1] - b[1]) / (b[0] - a[0]) - price for a, b in pairwise(hull)]
+    slopes = sorted(slope for slope in slopes if slope > 0.0)
+    if len(slopes) > _MOST_RATES:
+        picked = np.unique(np.linspace(0, len(slopes) - 1, _MOST_RATES).round().astype(int))
+        slopes = [slopes[i] for i in picked]
+    return np.array([0.0, *slopes])
+
+
+def _above(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
+    """Return whether b lies on or above the line from a to c."""
+    return (b[1] - a[1]) * (c[0] - a[0]) >= (c[1] - a[1]) * (b[0] - a[0])
+
+
+class Arrivals(NamedTuple):
+    """Earliest arrivals at one setting, with the tree they came by."""
+
+    time: FloatArray
+    before: NDArray[np.int32]
+    departed: FloatArray
+    refused: NDArray[np.int64]
+
+
+def at_setting(ship: ShipArrays, setting: int) -> ShipArrays:
+    """Return a ship at another of its settings."""
+    return ship._replace(setting=int(setting))
+
+
+def heedless(ship: ShipArrays) -> ShipArrays:
+    """Return a ship that nothing is forbidden in waves: never slower than itself."""
+    none = np.empty(0), np.empty((0, 0, 0), np.float32), np.empty((0, 0))
+    table = ship.table._replace(safety=none[0], motions=none[1], motion_grid=none[2])
+    return ship._replace(table=table, needs=int(axes_needed(table)))
+
+
+def earliest_arrivals(
+    got: Gathered, request: Request, *, everywhere: bool, choice: int = -1
+) -> Arrivals:
+    """Search the earliest arrival at every state at one of the chosen settings.
+
+    ``everywhere`` lets the ship wait at any and pass what is forbidden in waves: at the highest
+    setting no choice of settings is sooner.
+    """
+    given = got.given
+    net, ship = given.network, at_setting(given.ship, int(request.settings[choice]))
+    if everywhere:
+        net, ship = net._replace(can_wait=np.ones_like(net.can_wait)), heedless(ship)
+    count = len(net.station)
+    query = Query(
+        start=request.start,
+        goal=-1,
+        depart=request.depart,
+        horizon=request.latest if everywhere else math.inf,
+        by_distance=False,
+        wait=everywhere or request.wait,
+        slowness=SHRINK / given.fastest,
+        per_metre=0.0,
+    )
+    labels, memory = new_labels(count), new_workspace(count)
+    label_setting(net, given.sea, ship, query, np.zeros(count), labels, memory)
+    time = np.where(labels.settled, labels.time, math.inf)
+    return Arrivals(time, labels.before, labels.departed, memory.refused)
+
+
+def new_work() -> FloatArray:
+    """Return work space for sailing edges."""
+    return np.full((4, CHANNELS), np.nan)

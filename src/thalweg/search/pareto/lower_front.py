@@ -1,0 +1,230 @@
+"""The lower front: what no way on the network can be below."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.kernels.pareto.edge_tables import Blocks
+from thalweg.kernels.pareto.lower_labels import (
+    LowerLabels,
+    Slack,
+    advance_lower,
+)
+from thalweg.kernels.pareto.lower_scalarised import TimePriced, advance_priced
+from thalweg.kernels.pareto.time_expanded_labels import PRUNED, RELAXED, VISITED
+from thalweg.search.pareto.discretisation import Plan, new_agenda, new_target
+from thalweg.search.pareto.front_problem import Bounds, Gathered, Request, new_work
+from thalweg.search.pareto.front_result import FrontPoint
+from thalweg.search.pareto.seed_paths import know
+
+FloatArray = NDArray[np.float64]
+
+_SHRINK = 1.0 - 2e-6  # for sums in single precision
+_LINES = 6
+
+
+class Lower(NamedTuple):
+    """The lower front, by ascending time and falling cost, and the work it was."""
+
+    time: FloatArray
+    cost: FloatArray
+    labels: int
+    relaxed: int
+    pruned: int
+
+
+def lower_front(
+    got: Gathered,
+    request: Request,
+    bounds: Bounds,
+    plan: Plan,
+    blocks: Blocks,
+    points: tuple[FrontPoint, ...],
+    tell: Callable[[float], None],
+    chunks: int,
+) -> Lower:
+    """Search the lower front below the points of a front.
+
+    Parameters
+    ----------
+    got : Gathered
+    request : Request
+    bounds : Bounds
+    plan : Plan
+    blocks : Blocks
+        Tables of edges, as far as they are filled.
+    points : tuple of FrontPoint
+        Real ways: labels that cannot lead below them are dropped.
+    tell : callable
+        Called with the share done, ``chunks`` times.
+    chunks : int
+    """
+    got = _waiting_no_dearer_than_sailing(got)
+    slack = _new_slack(got, bounds, blocks)
+    halves = _by_bins(got, request, bounds, plan, blocks, slack, points, tell, chunks)
+    lines, priced = _by_prices(got, request, bounds, plan, blocks, slack, points)
+    time, cost = _together(plan, points, halves.time, halves.cost, lines)
+    return Lower(time, cost, halves.labels + priced[0], halves.relaxed + priced[1], halves.pruned)
+
+
+def _waiting_no_dearer_than_sailing(got: Gathered) -> Gathered:
+    """Return a world whose price of waiting is at most that of sailing at its cheapest.
+
+    Sailing then never gains on waiting, so that no circle within a bin can fall without end.
+    """
+    prices = got.world.prices
+    spent = (prices.fixed_fuel * prices.weight + prices.fee) / prices.fixed_time
+    sailed = np.nanmin(got.thriftiest, initial=np.inf) * prices.weight
+    least = float(np.where(np.isnan(prices.fixed_time), sailed, spent).min(initial=np.inf))
+    rate = min(prices.wait_rate, prices.time_price + least)
+    return got._replace(world=got.world._replace(prices=prices._replace(wait_rate=rate)))
+
+
+def _by_bins(
+    got: Gathered,
+    request: Request,
+    bounds: Bounds,
+    plan: Plan,
+    blocks: Blocks,
+    slack: Slack,
+    points: tuple[FrontPoint, ...],
+    tell: Callable[[float], None],
+    chunks: int,
+) -> Lower:
+    """Let every arrival count for the start of its bin."""
+    clock = plan.clock
+    target = new_target(request.goal, bounds, clock)
+    for point in points:
+        know(target, clock, point)
+    labels = _new_labels(plan)
+    labels.cost[labels.place[request.start]] = 0.0
+    agenda, work = new_agenda(plan.windows), new_work()
+    edges = np.unique(np.linspace(0, clock.count, chunks + 1).astype(int))
+    for a, b in pairwise(edges.tolist()):
+        advance_lower(got.world, labels, target, clock, blocks, slack, agenda, a, b, work)
+        tell(b / clock.count)
+    first, last = int(labels.first[request.goal]), int(labels.last[request.goal])
+    begin = int(labels.place[request.goal])
+    time = np.arange(first, last + 1) * clock.width
+    cost = labels.cost[begin : begin + last - first + 1] + got.world.prices.wait_rate * time
+    time = np.append(time, [point.time for point in points])
+    cost = np.append(_SHRINK * cost, [point.cost for point in points])
+    counts = agenda.counts
+    return Lower(
+        *_staircase(time.astype(float), cost.astype(float)),
+        int(counts[VISITED]),
+        int(counts[RELAXED]),
+        int(counts[PRUNED]),
+    )
+
+
+def _by_prices(
+    got: Gathered,
+    request: Request,
+    bounds: Bounds,
+    plan: Plan,
+    blocks: Blocks,
+    slack: Slack,
+    points: tuple[FrontPoint, ...],
+) -> tuple[list[tuple[float, float]], tuple[int, int]]:
+    """Return (price of time, least cost plus priced time) for some prices, and the work it was."""
+    time, cost = np.array([p.time for p in points]), np.array([p.cost for p in points])
+    lines, labelled, relaxed = [], 0, 0
+    for rate in _prices_of_time(time, cost):
+        labels = _new_labels(plan)
+        labels.cost[labels.place[request.start]] = 0.0
+        known = float(np.min(cost + rate * time))
+        floor = bounds.to_goal.floor(rate)
+        target = TimePriced(request.goal, rate, known, bounds.time, floor)
+        agenda = new_agenda(plan.windows)
+        advance_priced(got.world, labels, target, plan.clock, blocks, slack, agenda, new_work())
+        begin = int(labels.place[request.goal])
+        bins = int(labels.last[request.goal]) - int(labels.first[request.goal]) + 1
+        found = float(labels.cost[begin : begin + bins].min())
+        lines.append((rate, min(known, _SHRINK * found)))
+        labelled += int(agenda.counts[VISITED])
+        relaxed += int(agenda.counts[RELAXED])
+    return lines, (labelled, relaxed)
+
+
+def _prices_of_time(time: FloatArray, cost: FloatArray) -> list[float]:
+    """Return the slopes of the front's lower hull, thinned evenly in time."""
+    hull: list[int] = []
+    for i in range(len(time)):
+        while len(hull) > 1 and _above(time, cost, hull[-2], hull[-1], i):
+            hull.pop()
+        hull.append(i)
+    if len(hull) < 2:
+        return []
+    slopes = -np.diff(cost[hull]) / np.diff(time[hull])
+    middle = 0.5 * (time[hull][1:] + time[hull][:-1])
+    wanted = np.linspace(time[0], time[-1], 2 * _LINES + 1)[1::2]
+    chosen = np.abs(middle[:, None] - wanted).argmin(axis=0)
+    return sorted({float(slopes[i]) for i in chosen if slopes[i] > 0.0})
+
+
+def _above(time: FloatArray, cost: FloatArray, a: int, b: int, c: int) -> bool:
+    """Return whether point b lies on or above the line from a to c."""
+    rise = (cost[b] - cost[a]) * (time[c] - time[a])
+    return bool(rise >= (cost[c] - cost[a]) * (time[b] - time[a]))
+
+
+def _together(
+    plan: Plan,
+    points: tuple[FrontPoint, ...],
+    time: FloatArray,
+    cost: FloatArray,
+    lines: list[tuple[float, float]],
+) -> tuple[FloatArray, FloatArray]:
+    """Return the larger of the two bounds as steps: each holds until the next."""
+    if not lines:
+        return time, cost
+    own = np.array([point.time for point in points])
+    grid = np.concatenate((time, np.arange(plan.clock.count + 1) * plan.clock.width, own))
+    grid = np.concatenate((grid, own + 1e-9 * plan.clock.latest))
+    grid = np.unique(grid[(grid >= time[0]) & (grid <= plan.clock.latest)])
+    steps = cost[np.searchsorted(time, grid, side="right") - 1]
+    until = np.append(grid[1:], plan.clock.latest)
+    rates, values = np.array(lines).T
+    line = (values[:, None] - rates[:, None] * until).max(axis=0)
+    return _staircase(grid, np.maximum(steps, line))
+
+
+def _staircase(time: FloatArray, cost: FloatArray) -> tuple[FloatArray, FloatArray]:
+    order = np.lexsort((cost, time))
+    time, cost = time[order], cost[order]
+    before = np.minimum.accumulate(np.concatenate(([np.inf], cost[:-1])))
+    falls = cost < before
+    return time[falls], cost[falls]
+
+
+def _new_labels(plan: Plan) -> LowerLabels:
+    windows = plan.windows
+    bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
+    return LowerLabels(
+        first=windows.first,
+        last=windows.last,
+        place=np.concatenate(([0], np.cumsum(bins)[:-1])).astype(np.int64),
+        cost=np.full(int(bins.sum()), np.inf),
+        best=np.full(len(bins), np.inf),
+        dead=np.full(len(bins), np.inf),
+    )
+
+
+def _new_slack(got: Gathered, bounds: Bounds, blocks: Blocks) -> Slack:
+    size = blocks.count * np.diff(got.world.network.indptr)
+    total = int(size.sum())
+    return Slack(
+        start=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),
+        state=np.zeros(len(blocks.state), np.uint8),
+        off=np.empty((total, 3), np.float32),
+        gains=np.empty(total, np.uint8),
+        along=bounds.to_goal.along,
+        fastest=got.fastest,
+        thriftiest=got.thriftiest,
+    )

@@ -1,0 +1,381 @@
+"""The front of time against cost on a network, with a choice of setting on every edge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError, NoRouteError
+from thalweg.kernels.codes import REASONS
+from thalweg.kernels.leg.table_lookup import TableArrays
+from thalweg.kernels.pareto.edge_tables import Blocks
+from thalweg.kernels.pareto.time_expanded_labels import PRUNED, RELAXED, VISITED, WAITED, advance
+from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
+from thalweg.search.pareto.discretisation import (
+    Plan,
+    make_plan,
+    new_agenda,
+    new_bin_labels,
+    new_blocks,
+    new_target,
+)
+from thalweg.search.pareto.front_problem import (
+    Bounds,
+    Gathered,
+    Request,
+    at_setting,
+    bounds_to_goal,
+    earliest_arrivals,
+    gather,
+    new_work,
+)
+from thalweg.search.pareto.front_result import Front, FrontPoint, FrontWork
+from thalweg.search.pareto.lower_front import Lower, lower_front
+from thalweg.search.pareto.seed_paths import (
+    Way,
+    fastest_way,
+    know,
+    not_dominated,
+    seeds,
+    way_found,
+    ways_found,
+)
+from thalweg.search.search_problem import distance_bounds
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+    from thalweg.sea.frozen_fields import StationFields
+    from thalweg.ship.tables.performance_table import PerformanceTable
+
+FloatArray = NDArray[np.float64]
+
+_CHUNKS = 50
+MEMORY_LIMIT = 3e9  # [bytes]
+
+
+def front(
+    network: Network,
+    fields: StationFields,
+    table: PerformanceTable | TableArrays,
+    fuel: PerformanceTable | TableArrays,
+    *,
+    start: int,
+    goal: int,
+    depart: float,
+    limits: ArrayLike,
+    latest: float,
+    settings: Sequence[int] | NDArray[np.int64] | None = None,
+    weight: ArrayLike | None = None,
+    time_price: float = 0.0,
+    waiting_fuel: float = 0.0,
+    waiting_weight: float = 1.0,
+    wait: bool = True,
+    bin_s: float | None = None,
+    memory_limit: float = MEMORY_LIMIT,
+    lower: bool = True,
+    top_speed: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Front:
+    """Find the ways between two nodes that no other beats in both time and cost.
+
+    The cost of a way is the sum over its edges of fuel times weight and fee, plus the price of
+    the whole time, plus the fuel burnt while waiting.
+
+    Parameters
+    ----------
+    network : Network
+        Edges of fixed time (canals) cost their fee and the fuel of that time in still water at the
+        slowest setting that is fast enough.
+    fields : StationFields
+        The sea, frozen at the network's stations.
+    table, fuel : PerformanceTable or TableArrays
+        Speed through water [m/s] and fuel rate [kg/s] with the same settings.
+    start, goal : int
+        Nodes.
+    depart, latest : float
+        Time at the start and latest arrival [s since epoch].
+    limits : array_like
+        As in `thalweg.search.earliest_arrival`.
+    settings : sequence of int, optional
+        Settings to choose from on every edge (default: all). The highest is taken to be the
+        fastest everywhere.
+    weight : array_like (E,), optional
+        Cost of a kilogram of fuel on each edge, at least 0 (default: 1).
+    time_price : float
+        Cost of a second between departure and arrival.
+    waiting_fuel : float
+        Fuel rate while waiting [kg/s].
+    waiting_weight : float
+        Cost of a kilogram of it.
+    wait : bool
+        Whether the ship may wait at nodes that allow it, as long as it stays afloat.
+    bin_s : float, optional
+        Width of the bins of time [s] (default: a round number that divides the time into at most
+        2000 bins, fewer, but not below 250, where the memory or the work does not allow that).
+    memory_limit : float
+        Memory that may be taken [bytes].
+    lower : bool
+        Whether to search the lower front as well.
+    top_speed : float, optional
+        Upper bound of the speed through water [m/s] (default: of the table).
+    progress : callable, optional
+        Called with the share of the bins done.
+
+    Returns
+    -------
+    Front
+
+    Raises
+    ------
+    InputError
+        If the latest arrival is before the earliest possible (``details["earliest"]``), if the
+        memory does not suffice (``details["memory"]``), or if the request makes no sense.
+    NoRouteError
+        If there is no way at all, with the reasons.
+
+    Notes
+    -----
+    Time-expanded dynamic programming: every node holds one label, the cheapest, in each bin of
+    time; bins are processed in order, and every label is sailed on along all edges at all
+    settings. What is exact and what is not:
+
+    * A label keeps its own time, not that of its bin, and every point of the front is sailed
+      again, leg by leg, with the kernel that `earliest_arrival` sails with: its time and cost
+      are those of a real way. The fastest point is that of `earliest_arrival` at the highest
+      setting, as exact as that is; with limits in waves, which a lower setting may keep where the
+      highest does not, it is the fastest way found.
+    * One label per bin is not always the right one: a dearer label of the same bin may be
+      earlier by less than the bin and win later. So the front lies on or above the true one,
+      and nearer the narrower the bins are.
+    * While searching, durations and costs of edges are interpolated linearly between departures at
+      slices of time (``work.slices``; chosen so that the interpolation is right within 0.1 % at 95
+      % of a sample, see ``work.table_error``, or the tables would be too large). This may mislead
+      a choice, not a number: all points are sailed again. Where an edge opens or shuts between two
+      slices it is sailed exactly.
+    * Where the ship may wait, a label is dropped if an earlier one costs no more with the waiting
+      in between paid: exact, since the earlier ship can wait. A waiting ship leaves at slices, and
+      where an edge is shut at all settings at one of the slices around, at the start of any bin.
+      Elsewhere (and with ``wait=False`` everywhere) labels are compared inside a bin only.
+    * The lower front is the larger of two bounds. One lets every arrival count for the start of
+      its bin and leaves at any moment of the bin, whatever is earliest and cheapest; it closes as
+      the bins narrow. The other is the least cost plus a price of time, for up to 6 prices, which
+      loses nothing to the bins but bounds the lower hull of the front only. Both take an edge at
+      the most favourable moment of the bin, less twice the difference to the leg itself met amid
+      the two slices around at the lowest and the highest setting; both let a ship wait as long as
+      it likes where it may wait at all; waiting then costs no more than sailing at its cheapest.
+      They are certain as far as durations and costs between slices stay within twice that
+      difference, and no edge that is shut at both slices opens for a moment between them. An edge
+      open at one slice only is looked at up to when it shuts, less 1 %.
+    * Labels are dropped as well when even the largest currents along the edges, the best weather
+      and the best prices of every edge do not lead them below what is known of the goal. This
+      loses nothing.
+    """
+    request = _request(
+        network, table,
+        start=start, goal=goal, depart=depart, latest=latest, settings=settings, weight=weight,
+        time_price=time_price, waiting_rate=waiting_fuel * waiting_weight, wait=wait, bin_s=bin_s,
+    )  # fmt: skip
+    got = gather(network, fields, table, fuel, request=request, limits=limits, top_speed=top_speed)
+    bounds = bounds_to_goal(got, request.goal)
+    soonest = earliest_arrivals(got, request, everywhere=True)
+    first = _first_ways(network, got, request, bounds)
+    plan = make_plan(got, request, bounds, soonest.time, bin_s=bin_s, memory_limit=memory_limit)
+    return _search(got, request, bounds, plan, first, lower=lower, progress=progress)
+
+
+def _search(
+    got: Gathered,
+    request: Request,
+    bounds: Bounds,
+    plan: Plan,
+    first: _First,
+    *,
+    lower: bool,
+    progress: Callable[[float], None] | None,
+) -> Front:
+    parts = 2 if lower else 1
+
+    def tell(share: float, part: int) -> None:
+        if progress is not None:
+            progress((part + share) / parts)
+
+    blocks = new_blocks(got, plan)
+    found, dropped, counts = _labelled(got, request, bounds, plan, first.points, blocks, tell)
+    points = not_dominated([*first.points, *found])
+    if not points and first.refusal is not None:
+        raise first.refusal
+    below = Lower(np.empty(0), np.empty(0), 0, 0, 0)
+    if lower:
+        below = lower_front(
+            got, request, bounds, plan, blocks, points, lambda share: tell(share, 1), _CHUNKS
+        )
+    work = FrontWork(
+        labels=int(counts[VISITED]) + below.labels,
+        relaxed=int(counts[RELAXED] + counts[WAITED]) + below.relaxed,
+        sailed=int(blocks.sailed[0]),
+        pruned=int(counts[PRUNED]) + below.pruned,
+        slices=len(plan.slices),
+        table_error=plan.table_error,
+        dropped=dropped,
+        memory=plan.memory,
+    )
+    refused = {REASONS[c]: int(n) for c, n in enumerate(blocks.refused) if n > 0 and c > 0}
+    return Front(points, below.time, below.cost, plan.clock.width, work, refused)
+
+
+def _labelled(
+    got: Gathered,
+    request: Request,
+    bounds: Bounds,
+    plan: Plan,
+    known: list[FrontPoint],
+    blocks: Blocks,
+    tell: Callable[[float, int], None],
+) -> tuple[list[FrontPoint], int, NDArray[np.int64]]:
+    """Label all nodes bin by bin; return the goal's ways, how many are shut, and counts."""
+    target, labels = new_target(request.goal, bounds, plan.clock), new_bin_labels(plan.windows)
+    for point in known:
+        know(target, plan.clock, point)
+    begin = int(labels.place[request.start])
+    labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
+    agenda, work = new_agenda(plan.windows), new_work()
+    spare = np.empty(2 * len(request.settings), np.float32)
+    edges = np.unique(np.linspace(0, plan.clock.count, _CHUNKS + 1).astype(int))
+    for a, b in pairwise(edges.tolist()):
+        advance(got.world, labels, target, plan.clock, blocks, agenda, a, b, work, spare)
+        tell(b / plan.clock.count, 0)
+    found, dropped = ways_found(got, request, labels)
+    return found, dropped, agenda.counts
+
+
+class _First(NamedTuple):
+    """Ways to begin with, and what to raise if there are none in the end."""
+
+    points: list[FrontPoint]
+    refusal: InputError | NoRouteError | None
+
+
+def _first_ways(network: Network, got: Gathered, request: Request, bounds: Bounds) -> _First:
+    """Return the ways to begin with; raise if even the fastest is too late.
+
+    What is forbidden in waves may be allowed at a lower setting: then the search has the last word.
+    """
+    table, arrive, fastest = got.world.ship.table, math.inf, None
+    heeds = len(table.safety) > 0 or len(table.motions) > 0
+    for choice in range(len(request.settings))[::-1]:
+        arrive, fastest = _fastest(network, got, request, choice)
+        if fastest is not None or not heeds:
+            break
+    refusal: InputError | NoRouteError | None = None
+    if fastest is None:
+        refusal = _no_route(network, got, request)
+    elif arrive > request.latest:
+        refusal = InputError(
+            f"No way arrives by {request.latest:.0f} s.",
+            f"The earliest arrival is {arrive:.0f} s, {(arrive - request.latest) / 3600:.2f} h "
+            "later.",
+            "Ask for a later arrival, depart earlier or allow a higher setting.",
+            earliest=arrive,
+        )
+    if refusal is not None and not heeds:
+        raise refusal
+    return _First([] if fastest is None else seeds(got, request, fastest, bounds), refusal)
+
+
+def _fastest(
+    network: Network, got: Gathered, request: Request, choice: int
+) -> tuple[float, Way | None]:
+    """Return the earliest arrival at one of the chosen settings [s], and its way."""
+    if request.wait and berths_matter(network):
+        ship = at_setting(got.whole.ship, int(request.settings[choice]))
+        found = earliest_from_berths(
+            network, got.whole._replace(ship=ship), start=request.start, goal=request.goal,
+            depart=request.depart, limits=ship.limits,
+        )  # fmt: skip
+        return found.arrive, way_found(got, found) if found.found else None
+    arrivals = earliest_arrivals(got, request, everywhere=False, choice=choice)
+    arrive = float(arrivals.time[request.goal])
+    return arrive, fastest_way(got, request, arrivals) if math.isfinite(arrive) else None
+
+
+def _no_route(network: Network, got: Gathered, request: Request) -> NoRouteError:
+    arrivals = earliest_arrivals(got, request, everywhere=False)
+    reasons = {REASONS[c]: int(n) for c, n in enumerate(arrivals.refused) if n > 0 and c > 0}
+    reached = got.world.network.station[np.isfinite(arrivals.time)]
+    lat, lon = network.lat, network.lon
+    to = float(lat[request.goal]), float(lon[request.goal])
+    off = distance_bounds(lat[reached], lon[reached], *to)
+    nearest = int(reached[np.argmin(off)])
+    return NoRouteError(
+        f"There is no way from node {request.start} to node {request.goal}.",
+        "Edges were refused: " + ", ".join(f"{n} {why}" for why, n in reasons.items()) + "."
+        if reasons else "The network does not link the two.",
+        "Relax the limits or take another departure.",
+        reasons=reasons,
+        nearest=(float(lat[nearest]), float(lon[nearest])),
+    )  # fmt: skip
+
+
+def _request(
+    network: Network,
+    table: PerformanceTable | TableArrays,
+    *,
+    start: int,
+    goal: int,
+    depart: float,
+    latest: float,
+    settings: Sequence[int] | NDArray[np.int64] | None,
+    weight: ArrayLike | None,
+    time_price: float,
+    waiting_rate: float,
+    wait: bool,
+    bin_s: float | None,
+) -> Request:
+    raw = table if isinstance(table, TableArrays) else table.kernel_arrays()
+    count = int(raw.n_settings)
+    chosen = np.arange(count) if settings is None else np.unique(np.asarray(settings, np.int64))
+    if len(chosen) == 0 or chosen[0] < 0 or chosen[-1] >= count:
+        raise InputError(
+            f"The settings {chosen.tolist()} are not all the ship's.",
+            f"It has settings 0 to {count - 1}.",
+            "",
+        )
+    if not (0 <= start < network.n_nodes and 0 <= goal < network.n_nodes and start != goal):
+        raise InputError(
+            f"There is no way from node {start} to node {goal} to search for.",
+            f"The network has nodes 0 to {network.n_nodes - 1}; start and goal differ.",
+            "",
+        )
+    if not (math.isfinite(depart) and math.isfinite(latest) and latest > depart):
+        raise InputError(
+            f"The latest arrival {latest} is not after the departure {depart}.",
+            "Both are times [s since epoch].",
+            "Give a later arrival.",
+        )
+    weights = np.broadcast_to(
+        np.asarray(1.0 if weight is None else weight, float), (network.n_edges,)
+    )
+    if not (np.isfinite(weights).all() and (weights >= 0.0).all()):
+        raise InputError(
+            "A weight of fuel is negative or no number.",
+            "Each edge has a cost per kilogram of fuel, at least 0.",
+            "Check the prices.",
+        )
+    if bin_s is not None and not (math.isfinite(bin_s) and bin_s > 0.0):
+        raise InputError(
+            f"The bins of {bin_s} s hold no time.", "A bin has a positive width.", "Widen them."
+        )
+    for name, value in (("price of time", time_price), ("price of waiting", waiting_rate)):
+        if not (math.isfinite(value) and value >= 0.0):
+            raise InputError(
+                f"The {name} is {value}.", "It is at least 0 per second.", "Check the prices."
+            )
+    return Request(
+        int(start), int(goal), float(depart), float(latest), chosen, weights,
+        float(time_price), float(waiting_rate), bool(wait),
+    )  # fmt: skip

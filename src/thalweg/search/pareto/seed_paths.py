@@ -1,0 +1,183 @@
+"""Ways over the network, sailed exactly: seeds of a front, and what its labels stand for."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.kernels.codes import OK
+from thalweg.kernels.pareto.edge_tables import sail_path
+from thalweg.kernels.pareto.time_expanded_labels import BinLabels, Clock, Target, trace
+from thalweg.search.pareto.front_problem import Arrivals, Bounds, Gathered, Request, new_work
+from thalweg.search.pareto.front_result import FrontPoint
+from thalweg.search.search_result import SearchResult
+
+_SWITCHES = 24  # places at most where a seed changes from one setting to the next
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+class Way(NamedTuple):
+    """A way as planned: states, edges, choices of setting, and when nodes are left at the earliest.
+
+    ``leave`` is -inf where the ship does not wait [s].
+    """
+
+    states: IntArray
+    edges: IntArray
+    choices: IntArray
+    leave: FloatArray
+
+
+def sail_way(got: Gathered, request: Request, way: Way) -> FrontPoint | None:
+    """Sail a way exactly; None if it is shut."""
+    arrive, depart = np.empty(len(way.states)), np.empty(len(way.states))
+    arrive[0] = request.depart
+    cost, status = sail_path(
+        got.world, way.states, way.edges, way.choices, way.leave, arrive, depart, new_work()
+    )
+    if status != OK:
+        return None
+    return FrontPoint(
+        time=float(arrive[-1] - request.depart),
+        cost=float(cost),
+        path=got.world.network.station[way.states].astype(np.int64),
+        path_arrive=arrive,
+        path_depart=depart,
+        setting=got.world.ship.settings[way.choices],
+    )
+
+
+def seeds(got: Gathered, request: Request, fastest: Way, bounds: Bounds) -> list[FrontPoint]:
+    """Return ways that are likely to lie near the front; the fastest at the highest setting first.
+
+    They are the fastest way, and the best for each price of time in the most favourable weather, at
+    every setting and at two settings one after the other. Those that take too long are left out.
+    A dense front known from the beginning spares most labels.
+    """
+    ways = [fastest]
+    known = {ways[0].states.tobytes()}
+    for rate in bounds.rates:
+        states = bounds.to_goal.way(request.start, float(rate))
+        if len(states) > 1 and states.tobytes() not in known:
+            known.add(states.tobytes())
+            ways.append(_way_through(got, states))
+    sailed = [
+        sail_way(got, request, way._replace(choices=choices))
+        for way in ways
+        for choices in _choices(got, way, len(request.settings))
+    ]
+    return [point for point in sailed if point is not None and point.time <= request.horizon]
+
+
+def _choices(got: Gathered, way: Way, count: int) -> list[IntArray]:
+    """Return settings for the edges of a way: one throughout, or two neighbours in turn."""
+    same = [_allowed(got, way.edges, choice) for choice in range(count)][::-1]
+    legs = len(way.edges)
+    switches = np.unique(np.linspace(1, legs - 1, min(_SWITCHES, max(legs - 1, 0))).astype(int))
+    turns = [
+        np.where(np.arange(legs) < k, fast, slow) for fast, slow in pairwise(same) for k in switches
+    ]
+    return same + turns
+
+
+def _allowed(got: Gathered, edges: IntArray, choice: int) -> IntArray:
+    """Return a setting for every edge; those of fixed time have their own."""
+    prices = got.world.prices
+    sailed = np.isnan(prices.fixed_time[edges])
+    return np.where(sailed, choice, prices.fixed_choice[edges]).astype(np.int64)
+
+
+def fastest_way(got: Gathered, request: Request, arrivals: Arrivals) -> Way:
+    """Return the way of the earliest arrival at the goal."""
+    states = [request.goal]
+    while states[-1] != request.start:
+        states.append(int(arrivals.before[states[-1]]))
+    path = np.array(states[::-1], np.int64)
+    departed = arrivals.departed[path[1:]]
+    waited = departed > arrivals.time[path[:-1]]
+    way = _way_through(got, path)
+    return way._replace(leave=np.where(waited, departed, -math.inf))
+
+
+def way_found(got: Gathered, found: SearchResult) -> Way:
+    """Return the way of a search on a network with one state for each node."""
+    net = got.world.network
+    states = [int(found.path[0])]
+    for node, time in zip(found.path[1:].tolist(), found.path_arrive[1:].tolist()):
+        leaving = np.arange(net.indptr[states[-1]], net.indptr[states[-1] + 1])
+        heads = net.target[leaving]
+        there = (
+            (net.station[heads] == node) & (net.opens[heads] <= time) & (time < net.closes[heads])
+        )
+        states.append(int(heads[there][0]))
+    waited = found.path_depart[:-1] > found.path_arrive[:-1]
+    way = _way_through(got, np.array(states, np.int64))
+    return way._replace(leave=np.where(waited, found.path_depart[:-1], -math.inf))
+
+
+def _way_through(got: Gathered, path: IntArray) -> Way:
+    """Return the way through states, without waiting."""
+    net = got.world.network
+    edges = []
+    for a, b in pairwise(path.tolist()):
+        leaving = np.arange(net.indptr[a], net.indptr[a + 1])
+        joining = leaving[net.target[leaving] == b]
+        edges.append(joining[np.argmin(net.length[joining])])
+    still = np.full(len(edges), -math.inf)
+    return Way(path, np.array(edges, np.int64), np.zeros(len(edges), np.int64), still)
+
+
+def know(target: Target, clock: Clock, point: FrontPoint) -> None:
+    """Lower what is known of arriving at the goal by a point."""
+    b = int(point.time / clock.width) + 1
+    np.minimum(target.upper[b:], point.cost, out=target.upper[b:])
+
+
+def ways_found(got: Gathered, request: Request, labels: BinLabels) -> tuple[list[FrontPoint], int]:
+    """Return the ways of the goal's labels that no earlier label dominates, and how many are shut.
+
+    Every way is sailed again, leg by leg.
+    """
+    goal, count = request.goal, len(request.settings)
+    first, last = int(labels.first[goal]), int(labels.last[goal])
+    start = int(labels.place[goal])
+    cost = labels.cost[start : start + last - first + 1]
+    best = np.minimum.accumulate(np.concatenate(([np.inf], cost[:-1])))
+    slots = np.empty(len(got.world.network.station) * 4 + 16, np.int64)
+    found, dropped = [], 0
+    for slot in start + np.flatnonzero(cost < best):
+        n = int(trace(labels, int(slot), slots))
+        while n < 0:  # ships that may not wait can circle
+            slots = np.empty(2 * len(slots), np.int64)
+            n = int(trace(labels, int(slot), slots))
+        way = _way_of(got, request, labels, slots[:n][::-1], count)
+        point = sail_way(got, request, way)
+        if point is None:
+            dropped += 1
+        elif point.time <= request.horizon * (1.0 + 1e-12):
+            found.append(point)
+    return found, dropped
+
+
+def _way_of(got: Gathered, request: Request, labels: BinLabels, slots: IntArray, count: int) -> Way:
+    code = labels.source[slots[1:], 1].astype(np.int64)
+    left = labels.when[slots[1:], 1].astype(float)
+    edges = code // count
+    states = np.append(got.tails[edges], got.world.network.target[edges[-1]]).astype(np.int64)
+    leave = np.where(np.isnan(left), -math.inf, request.depart + left)
+    return Way(states, edges, code % count, leave)
+
+
+def not_dominated(points: list[FrontPoint]) -> tuple[FrontPoint, ...]:
+    """Return the points that no other dominates, by ascending time."""
+    kept: list[FrontPoint] = []
+    for point in sorted(points, key=lambda p: (p.time, p.cost)):
+        if not kept or point.cost < kept[-1].cost:
+            kept.append(point)
+    return tuple(kept)

@@ -1,0 +1,214 @@
+"""A network and a frozen sea, prepared for many searches between the same places."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels.codes import AXIS_DEPTH, BED_DEPTH, LIMIT_REQUIRED_DEPTH, WATER_LEVEL
+from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArrays
+from thalweg.kernels.leg.table_lookup import TableArrays, table_value
+from thalweg.kernels.search import repeated_search as kernel
+from thalweg.kernels.search import tidal_intervals
+from thalweg.kernels.search.field_bounds import largest_current, largest_speed_field
+from thalweg.search.search_problem import SHRINK, network_arrays, sea_arrays, ship_arrays
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+    from thalweg.sea.frozen_fields import StationFields
+    from thalweg.search.profile_search import Passages
+    from thalweg.ship.tables.performance_table import PerformanceTable
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_MOST_DEPTH = 60.0  # deeper than this the greatest speed is that anywhere [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Waters:
+    """A network and a frozen sea, prepared for many searches.
+
+    Attributes
+    ----------
+    source : Network
+    network : NetworkArrays
+        The same as kernels see it.
+    sea : SeaArrays
+    tails : int32[E]
+        Node every edge leaves.
+    arriving_ptr, arriving : int64[N + 1], int32[E]
+        The edges that arrive at each node.
+    """
+
+    source: Network
+    network: NetworkArrays
+    sea: SeaArrays
+    tails: NDArray[np.int32]
+    arriving_ptr: IntArray
+    arriving: NDArray[np.int32]
+
+    @classmethod
+    def prepare(cls, network: Network, fields: StationFields) -> Waters:
+        """Gather what searches read.
+
+        Raises
+        ------
+        InputError
+            If the fields do not belong to the network.
+        """
+        stations = len(network.station_lat)
+        if fields.values.shape[0] != stations:
+            raise InputError(
+                f"The fields have {fields.values.shape[0]} stations, the network {stations}.",
+                "Fields belong to the network they were frozen for.",
+                "Freeze the sea at the stations of this network.",
+            )
+        order = np.argsort(network.target, kind="stable").astype(np.int32)
+        ptr = np.concatenate(
+            [[0], np.cumsum(np.bincount(network.target, minlength=network.n_nodes))]
+        )
+        sea = sea_arrays(fields, tides=True)
+        tails = np.ascontiguousarray(network.tails(), np.int32)
+        return cls(network, network_arrays(network), sea, tails, ptr.astype(np.int64), order)
+
+    @cached_property
+    def strongest(self) -> NDArray[np.float32]:
+        """Strongest current of every station towards each of sixteen directions [m/s]."""
+        found = np.empty((self.sea.values.shape[0], kernel.SECTORS), np.float32)
+        kernel.strongest_currents(self.sea, found)
+        return found
+
+    @cached_property
+    def by_time(self) -> SeaArrays:
+        """The same fields with all stations of one time close together in memory.
+
+        A search reads few times at many stations; in the fields of a long period these lie so far
+        apart that fetching them takes most of its time.
+        """
+        values = np.ascontiguousarray(self.sea.values.transpose(1, 0, 2))
+        return self.sea._replace(values=values.transpose(1, 0, 2))
+
+    @cached_property
+    def top_current(self) -> float:
+        """Largest current anywhere [m/s]."""
+        return float(largest_current(self.sea))
+
+    @cached_property
+    def charted(self) -> NDArray[np.float32]:
+        """Charted depth of every node [m]: that of the deepest edge that leaves it."""
+        depth = np.full(len(self.network.can_wait), -np.inf, np.float32)
+        has_edges = np.diff(self.network.indptr) > 0
+        if has_edges.any():
+            first = self.network.indptr[:-1][has_edges]
+            open_water = np.isnan(self.network.fixed_time)
+            sailed = np.where(open_water, self.network.depth, np.float32(-np.inf))
+            depth[has_edges] = np.fmax.reduceat(sailed, first)
+        return depth
+
+    def passages(
+        self,
+        table: PerformanceTable | TableArrays,
+        *,
+        start: int,
+        goal: int,
+        setting: int,
+        limits: ArrayLike,
+        top_speed: float,
+        wait: bool = True,
+    ) -> Passages:
+        """Prepare the passages of a ship between two nodes; arguments as in `earliest_arrival`."""
+        count = len(self.network.can_wait)
+        if not (0 <= start < count and 0 <= goal < count and start != goal):
+            raise InputError(
+                f"There are no passages from node {start} to node {goal}.",
+                f"The network has nodes 0 to {count - 1}, and the two differ.",
+                "",
+            )
+        from thalweg.search.profile_search import Passages
+
+        ship = ship_arrays(table, setting, limits)
+        field_top = largest_speed_field(self.sea)
+        fastest = field_top if field_top >= 0.0 else float(top_speed)
+        if not (np.isfinite(fastest) and fastest > 0.0):
+            raise InputError(
+                f"A ship with a top speed of {fastest} m/s gets nowhere.",
+                "A speed is a positive number.",
+                "Check the ship's speeds.",
+            )
+        states = self._states(ship, (start, goal), wait)
+        ahead = self._ahead(ship, goal, fastest, field_top >= 0.0)
+        slowness = SHRINK / (fastest + self.top_current)
+        return Passages(self, ship, states, ahead, (start, goal), slowness, wait)
+
+    def _states(
+        self, ship: ShipArrays, ends: tuple[int, int], wait: bool
+    ) -> tidal_intervals.States:
+        """Return the times afloat of every node; start and goal stay single."""
+        count = len(self.network.can_wait)
+        required = float(ship.limits[LIMIT_REQUIRED_DEPTH])
+        index = self.sea.channel_index
+        varies = index[WATER_LEVEL] >= 0 or index[BED_DEPTH] >= 0
+        changing = np.array(self.network.can_wait)
+        changing[list(ends)] = False
+        counts = np.ones(count, np.int64)
+        split = wait and required > -math.inf and varies
+        if split:
+            tidal_intervals.count_afloat(self.sea, self.charted, changing, required, counts)
+        ptr = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        size = int(ptr[-1])
+        states = tidal_intervals.States(
+            ptr, np.empty(size, np.int32), *(np.empty(size) for _ in range(3))
+        )
+        if not split:
+            changing[:] = False
+        tidal_intervals.fill_afloat(self.sea, self.charted, changing, required, states)
+        return states
+
+    def _ahead(self, ship: ShipArrays, goal: int, fastest: float, field: bool) -> kernel.Ahead:
+        """Return lower bounds of the time to the goal and of every edge [s]."""
+        caps = np.full(1, fastest) if field else _speed_caps(ship, fastest)
+        times = np.empty(len(self.tails))
+        required = float(ship.limits[LIMIT_REQUIRED_DEPTH])
+        kernel.least_times(
+            self.network, self.tails, self.sea, self.strongest, caps, required, times
+        )
+        count = len(self.network.can_wait)
+        ahead = np.empty(count)
+        memory = np.empty(count, np.int32), np.empty(count), np.full(count, -1, np.int32)
+        kernel.backward_bounds(
+            self.arriving_ptr, self.arriving, self.tails, times, goal, ahead, memory
+        )
+        return kernel.Ahead(ahead, times)
+
+
+def _speed_caps(ship: ShipArrays, fastest: float) -> FloatArray:
+    """Return the greatest speed through water by depth [m/s], see
+    `thalweg.kernels.search.repeated_search`.
+    """
+    if ship.needs != 1 << AXIS_DEPTH:
+        return np.full(1, fastest)
+    table = ship.table
+    grids = [
+        table.axis_start[part, 0]
+        + np.arange(table.axis_size[part, 0]) / table.axis_inv_step[part, 0]
+        for part in range(len(table.part_axes))
+        if table.part_axes[part, 0] == AXIS_DEPTH
+    ]
+    depth = np.unique(np.concatenate([*grids, np.arange(0.0, _MOST_DEPTH, kernel.CAP_STEP)]))
+    speed = np.array([_known_speed(table, d, ship.setting) for d in depth])
+    most = np.minimum(np.maximum.accumulate(speed), fastest)
+    up_to = kernel.CAP_STEP * (1.0 + np.arange(int(_MOST_DEPTH / kernel.CAP_STEP)))
+    at = np.minimum(np.searchsorted(depth, up_to), len(depth) - 1)
+    return np.append(most[at], fastest)
+
+
+def _known_speed(table: TableArrays, depth: float, setting: int) -> float:
+    speed, ok = table_value(table, (0.0, 0.0, 0.0, 0.0, 0.0, float(depth)), setting)
+    return float(speed) if ok else 0.0

@@ -1,0 +1,323 @@
+"""Profile search: the routes between two places for every departure of a long period.
+
+A project sails between the same two places hundreds of times. What does not depend on the departure
+is prepared once: the network and the frozen sea as kernels see them and the strongest currents
+(`Waters`), then for each ship the bounds of the time to go and the times afloat (`Passages`).
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels.leg.edge_sailing import NetworkArrays, ShipArrays
+from thalweg.kernels.search import repeated_search as kernel
+from thalweg.kernels.search.tidal_intervals import States
+from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
+from thalweg.search.prepared_network import Waters
+from thalweg.search.search_problem import SHRINK, Problem
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_SPARE = 1e-3  # an arrival this much above a known one is still looked at [s]
+_EAGER = 1.5  # weight of the time to go in a hasty search ...
+_HASTY = 2000  # ... which settles at most so many nodes
+_FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
+_SAME = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """One departure and the way it sails.
+
+    Attributes
+    ----------
+    depart, arrive : float
+        [s]; ``arrive`` is inf when the goal is not reached.
+    nodes : int64[P]
+        From start to goal; empty when not reached.
+    node_arrive, node_depart : float64[P]
+        Arrival at and departure from each node [s]; a later departure is waiting.
+    settled : int
+        Nodes settled to find it.
+    """
+
+    depart: float
+    arrive: float
+    nodes: IntArray
+    node_arrive: FloatArray
+    node_depart: FloatArray
+    settled: int = 0
+
+    @property
+    def found(self) -> bool:
+        """Whether the goal is reached."""
+        return len(self.nodes) > 0
+
+    @property
+    def waiting(self) -> float:
+        """Time lain still [s]."""
+        return float(np.sum(self.node_depart - self.node_arrive))
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """The passages of many departures.
+
+    Attributes
+    ----------
+    passages : tuple of Passage
+        By departure, ascending.
+    searched : int
+        How many of them were searched; the others wait for the next one of these and sail with it.
+    """
+
+    passages: tuple[Passage, ...]
+    searched: int
+
+    @property
+    def departures(self) -> FloatArray:
+        """Departures [s]."""
+        return np.array([p.depart for p in self.passages])
+
+    @property
+    def arrivals(self) -> FloatArray:
+        """Earliest arrivals [s]; inf where there is none."""
+        return np.array([p.arrive for p in self.passages])
+
+
+@dataclass(frozen=True, eq=False)
+class Passages:
+    """All passages of one ship between two nodes, searched when they are asked for.
+
+    Attributes
+    ----------
+    waters : Waters
+    ship : ShipArrays
+    states : States
+        Times afloat of every node.
+    ahead : Ahead
+        Lower bounds of the time to go.
+    ends : tuple of int
+        Start and goal.
+    slowness : float
+        Lower bound of the time per metre [s/m].
+    wait : bool
+        Whether the ship may wait.
+    """
+
+    waters: Waters
+    ship: ShipArrays
+    states: States
+    ahead: kernel.Ahead
+    ends: tuple[int, int]
+    slowness: float
+    wait: bool
+
+    @property
+    def shortest(self) -> float:
+        """Lower bound of the time of any passage [s]; inf if no tide ever opens a way."""
+        return float(self.ahead.node[self.ends[0]])
+
+    @cached_property
+    def _network(self) -> NetworkArrays:
+        given = self.waters.network
+        return given._replace(opens=np.array(given.opens), closes=np.array(given.closes))
+
+    @cached_property
+    def _marks(self) -> kernel.Marks:
+        return kernel.new_marks(len(self.states.node))
+
+    @cached_property
+    def _room(self) -> tuple[NDArray[np.int32], FloatArray, FloatArray]:
+        count = len(self.states.node)
+        return np.empty(count, np.int32), np.empty(count), np.empty(count)
+
+    def sail(
+        self, depart: float, *, known: float = math.inf, arrive_by: float = math.inf
+    ) -> Passage:
+        """Find the earliest arrival of one departure.
+
+        Parameters
+        ----------
+        depart : float
+            [s].
+        known : float
+            An arrival that is known to be possible, or a guess [s]; it saves work.
+        arrive_by : float
+            Later arrivals are of no use [s].
+
+        Returns
+        -------
+        Passage
+            The same as that of `earliest_arrival`, to within ties (where the ship may wait at some
+            nodes only, to within a wave of `thalweg.search.limited_waiting`).
+        """
+        depart = float(depart)
+        latest = min(float(arrive_by), float(self.waters.sea.times[-1]))
+        longest = (latest - depart) * self._dearest
+        if not (math.isfinite(depart) and self.shortest <= longest):
+            return _nothing(depart)
+        limit = (known - depart) * self._dearest + _SPARE if known < math.inf else 0.0
+        search = self._from_berths if self._has_berths else self._search
+        if known == math.inf and not self._has_berths:
+            slack = 1.6 * self.shortest + _FIRST_SLACK
+            limit = self._possible(depart, min(slack, longest), latest)
+        while True:
+            limit = limit if limit >= self.shortest else 1.6 * self.shortest + _FIRST_SLACK
+            found = search(depart, min(limit, longest), latest)
+            if found.found or limit >= longest:
+                return found
+            limit = max(2.0 * limit, 1.6 * self.shortest + _FIRST_SLACK)
+
+    @cached_property
+    def _dearest(self) -> float:
+        """The largest penalty factor: what a second costs at most."""
+        return float(np.max(self.waters.network.factor, initial=1.0))
+
+    def _possible(self, depart: float, limit: float, latest: float) -> float:
+        """Return a cost [s] that some way has, found by a hasty search; 0 if it finds none."""
+        _, cost = self._labelled(depart, limit, latest, _EAGER, _HASTY)
+        kernel.forget(self._marks)
+        return cost + _SPARE if cost < math.inf else 0.0
+
+    @cached_property
+    def _has_berths(self) -> bool:
+        """Whether the ship may wait at some nodes but not at all of them."""
+        return self.wait and berths_matter(self.waters.source)
+
+    def _from_berths(self, depart: float, limit: float, latest: float) -> Passage:
+        """Search where waiting is allowed at some nodes only (`thalweg.search.limited_waiting`)."""
+        waters = self.waters
+        top = SHRINK / self.slowness - waters.top_current
+        given = Problem(waters.network, waters.sea, self.ship, top, waters.top_current)
+        found = earliest_from_berths(
+            waters.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
+            limits=self.ship.limits, arrive_by=min(depart + limit, latest),
+        )  # fmt: skip
+        return Passage(
+            depart, found.arrive, found.path, found.path_arrive, found.path_depart, found.settled
+        )
+
+    def _search(self, depart: float, limit: float, latest: float) -> Passage:
+        trip, cost = self._labelled(depart, limit, latest)
+        marks = self._marks
+        settled = int(marks.counts[kernel.SETTLED])
+        if cost == math.inf:
+            kernel.forget(marks)
+            return replace(_nothing(depart), settled=settled)
+        nodes, arrive, leave = self._room
+        count = kernel.trace(self.states, marks, trip, nodes, arrive, leave)
+        kernel.forget(marks)
+        path, when, out = nodes[-count:], arrive[-count:].copy(), leave[-count:].copy()
+        return Passage(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
+
+    def _labelled(
+        self,
+        depart: float,
+        limit: float,
+        latest: float,
+        eager: float = 1.0,
+        most: int = sys.maxsize,
+    ) -> tuple[kernel.Trip, float]:
+        """Search one departure; return it and its cost. The marks hold its labels."""
+        first = self.states.ptr
+        start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
+        trip = kernel.Trip(
+            start, goal, depart, float(limit), latest, self.slowness, bool(self.wait), eager, most
+        )
+        sea = self.waters.by_time
+        cost = kernel.sail_once(
+            self._network, self.states, sea, self.ship, trip, self.ahead, self._marks
+        )
+        return trip, float(cost)
+
+    def profile(self, departures: ArrayLike, *, arrive_by: float = math.inf) -> Profile:
+        """Find the passages of many departures.
+
+        Parameters
+        ----------
+        departures : array_like
+            [s], ascending.
+        arrive_by : float
+            Later arrivals are of no use [s].
+
+        Returns
+        -------
+        Profile
+
+        Notes
+        -----
+        Where a ship may wait at the start, and no edge has a penalty, arrivals never fall with the
+        departure. So the last departure's arrival bounds that of those before it, and between two
+        departures that arrive together all arrive together: these wait at the start and sail with
+        the later one.
+        """
+        times = np.asarray(departures, float).ravel()
+        if times.size == 0 or not np.all(np.isfinite(times)) or np.any(np.diff(times) <= 0.0):
+            raise InputError("The departures do not ascend.", "Times in order [s].", "Sort them.")
+        found: dict[int, Passage] = {}
+        waits = self.wait and bool(self.waters.network.can_wait[self.ends[0]])
+        if waits and self._dearest == 1.0:
+            self._halve(times, found, arrive_by)
+        else:
+            for k, t in enumerate(times):
+                found[k] = self.sail(t, arrive_by=arrive_by)
+        searched = len(found)
+        following = len(times) - 1
+        for k in range(len(times) - 1, -1, -1):
+            if k in found:
+                following = k
+            else:
+                found[k] = _sooner(found[following], float(times[k]))
+        return Profile(tuple(found[k] for k in range(len(times))), searched)
+
+    def _halve(self, times: FloatArray, found: dict[int, Passage], arrive_by: float) -> None:
+        last = len(times) - 1
+        for k in {0, last}:
+            found[k] = self.sail(times[k], arrive_by=arrive_by)
+        open_ranges = [(0, last)] if last > 0 else []
+        while open_ranges:
+            low, high = open_ranges.pop()
+            if high - low < 2 or _together(found[low], found[high]):
+                continue
+            middle = (low + high) // 2
+            later = found[high]
+            known = (
+                later.arrive if later.arrive - times[middle] < _worth_knowing(self) else math.inf
+            )
+            found[middle] = self.sail(times[middle], known=known, arrive_by=arrive_by)
+            open_ranges += [(low, middle), (middle, high)]
+
+
+def _worth_knowing(passages: Passages) -> float:
+    """Return how long a passage may take for its arrival to bound an earlier one [s]."""
+    return 3.0 * passages.shortest + _FIRST_SLACK
+
+
+def _together(first: Passage, second: Passage) -> bool:
+    """Whether two departures arrive at one moment, or the first not at all."""
+    if not first.found:
+        return True  # who leaves later does not arrive either
+    return second.found and abs(second.arrive - first.arrive) <= _SAME
+
+
+def _sooner(passage: Passage, depart: float) -> Passage:
+    """Return a passage whose ship waits at the start since an earlier moment."""
+    if not passage.found:
+        return replace(passage, depart=depart, settled=0)
+    arrive = passage.node_arrive.copy()
+    arrive[0] = depart
+    return replace(passage, depart=depart, node_arrive=arrive, settled=0)
+
+
+def _nothing(depart: float) -> Passage:
+    none = np.empty(0)
+    return Passage(depart, math.inf, np.empty(0, np.int64), none, none)

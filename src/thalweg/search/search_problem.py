@@ -1,0 +1,227 @@
+"""From the types that travel between rooms to the arrays that kernels see."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.geodesy import distance
+from thalweg.kernels.codes import CHANNELS, LIMIT_REQUIRED_DEPTH, LIMITS
+from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArrays
+from thalweg.kernels.leg.table_lookup import ARRAY_TYPES, TableArrays, axes_needed
+from thalweg.kernels.search.field_bounds import largest_current, largest_speed_field, tidal_extremes
+from thalweg.network.distance_bounds import BOUND_RADIUS, SHRINK, distance_bounds
+from thalweg.search.tidal_states import tidal_states
+
+if TYPE_CHECKING:
+    from thalweg.network.network import Network
+    from thalweg.sea.frozen_fields import StationFields
+    from thalweg.ship.tables.performance_table import PerformanceTable
+
+FloatArray = NDArray[np.float64]
+
+__all__ = [
+    "BOUND_RADIUS",
+    "SHRINK",
+    "Problem",
+    "canal_speed",
+    "distance_bounds",
+    "network_arrays",
+    "plain",
+    "problem",
+    "sea_arrays",
+    "ship_arrays",
+]
+
+
+class Problem(NamedTuple):
+    """A network, a sea and a ship as kernels see them, with bounds of what the ship can do.
+
+    Attributes
+    ----------
+    network, sea, ship
+        Arrays for `thalweg.kernels.search.label_setting`.
+    top_speed : float
+        Upper bound of the speed through water [m/s].
+    top_current : float
+        Largest current in the fields [m/s].
+    """
+
+    network: NetworkArrays
+    sea: SeaArrays
+    ship: ShipArrays
+    top_speed: float
+    top_current: float
+
+    @property
+    def fastest(self) -> float:
+        """Upper bound of the speed over ground [m/s]."""
+        return self.top_speed + self.top_current
+
+
+class _Borrowed:
+    """The memory of a read-only array, offered as writable: kernels never write to their input.
+
+    One numba signature then serves frozen and ordinary arrays alike.
+    """
+
+    def __init__(self, array: NDArray[Any]) -> None:
+        self.array = array
+        address = array.__array_interface__["data"][0]
+        self.__array_interface__ = {**array.__array_interface__, "data": (address, False)}
+
+
+def plain(values: ArrayLike, dtype: type) -> NDArray[Any]:
+    """Return values as a C-contiguous array of one type that numba sees as writable."""
+    array: NDArray[Any] = np.ascontiguousarray(values, dtype)
+    return array if array.flags.writeable else np.asarray(_Borrowed(array))
+
+
+def network_arrays(network: Network) -> NetworkArrays:
+    """Return the arrays of a network that searches read."""
+    count = len(network.can_wait)
+    return NetworkArrays(
+        plain(network.indptr, np.int64),
+        plain(network.target, np.int32),
+        plain(network.length, np.float64),
+        plain(network.course, np.float32),
+        plain(network.depth, np.float32),
+        plain(network.factor, np.float32),
+        plain(network.via_ptr, np.int64),
+        plain(network.via_a, np.int32),
+        plain(network.via_b, np.int32),
+        plain(network.via_w, np.float32),
+        plain(network.via_s, np.float32),
+        plain(network.can_wait, np.bool_),
+        np.arange(count, dtype=np.int32),
+        np.full(count, -np.inf),
+        np.full(count, np.inf),
+        np.full(count, np.inf),
+        plain(network.fixed_time, np.float64),
+    )
+
+
+def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
+    """Return frozen fields as kernels see them, with tidal extremes if asked.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two times, or times that do not increase.
+    """
+    times = plain(fields.times, np.float64)
+    if len(times) < 2 or not np.all(np.diff(times) > 0.0):
+        raise InputError(
+            f"The fields of the sea have {len(times)} times, or times that do not increase.",
+            "A search interpolates between at least two increasing times.",
+            "Freeze the sea over a period, not an instant.",
+        )
+    index = plain(fields.channel_index, np.int64)
+    values = plain(fields.values, np.float32)
+    channels = np.zeros(values.shape[2], np.int64)
+    present = np.flatnonzero(index >= 0)
+    channels[index[present]] = present
+    if len(index) != CHANNELS or len(present) != len(channels) or values.shape[1] != len(times):
+        raise InputError(
+            f"Fields of shape {values.shape} do not go with {len(times)} times and "
+            f"{len(present)} channels.",
+            "Values are stations by times by present channels.",
+            "Build the fields with Sea.freeze_stations.",
+        )
+    count = values.shape[0] if tides else 0
+    highest, deepest = np.empty(count, np.float32), np.empty(count, np.float32)
+    sea = SeaArrays(times, values, index, channels, highest, deepest)
+    if tides:
+        tidal_extremes(sea)
+    return sea
+
+
+def ship_arrays(
+    table: PerformanceTable | TableArrays, setting: int, limits: ArrayLike
+) -> ShipArrays:
+    """Return a ship at one setting as kernels see it.
+
+    Raises
+    ------
+    InputError
+        If the setting is not one of the table's.
+    """
+    raw = table if isinstance(table, TableArrays) else table.kernel_arrays()
+    count = int(raw.n_settings)
+    if not 0 <= setting < count:
+        raise InputError(
+            f"The ship has no setting {setting}.", f"It has settings 0 to {count - 1}.", ""
+        )
+    kinds: dict[str, Any] = {
+        name: plain(getattr(raw, name), kind) for name, kind in ARRAY_TYPES.items()
+    }
+    arrays = raw._replace(n_settings=count, **kinds)
+    bounds = plain(limits, np.float64)
+    if bounds.shape != (LIMITS,) or np.any(np.isnan(bounds)):
+        raise InputError(
+            f"The limits {bounds} are not {LIMITS} numbers.",
+            "They are required depth [m], wave height [m] and wind speed [m/s].",
+            "Use -inf or +inf for what is not limited.",
+        )
+    return ShipArrays(arrays, int(setting), bounds, int(axes_needed(arrays)))
+
+
+def problem(
+    network: Network,
+    fields: StationFields,
+    table: PerformanceTable | TableArrays,
+    *,
+    setting: int,
+    limits: ArrayLike,
+    top_speed: float,
+    ends: tuple[int, int | None] | None = None,
+) -> Problem:
+    """Gather what a search reads.
+
+    With ``ends`` (start and goal) the nodes between them that fall dry become several states.
+
+    Raises
+    ------
+    InputError
+        If the parts do not fit together or the ship has no speed.
+    """
+    ship = ship_arrays(table, setting, limits)
+    sea = sea_arrays(fields, tides=ship.limits[LIMIT_REQUIRED_DEPTH] > -np.inf)
+    stations = len(network.station_lat)
+    if sea.values.shape[0] != stations:
+        raise InputError(
+            f"The fields have {sea.values.shape[0]} stations, the network {stations}.",
+            "Fields belong to the network they were frozen for.",
+            "Freeze the sea at the stations of this network.",
+        )
+    field_top = largest_speed_field(sea)
+    fastest = field_top if field_top >= 0.0 else float(top_speed)
+    if not (np.isfinite(fastest) and fastest > 0.0):
+        raise InputError(
+            f"A ship with a top speed of {fastest} m/s gets nowhere.",
+            "A speed is a positive number.",
+            "Check the ship's speeds.",
+        )
+    arrays = network_arrays(network)
+    if ends is not None:
+        keep = ends[0], -1 if ends[1] is None else ends[1]
+        arrays = tidal_states(arrays, sea, ship.limits, keep)
+    return Problem(arrays, sea, ship, fastest, float(largest_current(sea)))
+
+
+def canal_speed(network: Network) -> float:
+    """Return the largest speed [m/s], as the crow flies, of edges of fixed time; 0 without any.
+
+    A bound by speed holds only with at least this one: a slow ship may gain on it in a canal.
+    """
+    edge = np.flatnonzero(~np.isnan(network.fixed_time))
+    if len(edge) == 0:
+        return 0.0
+    tail = np.searchsorted(network.indptr, edge, side="right") - 1
+    head = network.target[edge]
+    lat, lon = network.station_lat, network.station_lon
+    away = distance(lat[tail], lon[tail], lat[head], lon[head])
+    return float(np.max(away / network.fixed_time[edge]))

@@ -1,0 +1,1 @@
+"""Ship files: schema, reader and builder."""

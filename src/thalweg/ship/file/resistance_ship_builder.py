@@ -1,0 +1,255 @@
+"""Put a ship together from the parts that its file names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.units import GRAVITY, KNOT
+from thalweg.ship.file.ship_builder import FORCES, build_limits, build_loss, lightship
+from thalweg.ship.hull.hull import Hull, require
+from thalweg.ship.hull.hull_estimates import estimate, hull_at
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.model_protocol import Estimate
+from thalweg.ship.models.added_resistance_model import build_waves, build_wind
+from thalweg.ship.models.calm_water_model import CALM_WATER, build_calm_water
+from thalweg.ship.models.engine_plant import Plant, build_plant
+from thalweg.ship.models.force_balance import Balance
+from thalweg.ship.models.kwon_resistance_model import KwonOnResistance
+from thalweg.ship.models.propulsion_model import build_propulsion
+from thalweg.ship.models.resistance_model import Orders, ResistanceModel
+from thalweg.ship.models.squat_model import build_squat
+
+RUDDER = ("none", "schless_2023")
+_FACTS = ("hull", "propulsion", "engine", "loading", "models", "water")
+
+
+def compose_model(
+    data: Mapping[str, Any], hull: Hull, loading: Loading
+) -> ResistanceModel | KwonOnResistance:
+    """Return the model of a ship file that chooses a calm-water resistance.
+
+    Parameters
+    ----------
+    data : mapping
+        Checked data of the ship file.
+    hull : Hull
+    loading : Loading
+
+    Raises
+    ------
+    InputError
+        For unknown methods (with near matches), methods that do not go together, and missing data.
+    """
+    models = data.get("models", {})
+    calm = models.get("calm_water", "none")
+    if calm in CALM_WATER:
+        return _resistance_model(data, hull, loading)
+    if calm not in ("none", "cubic", "table"):
+        raise unknown_name("calm-water model", calm, ("none", "cubic", "table", *CALM_WATER))
+    idle = [name for name in FORCES if models.get(name, "none") != "none"]
+    raise InputError(
+        f"The ship file chooses {', '.join(f'models.{name}' for name in idle)}, but has no "
+        "resistance they could act on.",
+        f"They go with models.calm_water among {', '.join(CALM_WATER)}.",
+        "Choose one of those, or speed_loss: kwon_2008 for a ship with known speeds.",
+        key=f"models.{idle[0]}",
+    )
+
+
+def _resistance_model(
+    data: Mapping[str, Any], hull: Hull, loading: Loading
+) -> ResistanceModel | KwonOnResistance:
+    models = data.get("models", {})
+    loss = build_loss(data, hull, loading)
+    twice = [name for name in ("waves", "wind") if models.get(name, "none") != "none"]
+    if loss is not None and twice:
+        raise InputError(
+            f"speed_loss: {models['speed_loss']} is chosen together with "
+            f"{' and '.join(f'models.{name}' for name in twice)}.",
+            "Kwon's loss holds what wind and waves take; both would count the weather twice.",
+            "Leave out the one or the other.",
+            key="models.speed_loss",
+        )
+    if build_squat(data, hull, loading) is not None:
+        raise InputError(
+            f"squat: {models['squat']} is for ships with known calm-water speeds.",
+            "Ships with a resistance feel the bed by models.shallow_water.",
+            "Leave squat out; the sinkage is shown for every ship whose particulars are known.",
+            key="models.squat",
+        )
+    if models.get("rudder", "none") not in RUDDER:
+        raise unknown_name("rudder method", models["rudder"], RUDDER)
+    _check_afloat(loading)
+    full = estimate(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
+    if full.number("draught_m") is None:
+        deep = loading.draught_full
+        ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
+        full = Hull({**full.values, **ends}, full.estimated)
+    full = _displaced(full, loading)
+    draughts = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
+
+    def balance_at(load_factor: float) -> Balance:
+        floated = full
+        with np.errstate(all="ignore"):
+            if len(draughts) > 1:
+                wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
+                floated = hull_at(estimate(full, wanted), loading, load_factor)
+            balance = _balance(data, floated)
+        _check_answers(balance, _usual_speed(balance), load_factor)
+        return balance
+
+    plant = build_plant(data)
+    orders, guessed = _orders(data, balance_at(1.0), plant)
+    light = hull_at(full, loading, 0.0).number("displacement_m3")
+    guessed = (*guessed, *lightship(data, light or np.nan))
+    plant = replace(plant, estimated=(*plant.estimated, *guessed))
+    facts = {name: data[name] for name in _FACTS if name in data}
+    model = ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
+    with np.errstate(all="ignore"):
+        speeds = model.speeds(1.0)
+    _check_answers(model.balance(1.0), speeds, 1.0)
+    if orders.kind == "speed":
+        model.with_speeds(model.speeds(1.0), 1.0)  # refuses speeds beyond the engines
+    return model if loss is None else KwonOnResistance(model, loss)
+
+
+def _check_afloat(loading: Loading) -> None:
+    """Refuse a hull that lies on the water.
+
+    Raises
+    ------
+    InputError
+    """
+    if loading.draught_empty <= 0.0:
+        raise InputError(
+            "The draught is 0 m.",
+            "A resistance needs a hull that lies in the water, full and empty.",
+            "Correct hull.draught_m, or loading.draught_empty_m.",
+            key="hull.draught_m" if loading.draught_full <= 0.0 else "loading.draught_empty_m",
+        )
+
+
+def _usual_speed(balance: Balance) -> NDArray[np.float64]:
+    """A speed [m/s] that every method has a number for: a Froude number of 0.18."""
+    length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
+    return np.array([0.18 * np.sqrt(GRAVITY * length)])
+
+
+def _check_answers(balance: Balance, speeds: NDArray[np.float64], load_factor: float) -> None:
+    """Refuse a hull for which the chosen methods have no number in calm water.
+
+    Raises
+    ------
+    InputError
+    """
+    calm = {
+        "depth": np.full(speeds.shape, np.inf),
+        **{name: np.zeros(speeds.shape) for name in ("wind_speed", "wind_angle")},
+        **{name: np.zeros(speeds.shape) for name in ("wave_height", "wave_angle", "wave_period")},
+    }
+    with np.errstate(all="ignore"):
+        power = balance.brake_power(calm, np.where(np.isfinite(speeds), speeds, 5.0))
+    if (np.isfinite(speeds) & (speeds > 0.0) & np.isfinite(power) & (power > 0.0)).all():
+        return
+    outside = [str(note) for note in balance.calm.notes(np.array([5.0]), np.array([np.inf]))]
+    loaded = "" if load_factor == 1.0 else f" at load factor {load_factor:g}"
+    raise InputError(
+        f"{balance.calm.method} has no resistance for this hull{loaded}.",
+        "; ".join(outside) or "Its particulars lie beyond what the method was made for.",
+        "Check the particulars, or choose another calm_water method.",
+    )
+
+
+def _displaced(hull: Hull, loading: Loading) -> Hull:
+    """The hull with the full displacement of the loading, when it gives none itself."""
+    volume = loading.displacement_full
+    if hull.number("displacement_m3") is not None or not np.isfinite(volume):
+        return estimate(hull, ("displacement_m3", "block_coefficient"))
+    deeper = loading.draught_full - float(hull.values["draught_m"])
+    values = {**hull.values, "displacement_m3": volume}
+    for key in ("draught_m", "draught_fore_m", "draught_aft_m"):
+        values[key] = float(hull.values[key]) + deeper
+    return estimate(Hull(values, hull.estimated), ("block_coefficient",))
+
+
+def _balance(data: Mapping[str, Any], hull: Hull) -> Balance:
+    calm = build_calm_water(data, hull)
+    rudder = data.get("models", {}).get("rudder", "none")
+    if rudder != "none":
+        require(hull, ("rudder_area_m2",), rudder, instead="rudder: none")
+    return Balance(
+        calm=calm,
+        propulsion=build_propulsion(data, calm.hull),
+        waves=build_waves(data, calm.hull),
+        wind=build_wind(data, calm.hull),
+        rudder_area=(hull.number("rudder_area_m2") or 0.0) if rudder != "none" else 0.0,
+    )
+
+
+def _orders(
+    data: Mapping[str, Any], balance: Balance, plant: Plant
+) -> tuple[Orders, tuple[Estimate, ...]]:
+    """Powers or speeds that can be ordered, and whether they were our guess."""
+    powers, speeds = data.get("powers_kw"), data.get("speeds_kn")
+    if powers is not None and speeds is not None:
+        raise InputError(
+            "The ship file gives both powers_kw and speeds_kn.",
+            "A ship keeps either a power or a speed.",
+            "Keep one of them.",
+            key="powers_kw",
+        )
+    if powers is not None:
+        _check_powers(powers, plant)
+        return Orders("power", tuple(sorted(p * 1000.0 for p in powers))), ()
+    if speeds is not None:
+        _check_once(speeds, "speeds_kn", "speed")
+        return Orders("speed", tuple(sorted(s * KNOT for s in speeds))), ()
+    if np.isfinite(plant.largest_power):
+        least = plant.loads[0] * plant.rating / plant.largest_power
+        shares = [share for share in (0.25, 0.4, 0.55, 0.7, 0.85) if share >= least] or [1.0]
+        powers = tuple(share * plant.largest_power for share in shares)
+        words = f"{100 * shares[0]:g} to {100 * shares[-1]:g} % of what the engines give"
+        return Orders("power", powers), (Estimate("powers_kw", powers[-1] / 1e3, words),)
+    usual = float(_usual_speed(balance)[0])
+    return Orders("speed", (usual,)), (Estimate("speeds_kn", usual / KNOT, "Froude number 0.18"),)
+
+
+def _check_once(values: tuple[float, ...], key: str, words: str) -> None:
+    """Refuse settings that are the same.
+
+    Raises
+    ------
+    InputError
+    """
+    if len(set(values)) != len(values):
+        raise InputError(
+            f"{key} has a {words} twice.",
+            f"Each {words} is one setting.",
+            "Remove one of them.",
+            key=key,
+        )
+
+
+def _check_powers(powers: tuple[float, ...], plant: Plant) -> None:
+    _check_once(powers, "powers_kw", "power")
+    least = plant.loads[0] * plant.rating
+    if np.isfinite(least) and min(powers) * 1000.0 < least * (1 - 1e-9):
+        raise InputError(
+            f"powers_kw asks for {min(powers):g} kW.",
+            f"One engine gives no less than {least / 1000:g} kW (engine.least_load).",
+            "Raise it, or correct engine.least_load.",
+            key="powers_kw",
+        )
+    if max(powers) * 1000.0 > plant.largest_power * (1 + 1e-9):
+        raise InputError(
+            f"powers_kw asks for {max(powers):g} kW.",
+            f"The engines give {plant.largest_power / 1000:g} kW.",
+            "Lower it, or correct engine.power_kw.",
+            key="powers_kw",
+        )

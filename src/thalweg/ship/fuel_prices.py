@@ -1,0 +1,252 @@
+"""What a ship burns, inside and outside emission control areas, and what it pays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from numbers import Real
+from typing import Any, Final
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.units import DAY, TONNE
+from thalweg.ship.methods.engine.fuel_properties import Fuel, fuel_named
+
+WHAT: Final = ("fuel", "cost", "co2")
+
+
+@dataclass(frozen=True)
+class FuelTerms:
+    """Fuels and prices of a ship.
+
+    Attributes
+    ----------
+    outside, inside : Fuel or None
+        Burnt outside and inside emission control areas; None when the ship file names none.
+    price_outside, price_inside : float
+        Per kilogram, in ``currency``; NaN when unknown.
+    eca_price_factor : float
+        Price inside over price outside; NaN where they are two prices of their own.
+    own_carbon : float or None
+        CO2 per fuel [kg/kg] given for the ship itself, of the fuel burnt outside.
+    currency : str
+    time_price : float
+        Price of time (hire) [currency/s].
+    speed_price : float
+        Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
+        van Halem (2019); NaN when unknown. It stands for fuel where fuel has no price.
+    """
+
+    outside: Fuel | None
+    inside: Fuel | None
+    price_outside: float
+    price_inside: float
+    eca_price_factor: float = 1.0
+    own_carbon: float | None = None
+    currency: str = ""
+    time_price: float = 0.0
+    speed_price: float = math.nan
+
+    @property
+    def by_speed(self) -> bool:
+        """Whether sailing costs by its cubed speed, since fuel has no price."""
+        return math.isnan(self.price_outside) and not math.isnan(self.speed_price)
+
+    @property
+    def carbon_outside(self) -> float:
+        """CO2 per fuel burnt outside control areas [kg/kg]; NaN when unknown."""
+        return _carbon(self.outside, self.own_carbon)
+
+    @property
+    def carbon_inside(self) -> float:
+        """CO2 per fuel burnt inside control areas [kg/kg]; NaN when unknown."""
+        return _carbon(self.inside, self.own_carbon if self.inside is self.outside else None)
+
+    @property
+    def mass_inside(self) -> float:
+        """Mass burnt inside for one of the fuel burnt outside, of the same heat; 1 for one fuel."""
+        if self.inside is None or self.outside is None or self.inside is self.outside:
+            return 1.0
+        return self.outside.heating_value / self.inside.heating_value
+
+    def per_kg(self, what: str, inside: bool) -> float:
+        """Return what one kilogram of fuel stands for.
+
+        Parameters
+        ----------
+        what : {"fuel", "cost", "co2"}
+            Mass burnt [kg], money [``currency``] or CO2 [kg].
+        inside : bool
+            Inside an emission control area or outside.
+
+        Returns
+        -------
+        float
+            Per kilogram as the ship's model tells fuel, which is the fuel burnt outside; inside,
+            another fuel burns by the same heat (`mass_inside`). NaN when unknown.
+
+        Raises
+        ------
+        InputError
+            If ``what`` is none of the three.
+        """
+        if what not in WHAT:
+            raise unknown_name("sum of fuel", str(what), WHAT)
+        mass = self.mass_inside if inside else 1.0
+        if what == "cost":
+            return mass * (self.price_inside if inside else self.price_outside)
+        if what == "co2":
+            return mass * (self.carbon_inside if inside else self.carbon_outside)
+        return mass
+
+    def with_prices(
+        self,
+        usd_per_t: float | None = None,
+        eca_price_factor: float | None = None,
+        *,
+        time_usd_per_day: float | None = None,
+    ) -> FuelTerms:
+        """Return the terms with other prices.
+
+        Parameters
+        ----------
+        usd_per_t : float, optional
+            Price of the fuel burnt outside [USD/t]; prices are in USD then. Without
+            ``eca_price_factor`` the price inside keeps its ratio to it.
+        eca_price_factor : float, optional
+            Price inside over price outside.
+        time_usd_per_day : float, optional
+            Price of time [USD/day].
+
+        Raises
+        ------
+        InputError
+            For a price below zero, a factor not above zero, numbers that are not finite, a factor
+            without any price, or US dollars beside prices in another currency.
+        """
+        _check("price of fuel", usd_per_t, "USD/t", zero=True)
+        _check("price factor inside control areas", eca_price_factor, "", zero=False)
+        _check("price of time", time_usd_per_day, "USD/day", zero=True)
+        outside = self.price_outside if usd_per_t is None else usd_per_t / TONNE
+        if eca_price_factor is not None and math.isnan(outside):
+            raise InputError(
+                "A price factor inside control areas was given, but fuel has no price.",
+                "The factor multiplies the price of fuel outside them.",
+                "Give the price of fuel, too.",
+                field="eca_price_factor",
+            )
+        self._same_currency(usd_per_t, time_usd_per_day)
+        factor = self._ratio() if eca_price_factor is None else eca_price_factor
+        keeps = usd_per_t is None and eca_price_factor is None
+        dollars = usd_per_t is not None or time_usd_per_day is not None
+        return replace(
+            self,
+            price_outside=outside,
+            price_inside=self.price_inside if keeps else outside * factor,
+            eca_price_factor=self.eca_price_factor if keeps else factor,
+            currency="USD" if dollars else self.currency,
+            time_price=self.time_price if time_usd_per_day is None else time_usd_per_day / DAY,
+        )
+
+    def _ratio(self) -> float:
+        """Return the price inside over that outside; 1 where nothing tells it."""
+        if not math.isnan(self.eca_price_factor):
+            return self.eca_price_factor
+        known = self.price_outside > 0.0 and math.isfinite(self.price_inside)
+        return self.price_inside / self.price_outside if known else 1.0
+
+    def _same_currency(self, usd_per_t: float | None, time_usd_per_day: float | None) -> None:
+        """Refuse dollars beside what stays in another currency."""
+        sailing = not math.isnan(self.price_outside) or self.by_speed
+        stays = (usd_per_t is None and sailing) or (
+            time_usd_per_day is None and self.time_price > 0.0
+        )
+        given = usd_per_t is not None or time_usd_per_day is not None
+        if given and stays and self.currency not in ("", "USD"):
+            raise InputError(
+                f"Prices in US dollars were given for a ship with prices in {self.currency}.",
+                "All prices of a ship are in one currency.",
+                "Give both the price of fuel and the price of time, or change the ship file.",
+                currency=self.currency,
+            )
+
+
+def fuel_terms(data: Mapping[str, Any]) -> FuelTerms:
+    """Read fuels and prices from a ship file.
+
+    Without ``eca_type`` the ship burns the same fuel inside; the price inside is
+    ``eca_price_per_t``, or ``price_per_t`` times ``eca_price_factor``. The price of time is
+    ``costs.hire_per_day`` or ``costs.per_week``; ``costs.per_second_per_cubed_speed`` stands for
+    the price of fuel where there is none.
+
+    Raises
+    ------
+    InputError
+        For unknown fuels, two prices for the same thing, and two currencies.
+    """
+    given, costs = data.get("fuel", {}), data.get("costs", {})
+    outside = fuel_named(given["type"]) if "type" in given else None
+    inside = fuel_named(given["eca_type"]) if "eca_type" in given else outside
+    if "eca_price_per_t" in given and "eca_price_factor" in given:
+        raise InputError(
+            "The price inside control areas is given twice.",
+            "It is fuel.eca_price_per_t, or fuel.price_per_t times fuel.eca_price_factor.",
+            "Keep one of them.",
+            key="fuel.eca_price_factor",
+        )
+    price = given.get("price_per_t", math.nan)
+    factor = math.nan if "eca_price_per_t" in given else given.get("eca_price_factor", 1.0)
+    own = given.get("carbon_factor")
+    return FuelTerms(
+        outside=outside,
+        inside=outside if inside == outside else inside,
+        price_outside=price / TONNE,
+        price_inside=given.get("eca_price_per_t", price * factor) / TONNE,
+        eca_price_factor=factor,
+        own_carbon=None if own is None else float(own),
+        currency=_currency(given, costs),
+        time_price=_time_price(costs),
+        speed_price=float(costs.get("per_second_per_cubed_speed", math.nan)),
+    )
+
+
+def _time_price(costs: Mapping[str, Any]) -> float:
+    if "hire_per_day" in costs and "per_week" in costs:
+        raise InputError(
+            "The price of time is given twice.",
+            "It is costs.hire_per_day or costs.per_week.",
+            "Keep one of them.",
+            key="costs.hire_per_day",
+        )
+    return float(costs.get("hire_per_day", costs.get("per_week", 0.0) / 7.0)) / DAY
+
+
+def _currency(given: Mapping[str, Any], costs: Mapping[str, Any]) -> str:
+    named = {section["currency"] for section in (given, costs) if "currency" in section}
+    if len(named) > 1:
+        raise InputError(
+            f"The ship file gives prices in {' and '.join(sorted(named))}.",
+            "All prices of a ship are in one currency.",
+            "Give fuel and costs in the same one.",
+            key="costs.currency",
+        )
+    return named.pop() if named else ""
+
+
+def _carbon(fuel: Fuel | None, own: float | None) -> float:
+    if own is not None:
+        return own
+    return math.nan if fuel is None else fuel.carbon_factor
+
+
+def _check(what: str, value: float | None, unit: str, *, zero: bool) -> None:
+    if value is None:
+        return
+    good = isinstance(value, Real) and math.isfinite(value)
+    if not good or value < 0.0 or (value == 0.0 and not zero):
+        raise InputError(
+            f"The {what} is {value!r}{' ' + unit if unit else ''}.",
+            f"It is a number {'of zero or more' if zero else 'above zero'}.",
+            "Correct it.",
+            value=value,
+        )

@@ -1,0 +1,1 @@
+"""Hull particulars: checks and estimates by published regressions."""

@@ -1,0 +1,1 @@
+"""Added resistance by wind and waves."""

@@ -1,0 +1,346 @@
+"""Added resistance in waves from any direction: the SNNM formula.
+
+Sources: S. Liu and A. Papanikolaou, "Regression analysis of experimental data for added resistance
+in waves of arbitrary heading and development of a semi-empirical formula", Ocean Engineering 206
+(2020) 107357; adopted as "SNNM" by ITTC Recommended Procedure 7.5-04-01-01.1 (2021), whose form of
+the following-sea coefficients is used here.
+
+How sure the coefficients are: they agree between four independent public programs of the ITTC and
+of the 2020 form; the printed procedure itself was not seen, so they are *unverified* in that sense.
+
+The force jumps where waves pass the angle of entrance E1 off the bow (27 degrees for the tanker
+KVLCC2, by a seventh), since the factor for the reflection at the bow changes there from a power of
+cos(angle) to one. That is the published formula's own; nothing is smoothed here.
+
+Angles are zero for waves from ahead and pi for waves from astern, as in the procedure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
+from thalweg.ship.methods.added_resistance.mean_wave_force import (
+    REFLECTION_STEP,
+    STEP,
+    Spectrum,
+    in_blocks,
+    nodes,
+    spectral_shape,
+)
+from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number, ship_speed
+from thalweg.ship.methods.validity import RangeNote, range_notes
+
+LONGEST: Final = 2.5  #: wave length over ship length beyond which nothing is reflected
+
+
+@dataclass(frozen=True)
+class SnnmHull:
+    """Particulars of a hull in waves; scalars, or arrays that broadcast with the conditions.
+
+    Attributes
+    ----------
+    length, breadth : array_like
+        L_PP and B [m].
+    draught_fore, draught_aft : array_like
+        [m]; the deeper one is T_max.
+    block_coefficient : array_like
+        C_B.
+    pitch_gyration : array_like
+        k_yy as a part of L_PP.
+    entrance_length, run_length : array_like
+        L_E and L_R, on the waterline from the ends to 0.99 B [m].
+    """
+
+    length: ArrayLike
+    breadth: ArrayLike
+    draught_fore: ArrayLike
+    draught_aft: ArrayLike
+    block_coefficient: ArrayLike
+    entrance_length: ArrayLike
+    run_length: ArrayLike
+    pitch_gyration: ArrayLike = 0.25
+
+    def arrays(self) -> tuple[FloatArray, ...]:
+        """Return length, breadth, deepest draught, trim, C_B, k_yy and the angles E1 and E2."""
+        length, breadth = np.asarray(self.length, dtype=float), np.asarray(self.breadth)
+        fore, aft = np.asarray(self.draught_fore), np.asarray(self.draught_aft)
+        half = 0.495 * breadth
+        return (
+            *(length, breadth, np.maximum(fore, aft), np.arctan(np.abs(aft - fore) / length)),
+            *(np.asarray(self.block_coefficient), np.asarray(self.pitch_gyration)),
+            *(np.arctan(half / np.asarray(end)) for end in (self.entrance_length, self.run_length)),
+        )
+
+
+def entrance_length(breadth: ArrayLike, *, entrance_angle_deg: ArrayLike) -> FloatArray:
+    """L_E from the half angle of entrance [deg], as E1 = atan(0.495 B / L_E) is that angle [m]."""
+    return np.asarray(0.495 * np.asarray(breadth) / np.tan(np.radians(entrance_angle_deg)))
+
+
+def frequency_scale(
+    angle: FloatArray,
+    froude: FloatArray,
+    hull: tuple[FloatArray, ...],
+    gravity: float,
+) -> FloatArray:
+    """Dimensionless frequency for w = 1 rad/s."""
+    length, breadth, draught, _, block, gyration, _, _ = hull
+    heading = (1.157 * froude - 1.377 * froude**2) * np.abs(np.cos(angle))
+    heading = heading + 0.618 * (13.0 + np.cos(2.0 * angle)) / 14.0
+    fullness = (block / 0.65) ** 0.17
+    fullness = fullness * (1.0 - 0.111 / block * (np.log(breadth / draught) - np.log(2.75)))
+    scale = 2.142 * np.cbrt(gyration) * np.sqrt(length / (2.0 * np.pi * gravity))
+    return np.asarray(scale * fullness * heading)
+
+
+def motion_shape(frequency: FloatArray, hull: tuple[FloatArray, ...]) -> FloatArray:
+    """w^b1 exp{b1/d1 (1 - w^d1)}; NaN for a trim at which d1 changes its sign."""
+    length, breadth, _, trim, block, _, _, _ = hull
+    steep = 4.0 - 125.0 * trim
+    steep = np.where(steep > 0.0, steep, np.nan)
+    slow = frequency < 1.0
+    below = 566.0 * (length * block / breadth) ** -2.66
+    d1 = np.where(slow, below, -566.0 * (length / breadth) ** -2.66 * steep)
+    b1 = np.where(slow, 11.0, -8.5)
+    log = np.log(frequency)
+    return np.asarray(np.exp(b1 * log + b1 / d1 * (1.0 - np.exp(d1 * log))))
+
+
+def speed_factor(froude: FloatArray) -> FloatArray:
+    """a2 of waves from ahead over the Froude number."""
+    fast = np.maximum(froude, 0.0)
+    quick = fast * np.sqrt(fast) * np.exp(-3.5 * fast)
+    return np.where(froude < 0.12, 0.0072 + 0.1676 * froude, quick)
+
+
+def ahead_factors(
+    angle: FloatArray, froude: FloatArray, hull: tuple[FloatArray, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """a1 and a2 for waves from ahead to abeam."""
+    _, breadth, draught, _, block, _, _, _ = hull
+    ahead = np.maximum(np.cos(angle), 0.0)
+    first = (0.87 / block) ** ((1.0 + froude) * ahead) * (1.0 + 2.0 * ahead) / 3.0
+    return np.asarray(first / np.log(breadth / draught)), speed_factor(froude)
+
+
+def _factors_by_row(
+    angle: FloatArray, froude: FloatArray, group: FloatArray, hull: tuple[FloatArray, ...]
+) -> FloatArray:
+    """a1 a2 as `_heading_factors`, which costs much, only for the rows with waves from abaft."""
+    first, second = ahead_factors(angle, froude, hull)
+    factors = np.array(np.broadcast_to(first * second, group.shape))
+    abaft = np.broadcast_to(angle > 0.5 * np.pi, (group.shape[0], 1))[:, 0]
+    if abaft.any():
+        rows = [a if a.shape[0] == 1 else a[abaft] for a in (angle, froude, *hull)]
+        factors[abaft] = _heading_factors(rows[0], rows[1], group[abaft], tuple(rows[2:]))
+    return factors
+
+
+def _heading_factors(
+    angle: FloatArray,
+    froude: FloatArray,
+    group: FloatArray,
+    hull: tuple[FloatArray, ...],
+) -> FloatArray:
+    """a1 a2, interpolated over the angle from beam to following waves.
+
+    `group` is V over the group speed of the waves.
+    """
+    _, breadth, draught, _, block, _, _, _ = hull
+    full, slim = 0.87 / block, 1.0 / np.log(breadth / draught)
+    first, second = ahead_factors(angle, froude, hull)
+    overtakes = group > 1.0
+    relative = froude * (1.0 - 1.0 / np.where(overtakes, group, 1.0))
+    power = np.where(overtakes & (relative >= 0.12), 1.0 + relative, 1.0)
+    behind_first = np.exp(power * np.log(full)) * slim
+    behind_second = np.where(overtakes, speed_factor(relative), 0.0072 * (2.0 * group - 1.0))
+    part = np.clip(2.0 * angle / np.pi - 1.0, 0.0, 1.0)
+    mixed = (first + part * (behind_first - first)) * (second + part * (behind_second - second))
+    return np.asarray(mixed)
+
+
+def reflection_terms(
+    speed: FloatArray,
+    angle: FloatArray,
+    froude: FloatArray,
+    hull: tuple[FloatArray, ...],
+    gravity: float,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Constant and linear (in w) terms of the bow, the same of the stern, and T* of the stern."""
+    draught, block, bow, stern = hull[2], hull[4], hull[6], hull[7]
+    ahead, aside = np.cos(angle), np.sin(angle)
+
+    def pair(end: FloatArray, side: float, inside: Any) -> tuple[FloatArray, FloatArray]:
+        """Terms of one side of an end; sine and cosine of its angle plus or less that of waves."""
+        sine = np.sin(end) * ahead + side * np.cos(end) * aside
+        cosine = np.cos(end) * ahead - side * np.sin(end) * aside
+        square = np.where(inside, sine * sine, 0.0)
+        return square, np.where(inside, ahead - np.cos(end) * cosine, 0.0)
+
+    first = pair(bow, 1.0, angle <= np.pi - bow)
+    second = pair(bow, -1.0, angle <= bow)
+    third = pair(stern, -1.0, angle >= stern)
+    fourth = pair(stern, 1.0, angle >= np.pi - stern)
+    front = (0.87 / block) ** ((1.0 + 4.0 * np.sqrt(froude)) * np.where(angle <= bow, ahead, 0.0))
+    root = np.sqrt(np.abs(ahead))
+    deep = draught * np.where(block <= 0.75, (4.0 + root) / 5.0, (2.0 + root) / 3.0)
+    doppler = 2.0 * speed / gravity
+    return (
+        (first[0] + second[0]) * front,
+        (first[1] + second[1]) * front * doppler,
+        third[0] + fourth[0],
+        (third[1] + fourth[1]) * doppler,
+        deep,
+    )
+
+
+def wrapped(wave_angle: ArrayLike) -> FloatArray:
+    """Return angles folded into 0 to pi [rad]."""
+    return np.asarray(np.arccos(np.clip(np.cos(wave_angle), -1.0, 1.0)))
+
+
+def snnm_transfer(
+    frequency: ArrayLike,
+    speed: ArrayLike,
+    wave_angle: ArrayLike,
+    hull: SnnmHull,
+    *,
+    density: float = SEA_WATER_DENSITY,
+    gravity: float = GRAVITY,
+) -> tuple[FloatArray, FloatArray]:
+    """Added resistance in regular waves for an amplitude of one metre.
+
+    Parameters
+    ----------
+    frequency : array_like
+        Wave frequency [rad/s], above zero.
+    speed : array_like
+        [m/s].
+    wave_angle : array_like
+        [rad], 0 from ahead.
+    hull : SnnmHull
+        Particulars.
+    density, gravity : float
+        [kg/m3], [m/s2].
+
+    Returns
+    -------
+    motion, reflection : ndarray
+        R_AWM and R_AWR over the square of the amplitude [N/m2]. Both can be negative in waves
+        from astern. The reflection at the bow jumps at the angle E1, as published.
+    """
+    particulars = hull.arrays()
+    length, breadth, draught, trim, block, gyration = particulars[:6]
+    omega, velocity = np.asarray(frequency, dtype=float), ship_speed(speed)
+    angle = wrapped(wave_angle)
+    fn = froude_number(velocity, length=length, gravity=gravity)
+    scale = frequency_scale(angle, fn, particulars, gravity)
+    group = 2.0 * velocity * omega / gravity
+    motion = 3859.2 * breadth**2 / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
+    motion = motion * _heading_factors(angle, fn, group, particulars)
+    motion = motion * motion_shape(omega * scale, particulars)
+    excess = np.maximum(2.0 * (omega**2 / gravity - 2.0 * np.pi / (LONGEST * length)), 0.0)
+    b0, b1, s0, s1, deep = reflection_terms(velocity, angle, fn, particulars, gravity)
+    bow = -np.expm1(-draught * excess) * (b0 + b1 * omega)
+    stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
+    weight = density * gravity
+    return weight * motion, 0.5625 * weight * breadth * (bow - stern)
+
+
+def _spectral_mean(
+    *conditions: FloatArray, spectrum: Spectrum, gamma: float, gravity: float
+) -> FloatArray:
+    """Mean force over rho g Hs^2 for flat arrays: speed, peak frequency, angle, Fn, hull."""
+    speed, peak, angle, fn, *sizes = (condition[:, None] for condition in conditions)
+    ship = tuple(sizes)
+    length, breadth, draught, trim, block, gyration = ship[:6]
+    reduced = nodes(0.3, 4.0, step=STEP[spectrum])
+    omega = reduced / frequency_scale(angle, fn, ship, gravity)
+    energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
+    rows = np.broadcast_shapes(*(np.shape(c) for c in (*conditions,)))[0]
+    group = np.broadcast_to(2.0 * speed * omega / gravity, (rows, reduced.size))
+    factors = _factors_by_row(angle, fn, group, ship)
+    motion = np.sum(energy * factors * motion_shape(reduced, ship), axis=1, keepdims=True)
+    size = 3859.2 * breadth / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
+    above = nodes(1.0, 60.0, step=REFLECTION_STEP[spectrum])
+    lowest = 2.0 * np.pi / (LONGEST * length)
+    omega = above * np.sqrt(gravity * lowest)
+    energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
+    excess = 2.0 * lowest * (above**2 - 1.0)
+    b0, b1, s0, s1, deep = reflection_terms(speed, angle, fn, ship, gravity)
+    bow = -np.expm1(-draught * excess) * (b0 + b1 * omega)
+    stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
+    reflection = np.sum(energy * (bow - stern), axis=1, keepdims=True)
+    total = STEP[spectrum] * size * motion + 0.5625 * REFLECTION_STEP[spectrum] * reflection
+    return np.asarray(2.0 * breadth * total)[:, 0]
+
+
+def snnm(
+    speed: ArrayLike,
+    wave_height: ArrayLike,
+    wave_period: ArrayLike,
+    wave_angle: ArrayLike,
+    hull: SnnmHull,
+    *,
+    spectrum: Spectrum = "bretschneider",
+    gamma: float = 3.3,
+    density: float = SEA_WATER_DENSITY,
+    gravity: float = GRAVITY,
+) -> FloatArray:
+    """Mean added resistance in a long-crested sea from any direction.
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed through the water [m/s].
+    wave_height, wave_period : array_like
+        Significant height [m] and peak period [s].
+    wave_angle : array_like
+        [rad], 0 from ahead, pi from astern.
+    hull : SnnmHull
+        Particulars.
+    spectrum, gamma
+        See `thalweg.ship.methods.added_resistance.mean_wave_force.spectral_density`.
+    density, gravity : float
+        [kg/m3], [m/s2].
+
+    Returns
+    -------
+    ndarray
+        [N]; may be negative for following waves; zero where the wave height is zero, NaN where
+        something is unknown.
+    """
+    particulars = hull.arrays()
+    velocity, angle = ship_speed(speed), wrapped(wave_angle)
+    period = np.asarray(wave_period, dtype=float)
+    peak = 2.0 * np.pi / np.where(period > 0.0, period, np.nan)
+    fn = froude_number(velocity, length=particulars[0], gravity=gravity)
+    mean = partial(_spectral_mean, spectrum=spectrum, gamma=gamma, gravity=gravity)
+    shape = in_blocks(mean, velocity, peak, angle, fn, *particulars)
+    height = np.asarray(wave_height, dtype=float)
+    force = density * gravity * height**2 * shape
+    return np.where((height == 0.0) & ~np.isnan(fn), 0.0, force)
+
+
+def snnm_validity(speed: ArrayLike, hull: SnnmHull, *, gravity: float = GRAVITY) -> list[RangeNote]:
+    """Say what lies outside the range of the formula (unverified: quoted from memory).
+
+    L_PP > 75 m, 4 < L_PP/B < 9, 2.2 < B/T < 9, 0.05 < Fr < 0.30, 0.50 < C_B < 0.90, and a trim of
+    at most 0.03 L_PP, beyond which the formula has no value.
+    """
+    length, breadth, draught, trim, block, _, _, _ = hull.arrays()
+    ranges: dict[str, tuple[ArrayLike, float, float]] = {
+        "length between perpendiculars": (length, 75.0, np.inf),
+        "length to breadth": (length / breadth, 4.0, 9.0),
+        "breadth to draught": (breadth / draught, 2.2, 9.0),
+        "block coefficient": (block, 0.50, 0.90),
+        "trim to length": (np.tan(trim), 0.0, 0.03),
+        "Froude number": (froude_number(speed, length=length, gravity=gravity), 0.05, 0.30),
+    }
+    return range_notes("snnm", ranges)

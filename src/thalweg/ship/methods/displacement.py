@@ -1,0 +1,149 @@
+"""Loading: how draught, weight, speed and displaced volume go together."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.ship.methods.array_conversion import Floats, floats
+
+
+def between_empty_and_full(load_factor: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
+    """Return a quantity that runs in a straight line from the empty to the full ship.
+
+    Draught, weight and service speed are treated so by van Halem (2019).
+
+    Parameters
+    ----------
+    load_factor : array_like
+        r = (W - W_empty) / (W_full - W_empty), 0 empty to 1 full.
+    empty, full : array_like
+        The quantity of the empty and of the full ship, in any unit.
+
+    Returns
+    -------
+    ndarray
+        The quantity, NaN outside 0 <= r <= 1.
+
+    References
+    ----------
+    J. P. van Halem, "Route optimization in dynamic currents", TU Delft (2019), section 3.2.3.
+    """
+    r = floats(load_factor)
+    inside = (r >= 0.0) & (r <= 1.0)
+    return (1.0 - np.where(inside, r, np.nan)) * floats(empty) + r * floats(full)
+
+
+def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
+    """Return the load factor at which `between_empty_and_full` gives ``value``.
+
+    Parameters
+    ----------
+    value : array_like
+        Draught, weight or speed.
+    empty, full : array_like
+        The same quantity of the empty and of the full ship; they must differ.
+
+    Returns
+    -------
+    ndarray
+        Load factor [-], NaN where it would lie outside 0 to 1.
+    """
+    low = floats(empty)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        r = (floats(value) - low) / (floats(full) - low)
+        return np.where((r >= -1e-12) & (r <= 1.0 + 1e-12), np.clip(r, 0.0, 1.0), np.nan)
+
+
+def displacement_volume(
+    length: ArrayLike, breadth: ArrayLike, *, draught: ArrayLike, block_coefficient: ArrayLike
+) -> Floats:
+    """Return the displaced volume C_B L B T [m3] (definition of the block coefficient).
+
+    Parameters
+    ----------
+    length, breadth, draught : array_like
+        Length to which C_B belongs, breadth and mean draught [m].
+    block_coefficient : array_like
+        Block coefficient [-].
+
+    Returns
+    -------
+    ndarray
+        Volume [m3].
+    """
+    return floats(block_coefficient) * floats(length) * floats(breadth) * floats(draught)
+
+
+def block_coefficient_of(
+    displacement: ArrayLike, *, length: ArrayLike, breadth: ArrayLike, draught: ArrayLike
+) -> Floats:
+    """Return the block coefficient of a displaced volume [m3]: volume / (L B T).
+
+    Parameters
+    ----------
+    displacement : array_like
+        Displaced volume [m3], not tonnes.
+    length, breadth, draught : array_like
+        [m].
+
+    Returns
+    -------
+    ndarray
+        Block coefficient [-].
+    """
+    return floats(displacement) / (floats(length) * floats(breadth) * floats(draught))
+
+
+def block_at_draught(
+    draught: ArrayLike, *, design_draught: ArrayLike, design_block: ArrayLike
+) -> Floats:
+    """Return the block coefficient at another draught: 1 - (1 - C_B)(T_design / T)^(1/3).
+
+    Parameters
+    ----------
+    draught, design_draught : array_like
+        Mean draughts [m]; the first 0.4 to 1.1 of the second (our judgement).
+    design_block : array_like
+        Block coefficient at the design draught [-].
+
+    Returns
+    -------
+    ndarray
+        Block coefficient [-].
+
+    References
+    ----------
+    Riddlesworth's method as given by J.-P. Jalkanen et al., "Extension of an assessment model of
+    ship traffic exhaust emissions", Atmos. Chem. Phys. 12 (2012) (from memory).
+    """
+    ratio = floats(design_draught) / floats(draught)
+    return 1.0 - (1.0 - floats(design_block)) * np.cbrt(ratio)
+
+
+def displacement_at_draught(
+    draught: ArrayLike,
+    *,
+    design_draught: ArrayLike,
+    design_displacement: ArrayLike,
+    waterplane_area: ArrayLike,
+) -> Floats:
+    """Return the displaced volume near the design draught, wall-sided: V + A_WP (T - T_design).
+
+    Parameters
+    ----------
+    draught, design_draught : array_like
+        Mean draughts [m].
+    design_displacement : array_like
+        Displaced volume at the design draught [m3].
+    waterplane_area : array_like
+        C_WP L B [m2].
+
+    Returns
+    -------
+    ndarray
+        Volume [m3], NaN where it would not be positive.
+    """
+    change = floats(draught) - floats(design_draught)
+    volume = floats(design_displacement) + floats(waterplane_area) * change
+    return np.where(volume > 0.0, volume, np.nan)

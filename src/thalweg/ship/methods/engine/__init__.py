@@ -1,0 +1,1 @@
+"""Engines: specific fuel consumption and fuel properties."""

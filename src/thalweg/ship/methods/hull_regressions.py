@@ -1,0 +1,401 @@
+"""Published regressions that estimate particulars of a hull from others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.errors import unknown_name
+from thalweg.ship.methods.array_conversion import Floats, floats
+
+_WATERLINE: Final = {"tanker": 1.02, "container": 1.01, "ro_ro": 1.035}
+_PROPELLER: Final = {"tanker": (0.395, 1.30), "container": (0.623, -0.16), "ro_ro": (0.713, -0.08)}
+_WETTED: Final = {"tanker": (0.99, 2.0), "container": (0.995, 2.4)}
+_T = TypeVar("_T")
+
+
+def _of_kind(kind: str, table: Mapping[str, _T]) -> _T:
+    if kind not in table:
+        raise unknown_name("kind of ship", kind, table)
+    return table[kind]
+
+
+def block_from_froude(froude: ArrayLike) -> Floats:
+    """Return a usual block coefficient at a design Froude number.
+
+    C_B = -4.22 + 27.8 sqrt(Fn) - 39.1 Fn + 46.6 Fn^3, for 0.15 < Fn < 0.32.
+
+    Parameters
+    ----------
+    froude : array_like
+        V / sqrt(g L) at design speed [-].
+
+    Returns
+    -------
+    ndarray
+        Block coefficient [-], NaN outside the range.
+
+    References
+    ----------
+    H. Schneekluth, V. Bertram, "Ship design for efficiency and economy", 2nd ed. (1998),
+    section 1.5 (after Jensen).
+    """
+    fn = floats(froude)
+    fn = np.where((fn >= 0.15) & (fn <= 0.32), fn, np.nan)
+    return -4.22 + 27.8 * np.sqrt(fn) - 39.1 * fn + 46.6 * fn**3
+
+
+def midship_from_block(block_coefficient: ArrayLike) -> Floats:
+    """Return a usual midship section coefficient: 1 / (1 + (1 - C_B)^3.5).
+
+    Parameters
+    ----------
+    block_coefficient : array_like
+        Block coefficient [-].
+
+    Returns
+    -------
+    ndarray
+        Midship section coefficient [-].
+
+    References
+    ----------
+    Schneekluth and Bertram (1998), section 1.6 (after Jensen, HSVA).
+    """
+    return 1.0 / (1.0 + (1.0 - floats(block_coefficient)) ** 3.5)
+
+
+def midship_kerlen(block_coefficient: ArrayLike) -> Floats:
+    """Return a usual midship section coefficient: 1.006 - 0.0056 C_B^-3.56.
+
+    Parameters
+    ----------
+    block_coefficient : array_like
+        Block coefficient [-].
+
+    Returns
+    -------
+    ndarray
+        Midship section coefficient [-].
+
+    References
+    ----------
+    Kerlen (1970) as given by Schneekluth and Bertram (1998), section 1.6.
+    """
+    return 1.006 - 0.0056 * floats(block_coefficient) ** -3.56
+
+
+def waterplane_from_block(block_coefficient: ArrayLike) -> Floats:
+    """Return a usual waterplane coefficient of average sections: (1 + 2 C_B) / 3.
+
+    Parameters
+    ----------
+    block_coefficient : array_like
+        Block coefficient [-].
+
+    Returns
+    -------
+    ndarray
+        Waterplane coefficient [-].
+
+    References
+    ----------
+    Schneekluth and Bertram (1998), section 1.6.
+    """
+    return (1.0 + 2.0 * floats(block_coefficient)) / 3.0
+
+
+def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
+    """Return a usual centre of buoyancy, percent of length forward of midship: 19.4 C_P - 13.5.
+
+    Parameters
+    ----------
+    prismatic_coefficient : array_like
+        C_P = C_B / C_M [-], about 0.55 to 0.85.
+
+    Returns
+    -------
+    ndarray
+        Longitudinal centre of buoyancy [% of length, + forward].
+
+    References
+    ----------
+    Schneekluth and Bertram (1998), section 1.5, from memory. It has two such lines, this one and
+    `lcb_from_froude`; which of them was drawn for tankers and bulkers is not certain.
+    """
+    return 19.4 * floats(prismatic_coefficient) - 13.5
+
+
+def lcb_from_froude(froude: ArrayLike) -> Floats:
+    """Return a usual centre of buoyancy, percent of length forward of midship: 8.80 - 38.9 Fn.
+
+    Parameters
+    ----------
+    froude : array_like
+        Froude number at design speed [-], about 0.10 to 0.25.
+
+    Returns
+    -------
+    ndarray
+        Longitudinal centre of buoyancy [% of length, + forward].
+
+    References
+    ----------
+    Schneekluth and Bertram (1998), section 1.5, from memory; see `lcb_from_prismatic`.
+    """
+    return 8.80 - 38.9 * floats(froude)
+
+
+def wetted_surface_denny_mumford(
+    length: ArrayLike, *, draught: ArrayLike, displacement: ArrayLike
+) -> Floats:
+    """Return the wetted surface 1.7 L T + V / T [m2].
+
+    Parameters
+    ----------
+    length : array_like
+        Waterline length [m].
+    draught : array_like
+        Mean draught [m].
+    displacement : array_like
+        Displaced volume [m3].
+
+    Returns
+    -------
+    ndarray
+        Wetted surface [m2].
+
+    References
+    ----------
+    Denny and Mumford, as given by A. F. Molland, S. R. Turnock, D. A. Hudson, "Ship resistance
+    and propulsion" (2011).
+    """
+    t = floats(draught)
+    return 1.7 * floats(length) * t + floats(displacement) / t
+
+
+def waterline_from_perpendiculars(
+    length_between_perpendiculars: ArrayLike, *, kind: str = "tanker"
+) -> Floats:
+    """Return a usual waterline length: 1.02, 1.01 or 1.035 times L_PP [m].
+
+    Parameters
+    ----------
+    length_between_perpendiculars : array_like
+        [m].
+    kind : str
+        ``tanker`` (also bulk carriers and general cargo), ``container`` or ``ro_ro`` (also
+        passenger ships).
+
+    Returns
+    -------
+    ndarray
+        Waterline length [m].
+
+    References
+    ----------
+    Kristensen and Lützen (2012).
+    """
+    return _of_kind(kind, _WATERLINE) * floats(length_between_perpendiculars)
+
+
+def perpendiculars_from_waterline(length_waterline: ArrayLike, *, kind: str = "tanker") -> Floats:
+    """Return a usual length between perpendiculars, the inverse of the waterline rule [m].
+
+    Parameters
+    ----------
+    length_waterline : array_like
+        [m].
+    kind : str
+        As in `waterline_from_perpendiculars`.
+
+    Returns
+    -------
+    ndarray
+        Length between perpendiculars [m].
+
+    References
+    ----------
+    Kristensen and Lützen (2012), inverted.
+    """
+    return floats(length_waterline) / _of_kind(kind, _WATERLINE)
+
+
+def length_over_surface_no_bulb(length_waterline: ArrayLike) -> Floats:
+    """Return the length over wetted surface of a hull without bulb: the waterline length [m].
+
+    Parameters
+    ----------
+    length_waterline : array_like
+        [m].
+
+    Returns
+    -------
+    ndarray
+        Length over wetted surface [m]; a bulb adds what it stands out before the waterline.
+
+    References
+    ----------
+    Definition in U. Hollenbach, "Estimating resistance and propulsion" (1998).
+    """
+    return floats(length_waterline)
+
+
+def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker") -> Floats:
+    """Return a usual propeller diameter: 0.395 T + 1.30 for tankers and the like [m].
+
+    0.623 T - 0.16 for container ships, 0.713 T - 0.08 for ro-ro and passenger ships.
+
+    Parameters
+    ----------
+    draught : array_like
+        Largest draught [m].
+    kind : str
+        As in `waterline_from_perpendiculars`.
+
+    Returns
+    -------
+    ndarray
+        Diameter [m].
+
+    References
+    ----------
+    Kristensen and Lützen (2012).
+    """
+    slope, shift = _of_kind(kind, _PROPELLER)
+    return slope * floats(draught) + shift
+
+
+def wetted_surface_kristensen(
+    length: ArrayLike,
+    *,
+    breadth: ArrayLike,
+    draught: ArrayLike,
+    design_draught: ArrayLike,
+    design_displacement: ArrayLike,
+    kind: str = "tanker",
+) -> Floats:
+    """Return the wetted surface of tankers or container ships at any draught [m2].
+
+    0.99 (V/T + 1.9 L T) - 2.0 (T - T_now)(L + B) for tankers, bulk carriers and general cargo;
+    0.995 and 2.4 for container ships.
+
+    Parameters
+    ----------
+    length : array_like
+        Waterline length L [m].
+    breadth : array_like
+        [m].
+    draught : array_like
+        Draught T_now [m].
+    design_draught : array_like
+        Draught T of the design [m].
+    design_displacement : array_like
+        Displaced volume V at the design draught [m3].
+    kind : str
+        ``tanker`` or ``container``.
+
+    Returns
+    -------
+    ndarray
+        Wetted surface [m2].
+
+    References
+    ----------
+    Kristensen and Lützen (2012); also H. O. Kristensen, M. Lützen (2013).
+    """
+    factor, rate = _of_kind(kind, _WETTED)
+    size, full = floats(length), floats(design_draught)
+    surface = factor * (floats(design_displacement) / full + 1.9 * size * full)
+    return surface - rate * (full - floats(draught)) * (size + floats(breadth))
+
+
+def waterplane_kristensen(block_coefficient: ArrayLike) -> Floats:
+    """Return a usual waterplane coefficient: 0.55 + 0.45 C_B.
+
+    Parameters
+    ----------
+    block_coefficient : array_like
+        Block coefficient on the waterline length [-].
+
+    Returns
+    -------
+    ndarray
+        Waterplane coefficient [-].
+
+    References
+    ----------
+    Kristensen and Lützen (2012).
+    """
+    return 0.55 + 0.45 * floats(block_coefficient)
+
+
+def bulb_area_rakke(
+    midship_coefficient: ArrayLike, *, breadth: ArrayLike, draught: ArrayLike
+) -> Floats:
+    """Return a usual bulb section at the forward perpendicular: 0.08 C_M B T [m2].
+
+    Parameters
+    ----------
+    midship_coefficient : array_like
+        [-].
+    breadth, draught : array_like
+        [m].
+
+    Returns
+    -------
+    ndarray
+        Area [m2]. For a ship known to have a bulb; do not invent one.
+
+    References
+    ----------
+    S. G. Rakke, "Ship emissions calculation from AIS", NTNU (2016).
+    """
+    return 0.08 * floats(midship_coefficient) * floats(breadth) * floats(draught)
+
+
+def bulb_height_rakke(draught: ArrayLike) -> Floats:
+    """Return a usual height of the centre of the bulb section above the keel: 0.4 T [m].
+
+    Parameters
+    ----------
+    draught : array_like
+        [m].
+
+    Returns
+    -------
+    ndarray
+        Height [m].
+
+    References
+    ----------
+    Rakke (2016).
+    """
+    return 0.4 * floats(draught)
+
+
+def transom_area_rakke(
+    midship_coefficient: ArrayLike, *, breadth: ArrayLike, draught: ArrayLike
+) -> Floats:
+    """Return a usual immersed transom: 0.051 C_M B T [m2].
+
+    Parameters
+    ----------
+    midship_coefficient : array_like
+        [-].
+    breadth, draught : array_like
+        [m].
+
+    Returns
+    -------
+    ndarray
+        Area [m2].
+
+    References
+    ----------
+    Rakke (2016).
+    """
+    return 0.051 * floats(midship_coefficient) * floats(breadth) * floats(draught)

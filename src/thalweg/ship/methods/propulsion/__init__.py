@@ -1,0 +1,1 @@
+"""Propulsion: propeller series, wake, thrust deduction, efficiencies."""

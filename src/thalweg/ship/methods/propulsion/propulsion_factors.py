@@ -1,0 +1,289 @@
+"""From resistance to brake power: hull, propeller, shaft and gear.
+
+Sources: wake fraction, thrust deduction and relative rotative efficiency of J. Holtrop and G.G.J.
+Mennen (1982) and J. Holtrop (1984), as in `thalweg.ship.methods.resistance.holtrop_mennen`;
+constant efficiencies of Schless (2023), Table 3.1, after Segers (2021).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.units import SEA_WATER_DENSITY
+from thalweg.ship.methods.propulsion.b_series import Propeller, operating_point
+from thalweg.ship.methods.resistance.friction_lines import FloatArray
+from thalweg.ship.methods.resistance.holtrop_form import HullForm
+
+
+@dataclass(frozen=True)
+class Efficiencies:
+    """Constant efficiencies; the defaults are those of Schless (2023) with a hull efficiency of 1.
+
+    Attributes
+    ----------
+    open_water, relative_rotative, hull, transmission, gear : float
+        eta_0, eta_R, eta_H (0.97 to 1.03 there), eta_T and eta_G.
+    """
+
+    open_water: float = 0.60
+    relative_rotative: float = 0.98
+    hull: float = 1.0
+    transmission: float = 0.98
+    gear: float = 0.96
+
+    @property
+    def total(self) -> float:
+        """Effective over brake power."""
+        propulsive = self.open_water * self.relative_rotative * self.hull
+        return propulsive * self.transmission * self.gear
+
+
+@dataclass(frozen=True)
+class PropulsionState:
+    """What the propulsion does; arrays of one shape.
+
+    Attributes
+    ----------
+    thrust : ndarray
+        Of all propellers [N].
+    rate : ndarray
+        Of the propellers [1/s].
+    open_water_efficiency : ndarray
+        eta_0.
+    effective_power, delivered_power, brake_power : ndarray
+        R V, power at the propellers, power of the engines [W].
+    """
+
+    thrust: FloatArray
+    rate: FloatArray
+    open_water_efficiency: FloatArray
+    effective_power: FloatArray
+    delivered_power: FloatArray
+    brake_power: FloatArray
+
+
+def effective_power(speed: ArrayLike, resistance: ArrayLike) -> FloatArray:
+    """P_E = R V [W]."""
+    return np.asarray(np.asarray(speed, dtype=float) * np.asarray(resistance, dtype=float))
+
+
+def constant_efficiency_power(
+    speed: ArrayLike, resistance: ArrayLike, *, efficiencies: Efficiencies | None = None
+) -> FloatArray:
+    """Brake power R V / (eta_0 eta_R eta_H eta_T eta_G) [W]; zero where wind or waves push.
+
+    Parameters
+    ----------
+    speed : array_like
+        [m/s].
+    resistance : array_like
+        [N].
+    efficiencies : Efficiencies, optional
+        `Efficiencies` as it comes by default.
+    """
+    share = (efficiencies or Efficiencies()).total
+    return np.asarray(np.maximum(effective_power(speed, resistance), 0.0) / share)
+
+
+def viscous_coefficient(
+    friction_coefficient: ArrayLike, *, form_factor: ArrayLike, correlation: ArrayLike
+) -> FloatArray:
+    """C_V = (1 + k) C_F + C_A, with `form_factor` 1 + k."""
+    line = np.asarray(friction_coefficient, dtype=float)
+    return np.asarray(np.asarray(form_factor) * line + np.asarray(correlation))
+
+
+def _c_p1(hull: HullForm) -> FloatArray:
+    return np.asarray(1.45 * hull.prismatic_coefficient - 0.315 - 0.0225 * hull.lcb_percent)
+
+
+def _c9(
+    hull: HullForm, aft: FloatArray, diameter: ArrayLike, wetted_surface: ArrayLike
+) -> FloatArray:
+    ratio, size = hull.breadth / aft, np.asarray(diameter, dtype=float)
+    area = np.asarray(wetted_surface, dtype=float)
+    slim = hull.breadth * area / (hull.length * size * aft)
+    broad = area * (7.0 * ratio - 25.0) / (hull.length * size * (np.maximum(ratio, 5.0) - 3.0))
+    c8 = np.where(ratio < 5.0, slim, broad)
+    return np.asarray(np.where(c8 < 28.0, c8, 32.0 - 16.0 / (np.maximum(c8, 28.0) - 24.0)))
+
+
+def wake_fraction_single(
+    hull: HullForm,
+    *,
+    draught_aft: ArrayLike,
+    propeller_diameter: ArrayLike,
+    wetted_surface_area: ArrayLike,
+    viscous: ArrayLike,
+    stern_shape: ArrayLike = 0.0,
+    year: Literal[1982, 1984] = 1982,
+) -> FloatArray:
+    """Wake fraction w of a single-screw ship.
+
+    Parameters
+    ----------
+    hull : HullForm
+        Main particulars.
+    draught_aft : array_like
+        T_A [m].
+    propeller_diameter : array_like
+        D [m].
+    wetted_surface_area : array_like
+        S of hull and appendages [m2]; the worked example of the paper counts both.
+    viscous : array_like
+        C_V, see `viscous_coefficient`.
+    stern_shape : array_like
+        C_stern, -25 to +10.
+    year : {1982, 1984}
+        Holtrop and Mennen (1982) or Holtrop (1984).
+
+    Returns
+    -------
+    ndarray
+        V_A = V (1 - w).
+    """
+    aft, size = np.asarray(draught_aft, dtype=float), np.asarray(propeller_diameter, dtype=float)
+    cv, stern = np.asarray(viscous, dtype=float), np.asarray(stern_shape, dtype=float)
+    prismatic, block, slim = hull.prismatic_coefficient, hull.block_coefficient, 1.0 - _c_p1(hull)
+    deep = aft / size
+    c11 = np.where(deep < 2.0, deep, 0.0833333 * deep**3 + 1.33333)
+    flow = _c9(hull, aft, size, wetted_surface_area) * cv * hull.length / aft
+    root = np.sqrt(hull.breadth / (hull.length * slim))
+    if year == 1982:
+        wake = flow * (0.0661875 + 1.21756 * c11 * cv / slim) + 0.24558 * root
+        wake = wake - 0.09726 / (0.95 - prismatic) + 0.11434 / (0.95 - block)
+        return np.asarray(wake + 0.75 * stern * cv + 0.002 * stern)
+    full = 0.18567 / (1.3571 - hull.midship_coefficient) - 0.71276 + 0.38648 * prismatic
+    fine = 0.12997 / (0.95 - block) - 0.11056 / (0.95 - prismatic)
+    c19 = np.where(prismatic < 0.7, fine, full)
+    wake = flow * (0.050776 + 0.93405 * c11 * cv / slim) + 0.27915 * root + c19
+    return np.asarray((1.0 + 0.015 * stern) * wake)
+
+
+def wake_fraction_twin(
+    hull: HullForm, *, propeller_diameter: ArrayLike, viscous: ArrayLike
+) -> FloatArray:
+    """Wake fraction of a twin-screw ship, w = 0.3095 C_B + 10 C_V C_B - 0.23 D / sqrt(B T)."""
+    block = hull.block_coefficient
+    size = np.asarray(propeller_diameter, dtype=float) / np.sqrt(hull.breadth * hull.draught)
+    return np.asarray(0.3095 * block + 10.0 * np.asarray(viscous) * block - 0.23 * size)
+
+
+def thrust_deduction_single(
+    hull: HullForm,
+    *,
+    propeller_diameter: ArrayLike,
+    stern_shape: ArrayLike = 0.0,
+    year: Literal[1982, 1984] = 1982,
+) -> FloatArray:
+    """Thrust deduction fraction t of a single-screw ship, T = R / (1 - t).
+
+    Parameters
+    ----------
+    hull : HullForm
+        Main particulars.
+    propeller_diameter : array_like
+        D [m].
+    stern_shape : array_like
+        C_stern, -25 to +10.
+    year : {1982, 1984}
+        Holtrop and Mennen (1982) or Holtrop (1984).
+    """
+    size, stern = np.asarray(propeller_diameter, dtype=float), np.asarray(stern_shape, dtype=float)
+    section, slender = hull.breadth * hull.draught, hull.breadth / hull.length
+    if year == 1982:
+        short = slender - 0.134615385
+        c10 = 0.25 - 0.003328402 / np.where(short > 0.0, short, np.inf)
+        c10 = np.where(1.0 / slender > 5.2, slender, c10)
+        run = 0.001979 * hull.length / (hull.breadth * (1.0 - _c_p1(hull)))
+        basic = run + 1.0585 * c10 - 0.00524 - 0.1418 * size**2 / section
+    else:
+        fine = 1.0 - hull.prismatic_coefficient + 0.0225 * hull.lcb_percent
+        basic = 0.25014 * slender**0.28956 * (np.sqrt(section) / size) ** 0.2624 / fine**0.01762
+    return np.asarray(basic + 0.0015 * stern)
+
+
+def thrust_deduction_twin(hull: HullForm, *, propeller_diameter: ArrayLike) -> FloatArray:
+    """Thrust deduction of a twin-screw ship, t = 0.325 C_B - 0.1885 D / sqrt(B T)."""
+    size = np.asarray(propeller_diameter, dtype=float) / np.sqrt(hull.breadth * hull.draught)
+    return np.asarray(0.325 * hull.block_coefficient - 0.1885 * size)
+
+
+def relative_rotative_single(hull: HullForm, *, area_ratio: ArrayLike) -> FloatArray:
+    """eta_R = 0.9922 - 0.05908 A_E/A_0 + 0.07424 (C_P - 0.0225 lcb), single screw."""
+    shape = hull.prismatic_coefficient - 0.0225 * hull.lcb_percent
+    return np.asarray(0.9922 - 0.05908 * np.asarray(area_ratio) + 0.07424 * shape)
+
+
+def relative_rotative_twin(hull: HullForm, *, pitch_ratio: ArrayLike) -> FloatArray:
+    """eta_R = 0.9737 + 0.111 (C_P - 0.0225 lcb) - 0.06325 P/D, twin screw."""
+    shape = hull.prismatic_coefficient - 0.0225 * hull.lcb_percent
+    return np.asarray(0.9737 + 0.111 * shape - 0.06325 * np.asarray(pitch_ratio))
+
+
+def hull_efficiency(wake_fraction: ArrayLike, thrust_deduction: ArrayLike) -> FloatArray:
+    """eta_H = (1 - t) / (1 - w)."""
+    deduction = np.asarray(thrust_deduction, dtype=float)
+    return np.asarray((1.0 - deduction) / (1.0 - np.asarray(wake_fraction, dtype=float)))
+
+
+def propulsion(
+    speed: ArrayLike,
+    resistance: ArrayLike,
+    propeller: Propeller,
+    *,
+    wake_fraction: ArrayLike,
+    thrust_deduction: ArrayLike,
+    relative_rotative: ArrayLike = 1.0,
+    shaft_efficiency: ArrayLike = 0.99,
+    gear_efficiency: ArrayLike = 1.0,
+    propellers: int = 1,
+    density: float = SEA_WATER_DENSITY,
+    reynolds: float | None = None,
+) -> PropulsionState:
+    """Find the powers that overcome a resistance, with propellers of the B-series.
+
+    Parameters
+    ----------
+    speed, resistance : array_like
+        Speed through the water [m/s] and total resistance [N]. A ship that is pushed (negative
+        resistance) needs no thrust.
+    propeller : Propeller
+        One of them.
+    wake_fraction, thrust_deduction, relative_rotative : array_like
+        w, t and eta_R.
+    shaft_efficiency, gear_efficiency : array_like
+        Of the shaft line and of the gear (1 without one).
+    propellers : int
+        How many share the thrust.
+    density : float
+        [kg/m3].
+    reynolds : float, optional
+        See `thalweg.ship.methods.propulsion.b_series.b_series_polynomials`.
+
+    Returns
+    -------
+    PropulsionState
+    """
+    velocity, drag = np.broadcast_arrays(
+        np.asarray(speed, dtype=float), np.asarray(resistance, dtype=float)
+    )
+    thrust = np.maximum(drag, 0.0) / (1.0 - np.asarray(thrust_deduction, dtype=float))
+    inflow = velocity * (1.0 - np.asarray(wake_fraction, dtype=float))
+    state = operating_point(
+        thrust / propellers, inflow, propeller, density=density, reynolds=reynolds
+    )
+    delivered = propellers * state.power / np.asarray(relative_rotative)
+    losses = np.asarray(shaft_efficiency, dtype=float) * np.asarray(gear_efficiency, dtype=float)
+    return PropulsionState(
+        thrust,
+        state.rate,
+        state.efficiency,
+        effective_power(velocity, drag),
+        np.asarray(delivered),
+        np.asarray(delivered / losses),
+    )

@@ -1,0 +1,1 @@
+"""Calm-water resistance: Holtrop-Mennen, Hollenbach, friction lines."""

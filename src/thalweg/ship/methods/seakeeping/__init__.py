@@ -1,0 +1,1 @@
+"""Seakeeping: motions, sickness, wave spectra, stability in following seas."""

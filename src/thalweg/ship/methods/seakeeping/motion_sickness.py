@@ -1,0 +1,229 @@
+"""Motion sickness from vertical acceleration."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.units import GRAVITY
+from thalweg.ship.methods.array_conversion import Floats, floats
+
+#: Share of people sick per dose, unadapted men and women together (ISO 2631-1, annex D).
+MIXED_ADULTS: Final = 1.0 / 3.0
+
+#: Mean absolute over root mean square of a Gaussian motion.
+MEAN_ABSOLUTE: Final = float(np.sqrt(2.0 / np.pi))
+
+# corner frequencies [Hz] and resonant quality factors of the weighting Wf
+_F1, _F2, _F4, _Q4, _F5, _Q5, _F6, _Q6 = 0.08, 0.63, 0.25, 0.86, 0.0625, 0.80, 0.10, 0.80
+
+
+def _normal(z: Floats) -> Floats:
+    """Return the standard normal distribution function."""
+    from scipy.special import ndtr
+
+    value: Floats = np.asarray(ndtr(z), dtype=float)
+    return value
+
+
+def wf_weighting(frequency_hz: ArrayLike) -> Floats:
+    """Return the frequency weighting W_f of ISO 2631-1 for motion sickness.
+
+    Parameters
+    ----------
+    frequency_hz : array_like
+        Frequency of the motion (of encounter) [Hz].
+
+    Returns
+    -------
+    ndarray
+        Factor [-], largest 1.006 near 0.16 Hz, 0 at zero frequency.
+
+    References
+    ----------
+    ISO 2631-1:1997, Table 3 and annex A; reproduces its 18 tabulated one-third-octave factors.
+    """
+    f = np.abs(floats(frequency_hz))
+    f2, f4 = f**2, f**4
+    high = f2 / np.sqrt(f4 + _F1**4)
+    low = 1.0 / np.sqrt(1.0 + f4 / _F2**4)
+    fall = (
+        _F4**2 * _Q4 / np.sqrt(f4 * _Q4**2 + f2 * _F4**2 * (1 - 2 * _Q4**2) + (_F4**2 * _Q4) ** 2)
+    )
+    upper = f4 * _Q5**2 + f2 * _F5**2 * (1 - 2 * _Q5**2) + _F5**4 * _Q5**2
+    lower = f4 * _Q6**2 + f2 * _F6**2 * (1 - 2 * _Q6**2) + _F6**4 * _Q6**2
+    return high * low * fall * (_Q6 / _Q5) * np.sqrt(upper / lower)
+
+
+def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> Floats:
+    """Return the W_f-weighted root mean square of a vertical acceleration.
+
+    Parameters
+    ----------
+    parts : array_like
+        Variance by frequency on the last axis [m2/s4], as `ShipResponse.acceleration_parts`.
+    encounter_frequency : array_like
+        Encounter frequency of each part [rad/s].
+
+    Returns
+    -------
+    ndarray
+        a_w [m/s2].
+
+    References
+    ----------
+    ISO 2631-1:1997, 6.1.
+    """
+    factor = wf_weighting(floats(encounter_frequency) / (2.0 * np.pi))
+    value: Floats = np.sqrt(np.sum(floats(parts) * factor**2, axis=-1))
+    return value
+
+
+def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Floats:
+    """Return the motion sickness dose value MSDV_z = a_w sqrt(t) of a steady motion.
+
+    Parameters
+    ----------
+    weighted_rms : array_like
+        a_w [m/s2].
+    duration : array_like
+        Exposure [s].
+
+    Returns
+    -------
+    ndarray
+        [m/s^1.5].
+
+    References
+    ----------
+    ISO 2631-1:1997, annex D.
+    """
+    value: Floats = floats(weighted_rms) * np.sqrt(floats(duration))
+    return value
+
+
+def dose_of_voyage(weighted_rms: ArrayLike, *, durations: ArrayLike) -> Floats:
+    """Return the dose of consecutive stretches: the square root of the summed squares.
+
+    Parameters
+    ----------
+    weighted_rms : array_like
+        a_w of each stretch on the last axis [m/s2].
+    durations : array_like
+        Duration of each stretch [s].
+
+    Returns
+    -------
+    ndarray
+        [m/s^1.5].
+
+    References
+    ----------
+    ISO 2631-1:1997, annex D.
+    """
+    value: Floats = np.sqrt(np.sum(floats(weighted_rms) ** 2 * floats(durations), axis=-1))
+    return value
+
+
+def sick_percent_iso(dose: ArrayLike, *, susceptibility: ArrayLike = MIXED_ADULTS) -> Floats:
+    """Return the percentage of people who vomit by ISO 2631-1: K_m MSDV_z.
+
+    Parameters
+    ----------
+    dose : array_like
+        MSDV_z [m/s^1.5].
+    susceptibility : array_like
+        K_m, 1/3 for a mixed adult population not used to the sea.
+
+    Returns
+    -------
+    ndarray
+        Percent, at most 100. Fitted for exposures of 20 minutes to 6 hours and up to 70 %.
+
+    References
+    ----------
+    ISO 2631-1:1997, annex D.
+    """
+    return np.minimum(floats(susceptibility) * floats(dose), 100.0)
+
+
+def sick_percent_mccauley(
+    rms: ArrayLike, *, frequency_hz: ArrayLike, duration: ArrayLike, gravity: float = GRAVITY
+) -> Floats:
+    """Return the motion sickness incidence of McCauley et al. (1976).
+
+    100 P(z_a) P(z_t) with P the normal distribution, a the rms acceleration in g, f in Hz and
+    t in minutes: z_a = 2.128 log a - 9.277 log f - 5.809 (log f)^2 - 1.851,
+    z_t = 1.134 z_a + 1.989 log t - 2.904.
+
+    Parameters
+    ----------
+    rms : array_like
+        Root mean square of the vertical acceleration, not weighted [m/s2].
+    frequency_hz : array_like
+        Frequency of the motion [Hz].
+    duration : array_like
+        Exposure [s].
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    ndarray
+        Percent; 0 without motion or exposure. Tried with 0.05 to 0.7 Hz for 5 minutes to 2 hours.
+
+    References
+    ----------
+    M. E. McCauley et al., "Motion sickness incidence", Human Factors Research, TR 1733-2 (1976)
+    (constants from memory of the secondary literature, not seen in print).
+    """
+    a, f, t = floats(rms) / gravity, floats(frequency_hz), floats(duration) / 60.0
+    moving = (a > 0.0) & (t > 0.0) & (f > 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        log_f = np.log10(f)
+        z_a = 2.128 * np.log10(a) - 9.277 * log_f - 5.809 * log_f**2 - 1.851
+        z_t = 1.134 * z_a + 1.989 * np.log10(t) - 2.904
+        percent = 100.0 * _normal(z_a) * _normal(z_t)
+    return np.where(moving | np.isnan(a * f * t), percent, 0.0)
+
+
+def sick_percent_ohanlon(
+    rms: ArrayLike, *, encounter_frequency: ArrayLike, gravity: float = GRAVITY
+) -> Floats:
+    """Return the motion sickness incidence after two hours by O'Hanlon and McCauley (1974).
+
+    100 P((log(a/g) - m) / 0.4), m = -0.819 + 2.32 (log w_e)^2, with a the mean absolute
+    acceleration, 0.798 of the rms of a Gaussian motion.
+
+    Parameters
+    ----------
+    rms : array_like
+        Root mean square of the vertical acceleration, not weighted [m/s2].
+    encounter_frequency : array_like
+        Mean frequency of the motion [rad/s].
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    ndarray
+        Percent; 0 without motion. Tried with 0.083 to 0.7 Hz.
+
+    Notes
+    -----
+    The frequency is in rad/s: people are sickest near 1 rad/s, 0.16 Hz. A later edition of that
+    toolbox (2025) puts hertz into the same line, which moves the worst motion to 1 Hz.
+
+    References
+    ----------
+    J. F. O'Hanlon, M. E. McCauley, Aerospace Medicine 45 (1974), as in A. R. J. M. Lloyd,
+    "Seakeeping: ship behaviour in rough weather" (1989); constants checked against the marine
+    systems toolbox of Fossen and Perez.
+    """
+    a, w = MEAN_ABSOLUTE * floats(rms) / gravity, floats(encounter_frequency)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        middle = -0.819 + 2.32 * np.log10(w) ** 2
+        percent = 100.0 * _normal((np.log10(a) - middle) / 0.4)
+    return np.where((a > 0.0) | np.isnan(a * w), percent, 0.0)

@@ -1,0 +1,348 @@
+"""Heave, pitch and vertical acceleration of a ship in waves by closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.units import GRAVITY
+from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.seakeeping.wave_spectra import (
+    jonswap,
+    moment,
+    most_probable_maximum,
+    quadrature,
+)
+from thalweg.ship.methods.validity import RangeNote, range_notes
+
+#: How wave pressure fades with depth in `jensen_motions`.
+DECAYS: Final = ("published", "strip")
+
+#: Ships `jensen_motions` was tried on, our judgement: Froude number, and length over breadth.
+_FROUDE: Final = (0.0, 0.35)
+_SLENDER: Final = (4.0, 10.0)
+
+
+@dataclass(frozen=True)
+class MotionHull:
+    """What the closed forms need to know of a hull.
+
+    Parameters
+    ----------
+    length : float
+        Waterline length [m].
+    breadth : float
+        Breadth [m].
+    draught : float
+        Mean draught [m].
+    block_coefficient : float
+        Block coefficient [-]; the box of the method is ``block_coefficient * breadth`` wide.
+
+    Raises
+    ------
+    InputError
+        When a dimension is not positive or the block coefficient is above one.
+    """
+
+    length: float
+    breadth: float
+    draught: float
+    block_coefficient: float
+
+    def __post_init__(self) -> None:
+        for name in ("length", "breadth", "draught", "block_coefficient"):
+            value = getattr(self, name)
+            if not value > 0.0 or (name == "block_coefficient" and value > 1.0):
+                raise InputError(
+                    f"A hull cannot have {name} {value:g}.",
+                    "Dimensions are positive and the block coefficient is at most 1.",
+                    "Correct the particulars.",
+                    field=name,
+                    value=value,
+                )
+
+
+def encounter_ratio(
+    frequency: ArrayLike, *, speed: ArrayLike, wave_angle: ArrayLike, gravity: float = GRAVITY
+) -> Floats:
+    """Return encounter over wave frequency in deep water: 1 + w V cos(angle) / g.
+
+    Parameters
+    ----------
+    frequency : array_like
+        Wave frequency [rad/s]; the last axis runs over frequency.
+    speed : array_like
+        Speed through the water [m/s].
+    wave_angle : array_like
+        Angle between bow and where the waves come from [rad], 0 head to pi following; either
+        side.
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    ndarray
+        Ratio [-]; negative where the ship overtakes the waves.
+    """
+    ahead = floats(speed) * np.cos(floats(wave_angle))
+    return 1.0 + floats(frequency) * ahead[..., None] / gravity
+
+
+def jensen_motions(
+    frequency: ArrayLike,
+    *,
+    speed: ArrayLike,
+    wave_angle: ArrayLike,
+    hull: MotionHull,
+    decay: str = "published",
+    gravity: float = GRAVITY,
+) -> tuple[Floats, Floats]:
+    """Return the amplitudes of heave and pitch per wave amplitude.
+
+    With k = w^2/g, a = encounter over wave frequency, B the breadth of the box, T the draught,
+    k_e = |k cos(angle)|, s = k_e L / 2:
+
+    A = 2 sin(k B a^2 / 2) exp(-k T a^2);  f^2 = (1 - k T)^2 + (A^2 / (k B a^3))^2
+    heave = n f exp(-k_e T) sin(s) / s;  pitch = n f exp(-k_e T) k_e 3 (sin s - s cos s) / s^3
+    n = 1 / sqrt((1 - 2 k T a^2)^2 + (A^2 / (k B a^2))^2)
+
+    Parameters
+    ----------
+    frequency : array_like
+        Wave frequency [rad/s]; the last axis runs over frequency.
+    speed : array_like
+        Speed through the water [m/s]; NaN gives NaN.
+    wave_angle : array_like
+        Angle between bow and where the waves come from [rad], 0 head to pi following.
+    hull : MotionHull
+        Hull.
+    decay : str
+        ``published``: exp(-k_e T) as in the paper. ``strip``: exp(-k T), the same in head and
+        following seas; see the notes.
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    tuple of ndarray
+        Heave [m/m] and pitch [rad/m], both positive; they are a quarter period apart.
+
+    Notes
+    -----
+    The poles of the printed form at zero encounter frequency and in beam seas are removable and
+    are removed: with z = k B a^2 / 2 the two damping terms are k B a (sin z / z)^2 exp(-2 k T a^2)
+    and a times that. In long waves heave tends to one and pitch to the wave slope k.
+
+    The published decay uses the wave number along the ship. In beam seas that is zero, pressure
+    no longer fades with depth, heave tends to 1/2 (not to 0) in ever shorter waves, and the
+    acceleration in a sea depends on where the spectrum is cut off. Pressure under a wave fades
+    with its own wave number whatever the heading, which is what ``strip`` uses (as strip theory
+    does); this correction is ours.
+
+    References
+    ----------
+    J. J. Jensen, A. E. Mansour, A. S. Olsen, "Estimation of ship motions using closed-form
+    expressions", Ocean Engineering 31 (2004).
+    """
+    if decay not in DECAYS:
+        raise unknown_name("decay", decay, DECAYS)
+    w = floats(frequency)
+    k = w**2 / gravity
+    a = encounter_ratio(w, speed=speed, wave_angle=wave_angle, gravity=gravity)
+    across = np.abs(np.cos(floats(wave_angle)))[..., None]
+    k_e, box = k * across, hull.block_coefficient * hull.breadth
+    half = 0.5 * k_e * hull.length
+    sway = np.sinc(0.5 * k * box * a**2 / np.pi) * np.exp(-k * hull.draught * a**2)
+    damping = k * box * a * sway**2
+    fading = np.exp(-hull.draught * (k_e if decay == "published" else k))
+    forcing = np.sqrt((1.0 - k * hull.draught) ** 2 + damping**2) * fading
+    stiffness = 1.0 - 2.0 * k * hull.draught * a**2
+    gain = forcing / np.sqrt(stiffness**2 + (damping * a) ** 2)
+    heave = gain * np.abs(np.sinc(half / np.pi))
+    return heave, gain * k_e * np.abs(_slope_factor(half))
+
+
+def _slope_factor(s: Floats) -> Floats:
+    """Return 3 (sin s - s cos s) / s^3, one at s = 0."""
+    small = np.abs(s) < 0.02
+    safe = np.where(small, 1.0, s)
+    return np.where(small, 1.0 - s**2 / 10.0, 3.0 * (np.sin(safe) - safe * np.cos(safe)) / safe**3)
+
+
+def vertical_motion(heave: ArrayLike, pitch: ArrayLike, *, forward: ArrayLike) -> Floats:
+    """Return the vertical motion at a point from heave and pitch a quarter period apart.
+
+    Parameters
+    ----------
+    heave, pitch : array_like
+        Amplitudes per wave amplitude [m/m] and [rad/m].
+    forward : array_like
+        Distance of the point ahead of midship [m], negative abaft.
+
+    Returns
+    -------
+    ndarray
+        Amplitude [m/m]: sqrt(heave^2 + (x pitch)^2). Roll is not modelled, so the point is taken
+        on the centre line.
+    """
+    return np.hypot(floats(heave), floats(forward)[..., None] * floats(pitch))
+
+
+@dataclass(frozen=True)
+class SeaResponse:
+    """Statistics of one response in a sea state.
+
+    Parameters
+    ----------
+    m0, m2 : ndarray
+        Variance, and second moment over encounter frequency.
+    """
+
+    m0: Floats
+    m2: Floats
+
+    @property
+    def significant_amplitude(self) -> Floats:
+        """Mean of the largest third of the amplitudes, 2 sqrt(m0)."""
+        return 2.0 * np.sqrt(self.m0)
+
+    def most_probable_maximum(self, duration: ArrayLike = 10_800.0) -> Floats:
+        """Return the most probable largest amplitude in a duration [s], 3 h if not given."""
+        return most_probable_maximum(self.m0, self.m2, duration=duration)
+
+
+@dataclass(frozen=True)
+class ShipResponse:
+    """Responses of a ship in sea states.
+
+    Parameters
+    ----------
+    heave : SeaResponse
+        At midship [m].
+    pitch : SeaResponse
+        [rad].
+    motion : SeaResponse
+        Vertical motion at the point asked for [m].
+    acceleration : SeaResponse
+        Vertical acceleration there [m/s2].
+    acceleration_parts : ndarray
+        Variance of the acceleration by frequency, last axis [m2/s4]; they add up to its m0.
+    encounter_frequency : ndarray
+        Encounter frequency of each part [rad/s], not negative.
+    """
+
+    heave: SeaResponse
+    pitch: SeaResponse
+    motion: SeaResponse
+    acceleration: SeaResponse
+    acceleration_parts: Floats
+    encounter_frequency: Floats
+
+
+def ship_response(
+    *,
+    height: ArrayLike,
+    period: ArrayLike,
+    wave_angle: ArrayLike,
+    speed: ArrayLike,
+    hull: MotionHull,
+    forward: ArrayLike = 0.0,
+    peak_factor: ArrayLike | None = None,
+    decay: str = "strip",
+    gravity: float = GRAVITY,
+) -> ShipResponse:
+    """Return heave, pitch, vertical motion and acceleration in long-crested JONSWAP seas.
+
+    Parameters
+    ----------
+    height, period : array_like
+        Significant height [m] and peak period [s].
+    wave_angle : array_like
+        Angle between bow and where the waves come from [rad], 0 head to pi following.
+    speed : array_like
+        Speed through the water [m/s].
+    hull : MotionHull
+        Hull.
+    forward : array_like
+        Point on the centre line, ahead of midship [m].
+    peak_factor : array_like, optional
+        gamma of the spectrum; without it that of DNV-RP-C205.
+    decay : str
+        As in `jensen_motions`. ``strip`` unless asked otherwise, since with ``published`` the
+        accelerations in beam seas depend on where the spectrum is cut off.
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    ShipResponse
+        Of the broadcast shape of the conditions. Zero height gives zero, whatever the period
+        and direction; unknown data give NaN.
+
+    Notes
+    -----
+    All conditions are worked at once with 48 frequencies each: a million conditions need about
+    400 MB per intermediate array, so give long lists in parts.
+    """
+    hs, tp, angle, v, x = np.broadcast_arrays(
+        *(floats(values) for values in (height, period, wave_angle, speed, forward))
+    )
+    flat = hs == 0.0  # a flat sea has neither period nor direction
+    tp = np.where(flat & ~(tp > 0.0), 10.0, tp)
+    angle = np.where(flat & np.isnan(angle), 0.0, angle)
+    w, weights = quadrature(tp)
+    waves = jonswap(w, height=hs, period=tp, peak_factor=peak_factor)
+    heave, pitch = jensen_motions(
+        w, speed=v, wave_angle=angle, hull=hull, decay=decay, gravity=gravity
+    )
+    meeting = np.abs(w * encounter_ratio(w, speed=v, wave_angle=angle, gravity=gravity))
+    point = vertical_motion(heave, pitch, forward=x)
+
+    def statistics(amplitude: Floats) -> SeaResponse:
+        density = amplitude**2 * waves
+        return SeaResponse(
+            moment(density, weights, frequency=meeting, order=0),
+            moment(density, weights, frequency=meeting, order=2),
+        )
+
+    return ShipResponse(
+        heave=statistics(heave),
+        pitch=statistics(pitch),
+        motion=statistics(point),
+        acceleration=statistics(meeting**2 * point),
+        acceleration_parts=(meeting**2 * point) ** 2 * waves * weights,
+        encounter_frequency=meeting,
+    )
+
+
+def motions_validity(
+    speed: ArrayLike, hull: MotionHull, *, gravity: float = GRAVITY
+) -> list[RangeNote]:
+    """Say where `jensen_motions` is used outside the ships it was tried on.
+
+    Parameters
+    ----------
+    speed : array_like
+        [m/s].
+    hull : MotionHull
+        Hull.
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty when all lies inside. The ranges are our judgement of the ships in the paper.
+    """
+    froude = floats(speed) / np.sqrt(gravity * hull.length)
+    return range_notes(
+        "Jensen-Mansour-Olsen motions",
+        {
+            "Froude number": (froude, *_FROUDE),
+            "length over breadth": (hull.length / hull.breadth, *_SLENDER),
+        },
+    )

@@ -1,0 +1,266 @@
+"""The dangerous situations in waves of IMO MSC.1/Circ.1228."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.units import KNOT
+from thalweg.ship.methods.array_conversion import Floats, floats
+
+Flags = NDArray[np.bool_]
+
+#: Half width of the sector of following and quartering seas [rad]: 135 to 225 degrees.
+SECTOR: Final = float(np.radians(45.0))
+#: Encounter over wave period where successive high waves are met.
+HIGH_WAVE_RATIOS: Final = (1.8, 3.0)
+_WAVELENGTH: Final = 1.56  # g / (2 pi), as the circular rounds it [m/s2]
+
+
+@dataclass(frozen=True)
+class StabilityMargins:
+    """How far a ship is from each dangerous situation; negative inside it.
+
+    Parameters
+    ----------
+    surf_riding : ndarray
+        Critical speed minus speed [m/s]; infinite outside following and quartering seas.
+    high_waves : ndarray
+        Largest relative distance from the three limits that must all be passed [-].
+    synchronous_roll, parametric_roll : ndarray
+        Relative distance of the encounter period from resonance, less the tolerance [-]; NaN
+        when no roll period was given.
+    """
+
+    surf_riding: Floats
+    high_waves: Floats
+    synchronous_roll: Floats
+    parametric_roll: Floats
+
+
+@dataclass(frozen=True)
+class StabilityChecks:
+    """What MSC.1/Circ.1228 warns of.
+
+    Parameters
+    ----------
+    encounter_period : ndarray
+        [s]; infinite where the ship keeps pace with the waves.
+    surf_riding : ndarray of bool
+        Surf-riding and broaching-to may occur.
+    marginal_surging : ndarray of bool
+        Large surging motion, 1.4 to 1.8 times the root of length.
+    successive_high_waves : ndarray of bool
+        Zone of successive high waves.
+    synchronous_roll, parametric_roll : ndarray of bool
+        Encounter period near the roll period; near it or half of it. False without roll period.
+    margins : StabilityMargins
+        Distances from the first and the last three.
+    known : ndarray of bool
+        Whether all data were known. Where they were not every flag is False, which is no
+        all-clear: use `safe`.
+    """
+
+    encounter_period: Floats
+    surf_riding: Flags
+    marginal_surging: Flags
+    successive_high_waves: Flags
+    synchronous_roll: Flags
+    parametric_roll: Flags
+    margins: StabilityMargins
+    known: Flags
+
+    @property
+    def dangerous(self) -> Flags:
+        """Whether any of the dangerous situations is met (marginal surging is not one)."""
+        return (
+            self.surf_riding
+            | self.successive_high_waves
+            | self.synchronous_roll
+            | self.parametric_roll
+        )
+
+    @property
+    def safe(self) -> Flags:
+        """Whether all data were known and nothing dangerous is met."""
+        return self.known & ~self.dangerous
+
+
+def roll_period(
+    breadth: ArrayLike,
+    draught: ArrayLike,
+    *,
+    length_waterline: ArrayLike,
+    metacentric_height: ArrayLike,
+) -> Floats:
+    """Return the natural roll period 2 C B / sqrt(GM), C = 0.373 + 0.023 B/T - 0.043 L/100.
+
+    Parameters
+    ----------
+    breadth, draught, length_waterline : array_like
+        [m].
+    metacentric_height : array_like
+        GM corrected for free surfaces [m].
+
+    Returns
+    -------
+    ndarray
+        [s]; NaN where GM is not positive.
+
+    References
+    ----------
+    2008 IS Code (MSC.267(85)), part A, 2.3.4.
+    """
+    b, gm = floats(breadth), floats(metacentric_height)
+    coefficient = 0.373 + 0.023 * b / floats(draught) - 0.043 * floats(length_waterline) / 100.0
+    value: Floats = 2.0 * coefficient * b / np.sqrt(np.where(gm > 0.0, gm, np.nan))
+    return value
+
+
+def encounter_period(wave_period: ArrayLike, *, speed: ArrayLike, wave_angle: ArrayLike) -> Floats:
+    """Return the encounter period 3 T^2 / (3 T + V cos(angle)), V in knots in the formula.
+
+    Parameters
+    ----------
+    wave_period : array_like
+        [s].
+    speed : array_like
+        Through the water [m/s].
+    wave_angle : array_like
+        Angle between bow and where the waves come from [rad], 0 head to pi following.
+
+    Returns
+    -------
+    ndarray
+        [s], without sign; infinite where the ship keeps pace with the waves.
+
+    References
+    ----------
+    MSC.1/Circ.1228, 1.6. The 3 stands for g / (2 pi) in knots per second, 3.03.
+    """
+    t = floats(wave_period)
+    t = np.where(t > 0.0, t, np.nan)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return 3.0 * t**2 / np.abs(3.0 * t + floats(speed) / KNOT * np.cos(floats(wave_angle)))
+
+
+def surf_riding_speed(wave_angle: ArrayLike, *, length: ArrayLike, factor: float = 1.8) -> Floats:
+    """Return the speed above which a ship may surf-ride: 1.8 sqrt(L) / cos(180 - angle) knots.
+
+    Parameters
+    ----------
+    wave_angle : array_like
+        Angle between bow and where the waves come from [rad], 0 head to pi following.
+    length : array_like
+        Ship length [m].
+    factor : float
+        1.8 for surf-riding, 1.4 for the marginal zone of large surging (from memory).
+
+    Returns
+    -------
+    ndarray
+        [m/s]; infinite outside 135 to 225 degrees.
+
+    References
+    ----------
+    MSC.1/Circ.1228, 4.2.1 and figure 2. The sector and the limits of 4.2.2 were read in the
+    published text; 1.8 agrees in two secondary sources; 1.4 was not seen in print.
+    """
+    following = -np.cos(floats(wave_angle))
+    limit = np.cos(SECTOR)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speed = KNOT * factor * np.sqrt(floats(length)) / following
+    return np.where(following > limit, speed, np.where(np.isnan(following), np.nan, np.inf))
+
+
+def _resonance(encounter: Floats, period: Floats, tolerance: float) -> tuple[Floats, Floats]:
+    """Return relative distances from synchronous and parametric roll, less the tolerance."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        once = np.abs(encounter / period - 1.0)
+        twice = np.abs(2.0 * encounter / period - 1.0)
+    return once - tolerance, np.minimum(once, twice) - tolerance
+
+
+def stability_checks(
+    *,
+    speed: ArrayLike,
+    wave_angle: ArrayLike,
+    wave_height: ArrayLike,
+    wave_period: ArrayLike,
+    length: ArrayLike,
+    roll_period: ArrayLike | None = None,
+    roll_tolerance: float = 0.1,
+    least_height: float = 0.0,
+) -> StabilityChecks:
+    """Return what MSC.1/Circ.1228 warns of in given waves.
+
+    Parameters
+    ----------
+    speed : array_like
+        Through the water [m/s].
+    wave_angle : array_like
+        Angle between bow and where the waves come from [rad], 0 head to pi following; either
+        side.
+    wave_height : array_like
+        Significant height [m].
+    wave_period : array_like
+        Mean wave period [s].
+    length : array_like
+        Ship length [m].
+    roll_period : array_like, optional
+        Natural roll period [s]; without it the roll checks are not made.
+    roll_tolerance : float
+        "Nearly equal" of the circular: relative difference of periods, 0.1 to 0.2.
+    least_height : float
+        Waves up to this height raise no flag [m]. The circular sets no height for surf-riding
+        and roll; without one a ripple of the right period counts.
+
+    Returns
+    -------
+    StabilityChecks
+        Flags and margins. A flat sea raises no flag, whatever its period and direction.
+
+    Notes
+    -----
+    Surf-riding: 135 to 225 degrees and above `surf_riding_speed`. Successive high waves:
+    wave length above 0.8 L, height above 0.04 L and encounter period 1.8 to 3.0 wave periods.
+
+    References
+    ----------
+    IMO MSC.1/Circ.1228, sections 1.5, 1.6 and 4.2.
+    """
+    v, angle, hs, tw, size = np.broadcast_arrays(
+        *(floats(x) for x in (speed, wave_angle, wave_height, wave_period, length))
+    )
+    rolls = np.full(v.shape, np.nan) if roll_period is None else floats(roll_period)
+    hs = np.where(hs >= 0.0, hs, np.nan)
+    flat = hs <= least_height
+    met = encounter_period(tw, speed=v, wave_angle=angle)
+    surf = surf_riding_speed(angle, length=size) - v
+    surge = surf_riding_speed(angle, length=size, factor=1.4) - v
+    ratio = met / tw
+    low, high = HIGH_WAVE_RATIOS
+    high_waves = np.maximum.reduce(
+        [
+            1.0 - _WAVELENGTH * tw**2 / (0.8 * size),
+            1.0 - hs / (0.04 * size),
+            np.maximum(low - ratio, ratio - high),
+        ]
+    )
+    once, any_roll = _resonance(met, rolls, roll_tolerance)
+    seen = ~np.isnan(met) & ((roll_period is None) | ~np.isnan(rolls))
+    known = ~np.isnan(v + hs + size) & (flat | seen)
+    calm = [np.where(flat, np.inf, x) for x in (surf, high_waves, once, any_roll)]
+    return StabilityChecks(
+        encounter_period=met,
+        surf_riding=known & ~flat & (surf < 0.0),
+        marginal_surging=known & ~flat & (surge < 0.0) & (surf >= 0.0),
+        successive_high_waves=known & ~flat & (high_waves < 0.0),
+        synchronous_roll=known & ~flat & (once < 0.0),
+        parametric_roll=known & ~flat & (any_roll < 0.0),
+        margins=StabilityMargins(*(np.where(known, x, np.nan) for x in calm)),
+        known=known,
+    )

@@ -1,0 +1,254 @@
+"""Wave spectra of a wind sea, with the quadrature and the moments every response uses."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.core.units import GRAVITY
+from thalweg.ship.methods.array_conversion import Floats, floats
+
+#: Panels of the quadrature in units of the peak frequency, and points in each.
+PANELS: Final = (0.35, 0.75, 1.0, 1.3, 2.0, 4.0, 8.0)
+POINTS: Final = 8
+
+
+def _panel_rule() -> tuple[Floats, Floats]:
+    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+    low, high = np.array(PANELS[:-1]), np.array(PANELS[1:])
+    half = (high - low)[:, None] / 2.0
+    return ((low + high)[:, None] / 2.0 + half * nodes).ravel(), (half * weights).ravel()
+
+
+_NODES, _WEIGHTS = _panel_rule()
+
+
+def quadrature(period: ArrayLike) -> tuple[Floats, Floats]:
+    """Return wave frequencies and weights for integrals over a sea state.
+
+    Parameters
+    ----------
+    period : array_like
+        Peak period [s], any shape.
+
+    Returns
+    -------
+    tuple of ndarray
+        Frequencies [rad/s] and weights [rad/s], 48 on a new last axis, from 0.35 to 8 times the
+        peak frequency. Gauss-Legendre panels that end at the peak, where the spectrum has a
+        kink. NaN where the period is not positive.
+    """
+    t = floats(period)
+    peak = 2.0 * np.pi / np.where(t > 0.0, t, np.nan)
+    return peak[..., None] * _NODES, peak[..., None] * _WEIGHTS
+
+
+def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> Floats:
+    """Return the peak factor gamma of a JONSWAP spectrum by DNV-RP-C205.
+
+    5 for Tp / sqrt(Hs) <= 3.6; exp(5.75 - 1.15 Tp / sqrt(Hs)); 1 from 5 on.
+
+    Parameters
+    ----------
+    height : array_like
+        Significant height [m].
+    period : array_like
+        Peak period [s].
+
+    Returns
+    -------
+    ndarray
+        gamma [-].
+
+    References
+    ----------
+    DNV-RP-C205 (2010), 3.5.5, as used by Prestegårdshus (2020), eq. 3.16.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = floats(period) / np.sqrt(floats(height))
+    return np.where(ratio <= 3.6, 5.0, np.where(ratio >= 5.0, 1.0, np.exp(5.75 - 1.15 * ratio)))
+
+
+def jonswap(
+    frequency: ArrayLike,
+    *,
+    height: ArrayLike,
+    period: ArrayLike,
+    peak_factor: ArrayLike | None = None,
+) -> Floats:
+    """Return the JONSWAP spectrum, scaled so that 4 sqrt(m0) is the significant height.
+
+    S = (5/16) Hs^2 wp^4 w^-5 exp(-1.25 (wp/w)^4) (1 - 0.287 ln gamma) gamma^r with
+    r = exp(-(w - wp)^2 / (2 s^2 wp^2)) and s = 0.07 up to the peak, 0.09 above it.
+
+    Parameters
+    ----------
+    frequency : array_like
+        Wave frequency [rad/s]; the last axis runs over frequency.
+    height, period : array_like
+        Significant height [m] and peak period [s]; broadcast against the leading axes of
+        ``frequency`` (a scalar sea state takes a vector of frequencies). The spectrum is meant
+        for 3.6 < Tp / sqrt(Hs) < 5.
+    peak_factor : array_like, optional
+        gamma [-]; without it `dnv_peak_factor`.
+
+    Returns
+    -------
+    ndarray
+        S(w) [m2 s/rad]; 0 at zero frequency and for zero height, NaN where data are unknown or
+        the height is negative.
+
+    Notes
+    -----
+    Prestegårdshus (2020) prints 5.058 for (5/16)(2 pi)^4/g^2 = 5.061 and gives both widths for
+    frequencies at and below the peak; the second belongs above it. With the factor
+    1 - 0.287 ln gamma the height comes out within 0.2 % for gamma up to 5.
+
+    References
+    ----------
+    K. Hasselmann et al., Dt. Hydrogr. Z. A8(12) (1973); DNV-RP-C205 (2010), 3.5.5.
+    """
+    w, hs, tp = floats(frequency), floats(height)[..., None], floats(period)[..., None]
+    gamma = dnv_peak_factor(hs, tp) if peak_factor is None else floats(peak_factor)[..., None]
+    hs, tp = np.where(hs >= 0.0, hs, np.nan), np.where(tp > 0.0, tp, np.nan)
+    peak = 2.0 * np.pi / tp
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        x = w / peak
+        width = np.where(x <= 1.0, 0.07, 0.09)
+        enhance = gamma ** np.exp(-((x - 1.0) ** 2) / (2.0 * width**2))
+        shape = np.where(x > 0.0, x**-5.0 * np.exp(-1.25 * x**-4.0), 0.0 * x)
+    return 0.3125 * hs**2 / peak * (1.0 - 0.287 * np.log(gamma)) * shape * enhance
+
+
+def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike) -> Floats:
+    """Return the two-parameter Bretschneider (Pierson-Moskowitz type) spectrum.
+
+    Parameters
+    ----------
+    frequency, height, period : array_like
+        As in `jonswap`.
+
+    Returns
+    -------
+    ndarray
+        S(w) [m2 s/rad].
+
+    References
+    ----------
+    C. L. Bretschneider (1959); the JONSWAP spectrum with gamma = 1.
+    """
+    return jonswap(frequency, height=height, period=period, peak_factor=1.0)
+
+
+def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> Floats:
+    """Return the peak period of a fully developed sea of given height [s].
+
+    From m0 = 0.0081 g^2 / (5 wp^4): wp = 0.02592^(1/4) sqrt(g / Hs), 0.02592 = 16 0.0081 / 5.
+
+    Parameters
+    ----------
+    height : array_like
+        Significant height [m].
+    gravity : float
+        [m/s2].
+
+    Returns
+    -------
+    ndarray
+        Peak period [s], for `bretschneider`.
+
+    References
+    ----------
+    W. J. Pierson, L. Moskowitz, J. Geophys. Res. 69 (1964).
+    """
+    period: Floats = 2.0 * np.pi / 0.02592**0.25 * np.sqrt(floats(height) / gravity)
+    return period
+
+
+def moment(density: ArrayLike, weights: ArrayLike, *, frequency: ArrayLike, order: float) -> Floats:
+    """Return a spectral moment: the sum of |w|^n S over the last axis with weights.
+
+    Parameters
+    ----------
+    density : array_like
+        Spectral density over *wave* frequency; squared response times wave spectrum for a
+        response.
+    weights : array_like
+        Weights of the quadrature [rad/s].
+    frequency : array_like
+        Frequency whose power is taken [rad/s]: the wave's, or the encounter frequency for a ship
+        under way. Integrating over wave frequency avoids the poles of the encounter spectrum.
+    order : float
+        n.
+
+    Returns
+    -------
+    ndarray
+        m_n.
+    """
+    power = np.abs(floats(frequency)) ** order if order else 1.0
+    total: Floats = np.sum(floats(density) * floats(weights) * power, axis=-1)
+    return total
+
+
+def significant_height(m0: ArrayLike) -> Floats:
+    """Return the significant double amplitude 4 sqrt(m0).
+
+    Parameters
+    ----------
+    m0 : array_like
+        Variance.
+
+    Returns
+    -------
+    ndarray
+        In the unit of the motion; half of it is the significant amplitude.
+    """
+    return 4.0 * np.sqrt(floats(m0))
+
+
+def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) -> Floats:
+    """Return the most probable largest amplitude in a time: sqrt(2 m0 ln N).
+
+    N = duration / Tz with Tz = 2 pi sqrt(m0 / m2), the number of cycles, at least one.
+
+    Parameters
+    ----------
+    m0, m2 : array_like
+        Moments of the response over encounter frequency.
+    duration : array_like
+        [s].
+
+    Returns
+    -------
+    ndarray
+        Amplitude in the unit of the response; 0 without response.
+
+    References
+    ----------
+    M. K. Ochi, "On prediction of extreme values", J. Ship Research 17 (1973), narrow band.
+    """
+    variance = floats(m0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cycles = floats(duration) / (2.0 * np.pi) * np.sqrt(floats(m2) / variance)
+        largest = np.sqrt(2.0 * variance * np.log(np.maximum(cycles, 1.0)))
+    return np.where(variance == 0.0, 0.0 * floats(m2), largest)
+
+
+def zero_crossing_period(m0: ArrayLike, m2: ArrayLike) -> Floats:
+    """Return the mean period between upward zero crossings, 2 pi sqrt(m0 / m2) [s].
+
+    Parameters
+    ----------
+    m0, m2 : array_like
+        Moments.
+
+    Returns
+    -------
+    ndarray
+        [s]; NaN without motion.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return 2.0 * np.pi * np.sqrt(floats(m0) / floats(m2))

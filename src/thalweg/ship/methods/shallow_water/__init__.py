@@ -1,0 +1,1 @@
+"""Shallow water: resistance, speed loss and squat."""

@@ -1,0 +1,293 @@
+"""Involuntary speed loss in wind and waves by Kwon (2008).
+
+Source: Y. J. Kwon, "Speed loss due to added resistance in wind and waves", The Naval Architect,
+March 2008, 14-16, after Townsin and Kwon (1983); coefficients as reprinted by Seuren (2020),
+tables B.1 to B.3::
+
+    loss = C_beta C_U C_form / 100        (fraction of the calm-water speed V)
+
+Two places need a choice, made here and kept selectable:
+
+* **Sign of the last term of C_U for C_B 0.75 and 0.80.** Reprints print a minus. With it C_U
+  turns negative at ordinary speeds (Fn > 0.17 for C_B 0.80): weather would push a full ship
+  forward. With a plus the rows 0.75, 0.80 and 0.85 form one family (1.02, 0.98, 0.93 at
+  Fn 0.15), and the row 0.85 has a plus in print. ``sign="plus"`` is the default,
+  ``sign="printed"`` gives the minus. The 2008 paper itself was not at hand.
+* **Classes.** Beaufort number and heading sector are classes in the tables. A staircase
+  in either makes optimal routes jump, so by default the Beaufort number is continuous,
+  B = (v / 0.836)^(2/3), and C_beta runs linearly between the middles of the sectors.
+  ``classes=True`` gives the tables as printed.
+
+C_beta falls again when the wind rises beyond B 4, 6 or 8, so far that a hurricane on the beam would
+cost nothing; the composed ship therefore never lets the loss fall while the wind rises
+(``hold=True``).
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import unknown_name
+from thalweg.core.units import GRAVITY
+from thalweg.ship.methods.validity import RangeNote, range_notes
+
+FloatArray = NDArray[np.float64]
+Loading = Literal["loaded", "normal", "ballast"]
+Sign = Literal["plus", "printed"]
+ShipType = Literal["other", "container"]
+
+GREATEST_LOSS: Final = 0.99  #: cap of the loss, as in Seuren (2020)
+MIDDLES: Final = np.radians([15.0, 45.0, 105.0, 165.0])  #: middles of the heading sectors [rad]
+_EDGES: Final = np.radians([30.0, 60.0, 150.0])
+_LOWER_LIMITS: Final = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
+# C_beta = a - b (B - c)^2 for head, bow, beam and following weather
+_TOP: Final = np.array([1.0, 0.85, 0.45, 0.20])
+_BEND: Final = np.array([0.0, 0.015, 0.030, 0.015])
+_VERTEX: Final = np.array([0.0, 4.0, 6.0, 8.0])
+_BLOCKS: Final = (0.55, 0.60, 0.65, 0.70, 0.75, 0.80, 0.85)
+_LOADED: Final = (
+    *((1.7, -1.4, -7.4), (2.2, -2.5, -9.7), (2.6, -3.7, -11.6), (3.1, -5.3, -12.4)),
+    *((2.4, -10.6, 9.5), (2.6, -13.1, 15.1), (3.1, -18.7, 28.0)),
+)
+_BALLAST: Final = (*_LOADED[:4], (2.6, -12.5, 13.5), (3.0, -16.3, 21.6), (3.4, -20.9, 31.8))
+_UNSETTLED: Final = (4, 5)  # rows whose last sign is in doubt
+
+
+def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArray:
+    """Beaufort number of a wind at 10 m [m/s].
+
+    Parameters
+    ----------
+    wind_speed : array_like
+        [m/s], not negative.
+    classes : bool
+        Whole numbers by the usual class limits, instead of the continuous
+        B = (v / 0.836)^(2/3). Both end at 12.
+
+    Returns
+    -------
+    ndarray
+        0 to 12; NaN for NaN.
+    """
+    wind = np.asarray(wind_speed, float)
+    if classes:
+        number = np.searchsorted(_LOWER_LIMITS, wind, side="right").astype(float)
+        return np.where(np.isnan(wind), np.nan, number)
+    return np.minimum((wind / 0.836) ** (2.0 / 3.0), 12.0)
+
+
+def kwon_direction_coefficients(beaufort: ArrayLike) -> FloatArray:
+    """C_beta of head, bow, beam and following weather, not below zero (table B.1).
+
+    Parameters
+    ----------
+    beaufort : array_like
+        Beaufort number.
+
+    Returns
+    -------
+    ndarray
+        Shape ``(4, *beaufort.shape)``: angles off the bow of 0-30, 30-60, 60-150, 150-180 deg.
+    """
+    number = np.asarray(beaufort, float)
+    column = (slice(None),) + (None,) * number.ndim
+    return np.maximum(_TOP[column] - _BEND[column] * (number - _VERTEX[column]) ** 2, 0.0)
+
+
+def kwon_speed_coefficient(
+    froude: ArrayLike,
+    *,
+    block_coefficient: ArrayLike,
+    loading: Loading = "loaded",
+    sign: Sign = "plus",
+) -> FloatArray:
+    """C_U, linear in the block coefficient between the rows of table B.2, not below zero.
+
+    Parameters
+    ----------
+    froude : array_like
+        Froude number of the calm-water speed on the length between perpendiculars.
+    block_coefficient : array_like
+        0.55 to 0.85; beyond, the last row holds.
+    loading : {"loaded", "normal", "ballast"}
+        Below 0.75 ballast has no rows of its own; those of the normal condition hold.
+    sign : {"plus", "printed"}
+        Sign of the last term for C_B 0.75 and 0.80; see the module's text.
+
+    Returns
+    -------
+    ndarray
+    """
+    rows = np.array(_choose({"loaded": _LOADED, "normal": _LOADED, "ballast": _BALLAST}, loading))
+    factor = _choose({"plus": 1.0, "printed": -1.0}, sign)
+    rows[list(_UNSETTLED), 2] *= factor
+    fn, block = np.asarray(froude, float), np.asarray(block_coefficient, float)
+    c0, c1, c2 = (np.interp(block, _BLOCKS, rows[:, k]) for k in range(3))
+    return np.maximum(c0 + c1 * fn + c2 * fn**2, 0.0)
+
+
+def kwon_form_coefficient(
+    beaufort: ArrayLike,
+    *,
+    displacement_volume: ArrayLike,
+    loading: Loading = "loaded",
+    ship_type: ShipType = "other",
+) -> FloatArray:
+    """C_form of table B.3: c B + B^6.5 / (d V^(2/3)) [per cent].
+
+    Parameters
+    ----------
+    beaufort : array_like
+        Beaufort number.
+    displacement_volume : array_like
+        Displaced volume V [m3]. The term was fitted to large ships: below 100,000 m3 it grows out
+        of bounds above Beaufort 6.
+    loading : {"loaded", "normal", "ballast"}
+        c = 0.5, in ballast 0.7.
+    ship_type : {"other", "container"}
+        d = 2.7; for container ships 22.0 with c = 0.5 (Townsin and Kwon 1983 have 0.7).
+
+    Returns
+    -------
+    ndarray
+    """
+    slope = _choose({"loaded": 0.5, "normal": 0.5, "ballast": 0.7}, loading)
+    divisor = _choose({"other": 2.7, "container": 22.0}, ship_type)
+    slope = 0.5 if ship_type == "container" else slope
+    number = np.asarray(beaufort, float)
+    volume = np.asarray(displacement_volume, float)
+    return slope * number + number**6.5 / (divisor * volume ** (2.0 / 3.0))
+
+
+def kwon_speed_loss(
+    wind_speed: ArrayLike,
+    wind_angle: ArrayLike,
+    *,
+    speed: ArrayLike,
+    length: float,
+    block_coefficient: ArrayLike,
+    displacement_volume: ArrayLike,
+    loading: Loading = "loaded",
+    ship_type: ShipType = "other",
+    sign: Sign = "plus",
+    classes: bool = False,
+    hold: bool = True,
+) -> FloatArray:
+    """Share of the calm-water speed that wind and waves take, at constant power.
+
+    Parameters
+    ----------
+    wind_speed : array_like
+        Wind at 10 m relative to the water [m/s].
+    wind_angle : array_like
+        Angle off the bow it comes from, 0 to pi [rad].
+    speed : array_like
+        Calm-water speed V [m/s].
+    length : float
+        Between perpendiculars [m].
+    block_coefficient, displacement_volume : array_like
+        C_B, and displaced volume [m3].
+    loading, ship_type, sign
+        See `kwon_speed_coefficient` and `kwon_form_coefficient`.
+    classes : bool
+        Whole Beaufort numbers and sectors as printed, instead of continuous ones.
+    hold : bool
+        Never let the loss fall while the wind rises.
+
+    Returns
+    -------
+    ndarray
+        0 to 0.99 (the cap holds in each sector, before the angles between are filled); NaN for NaN.
+    """
+    number = beaufort_number(wind_speed, classes=classes)
+    volume = np.asarray(displacement_volume, float)
+    options: dict[str, Any] = {"loading": loading, "ship_type": ship_type}
+    axes = np.empty((1,) * max(np.ndim(speed), np.ndim(block_coefficient)))
+    number, angle, volume, _ = np.broadcast_arrays(
+        number, np.asarray(wind_angle, float), volume, axes
+    )  # so that the axis of the sectors stays ahead of those of the speeds
+    by_sector = np.empty((4, *number.shape))
+    for sector in range(4):
+        at = np.minimum(number, _peaks(sector, volume, **options)) if hold else number
+        direction = kwon_direction_coefficients(at)[sector]
+        by_sector[sector] = direction * kwon_form_coefficient(
+            at, displacement_volume=volume, **options
+        )
+    froude = np.asarray(speed, float) / np.sqrt(GRAVITY * length)
+    steepness = kwon_speed_coefficient(
+        froude, block_coefficient=block_coefficient, loading=loading, sign=sign
+    )
+    capped = np.minimum(by_sector * steepness / 100.0, GREATEST_LOSS)
+    return _between_sectors(capped, angle, classes=classes)
+
+
+def kwon_notes(
+    wind_speed: ArrayLike, *, block_coefficient: ArrayLike, displacement_volume: ArrayLike
+) -> list[RangeNote]:
+    """Where Kwon's method is used outside its range; parameters as for `kwon_speed_loss`.
+
+    The bound of Beaufort 6 is for displacements under 100,000 m3 (C_form passes 50 % there), that
+    of 8 for larger ones.
+    """
+    highest = 6.0 if np.nanmin(np.asarray(displacement_volume, float)) < 1e5 else 8.0
+    return range_notes(
+        "kwon_2008",
+        {
+            "Beaufort number": (beaufort_number(wind_speed), 0.0, highest),
+            "block coefficient": (block_coefficient, _BLOCKS[0], _BLOCKS[-1]),
+        },
+    )
+
+
+def _peaks(sector: int, volume: FloatArray, **options: Any) -> FloatArray:
+    """Return the Beaufort number at which C_beta C_form of a sector is greatest."""
+    if volume.size and volume.min() == volume.max():
+        only = _peak(sector, float(volume.flat[0]), **options)
+        return np.broadcast_to(np.float64(only), volume.shape)
+    volumes, which = np.unique(volume, return_inverse=True)
+    peaks = np.array([_peak(sector, float(one), **options) for one in volumes])
+    return peaks[which].reshape(volume.shape)
+
+
+@lru_cache(maxsize=4096)
+def _peak(sector: int, volume: float, *, loading: Loading, ship_type: ShipType) -> float:
+    """Return that number for one displaced volume [m3]."""
+    if _BEND[sector] == 0.0:
+        return 12.0
+
+    def product(at: FloatArray) -> FloatArray:
+        form = kwon_form_coefficient(
+            at, displacement_volume=volume, loading=loading, ship_type=ship_type
+        )
+        return kwon_direction_coefficients(at)[sector] * form
+
+    low = float(_VERTEX[sector])
+    high = min(low + math.sqrt(_TOP[sector] / _BEND[sector]), 12.0)
+    for _ in range(6):  # the product has a single top
+        at = np.linspace(low, high, 65)
+        top = int(np.argmax(product(at)))
+        low, high = at[max(top - 1, 0)], at[min(top + 1, 64)]
+    return float(0.5 * (low + high))
+
+
+def _between_sectors(by_sector: FloatArray, angle: FloatArray, *, classes: bool) -> FloatArray:
+    if classes:
+        sector = np.searchsorted(_EDGES, angle, side="left")
+        return np.take_along_axis(by_sector, np.minimum(sector, 3)[None], axis=0)[0]
+    place = np.interp(angle, MIDDLES, np.arange(4.0))
+    # only the index of an unknown angle is made up: its value stays NaN through ``place`` below
+    cell = np.minimum(np.nan_to_num(place).astype(np.intp), 2)
+    low = np.take_along_axis(by_sector, cell[None], axis=0)[0]
+    high = np.take_along_axis(by_sector, cell[None] + 1, axis=0)[0]
+    return low + (place - cell) * (high - low)
+
+
+def _choose(options: dict[str, Any], name: str) -> Any:
+    if name not in options:
+        raise unknown_name("choice in Kwon's method", name, options)
+    return options[name]

@@ -1,0 +1,1 @@
+"""Ship models composed of the published methods."""

@@ -1,0 +1,327 @@
+"""Added resistance of waves and wind of a composed ship, by the name of the method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import unknown_name
+from thalweg.ship.hull.hull import Hull, require
+from thalweg.ship.hull.hull_estimates import estimated_or_error
+from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm_validity
+from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
+from thalweg.ship.methods.added_resistance.stawave import (
+    head_sector_validity,
+    stawave1,
+    stawave1_validity,
+    stawave2,
+    stawave2_validity,
+)
+from thalweg.ship.methods.added_resistance.wind_resistance import (
+    BLENDERMANN,
+    ITTC_CURVES,
+    FujiwaraShip,
+    blendermann_1994,
+    fujiwara_2006,
+    ittc_curve,
+    relative_wind,
+    wind_resistance,
+    yu_2021_area,
+    yu_2021_coefficient,
+)
+from thalweg.ship.methods.resistance.holtrop_form import length_of_run
+from thalweg.ship.methods.validity import RangeNote
+from thalweg.ship.model_protocol import Estimate
+from thalweg.ship.models.calm_water_model import FORM_KEYS, form_of
+
+FloatArray = NDArray[np.float64]
+#: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
+_ENTRANCE: Final = 0.85
+_GYRATION: Final = Estimate("pitch_gyration", 0.25, "usual value, ITTC")
+SHORTEST_PERIOD, LONGEST_PERIOD = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """Added resistance in waves with a hull bound.
+
+    Attributes
+    ----------
+    method : str
+    hull : Hull
+    force : callable
+        [N] from speed [m/s], significant height [m], peak period [s], angle off the bow [rad].
+    notes_of : callable
+        Where the method is outside its range, from speeds, wave heights and angles off the bow.
+    reads : frozenset of str
+        Conditions that matter.
+    """
+
+    method: str
+    hull: Hull
+    force: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
+    notes_of: Callable[[FloatArray, FloatArray, FloatArray], list[RangeNote]]
+    reads: frozenset[str]
+
+
+@dataclass(frozen=True, eq=False)
+class Wind:
+    """Wind resistance with a ship bound.
+
+    Attributes
+    ----------
+    method : str
+    hull : Hull
+    frontal_area : float
+        [m2].
+    coefficient : callable
+        C_AA from the angle of the relative wind [rad].
+    """
+
+    method: str
+    hull: Hull
+    frontal_area: float
+    coefficient: Callable[[FloatArray], FloatArray]
+
+    def force(self, speed: FloatArray, wind_speed: FloatArray, angle: FloatArray) -> FloatArray:
+        """Wind resistance [N] at a speed through water [m/s], the air's own resistance included.
+
+        The wind is that relative to the moving water [m/s], its angle off the bow [rad].
+        """
+        felt, where = relative_wind(wind_speed, angle, ship_speed=speed)
+        return wind_resistance(felt, self.coefficient(where), frontal_area=self.frontal_area)
+
+
+_WAVE_KEYS = ("length_between_perpendiculars_m", "breadth_m", "draught_m", "block_coefficient")
+_BOTH = frozenset({"wave_height", "wave_angle"})
+
+
+def _stawave_1(hull: Hull) -> Waves:
+    need = ("length_between_perpendiculars_m", "breadth_m")
+    length, breadth = require(hull, need, "stawave_1", instead="waves: none")
+    bow = hull.number("length_bow_m")
+    if bow is None:
+        bow = 0.15 * length
+        hull = hull.with_estimates(Estimate("length_bow_m", bow, "0.15 L_PP, as Yu (2021)"))
+
+    def force(
+        speed: FloatArray, height: FloatArray, period: FloatArray, angle: FloatArray
+    ) -> FloatArray:
+        found = stawave1(height, angle, breadth=breadth, bow_length=bow)
+        return np.where(np.isnan(speed), np.nan, found)
+
+    def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
+        high = stawave1_validity(height, length_between_perpendiculars=length)
+        return [*high, *head_sector_validity(angle, method="stawave1")]
+
+    return Waves("stawave_1", hull, force, notes, _BOTH)
+
+
+def _stawave_2(hull: Hull) -> Waves:
+    length, breadth, draught, block = require(hull, _WAVE_KEYS, "stawave_2", instead="stawave_1")
+    sizes: dict[str, Any] = {
+        "length_between_perpendiculars": length,
+        "breadth": breadth,
+        "draught": draught,
+        "block_coefficient": block,
+    }
+    hull = hull.with_estimates(_GYRATION)
+    gyration = float(hull.values["pitch_gyration"])
+
+    def force(
+        speed: FloatArray, height: FloatArray, period: FloatArray, angle: FloatArray
+    ) -> FloatArray:
+        return stawave2(speed, height, _tame(period), angle, **sizes, pitch_gyration=gyration)
+
+    def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
+        ahead = head_sector_validity(angle, method="stawave2")
+        return [*stawave2_validity(speed, **sizes), *ahead]
+
+    return Waves("stawave_2", hull, force, notes, _BOTH | {"wave_period"})
+
+
+def _snnm(hull: Hull) -> Waves:
+    keys = (*_WAVE_KEYS, *FORM_KEYS)
+    hull = estimated_or_error(hull, keys, "snnm", instead="stawave_1")
+    length, breadth, _, block = (float(hull.values[key]) for key in _WAVE_KEYS)
+    hull = _with_ends(hull).with_estimates(_GYRATION)
+    vessel = SnnmHull(
+        length=length,
+        breadth=breadth,
+        draught_fore=float(hull.values["draught_fore_m"]),
+        draught_aft=float(hull.values["draught_aft_m"]),
+        block_coefficient=block,
+        entrance_length=float(hull.values["length_entrance_m"]),
+        run_length=float(hull.values["length_run_m"]),
+        pitch_gyration=float(hull.values["pitch_gyration"]),
+    )
+
+    table = SnnmTable.of(vessel, shortest=SHORTEST_PERIOD, longest=LONGEST_PERIOD)
+
+    def force(
+        speed: FloatArray, height: FloatArray, period: FloatArray, angle: FloatArray
+    ) -> FloatArray:
+        return table(speed, height, _tame(period), angle)
+
+    def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
+        return snnm_validity(speed, vessel)
+
+    return Waves("snnm", hull, force, notes, _BOTH | {"wave_period"})
+
+
+def _with_ends(hull: Hull) -> Hull:
+    """The hull with lengths of entrance and run [m], estimated when not given."""
+    form = form_of(hull)
+    entrance = float(_ENTRANCE * (1.0 - form.prismatic_coefficient) * form.length)
+    run = float(length_of_run(form))
+    return hull.with_estimates(
+        Estimate("length_entrance_m", entrance, f"{_ENTRANCE:g} (1 - C_P) L_WL, ours"),
+        Estimate("length_run_m", run, "Holtrop and Mennen (1982)"),
+    )
+
+
+def _tame(period: FloatArray) -> FloatArray:
+    return np.clip(period, SHORTEST_PERIOD, LONGEST_PERIOD)
+
+
+def _fujiwara(hull: Hull, kind: str) -> Wind:
+    keys = (
+        *("length_overall_m", "breadth_m", "frontal_area_m2", "lateral_area_m2"),
+        *("superstructure_lateral_area_m2", "superstructure_height_m"),
+    )
+    instead = "wind: blendermann_1994 or wind: ittc"
+    length, breadth, front, side, deck, high = require(hull, keys, "fujiwara_2006", instead=instead)
+    centre = hull.number("lateral_centre_height_m")
+    if centre is None:
+        centre = 0.5 * side / length
+        guess = Estimate("lateral_centre_height_m", centre, "half of A_YV over L_OA")
+        hull = hull.with_estimates(guess)
+    vessel = FujiwaraShip(
+        length,
+        breadth,
+        front,
+        side,
+        deck,
+        high,
+        hull.number("lateral_centre_offset_m") or 0.0,
+        centre,
+    )
+    return Wind("fujiwara_2006", hull, front, lambda angle: fujiwara_2006(angle, vessel))
+
+
+#: words in ``hull.type`` and Blendermann's type for them, the first that fits
+_TYPES: Final = {
+    **{"container": "container_loaded", "lng": "lng_tanker", "gas": "lng_tanker"},
+    **{"tanker": "tanker_loaded", "vehicle": "car_carrier", "car carrier": "car_carrier"},
+    **{"cruise": "cruise", "ferry": "ferry", "ro-pax": "ferry", "passenger": "ferry"},
+    **{"supply": "offshore_supply", "offshore": "offshore_supply", "research": "research"},
+}
+
+
+def _with_type(hull: Hull) -> tuple[Hull, str]:
+    """Blendermann's type of ship from ``hull.type``, cargo ships when it tells none."""
+    told = str(hull.values.get("type", "")).casefold().replace("_", " ")
+    kind = next((kind for word, kind in _TYPES.items() if word in told), "cargo_loaded")
+    why = f"from hull.type {told!r}" if told else "no hull.type given"
+    return hull.with_estimates(Estimate("models.wind_type", kind, why)), kind
+
+
+def _blendermann(hull: Hull, kind: str) -> Wind:
+    if not kind:
+        hull, kind = _with_type(hull)
+    if kind not in BLENDERMANN:
+        raise unknown_name(
+            "type of ship for blendermann_1994 (models.wind_type)", kind, BLENDERMANN
+        )
+    keys = ("frontal_area_m2", "lateral_area_m2")
+    front, side = require(hull, keys, "blendermann_1994", instead="wind: ittc")
+
+    def coefficient(angle: FloatArray) -> FloatArray:
+        return blendermann_1994(
+            angle, frontal_area=front, lateral_area=side, ship_type=BLENDERMANN[kind]
+        )
+
+    return Wind("blendermann_1994", hull, front, coefficient)
+
+
+def _ittc(hull: Hull, kind: str) -> Wind:
+    curve = kind or "tanker_laden"
+    if not kind:
+        hull = hull.with_estimates(Estimate("models.wind_type", curve, "the usual curve"))
+    if curve not in ITTC_CURVES:
+        raise unknown_name("wind curve (models.wind_type)", curve, ITTC_CURVES)
+    (front,) = require(hull, ("frontal_area_m2",), "ittc", instead="wind: yu_2021")
+    return Wind("ittc", hull, front, lambda angle: ittc_curve(angle, curve=curve))
+
+
+def _yu(hull: Hull, kind: str) -> Wind:
+    (breadth,) = require(hull, ("breadth_m",), "yu_2021", instead="wind: none")
+    front = hull.number("frontal_area_m2")
+    if front is None:
+        aft = float(hull.values["draught_aft_m"])
+        front = float(yu_2021_area(breadth, draught_aft=aft))
+        hull = hull.with_estimates(Estimate("frontal_area_m2", front, "0.8 B T_A, Yu (2021)"))
+    return Wind("yu_2021", hull, front, yu_2021_coefficient)
+
+
+WAVES: Final[Mapping[str, Callable[[Hull], Waves]]] = MappingProxyType(
+    {"stawave_1": _stawave_1, "stawave_2": _stawave_2, "snnm": _snnm}
+)
+WIND: Final[Mapping[str, Callable[[Hull, str], Wind]]] = MappingProxyType(
+    {
+        "fujiwara_2006": _fujiwara,
+        "blendermann_1994": _blendermann,
+        "ittc": _ittc,
+        "iso_15016": _ittc,
+        "yu_2021": _yu,
+    }
+)
+
+
+def build_waves(data: Mapping[str, Any], hull: Hull) -> Waves | None:
+    """Return the wave part chosen in a ship file; None for ``none``.
+
+    A method that lets waves from astern push the ship is cut off at zero unless the file says
+    ``wave_push: true``: the push of high seas is the least certain part of such methods, and a
+    search would look for it.
+
+    Raises
+    ------
+    InputError
+    """
+    models = data.get("models", {})
+    name = models.get("waves", "none")
+    if name == "none":
+        return None
+    if name not in WAVES:
+        raise unknown_name("wave method", name, ("none", *WAVES))
+    waves = WAVES[name](hull)
+    return waves if models.get("wave_push", False) else _without_push(waves)
+
+
+def _without_push(waves: Waves) -> Waves:
+    def force(*at: FloatArray) -> FloatArray:
+        return np.maximum(waves.force(*at), 0.0)
+
+    return replace(waves, force=force)
+
+
+def build_wind(data: Mapping[str, Any], hull: Hull) -> Wind | None:
+    """Return the wind part chosen in a ship file; None for ``none``.
+
+    Raises
+    ------
+    InputError
+    """
+    models = data.get("models", {})
+    name = models.get("wind", "none")
+    if name == "none":
+        return None
+    if name not in WIND:
+        raise unknown_name("wind method", name, ("none", *WIND))
+    return WIND[name](hull, models.get("wind_type", ""))

@@ -1,0 +1,157 @@
+"""The engines of a ship: how much power there is, and what it burns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.ship.methods.engine.fuel_properties import fuel_named
+from thalweg.ship.methods.engine.specific_consumption import (
+    G_KWH,
+    base_sfoc,
+    fuel_rate,
+    hotel_fuel_rate,
+    plant_fuel_rate,
+)
+from thalweg.ship.methods.validity import RangeNote, range_notes
+from thalweg.ship.model_protocol import Estimate
+from thalweg.ship.models.fuel_from_power import HOTEL_SFOC
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Plant:
+    """Engines: how much power there is, and what it burns.
+
+    Attributes
+    ----------
+    rating : float
+        Maximum continuous rating of one engine [W]; infinite when not given.
+    count : int
+    sfoc : float
+        Least specific consumption [g/kWh]; NaN when unknown.
+    curve : tuple of tuple of float
+        Loads and specific consumptions [g/kWh] of the engine's own curve; empty for the shape of
+        the Fourth IMO GHG Study.
+    hotel_power, hotel_sfoc : float
+        Other power [W] and its consumption [g/kWh].
+    estimated : tuple of Estimate
+    loads : tuple of float
+        Least and largest load of an engine, as shares of its rating.
+    """
+
+    rating: float
+    count: int = 1
+    sfoc: float = float("nan")
+    curve: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    hotel_power: float = 0.0
+    hotel_sfoc: float = HOTEL_SFOC
+    estimated: tuple[Estimate, ...] = ()
+    loads: tuple[float, float] = (0.0, 1.0)
+
+    @property
+    def largest_power(self) -> float:
+        """All engines at their largest load [W]; infinite when not given."""
+        return self.rating * self.count * self.loads[1]
+
+    def fuel(self, power: FloatArray) -> FloatArray:
+        """Fuel rate [kg/s] of a brake power [W], hotel load included; NaN when unknown."""
+        hotel = hotel_fuel_rate(self.hotel_power, sfoc_g_kwh=self.hotel_sfoc)
+        return self._engines(np.asarray(power, float)) + hotel
+
+    def _engines(self, power: FloatArray) -> FloatArray:
+        if self.curve[0]:
+            load = power / (self.rating * self.count)
+            return power * np.interp(load, *self.curve) * G_KWH
+        if np.isinf(self.rating):
+            return power * self.sfoc * G_KWH
+        if self.count == 1:
+            return fuel_rate(power, self.rating, sfoc_g_kwh=self.sfoc)
+        reachable = np.minimum(power, self.largest_power)
+        return plant_fuel_rate(
+            reachable,
+            self.rating,
+            count=self.count,
+            sfoc_g_kwh=self.sfoc,
+            largest_load=self.loads[1],
+        )[0]
+
+    def notes(self, power: FloatArray) -> list[RangeNote]:
+        """Loads above the largest, below the least, or where the consumption is not known."""
+        if np.isinf(self.rating):
+            return []
+        least, largest = self.loads
+        one = power / self.rating
+        known = {"load of one engine": (one, 0.2, np.inf)}
+        if self.curve[0]:
+            load = np.minimum(one / self.count, largest)  # beyond, nothing is burnt
+            known = {"load": (load, self.curve[0][0], self.curve[0][-1] + 1e-6)}
+        return [
+            *range_notes("engine", {"load": (one / self.count, 0.0, largest + 1e-6)}),
+            *range_notes("engine", {"load of one engine": (one, least, np.inf)}),
+            *range_notes("sfoc", known),
+        ]
+
+
+def build_plant(data: Mapping[str, Any]) -> Plant:
+    """Return the engines of a ship file.
+
+    Raises
+    ------
+    InputError
+        For unknown engine types or fuels, and curves that do not fit.
+    """
+    given = data.get("engine", {})
+    loads, curve = given.get("sfoc_load", ()), given.get("sfoc_curve_g_per_kwh", ())
+    if len(loads) != len(curve) or (len(loads) and (np.diff(loads) <= 0).any()):
+        raise InputError(
+            f"The engine's curve has {len(loads)} loads and {len(curve)} consumptions.",
+            "sfoc_load rises, and sfoc_curve_g_per_kwh has as many numbers.",
+            "Correct them.",
+            key="engine.sfoc_load",
+        )
+    if len(loads) and "power_kw" not in given:
+        raise InputError(
+            "The engine has a curve over load, but no power_kw.",
+            "Load is power over engine.power_kw times engine.count.",
+            "Add engine.power_kw.",
+            missing=["engine.power_kw"],
+        )
+    least, largest = given.get("least_load", 0.0), given.get("largest_load", 1.0)
+    if least >= largest:
+        raise InputError(
+            f"The least load of an engine is {least:g}, the largest {largest:g}.",
+            "Loads are shares of engine.power_kw; the largest is 1 when not given.",
+            "Correct engine.least_load or engine.largest_load.",
+            key="engine.least_load",
+        )
+    sfoc, guessed = _sfoc(data)
+    if not curve and "turbine" in given.get("type", "").casefold():
+        loads, curve = (0.0, 1.0), (sfoc, sfoc)  # the study lets theirs vary with nothing
+    return Plant(
+        rating=given.get("power_kw", float("inf")) * 1000.0,
+        count=int(given.get("count", 1)),
+        sfoc=sfoc,
+        curve=(tuple(loads), tuple(curve)),
+        hotel_power=given.get("hotel_load_kw", 0.0) * 1000.0,
+        hotel_sfoc=given.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC),
+        estimated=guessed,
+        loads=(least, largest),
+    )
+
+
+def _sfoc(data: Mapping[str, Any]) -> tuple[float, tuple[Estimate, ...]]:
+    given = data.get("engine", {})
+    if "sfoc_g_per_kwh" in given:
+        return float(given["sfoc_g_per_kwh"]), ()
+    if "type" not in given or given.get("sfoc_curve_g_per_kwh"):
+        return float("nan"), ()
+    kind = fuel_named(data.get("fuel", {}).get("type", "hfo")).kind
+    value, record = base_sfoc(given["type"], kind, built=int(given.get("year", 2010)))
+    return value, (Estimate("engine.sfoc_g_per_kwh", value, record.source),)

@@ -1,0 +1,326 @@
+"""Ships known by their calm-water speeds: lists, speed-power-fuel tables and the cubic law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.kernels import codes
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.loading_state import Loading, between
+from thalweg.ship.methods.speed_loss import ShipType, Sign, kwon_notes, kwon_speed_loss
+from thalweg.ship.methods.validity import RangeNote
+from thalweg.ship.model_protocol import setting_index
+from thalweg.ship.models.squat_model import Squat
+from thalweg.ship.tables.performance_table import TableError, TablePart
+from thalweg.ship.tables.tabulate import DEFAULT_AXES, Axis, constant_part, tabulate_dense
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class KwonLoss:
+    """Kwon's speed loss with a ship's particulars bound (see `kwon_speed_loss`).
+
+    Attributes
+    ----------
+    length : float
+        Between perpendiculars [m].
+    block_coefficient : float
+    loading : Loading
+        Displacement and condition.
+    sign, ship_type, classes
+        Choices of the method.
+    """
+
+    length: float
+    block_coefficient: float
+    loading: Loading
+    sign: Sign = "plus"
+    ship_type: ShipType = "other"
+    classes: bool = False
+
+    def share(self, conditions: Conditions, speed: FloatArray) -> FloatArray:
+        """Share of the calm-water speed [m/s] that is lost, 0 to 0.99."""
+        return kwon_speed_loss(
+            conditions.wind_speed,
+            conditions.wind_angle,
+            speed=speed,
+            length=self.length,
+            block_coefficient=self.block_coefficient,
+            displacement_volume=self.loading.displacement_at(conditions.load_factor),
+            loading=self.loading.condition,
+            ship_type=self.ship_type,
+            sign=self.sign,
+            classes=self.classes,
+            hold=not self.classes,
+        )
+
+    def notes(self, conditions: Conditions) -> list[RangeNote]:
+        """Where the method is used outside its range."""
+        return kwon_notes(
+            conditions.wind_speed,
+            block_coefficient=self.block_coefficient,
+            displacement_volume=self.loading.displacement_at(conditions.load_factor),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """How power and fuel follow the speed.
+
+    Attributes
+    ----------
+    name : {"none", "cubic", "table"}
+    burn : callable, optional
+        Fuel rate [kg/s] of a power [W], where fuel follows from power and not from the speed.
+    rows : tuple of ndarray, optional
+        Speeds full and empty, fuel rates and powers that the settings were taken from; those of the
+        settings themselves when not given.
+    """
+
+    name: str = "none"
+    burn: Callable[[FloatArray], FloatArray] | None = None
+    rows: tuple[FloatArray, FloatArray, FloatArray, FloatArray] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class NominalModel:
+    """A ship whose engine settings have known calm-water speeds.
+
+    At a setting the engine keeps its power and fuel rate; weather takes speed.
+
+    Attributes
+    ----------
+    speeds_full, speeds_empty : ndarray
+        Calm-water speed of each setting, full and empty [m/s], ascending.
+    fuel_rates, powers : ndarray
+        Of each setting [kg/s], [W]; NaN when unknown.
+    law : Law
+        How fuel and power follow the speed between and beyond the settings.
+    loss : KwonLoss, optional
+        Involuntary speed loss.
+    squat : Squat, optional
+        Limits the speed in shallow water; power and fuel stay those of the setting.
+    """
+
+    speeds_full: FloatArray
+    speeds_empty: FloatArray
+    fuel_rates: FloatArray
+    powers: FloatArray
+    law: Law = field(default_factory=Law)
+    loss: KwonLoss | None = None
+    squat: Squat | None = None
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Conditions read: the wind with a speed loss, the depth with squat."""
+        wind = frozenset() if self.loss is None else frozenset({"wind_speed", "wind_angle"})
+        return wind if self.squat is None else wind | {"depth"}
+
+    @property
+    def identity(self) -> Mapping[str, object]:
+        """What tells this model from others."""
+        return {
+            "kind": "nominal",
+            "speeds_full": self.speeds_full.tolist(),
+            "speeds_empty": self.speeds_empty.tolist(),
+            "fuel_rates": self.fuel_rates.tolist(),
+            "powers": self.powers.tolist(),
+            "loss": repr(self.loss),
+            **({} if self.squat is None else {"squat": repr(self.squat)}),
+        }
+
+    def speeds(self, load_factor: float) -> FloatArray:
+        """Calm-water speeds at a load factor [m/s]."""
+        return between(self.speeds_empty, self.speeds_full, load_factor)
+
+    def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
+        """Speed through water [m/s]."""
+        index = setting_index(setting, len(self.speeds_full))
+        load_factor = conditions.load_factor
+        calm = between(self.speeds_empty[index], self.speeds_full[index], load_factor)
+        if self.loss is not None:
+            calm = calm * (1.0 - self.loss.share(conditions, calm))
+        if self.squat is not None:
+            calm = self.squat.allowed(calm, conditions.depth, load_factor)
+        return np.array(np.broadcast_to(calm, _shape(conditions, index)))
+
+    def power(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
+        """Brake power [W]; the setting's own, whatever the weather."""
+        index = setting_index(setting, len(self.speeds_full))
+        return np.array(np.broadcast_to(self.powers[index], _shape(conditions, index)))
+
+    def fuel_rate(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
+        """Fuel rate [kg/s]; the setting's own, whatever the weather."""
+        index = setting_index(setting, len(self.speeds_full))
+        return np.array(np.broadcast_to(self.fuel_rates[index], _shape(conditions, index)))
+
+    def top_speed(self, setting: int, load_factor: float) -> float:
+        """Calm-water speed [m/s]: weather never adds to it."""
+        return float(self.speeds(load_factor)[setting])
+
+    def tabulate(
+        self, load_factor: float, tolerance: float
+    ) -> tuple[tuple[TablePart, ...], TableError]:
+        """One constant, or one part over what is read: wind speed and angle, depth."""
+        if not self.reads:
+            return (constant_part(self.speeds(load_factor)),), TableError(0.0, 0.0, 0.0, 0)
+        count = len(self.speeds_full)
+
+        def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
+            columns = {name: values[..., None] for name, values in where.items()}
+            conditions = Conditions(columns, load_factor=load_factor)
+            return self.speed_through_water(conditions, np.arange(count))
+
+        axes: list[Axis] = []
+        if self.loss is not None:
+            size = 257 if self.squat is None else 65
+            axes += [replace(DEFAULT_AXES["wind_speed"], size=size), angle_axis(self.loss)]
+        if self.squat is not None:
+            axes.append(_depth_axis(self.squat, load_factor, 1025 if self.loss is None else 257))
+        part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
+        return (part,), error
+
+    def tabulate_fuel(
+        self, load_factor: float, tolerance: float
+    ) -> tuple[tuple[TablePart, ...], TableError]:
+        """One constant: the setting's own fuel rate, whatever the weather."""
+        return (constant_part(self.fuel_rates),), TableError(0.0, 0.0, 0.0, 0)
+
+    def tabulate_power(
+        self, load_factor: float, tolerance: float
+    ) -> tuple[tuple[TablePart, ...], TableError]:
+        """One constant: the setting's own power, whatever the weather."""
+        return (constant_part(self.powers),), TableError(0.0, 0.0, 0.0, 0)
+
+    def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
+        """Where the speed loss is used outside its range."""
+        return [] if self.loss is None else self.loss.notes(conditions)
+
+    def with_speeds(self, speeds: FloatArray, load_factor: float) -> NominalModel:
+        """Return the model with other settings, given by calm-water speed [m/s] at a load factor.
+
+        Raises
+        ------
+        InputError
+            If a speed lies outside the table, or above the highest speed of a ship without law.
+        """
+        rows = self.law.rows or (
+            *(self.speeds_full, self.speeds_empty),
+            *(self.fuel_rates, self.powers),
+        )
+        own, name = between(rows[1], rows[0], load_factor), self.law.name
+        low, high = (own[0], own[-1]) if name == "table" else (0.0, np.inf)
+        if name == "none":
+            high = own[-1] if len(own) > 1 else np.inf
+        possible = np.isfinite(speeds) & (speeds > 0)
+        if not (possible & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
+            raise _speed_out_of_range(speeds, low, high)
+        full, empty = (np.interp(speeds, own, column) for column in rows[:2])
+        if name != "table":  # beyond the settings both grow as the speed does
+            beyond = speeds / np.clip(speeds, own[0], own[-1])
+            full, empty = full * beyond, empty * beyond
+        fuel, power = (_follow(name, rows[0], column, full) for column in rows[2:])
+        return replace(
+            self,
+            speeds_full=full,
+            speeds_empty=empty,
+            fuel_rates=fuel if self.law.burn is None else self.law.burn(power),
+            powers=power,
+            law=replace(self.law, rows=rows),
+        )
+
+
+def _follow(law: str, speeds: FloatArray, values: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Fuel rates or powers at other full speeds, by a law."""
+    if law == "cubic":
+        return np.asarray(values[-1] * (wanted / speeds[-1]) ** 3)
+    if law == "table":
+        return np.interp(wanted, speeds, values)
+    return np.full(len(wanted), np.nan)
+
+
+def cubic_law(speed: ArrayLike, *, reference_speed: float, reference_value: float) -> FloatArray:
+    """Power or fuel rate that grows with the cube of speed, through one reference point.
+
+    Parameters
+    ----------
+    speed : array_like
+        [m/s].
+    reference_speed : float
+        [m/s].
+    reference_value : float
+        Power [W] or fuel rate [kg/s] at the reference speed.
+
+    Returns
+    -------
+    ndarray
+        In the unit of the reference value.
+
+    Notes
+    -----
+    The usual rule of thumb (for example Fagerholt et al. 2010); fair within a few knots of the
+    reference speed.
+    """
+    return reference_value * (np.asarray(speed, float) / reference_speed) ** 3
+
+
+def check_rising(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
+    """Refuse a table whose speeds repeat, or whose power or fuel falls while the speed rises.
+
+    Raises
+    ------
+    InputError
+    """
+    if (np.diff(speeds) <= 0).any():
+        raise InputError(
+            "The ship's table has a speed twice.",
+            "Each row is one engine setting with its own speed.",
+            "Remove one of the rows.",
+            key="table.speed_kn",
+        )
+    for name, values in columns.items():
+        falls = np.flatnonzero(np.diff(values) < 0)
+        if falls.size:
+            k = int(falls[0])
+            raise InputError(
+                f"In the ship's table {name} falls from {values[k]:g} to {values[k + 1]:g} while "
+                "the speed rises.",
+                "More speed takes more power and fuel.",
+                "Correct or remove the row.",
+                key=f"table.{name}",
+            )
+
+
+def angle_axis(loss: KwonLoss) -> Axis:
+    """Wind angle in steps of 15 degrees, on which the continuous loss is exact."""
+    return Axis(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 13, fixed=not loss.classes)
+
+
+def _depth_axis(squat: Squat, load_factor: float, size: int) -> Axis:
+    """Depth from where the ship has no water for any speed, to twelve draughts."""
+    draught = float(squat.loading.draught_at(load_factor))
+    low = draught + squat.clearance
+    return Axis(codes.AXIS_DEPTH, low, max(12.0 * draught, low + 60.0), size)
+
+
+def _shape(conditions: Conditions, index: NDArray[np.intp]) -> tuple[int, ...]:
+    return np.broadcast_shapes(conditions.shape, index.shape)
+
+
+def _speed_out_of_range(speeds: FloatArray, low: float, high: float) -> InputError:
+    knot = 1852.0 / 3600.0
+    listed = ", ".join(f"{s / knot:g}" for s in speeds)
+    upper = f"{high / knot:g}" if np.isfinite(high) else "any"
+    return InputError(
+        f"The ship cannot be ordered to {listed} kn.",
+        f"Its calm-water speeds run from {low / knot:g} to {upper} kn.",
+        "Order a speed inside.",
+        value=listed,
+    )

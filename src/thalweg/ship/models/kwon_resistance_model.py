@@ -1,0 +1,159 @@
+"""Ships with a resistance in calm water that lose speed in weather as Kwon (2008) has it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.units import GRAVITY
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.methods.validity import RangeNote
+from thalweg.ship.model_protocol import Estimate
+from thalweg.ship.models.engine_plant import Plant
+from thalweg.ship.models.force_balance import Balance
+from thalweg.ship.models.known_speed_model import KwonLoss, angle_axis
+from thalweg.ship.models.resistance_model import ResistanceModel, Tabulated
+from thalweg.ship.tables.performance_table import TableError, TablePart
+from thalweg.ship.tables.tabulate import DEFAULT_AXES, Axis, tabulate_dense
+from thalweg.ship.tables.tabulate_resistance import axes_of
+
+FloatArray = NDArray[np.float64]
+_FASTEST: Final = 0.4  #: Froude number of the fastest calm speed looked at
+_WIND: Final = ("wind_speed", "wind_angle")
+
+
+@dataclass(frozen=True, eq=False)
+class KwonOnResistance:
+    """Speed and power from the resistance in calm water; weather takes a share of the speed.
+
+    A setting keeps its power: that of its calm-water speed at the depth there is.
+
+    Attributes
+    ----------
+    base : ResistanceModel
+        Without waves and wind.
+    loss : KwonLoss
+    """
+
+    base: ResistanceModel
+    loss: KwonLoss
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Conditions read."""
+        return self.base.reads | set(_WIND)
+
+    @property
+    def identity(self) -> Mapping[str, object]:
+        """What tells this model from others."""
+        return {**self.base.identity, "kind": "kwon on resistance", "loss": repr(self.loss)}
+
+    @property
+    def estimated(self) -> tuple[Estimate, ...]:
+        """Particulars that were estimated."""
+        return self.base.estimated
+
+    @property
+    def feels_crab(self) -> bool:
+        """Whether the rudder drags where the heading is not the course."""
+        return self.base.feels_crab
+
+    @property
+    def plant(self) -> Plant:
+        """The engines."""
+        return self.base.plant
+
+    def balance(self, load_factor: float) -> Balance:
+        """Forces in calm water at a load factor."""
+        return self.base.balance(load_factor)
+
+    def speeds(self, load_factor: float) -> FloatArray:
+        """Speed of every setting in calm, deep water [m/s]."""
+        return self.base.speeds(load_factor)
+
+    def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
+        """Speed through water [m/s]."""
+        calm = self.base.speed_through_water(conditions, setting)
+        return np.asarray(calm * (1.0 - self.loss.share(conditions, calm)))
+
+    def power(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
+        """Brake power [W]: that of the setting in calm water."""
+        return self.base.power(conditions, setting)
+
+    def fuel_rate(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
+        """Fuel rate [kg/s], hotel load included: that of the setting in calm water."""
+        return self.base.fuel_rate(conditions, setting)
+
+    def power_and_fuel(
+        self, conditions: Conditions, setting: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Brake power [W] and fuel rate [kg/s]: those of the setting in calm water."""
+        return self.base.power_and_fuel(conditions, setting)
+
+    def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
+        """Brake power [W] of speeds through water [m/s]: that of the calm speed they are left of.
+
+        NaN where no calm speed up to a Froude number of 0.4 leaves as much.
+        """
+        return self.base.power_at_speed(conditions, self._calm_speed(conditions, speed))
+
+    def resistance(self, conditions: Conditions, speed: ArrayLike) -> dict[str, FloatArray]:
+        """Resistance in calm water by component [N] at speeds through water [m/s]."""
+        return self.base.resistance(conditions, speed)
+
+    def _calm_speed(self, conditions: Conditions, attained: ArrayLike) -> FloatArray:
+        """Calm-water speed [m/s] that weather leaves an attained speed of, by bisection."""
+        shape = np.broadcast_shapes(conditions.shape, np.shape(attained))
+        wanted = np.broadcast_to(np.asarray(attained, float), shape)
+        low = np.array(wanted)
+        high = np.maximum(low, _FASTEST * np.sqrt(GRAVITY * self.loss.length))
+        reached = high * (1.0 - self.loss.share(conditions, high)) >= wanted
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            over = middle * (1.0 - self.loss.share(conditions, middle)) >= wanted
+            low, high = np.where(over, low, middle), np.where(over, middle, high)
+        return np.where(reached, high, np.nan)
+
+    def top_speed(self, setting: int, load_factor: float) -> float:
+        """Calm-water speed [m/s]: weather never adds to it."""
+        return self.base.top_speed(setting, load_factor)
+
+    def tabulate(
+        self, load_factor: float, tolerance: float
+    ) -> tuple[tuple[TablePart, ...], TableError]:
+        """One part over wind speed and angle, and depth where it matters."""
+        settings = np.arange(len(self.speeds(load_factor)))
+
+        def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
+            columns = {name: values[..., None] for name, values in where.items()}
+            conditions = Conditions(columns, load_factor=load_factor)
+            return self.speed_through_water(conditions, settings)
+
+        deep = "depth" in self.base.reads
+        size = 129 if deep else 257
+        axes: list[Axis] = [replace(DEFAULT_AXES["wind_speed"], size=size), angle_axis(self.loss)]
+        if deep:
+            depth = axes_of(self.base.balance(load_factor), self.base.limits)["depth"]
+            axes.append(replace(depth, size=65))
+        part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
+        return (part,), error
+
+    def tabulate_fuel(self, load_factor: float, tolerance: float) -> Tabulated:
+        """As in calm water; where the engines are at full power the depth alone decides."""
+        return self.base.tabulate_fuel(load_factor, tolerance)
+
+    def tabulate_power(self, load_factor: float, tolerance: float) -> Tabulated:
+        """As in calm water, like the fuel."""
+        return self.base.tabulate_power(load_factor, tolerance)
+
+    def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
+        """Where methods are used outside their ranges."""
+        return [*self.base.notes(conditions, setting), *self.loss.notes(conditions)]
+
+    def with_speeds(self, speeds: FloatArray, load_factor: float) -> KwonOnResistance:
+        """Return the model with other settings, given by calm-water speeds [m/s]."""
+        return replace(self, base=self.base.with_speeds(speeds, load_factor))

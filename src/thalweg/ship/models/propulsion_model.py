@@ -1,0 +1,249 @@
+"""From resistance to brake power in a composed ship, by the name of the method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.ship.hull.hull import Hull
+from thalweg.ship.hull.hull_estimates import estimated_or_error
+from thalweg.ship.methods.propulsion.b_series import Propeller, b_series_validity
+from thalweg.ship.methods.propulsion.propulsion_factors import (
+    Efficiencies,
+    constant_efficiency_power,
+    propulsion,
+    relative_rotative_single,
+    relative_rotative_twin,
+    thrust_deduction_single,
+    thrust_deduction_twin,
+    viscous_coefficient,
+    wake_fraction_single,
+    wake_fraction_twin,
+)
+from thalweg.ship.methods.resistance.friction_lines import ittc_1957, reynolds_number
+from thalweg.ship.methods.resistance.holtrop_form import HullForm, form_factor_1984
+from thalweg.ship.methods.validity import RangeNote
+from thalweg.ship.model_protocol import Estimate
+from thalweg.ship.models.calm_water_model import FORM_KEYS, form_of, stern_shape
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Propulsion:
+    """What turns resistance into brake power.
+
+    Attributes
+    ----------
+    method : str
+    brake_power : callable
+        [W] from speed [m/s] and resistance [N]; zero where wind or waves push.
+    estimated : tuple of Estimate
+    notes : tuple of RangeNote
+        Where the propeller is outside its series.
+    """
+
+    method: str
+    brake_power: Callable[[FloatArray, FloatArray], FloatArray]
+    estimated: tuple[Estimate, ...] = ()
+    notes: tuple[RangeNote, ...] = ()
+
+
+def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
+    idle = set_aside(given)
+    known = {key: value for key, value in given.items() if key not in idle}
+    if "propulsive_efficiency" in known:
+        known |= {"relative_rotative_efficiency": 1.0, "hull_efficiency": 1.0}
+        known["open_water_efficiency"] = known["propulsive_efficiency"]
+    if "wake_fraction" in known:
+        own = (1.0 - known["thrust_deduction"]) / (1.0 - known["wake_fraction"])
+        known["hull_efficiency"] = own
+    usual = Efficiencies()
+    names = {
+        "open_water_efficiency": usual.open_water,
+        "relative_rotative_efficiency": usual.relative_rotative,
+        "hull_efficiency": usual.hull,
+        "shaft_efficiency": usual.transmission,
+        "gear_efficiency": usual.gear,
+    }
+    values = {key: float(known.get(key, usual_value)) for key, usual_value in names.items()}
+    chain = Efficiencies(*values.values())
+    guessed = tuple(
+        Estimate(key, value, "usual value, Schless (2023)")
+        for key, value in values.items()
+        if key not in known
+    )
+
+    def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
+        return constant_efficiency_power(speed, resistance, efficiencies=chain)
+
+    return Propulsion("efficiencies", power, guessed)
+
+
+_INTERACTION: Final = ("wake_fraction", "thrust_deduction")
+_PARTS: Final = ("open_water_efficiency", "relative_rotative_efficiency", "hull_efficiency")
+
+
+def set_aside(given: Mapping[str, Any], method: str = "efficiencies") -> tuple[str, ...]:
+    """Return the efficiencies under 'propulsion' that others make needless.
+
+    All in one (``propulsive_efficiency``) goes before its parts, a hull efficiency before wake and
+    thrust deduction, which make one only together; a propeller of the B-series makes its own.
+    """
+    idle: tuple[str, ...] = ()
+    if method == "wageningen_b":
+        idle = ("open_water_efficiency", "hull_efficiency", "propulsive_efficiency")
+    elif "propulsive_efficiency" in given:
+        idle = (*_PARTS, *_INTERACTION)
+    elif "hull_efficiency" in given or not given.keys() >= {*_INTERACTION}:
+        idle = _INTERACTION
+    return tuple(key for key in idle if key in given)
+
+
+def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
+    keys = (
+        *("propeller_diameter_m", "propeller_pitch_ratio"),
+        *("propeller_area_ratio", "propeller_blades"),
+    )
+    missing = [key for key in keys if key not in given]
+    if missing:
+        raise InputError(
+            f"The B-series propeller needs {', '.join(missing)} under 'propulsion'.",
+            f"It needs {', '.join(keys)}.",
+            "Add them, or choose propulsion: efficiencies.",
+            missing=missing,
+        )
+    screw = Propeller(
+        diameter=float(given["propeller_diameter_m"]),
+        pitch_ratio=float(given["propeller_pitch_ratio"]),
+        area_ratio=float(given["propeller_area_ratio"]),
+        blades=int(given["propeller_blades"]),
+    )
+    count = int(given.get("propellers", 1))
+    wanted = (*FORM_KEYS, "wetted_surface_m2")
+    hull = estimated_or_error(hull, wanted, "wageningen_b", instead="propulsion: efficiencies")
+    form = form_of(hull)
+    factors, guessed = _interaction(hull, form, given, screw, count)
+    losses, lost = _losses(given)
+
+    def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
+        wake, deduction, rotative = factors(speed)
+        state = propulsion(
+            speed,
+            resistance,
+            screw,
+            wake_fraction=wake,
+            thrust_deduction=deduction,
+            relative_rotative=rotative,
+            propellers=count,
+            **losses,
+        )
+        return state.brake_power
+
+    notes = tuple(b_series_validity(screw))
+    return Propulsion("wageningen_b", power, (*guessed, *lost), notes)
+
+
+def _losses(given: Mapping[str, Any]) -> tuple[dict[str, float], tuple[Estimate, ...]]:
+    usual = {"shaft_efficiency": 0.98, "gear_efficiency": 1.0}
+    guessed = tuple(
+        Estimate(key, value, "usual value") for key, value in usual.items() if key not in given
+    )
+    return {key: float(given.get(key, value)) for key, value in usual.items()}, guessed
+
+
+def _interaction(
+    hull: Hull, form: HullForm, given: Mapping[str, Any], screw: Propeller, count: int
+) -> tuple[Callable[[FloatArray], tuple[FloatArray, float, float]], tuple[Estimate, ...]]:
+    """Wake fraction by speed, thrust deduction and relative rotative efficiency."""
+    size, stern = screw.diameter, stern_shape(hull)
+    single = count == 1
+    if single:
+        deduction = float(
+            thrust_deduction_single(form, propeller_diameter=size, stern_shape=stern, year=1984)
+        )
+        rotative = float(relative_rotative_single(form, area_ratio=screw.area_ratio))
+    else:
+        deduction = float(thrust_deduction_twin(form, propeller_diameter=size))
+        rotative = float(relative_rotative_twin(form, pitch_ratio=screw.pitch_ratio))
+    guesses = {"thrust_deduction": deduction, "relative_rotative_efficiency": rotative}
+    guessed = [
+        Estimate(key, value, "Holtrop (1984)") for key, value in guesses.items() if key not in given
+    ]
+    deduction = float(given.get("thrust_deduction", deduction))
+    rotative = float(given.get("relative_rotative_efficiency", rotative))
+    if "wake_fraction" in given:
+        fixed = np.asarray(float(given["wake_fraction"]))
+        return lambda speed: (fixed, deduction, rotative), tuple(guessed)
+    wake = _wake(hull, form, size, single=single)
+    typical = 0.2 * np.sqrt(9.81 * float(form.length))
+    guessed.append(
+        Estimate("wake_fraction", float(wake(np.asarray(typical))), "Holtrop (1984), at Fn 0.2")
+    )
+    return lambda speed: (wake(speed), deduction, rotative), tuple(guessed)
+
+
+def _wake(
+    hull: Hull, form: HullForm, size: float, *, single: bool
+) -> Callable[[FloatArray], FloatArray]:
+    """Holtrop's wake fraction by speed, between 0 and 0.6."""
+    stern, aft = stern_shape(hull), float(hull.values["draught_aft_m"])
+    area = float(hull.values["wetted_surface_m2"])
+    factor = form_factor_1984(form, stern_shape=stern)
+
+    def wake(speed: FloatArray) -> FloatArray:
+        line = ittc_1957(reynolds_number(speed, length=form.length))
+        viscous = viscous_coefficient(line, form_factor=factor, correlation=0.0004)
+        if not single:
+            found = wake_fraction_twin(form, propeller_diameter=size, viscous=viscous)
+        else:
+            found = wake_fraction_single(
+                form,
+                draught_aft=aft,
+                propeller_diameter=size,
+                wetted_surface_area=area,
+                viscous=viscous,
+                stern_shape=stern,
+                year=1984,
+            )
+        return np.clip(found, 0.0, 0.6)
+
+    return wake
+
+
+PROPULSION: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], Propulsion]]] = MappingProxyType(
+    {"efficiencies": _efficiencies, "wageningen_b": _b_series}
+)
+
+
+def build_propulsion(data: Mapping[str, Any], hull: Hull) -> Propulsion:
+    """Return the propulsion chosen in a ship file; constant efficiencies when none is named.
+
+    ``engine.sea_margin_percent`` raises the power of every speed by that much.
+
+    Raises
+    ------
+    InputError
+    """
+    given = data.get("propulsion", {})
+    name = data.get("models", {}).get("propulsion", "efficiencies")
+    if name not in PROPULSION:
+        raise unknown_name("propulsion method", name, PROPULSION)
+    chain = PROPULSION[name](hull, given)
+    margin = data.get("engine", {}).get("sea_margin_percent", 0.0)
+    return _with_margin(chain, 1.0 + margin / 100.0) if margin > 0.0 else chain
+
+
+def _with_margin(chain: Propulsion, factor: float) -> Propulsion:
+    """The propulsion with a sea margin on its power."""
+
+    def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
+        return factor * chain.brake_power(speed, resistance)
+
+    return replace(chain, brake_power=power)

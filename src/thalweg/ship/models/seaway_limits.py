@@ -1,0 +1,325 @@
+"""Safety and comfort in waves as limits of a ship: what it must not do, for models and kernels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import InputError, unknown_name
+from thalweg.kernels.leg import wave_limits as places
+from thalweg.ship.hull.hull import Hull, require
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.methods.seakeeping.motion_sickness import MIXED_ADULTS, weighted_acceleration
+from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, ship_response
+from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import (
+    roll_period,
+    stability_checks,
+    surf_riding_speed,
+)
+
+FloatArray = NDArray[np.float64]
+#: the situations of MSC.1/Circ.1228 that a ship file may name
+DANGERS: Final = ("surf_riding", "successive_high_waves", "synchronous_roll", "parametric_roll")
+#: mean over peak period of a JONSWAP spectrum with gamma 3.3 (DNV-RP-C205)
+MEAN_PERIOD: Final = 0.834
+EXPOSURE: Final = 7200.0  #: of people aboard, unless the ship file tells [s]
+SHORTEST, LONGEST = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
+_GRID: Final = (25, 37, 113)  # speeds, angles, periods
+_ROUNDS: Final = 6
+_USUAL_HEIGHT: Final = 3.0  # from which heights that reach a limit are sought [m]
+_BLOCK: Final = 20_000
+
+
+@dataclass(frozen=True)
+class Circular:
+    """The dangers of MSC.1/Circ.1228 a ship shall keep out of.
+
+    Attributes
+    ----------
+    dangers : tuple of str
+        Among `DANGERS`.
+    roll_period : float
+        Natural roll period [s]; NaN when unknown.
+    roll_tolerance : float
+        Relative difference of periods that counts as resonance.
+    least_height : float
+        Waves up to this height are no danger [m].
+    """
+
+    dangers: tuple[str, ...]
+    roll_period: float
+    roll_tolerance: float
+    least_height: float
+
+
+@dataclass(frozen=True)
+class MotionLimit:
+    """A greatest vertical acceleration at a place of the ship.
+
+    Attributes
+    ----------
+    greatest : float
+        Root mean square [m/s2].
+    forward : float
+        Ahead of midship on the centre line [m].
+    weighted : bool
+        Weighted for motion sickness (W_f of ISO 2631-1).
+    """
+
+    greatest: float
+    forward: float
+    weighted: bool = False
+
+    def over_height(
+        self,
+        hull: MotionHull,
+        *,
+        speed: FloatArray,
+        angle: FloatArray,
+        height: FloatArray,
+        period: FloatArray,
+    ) -> FloatArray:
+        """Return the acceleration over its limit, for flat arrays."""
+        found = np.empty(height.shape)
+        for first in range(0, height.size, _BLOCK):
+            part = slice(first, first + _BLOCK)
+            state = ship_response(
+                height=height[part],
+                period=np.clip(period[part], SHORTEST, LONGEST),
+                wave_angle=angle[part],
+                speed=speed[part],
+                hull=hull,
+                forward=self.forward,
+            )
+            if self.weighted:
+                rms = weighted_acceleration(state.acceleration_parts, state.encounter_frequency)
+            else:
+                rms = np.sqrt(state.acceleration.m0)
+            found[part] = rms / self.greatest
+        return found
+
+
+@dataclass(frozen=True)
+class SafetyLimits:
+    """What a ship must not do in waves.
+
+    Attributes
+    ----------
+    hull : MotionHull
+        At the loading of the ship file.
+    circular : Circular or None
+    motions : tuple of MotionLimit
+    top_speed : float
+        Speeds beyond are taken as this in the tables of motions [m/s].
+    """
+
+    hull: MotionHull
+    circular: Circular | None = None
+    motions: tuple[MotionLimit, ...] = ()
+    top_speed: float = 20.0
+
+    def forbids(
+        self,
+        speed: ArrayLike,
+        *,
+        wave_angle: ArrayLike,
+        wave_height: ArrayLike,
+        wave_period: ArrayLike,
+    ) -> NDArray[np.bool_]:
+        """Return where a ship must not sail so.
+
+        Parameters
+        ----------
+        speed : array_like
+            Through the water [m/s].
+        wave_angle : array_like
+            Between the bow and where the waves come from [rad], 0 head to pi following.
+        wave_height, wave_period : array_like
+            Significant height [m] and peak period [s].
+
+        Returns
+        -------
+        ndarray of bool
+            False where something is unknown.
+        """
+        arrays = (np.asarray(x, float) for x in (speed, wave_angle, wave_height, wave_period))
+        v, angle, height, period = np.broadcast_arrays(*arrays)
+        known = np.isfinite(v + height) & ((height == 0.0) | np.isfinite(angle + period))
+        bad = np.zeros(v.shape, bool)
+        rough = known & (height > 0.0)
+        at = [np.ascontiguousarray(x[rough]) for x in (v, angle, height, period)]
+        if at[0].size:
+            bad[rough] = self._dangerous(*at) | (self._share(*at) > 1.0)
+        return bad
+
+    def _dangerous(
+        self, speed: FloatArray, angle: FloatArray, height: FloatArray, period: FloatArray
+    ) -> NDArray[np.bool_]:
+        bad = np.zeros(speed.shape, bool)
+        if self.circular is None:
+            return bad
+        rolls = self.circular.roll_period
+        checks = stability_checks(
+            speed=speed,
+            wave_angle=angle,
+            wave_height=height,
+            wave_period=MEAN_PERIOD * period,
+            length=self.hull.length,
+            roll_period=None if math.isnan(rolls) else rolls,
+            roll_tolerance=self.circular.roll_tolerance,
+            least_height=self.circular.least_height,
+        )
+        for name in self.circular.dangers:
+            bad |= getattr(checks, name)
+        return bad
+
+    def _share(
+        self, speed: FloatArray, angle: FloatArray, height: FloatArray, period: FloatArray
+    ) -> FloatArray:
+        """The greatest acceleration over its limit, flat arrays."""
+        at = {"speed": speed, "angle": angle, "height": height, "period": period}
+        shares = [limit.over_height(self.hull, **at) for limit in self.motions]
+        return np.max(shares, axis=0) if shares else np.zeros(speed.shape)
+
+    def kernel_arrays(self) -> dict[str, Any]:
+        """Return the fields of `thalweg.kernels.leg.table_lookup.TableArrays` that belong to it."""
+        found: dict[str, Any] = {}
+        if self.circular is not None:
+            found["safety"] = self._numbers
+        if self.motions:
+            found["motions"], found["motion_grid"] = self._table
+        return found
+
+    @cached_property
+    def _numbers(self) -> FloatArray:
+        """The numbers of `thalweg.kernels.leg.wave_limits`."""
+        own = self.circular
+        numbers = np.zeros(places.NUMBERS)
+        if own is None:
+            return numbers
+        rolls = {"synchronous_roll", "parametric_roll"} & set(own.dangers)
+        astern = float(surf_riding_speed(math.pi, length=self.hull.length))
+        numbers[places.SURF_SPEED] = astern if "surf_riding" in own.dangers else math.inf
+        if "successive_high_waves" in own.dangers:
+            numbers[places.HIGH_WAVE_LENGTH] = self.hull.length
+        numbers[places.ROLL_PERIOD] = own.roll_period if rolls else 0.0
+        numbers[places.ROLL_HALF] = float("parametric_roll" in own.dangers)
+        numbers[places.ROLL_TOLERANCE] = own.roll_tolerance
+        numbers[places.LEAST_HEIGHT] = own.least_height
+        numbers[places.MEAN_PERIOD] = MEAN_PERIOD
+        return numbers
+
+    @cached_property
+    def _table(self) -> tuple[NDArray[np.float32], FloatArray]:
+        """One over the wave height that reaches a limit, over speed, angle and period."""
+        ends = ((0.0, self.top_speed), (0.0, math.pi), (SHORTEST, LONGEST))
+        axes = [np.linspace(*end, size) for end, size in zip(ends, _GRID)]
+        v, angle, period = (x.ravel() for x in np.meshgrid(*axes, indexing="ij"))
+        height = np.full(v.shape, _USUAL_HEIGHT)
+        for _ in range(_ROUNDS):  # the spectrum's peak depends a little on the height
+            share = np.maximum(self._share(v, angle, height, period), 1e-6)
+            height = np.clip(height / share, 0.05, 60.0)
+        inverse = np.where(height < 60.0, 1.0 / height, 0.0)
+        grid = np.array([[axis[0], 1.0 / (axis[1] - axis[0])] for axis in axes])
+        return inverse.reshape(_GRID).astype(np.float32), grid
+
+
+def build_safety(data: Mapping[str, Any], hull: Hull, loading: Loading) -> SafetyLimits | None:
+    """Return the safety and comfort limits of a ship file; None when it states none.
+
+    Raises
+    ------
+    InputError
+        For unknown dangers, and particulars that are missing.
+    """
+    given = data.get("limits", {})
+    dangers = tuple(dict.fromkeys(given.get("msc_circ_1228", ())))
+    limits = _motion_limits(given)
+    if not dangers and not limits:
+        return None
+    size = _motion_hull(hull, loading)
+    middle = [
+        MotionLimit(limit.greatest, 0.5 * size.length * math.copysign(1, limit.forward))
+        if math.isinf(limit.forward)
+        else limit
+        for limit in limits
+    ]
+    for limit in middle:
+        if abs(limit.forward) > 0.75 * size.length:
+            raise InputError(
+                f"A limit is set {limit.forward:g} m ahead of midship, off the ship.",
+                f"Half of its length is {0.5 * size.length:g} m; abaft midship is negative.",
+                "Correct limits.acceleration_at_m or limits.motion_sickness_at_m.",
+                key="limits.acceleration_at_m",
+            )
+    circular = _circular(given, dangers, hull, size) if dangers else None
+    return SafetyLimits(size, circular, tuple(middle))
+
+
+def _circular(
+    given: Mapping[str, Any], dangers: tuple[str, ...], hull: Hull, size: MotionHull
+) -> Circular:
+    """The dangers of MSC.1/Circ.1228 named in a ship file."""
+    if "all" in dangers:
+        dangers = DANGERS
+    for name in dangers:
+        if name not in DANGERS:
+            raise unknown_name("danger of MSC.1/Circ.1228", name, ("all", *DANGERS))
+    rolls = natural_roll_period(hull, size)
+    if rolls is None and {"synchronous_roll", "parametric_roll"} & set(dangers):
+        raise InputError(
+            "The ship file limits roll, but tells no natural roll period.",
+            "It is hull.roll_period_s, or follows from hull.metacentric_height_m.",
+            "Add one of them, or name the other dangers only.",
+            missing=["hull.roll_period_s", "hull.metacentric_height_m"],
+        )
+    return Circular(
+        dangers=dangers,
+        roll_period=math.nan if rolls is None else rolls,
+        roll_tolerance=float(given.get("roll_period_tolerance", 0.1)),
+        least_height=float(given.get("danger_from_wave_height_m", 0.01 * size.length)),
+    )
+
+
+def natural_roll_period(hull: Hull, size: MotionHull) -> float | None:
+    """Return the natural roll period [s], given or by the IS Code from GM; None when unknown."""
+    own, gm = hull.number("roll_period_s"), hull.number("metacentric_height_m")
+    if own is not None or gm is None:
+        return own
+    beam, deep = size.breadth, size.draught
+    return float(roll_period(beam, deep, length_waterline=size.length, metacentric_height=gm))
+
+
+def _motion_limits(given: Mapping[str, Any]) -> tuple[MotionLimit, ...]:
+    """The limits of motions in a ship file; the bow is as far ahead as can be."""
+    found = []
+    if "max_vertical_acceleration_m_s2" in given:
+        place = float(given.get("acceleration_at_m", math.inf))
+        found.append(MotionLimit(float(given["max_vertical_acceleration_m_s2"]), place))
+    if "max_motion_sickness_percent" in given:
+        hours = float(given.get("motion_sickness_hours", EXPOSURE / 3600.0))
+        dose = float(given["max_motion_sickness_percent"]) / MIXED_ADULTS
+        place = float(given.get("motion_sickness_at_m", 0.0))
+        found.append(MotionLimit(dose / math.sqrt(hours * 3600.0), place, weighted=True))
+    return tuple(found)
+
+
+def _motion_hull(hull: Hull, loading: Loading) -> MotionHull:
+    """The hull as the closed forms of its motions need it, at the loading of the ship file."""
+    wanted: tuple[str, ...] = ("breadth_m", "block_coefficient")
+    length = hull.number("length_waterline_m") or hull.number("length_between_perpendiculars_m")
+    if length is None:
+        wanted = ("length_between_perpendiculars_m", *wanted)
+    if any(hull.number(key) is None for key in wanted):
+        from thalweg.ship.hull.hull_estimates import estimate  # reads many regressions
+
+        hull = estimate(hull, wanted)
+    numbers = require(hull, wanted, "a limit of motions in waves", instead="no such limit")
+    length = numbers[0] if length is None else length
+    return MotionHull(float(length), float(numbers[-2]), loading.draught, float(numbers[-1]))

@@ -1,0 +1,115 @@
+"""Squat of a ship: how far it sinks under way, and the speed that the water under it allows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from thalweg.core.errors import unknown_name
+from thalweg.ship.hull.hull import Hull, require
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.methods.shallow_water.squat import (
+    barrass_2004_speed,
+    barrass_2004_squat,
+    barrass_squat,
+    critical_speed,
+    speed_limit,
+)
+
+FloatArray = NDArray[np.float64]
+SQUAT: Final = ("none", "van_halem_2019", "barrass_2004")
+
+
+@dataclass(frozen=True)
+class Squat:
+    """A ship's squat, in open water.
+
+    Attributes
+    ----------
+    length, breadth : float
+        Between perpendiculars (or of the waterline), and breadth [m].
+    loading : Loading
+        Draughts [m] and displacements [m3].
+    clearance : float
+        Water that shall remain under the ship under way [m].
+    method : str
+        ``van_halem_2019`` sinks as Barrass (1979), ``barrass_2004`` as his later form; both slow
+        as van Halem (2019), eq. 2.5, corrected.
+    """
+
+    length: float
+    breadth: float
+    loading: Loading
+    clearance: float = 0.0
+    method: str = "van_halem_2019"
+
+    @property
+    def block_coefficient(self) -> float:
+        """At the ship's load factor."""
+        return float(self._block(self.loading.load_factor))
+
+    def sinkage(self, speed: ArrayLike, depth: ArrayLike, load_factor: ArrayLike) -> FloatArray:
+        """Largest squat [m] at speeds through water [m/s]; see `methods.squat`."""
+        formula = barrass_2004_squat if self.method == "barrass_2004" else barrass_squat
+        return formula(speed, depth, **self._sizes(load_factor))
+
+    def allowed(self, speed: ArrayLike, depth: ArrayLike, load_factor: ArrayLike) -> FloatArray:
+        """Speed [m/s] left of a speed in deep water; 0 where the ship would have no water."""
+        deep, sizes = np.asarray(speed, float), self._sizes(load_factor)
+        if self.method == "barrass_2004":
+            room = np.asarray(depth, float) - sizes["draught"] - self.clearance
+            slowed = critical_speed(deep, depth, draught=sizes["draught"], breadth=self.breadth)
+            left = np.minimum(slowed, barrass_2004_speed(room, depth, **sizes))
+        else:
+            left = speed_limit(deep, depth, **sizes, clearance=self.clearance)
+        return np.minimum(deep, left)
+
+    def _sizes(self, load_factor: ArrayLike) -> dict[str, Any]:
+        """Draught, breadth and block coefficient at a load factor."""
+        return {
+            "draught": self.loading.draught_at(load_factor),
+            "breadth": self.breadth,
+            "block_coefficient": self._block(load_factor),
+        }
+
+    def _block(self, load_factor: ArrayLike) -> FloatArray:
+        draught = self.loading.draught_at(load_factor)
+        volume = self.loading.displacement_at(load_factor)
+        return volume / (self.length * self.breadth * draught)
+
+
+def squat_of(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat | None:
+    """Return a ship's squat, or None when its particulars do not tell."""
+    length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
+    breadth = hull.number("breadth_m")
+    if not (length and breadth) or math.isnan(loading.displacement_full):
+        return None
+    clearance = data.get("limits", {}).get("min_under_keel_clearance_m", 0.0)
+    chosen = data.get("models", {}).get("squat", "none")
+    method = chosen if chosen in SQUAT[1:] else SQUAT[1]
+    return Squat(float(length), float(breadth), loading, float(clearance), method)
+
+
+def build_squat(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat | None:
+    """Return the squat that limits a ship's speed, by ``models.squat``; None for ``none``.
+
+    Raises
+    ------
+    InputError
+        For unknown names, and particulars that are missing.
+    """
+    name = data.get("models", {}).get("squat", "none")
+    if name not in SQUAT:
+        raise unknown_name("squat method", name, SQUAT)
+    if name == "none":
+        return None
+    found = squat_of(data, hull, loading)
+    if found is None:
+        keys = ("length_between_perpendiculars_m", "breadth_m", "displacement_m3")
+        require(hull, keys, name, instead="squat: none")
+    return found

@@ -1,0 +1,369 @@
+"""The performance sheet of a ship: resistance, power, fuel and emissions, speed by speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import HOUR, KNOT
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.methods.carbon_intensity import (
+    attained_cii,
+    cii_rating,
+    cii_ship_type,
+    rating_boundaries,
+    required_cii,
+)
+from thalweg.ship.methods.seakeeping.wave_spectra import pierson_moskowitz_period
+from thalweg.ship.models.propulsion_model import set_aside
+from thalweg.ship.performance_sheet_seaway import Seaway
+from thalweg.ship.ship import Ship
+
+FloatArray = NDArray[np.float64]
+_CALM_PERIOD = 10.0  #: [s]; nothing depends on it
+_SIZED = (("wave_height", "wave_angle", "waves"), ("wind_speed", "wind_angle", "wind"))
+COMPONENTS = (
+    *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
+    *("correlation", "waves", "wind", "shallow", "rudder"),
+)
+
+
+def performance_sheet(
+    ship: Ship, weather: Mapping[str, float] | None = None, *, speeds_kn: Sequence[float] = ()
+) -> dict[str, Any]:
+    """Return resistance, power, fuel and CO2 of a ship at speeds through water.
+
+    Parameters
+    ----------
+    ship : Ship
+    weather : mapping, optional
+        Conditions by name, SI; calm and deep where not given.
+    speeds_kn : sequence of float, optional
+        Speeds through water [kn]; the ship's settings when not given.
+
+    Returns
+    -------
+    dict
+        Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component, which
+        add up to its ``total``; what Hollenbach's method has besides friction, all of it pressure,
+        stands under ``wave_making``; with Kwon's speed loss the resistance is that of calm water at
+        the speed, the power that of the calm speed behind it;
+        ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
+        ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``assumed[]`` (period
+        and directions of weather that were not given), ``warnings[]`` (speeds
+        left out, weather the ship has no model of), ``missing[]`` (what is not known and which keys
+        would tell it), ``settings[]`` (what each setting attains in
+        this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
+
+    Raises
+    ------
+    InputError
+        When the ship cannot be asked for any of the speeds, or its speed is a field.
+    """
+    if ship.speed_field is not None:
+        raise InputError(
+            f"The speed of {ship.name!r} is a field of place and time.",
+            "A sheet shows ships whose speed depends on what they meet alone.",
+            "Ask for a ship with settings, or evaluate a route with this one.",
+            ship=ship.name,
+        )
+    conditions = _conditions(ship, weather or {})
+    composed = hasattr(ship.model, "power_at_speed")
+    speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _usual_speeds(ship)
+    if speeds.size == 0 or not (np.isfinite(speeds) & (speeds > 0)).all():
+        raise InputError(
+            "The speeds asked for are not all positive numbers.",
+            "Speeds are in knots, such as 8:16 or 10,12,14.",
+            "Correct them.",
+        )
+    speeds, left_out = (speeds, []) if composed else _orderable(ship, speeds)
+    rows = (_composed_rows if composed else _nominal_rows)(ship, conditions, speeds)
+    seaway = Seaway.of(ship, conditions)
+    for row in rows:
+        _add_seaway(row, seaway)
+    return {
+        "name": ship.name,
+        "draught_m": ship.draught,
+        "load_factor": ship.loading.load_factor,
+        "weather": {name: _number(value) for name, value in (weather or {}).items()},
+        "assumed": [*_assumed(weather or {}), *_left_aside(ship), *_unloaded(ship)],
+        "conditions": rows,
+        "warnings": [*left_out, *_unfelt(ship, weather or {}), *_beyond(ship, weather or {})],
+        "missing": _missing(ship, rows),
+        "settings": _settings(ship, conditions),
+        "estimated": [{"key": e.key, "value": e.value, "method": e.method} for e in ship.estimated],
+        "sources": list(ship.data.get("sources", ())),
+        "description": ship.data.get("description", ""),
+        "fingerprint": ship.fingerprint(),
+    }
+
+
+def _conditions(ship: Ship, weather: Mapping[str, float]) -> Conditions:
+    calm = {name: 0.0 for name in ("wind_speed", "wind_angle", "wave_height", "wave_angle")}
+    period = assumed_period(weather.get("wave_height", 0.0))
+    return Conditions({**calm, "wave_period": period, "depth": np.inf, **weather})
+
+
+def assumed_period(height: float) -> float:
+    """Peak period [s] of waves whose period is not told: a fully developed sea's."""
+    return float(pierson_moskowitz_period(height)) if height > 0.0 else _CALM_PERIOD
+
+
+def _assumed(weather: Mapping[str, float]) -> list[str]:
+    """Say what was taken for weather that was only half told."""
+    height, found = weather.get("wave_height", 0.0), []
+    if height > 0.0 and "wave_period" not in weather:
+        period = assumed_period(height)
+        found.append(f"a peak period of {period:.3g} s, of a fully developed sea")
+    for size, angle, words in _SIZED:
+        if weather.get(size, 0.0) > 0.0 and angle not in weather:
+            found.append(f"{words} from ahead")
+        if size not in weather and angle in weather:
+            found.append(f"no {words}, since only a direction is told")
+    if "wave_height" not in weather and "wave_period" in weather:
+        found.append("no waves, since only a period is told")
+    return found
+
+
+def _orderable(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
+    """The speeds a ship with known speeds can be ordered to, and a warning of the others.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if np.array_equal(speeds, ship.speeds):
+        return speeds, []
+    good, bad, reason = [], [], None
+    for speed in speeds:
+        try:
+            ship.with_speeds(speed)
+            good.append(float(speed))
+        except InputError as refusal:
+            bad.append(float(speed))
+            reason = reason or refusal
+    if reason is not None and not good:
+        ship.with_speeds(speeds)
+        raise reason
+    listed = ", ".join(f"{speed / KNOT:.4g}" for speed in bad)
+    why = "" if reason is None else f" {reason.possible}"
+    return np.array(good), [f"{listed} kn left out.{why}"] if bad else []
+
+
+#: what the weather must be called, and the conditions a ship reads that feel it
+_FELT = {
+    "wave_height": ("waves are", {"wave_height"}),
+    "wind_speed": ("the wind is", {"wind_speed"}),
+    "depth": ("the depth of the water is", {"depth"}),
+}
+
+
+def _unfelt(ship: Ship, weather: Mapping[str, float]) -> list[str]:
+    """Warn of weather that is given and that the ship has no model of."""
+    return [
+        f"{word} given, but this ship's models leave its speed and power as they are"
+        for name, (word, read) in _FELT.items()
+        if weather.get(name, 0.0) > 0.0 and np.isfinite(weather[name]) and not ship.reads & read
+    ]
+
+
+def _beyond(ship: Ship, weather: Mapping[str, float]) -> list[str]:
+    """Warn of what no plan takes the ship into: weather beyond its limits, water too shallow."""
+    limits = {
+        "wave_height": ("waves of", "m", ship.limits.wave_height),
+        "wind_speed": ("wind of", "m/s", ship.limits.wind_speed),
+    }
+    found = []
+    if weather.get("depth", np.inf) <= ship.draught:
+        depth = weather["depth"]
+        found.append(f"the water is {depth:g} m deep, the draught {ship.draught:g} m: aground")
+    return found + [
+        f"{word} {weather[name]:g} {unit} are beyond the ship's limit of {limit:.4g} {unit}"
+        for name, (word, unit, limit) in limits.items()
+        if weather.get(name, 0.0) > limit
+    ]
+
+
+def _add_seaway(row: dict[str, Any], seaway: Seaway) -> None:
+    """Add squat and motions to a row, with their warnings."""
+    speed = row["speed_kn"]
+    if speed is None:
+        row |= {"squat": None, "motions": None}
+        return
+    squat, touching = seaway.squat(speed * KNOT)
+    motions, dangers = seaway.motions(speed * KNOT)
+    row |= {"squat": squat, "motions": motions}
+    row["warnings"] += [*touching, *dangers]
+
+
+def _usual_speeds(ship: Ship) -> FloatArray:
+    own = ship.speeds
+    if not hasattr(ship.model, "power_at_speed") or len(own) > 4:
+        return own
+    return np.linspace(0.6, 1.1, 6) * own.max()
+
+
+def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> list[dict[str, Any]]:
+    parts = ship.resistance(conditions, speeds)
+    parts["wave_making"] = parts["wave_making"] + parts.pop("residuary")
+    power = ship.power_at_speed(conditions, speeds)
+    plant = ship.model.plant  # type: ignore[attr-defined]
+    loss, loaded = getattr(ship.model, "loss", None), ship.loading.load_factor
+    balance = ship.model.balance(loaded)  # type: ignore[attr-defined]
+    weather = conditions.with_values(load_factor=loaded)
+    fuel = np.where(power <= plant.largest_power, plant.fuel(power), np.nan)
+    rows = []
+    for k, speed in enumerate(speeds):
+        at = {n: np.array([float(np.asarray(conditions[n]))]) for n in _FLAT}
+        notes = [str(n) for n in balance.notes(at, speeds[k : k + 1])]
+        notes += [str(n) for n in plant.notes(power[k : k + 1])]
+        notes += [str(n) for n in loss.notes(weather)] if loss is not None else []
+        if power[k] > plant.largest_power:
+            notes.append(f"the engines give {plant.largest_power / 1e3:.0f} kW: not reached")
+        rows.append(
+            {
+                **_row(ship, speed, fuel[k]),
+                "resistance_n": {name: _number(parts[name][k]) for name in COMPONENTS},
+                "effective_power_kw": _number(parts["total"][k] * speed / 1e3),
+                "brake_power_kw": _number(power[k] / 1e3),
+                "warnings": notes,
+            }
+        )
+    return rows
+
+
+_FLAT = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
+
+
+def _nominal_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> list[dict[str, Any]]:
+    ordered = ship if np.array_equal(speeds, ship.speeds) else ship.with_speeds(speeds)
+    rows = []
+    for k, speed in enumerate(np.unique(speeds)):
+        attained = float(ordered.speed_through_water(conditions, k))
+        fuel = float(ordered.fuel_rate(conditions, k))
+        power = float(ordered.power(conditions, k))
+        rows.append(
+            {
+                **_row(ship, attained, fuel),
+                "ordered_speed_kn": _number(speed / KNOT),
+                "resistance_n": dict.fromkeys(COMPONENTS),
+                "effective_power_kw": None,
+                "brake_power_kw": _number(power / 1e3),
+                "warnings": [str(n) for n in ordered.notes(conditions, k)],
+            }
+        )
+    return rows
+
+
+def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
+    co2 = fuel * ship.fuel_terms.carbon_outside
+    return {
+        "speed_kn": _number(round(speed / KNOT, 9)),
+        "fuel_kg_per_h": _number(fuel * HOUR),
+        "fuel_kg_per_nm": _number(fuel * 1852.0 / speed if speed > 0 else np.nan),
+        "co2_kg_per_h": _number(co2 * HOUR),
+        "cii": _cii(ship, speed, co2),
+    }
+
+
+def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
+    """Carbon intensity of sailing at this speed all the time, and its rating in 2026."""
+    hull = ship.data.get("hull", {})
+    kind = str(hull.get("type", "")).casefold().replace(" ", "_").replace("-", "_")
+    try:
+        by_tonnage = cii_ship_type(kind).capacity == "gt"
+        known = True
+    except InputError:
+        by_tonnage = known = False
+    capacity = hull.get("gross_tonnage" if by_tonnage else "deadweight_t")
+    if capacity is None or not (speed > 0 and np.isfinite(co2)):
+        return None
+    attained = float(attained_cii(co2, capacity=capacity, distance_nm=speed / 1852.0))
+    found: dict[str, Any] = {
+        "attained_g_per_t_nm": attained,
+        "required_2026": None,
+        "rating_2026": None,
+        "boundaries_2026": None,
+    }
+    if known:
+        here: dict[str, Any] = {"ship_type": kind, "capacity": capacity, "year": 2026}
+        found["required_2026"] = float(required_cii(**here))
+        found["boundaries_2026"] = [float(limit) for limit in rating_boundaries(**here)]
+        found["rating_2026"] = str(cii_rating(attained, **here))
+    return found
+
+
+def _left_aside(ship: Ship) -> list[str]:
+    """Say what a ship file gives that its calm-water method does not look at."""
+    data = ship.data
+    method = data.get("models", {}).get("calm_water", "none")
+    if not hasattr(ship.model, "power_at_speed"):
+        table = method in ("none", "cubic") and {"table", "speeds_kn"} <= data.keys()
+        return [f"calm_water: {method} leaves the table aside"] if table else []
+    given = {"table": "table" in data}
+    given["speeds under loading"] = "speeds_full_kn" in data.get("loading", {})
+    given["reference point"] = "reference_power_kw" in data.get(
+        "engine", {}
+    ) or "reference_t_per_day" in data.get("fuel", {})
+    found = [f"calm_water: {method} leaves the {w} aside" for w, there in given.items() if there]
+    chain = data.get("models", {}).get("propulsion", "efficiencies")
+    idle = set_aside(data.get("propulsion", {}), chain)
+    return [*found, *(f"propulsion.{key} is left aside" for key in idle)]
+
+
+def _unloaded(ship: Ship) -> list[str]:
+    """Say that a ship with one draught is the same at every load factor."""
+    own, given = ship.loading, ship.data.get("loading", {})
+    differs = {"draught_empty_m", "speeds_empty_kn", "displacement_empty_m3", "weight_empty_t"}
+    if not ship.data or own.load_factor == 1.0 or differs & given.keys():
+        return []
+    return [f"load factor {own.load_factor:g} changes nothing: the ship file tells no empty ship"]
+
+
+def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Say what the sheet does not know, and which keys of the ship file would tell it."""
+
+    def known(name: str) -> bool:
+        return any(row[name] is not None for row in rows)
+
+    if not ship.data:
+        return []
+    found: list[str] = []
+    if hasattr(ship.model, "power_at_speed") and not known("brake_power_kw"):
+        return found  # it is the water or the weather that leaves no number
+    if not known("brake_power_kw"):
+        found.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")
+    if not known("fuel_kg_per_h"):
+        ways = "engine.type with fuel.type, engine.sfoc_g_per_kwh, or table.fuel_t_per_day"
+        found.append(f"fuel: {ways}" if known("brake_power_kw") else "fuel: power, or a table")
+    elif not known("co2_kg_per_h"):
+        found.append("CO2: fuel.type or fuel.carbon_factor")
+    elif not known("cii"):
+        found.append("CII: hull.deadweight_t, or hull.gross_tonnage for some types of ship")
+    elif all(row["cii"] is None or row["cii"]["rating_2026"] is None for row in rows):
+        found.append("rating of the CII: hull.type as the regulation has it")
+    return found
+
+
+def _settings(ship: Ship, conditions: Conditions) -> list[dict[str, Any]]:
+    rows = []
+    for k, calm in enumerate(ship.speeds):
+        rows.append(
+            {
+                "calm_speed_kn": _number(calm / KNOT),
+                "speed_kn": _number(float(ship.speed_through_water(conditions, k)) / KNOT),
+                "brake_power_kw": _number(float(ship.power(conditions, k)) / 1e3),
+                "fuel_kg_per_h": _number(float(ship.fuel_rate(conditions, k)) * HOUR),
+            }
+        )
+    return rows
+
+
+def _number(value: Any) -> float | None:
+    number = float(value)
+    return number if np.isfinite(number) else None

@@ -1,0 +1,133 @@
+"""What a performance sheet says of squat, motions and stability at one speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from thalweg.ship.conditions import Conditions
+from thalweg.ship.hull.hull import Hull, complete_hull
+from thalweg.ship.methods.seakeeping.motion_sickness import (
+    motion_sickness_dose,
+    sick_percent_iso,
+    weighted_acceleration,
+)
+from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, motions_validity, ship_response
+from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import stability_checks
+from thalweg.ship.methods.shallow_water.squat import clearance_under_way, squat_validity
+from thalweg.ship.models.seaway_limits import EXPOSURE, MEAN_PERIOD, natural_roll_period
+from thalweg.ship.models.squat_model import Squat, squat_of
+from thalweg.ship.ship import Ship
+
+_DANGERS: Final = {
+    "surf_riding": "surf-riding and broaching-to",
+    "successive_high_waves": "successive high waves",
+    "synchronous_roll": "synchronous roll",
+    "parametric_roll": "parametric roll",
+}
+
+
+@dataclass(frozen=True)
+class Seaway:
+    """A ship in given water and waves.
+
+    Attributes
+    ----------
+    ship : Ship
+    hull : Hull
+    conditions : Conditions
+        One of each, SI.
+    """
+
+    ship: Ship
+    hull: Hull
+    conditions: Conditions
+
+    @classmethod
+    def of(cls, ship: Ship, conditions: Conditions) -> Seaway:
+        """Take the hull's particulars as the ship's model has them, at the ship's draught."""
+        balance = getattr(ship.model, "balance", None)
+        if balance is not None:
+            return cls(ship, balance(ship.loading.load_factor).calm.hull, conditions)
+        hull = complete_hull(ship.data.get("hull", {}))
+        afloat, sunk = {"draught_m": ship.draught}, squat_of(ship.data, hull, ship.loading)
+        if sunk is not None and ship.draught > 0.0:
+            afloat["block_coefficient"] = sunk.block_coefficient
+        return cls(ship, Hull({**hull.values, **afloat}), conditions)
+
+    def squat(self, speed: float) -> tuple[dict[str, Any] | None, list[str]]:
+        """Squat and clearance [m] at a speed [m/s] where the depth is known, and warnings."""
+        squat: Squat | None = squat_of(self.ship.data, self.hull, self.ship.loading)
+        depth = float(self.conditions.depth)
+        if squat is None or not np.isfinite(depth):
+            return None, []
+        sunk = float(squat.sinkage(speed, depth, self.ship.loading.load_factor))
+        left = float(clearance_under_way(depth, self.ship.draught, squat=sunk))
+        least = squat.clearance
+        notes = [
+            str(n)
+            for n in squat_validity(
+                depth, draught=self.ship.draught, block_coefficient=squat.block_coefficient
+            )
+        ]
+        if not left >= least:
+            notes.append(f"{left:.2f} m of water under the keel with squat, less than {least:g} m")
+        return {"squat_m": _number(sunk), "under_keel_clearance_m": _number(left)}, notes
+
+    def motions(self, speed: float) -> tuple[dict[str, Any] | None, list[str]]:
+        """Motions by Jensen, Mansour and Olsen at a speed [m/s], and MSC.1/Circ.1228."""
+        at, keys = self.conditions, ("breadth_m", "draught_m", "block_coefficient")
+        length = self.hull.number("length_waterline_m") or self.hull.number(
+            "length_between_perpendiculars_m"
+        )
+        sizes = [length, *(self.hull.number(key) for key in keys)]
+        if not float(at.wave_height) > 0.0 or any(size is None for size in sizes):
+            return None, []
+        hull = MotionHull(*(float(size or 0.0) for size in sizes))
+        common: dict[str, Any] = {
+            "height": at.wave_height,
+            "period": at.wave_period,
+            "speed": speed,
+        }
+        middle = ship_response(**common, wave_angle=at.wave_angle, hull=hull)
+        bow = ship_response(
+            **common, wave_angle=at.wave_angle, hull=hull, forward=0.5 * hull.length
+        )
+        felt = weighted_acceleration(middle.acceleration_parts, middle.encounter_frequency)
+        dose = motion_sickness_dose(felt, duration=EXPOSURE)
+        found: Mapping[str, Any] = {
+            "significant_heave_m": middle.heave.significant_amplitude,
+            "significant_pitch_deg": np.degrees(middle.pitch.significant_amplitude),
+            "largest_heave_3h_m": middle.heave.most_probable_maximum(),
+            "largest_pitch_3h_deg": np.degrees(middle.pitch.most_probable_maximum()),
+            "bow_acceleration_rms_m_s2": np.sqrt(bow.acceleration.m0),
+            "motion_sickness_2h_percent": sick_percent_iso(dose),
+        }
+        notes = [str(note) for note in motions_validity(speed, hull)]
+        return {k: _number(v) for k, v in found.items()}, [*notes, *self._dangers(speed, hull)]
+
+    def _dangers(self, speed: float, hull: MotionHull) -> list[str]:
+        """What MSC.1/Circ.1228 warns of at a speed [m/s]."""
+        own = natural_roll_period(self.hull, hull)
+        checks = stability_checks(
+            speed=speed,
+            wave_angle=self.conditions.wave_angle,
+            wave_height=self.conditions.wave_height,
+            wave_period=MEAN_PERIOD * self.conditions.wave_period,
+            length=hull.length,
+            roll_period=own,
+            least_height=0.01 * hull.length,
+        )
+        return [
+            f"MSC.1/Circ.1228: {words} may occur"
+            for name, words in _DANGERS.items()
+            if bool(getattr(checks, name))
+        ]
+
+
+def _number(value: Any) -> float | None:
+    number = float(value)
+    return number if np.isfinite(number) else None

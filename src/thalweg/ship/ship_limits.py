@@ -1,0 +1,58 @@
+"""`ShipLimits`: weather a ship must not meet."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from thalweg.core.errors import InputError
+from thalweg.ship.condition_variables import (
+    EASTWARD_WIND,
+    NORTHWARD_WIND,
+    WAVE_EAST,
+    WAVE_HEIGHT,
+    WAVE_NORTH,
+    WAVE_PERIOD,
+)
+
+if TYPE_CHECKING:
+    from thalweg.ship.models.seaway_limits import SafetyLimits
+
+
+@dataclass(frozen=True)
+class ShipLimits:
+    """Hard limits of a ship; infinite where there is none.
+
+    Attributes
+    ----------
+    wave_height : float
+        Greatest significant wave height [m].
+    wind_speed : float
+        Greatest wind speed at 10 m, relative to the moving water [m/s].
+    safety : SafetyLimits, optional
+        What the ship must not do in waves.
+    """
+
+    wave_height: float = math.inf
+    wind_speed: float = math.inf
+    safety: SafetyLimits | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in (("wave height", self.wave_height), ("wind speed", self.wind_speed)):
+            if not value > 0.0:
+                raise InputError(
+                    f"The limit of {name} is {value:g}.",
+                    "A limit is a positive number.",
+                    "Leave it out when there is none.",
+                    value=value,
+                )
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The sea variables that finite limits look at."""
+        waves = {WAVE_HEIGHT} if math.isfinite(self.wave_height) else set()
+        wind = {EASTWARD_WIND, NORTHWARD_WIND} if math.isfinite(self.wind_speed) else set()
+        if self.safety is not None:
+            waves = {WAVE_HEIGHT, WAVE_EAST, WAVE_NORTH, WAVE_PERIOD}
+        return frozenset(waves | wind)

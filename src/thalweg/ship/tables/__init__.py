@@ -1,0 +1,1 @@
+"""Performance tables: tabulation, bounds, output curves, cache."""

@@ -1,0 +1,113 @@
+"""Tables of composed ships kept on disk between runs: seconds to build, milliseconds to read."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import threading
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.cache_folder import cache_folder
+from thalweg.ship.tables.output_curve import FIELDS, Finish
+from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+
+FloatArray = NDArray[np.float64]
+#: a table (its fingerprint empty), and the greatest value of every setting
+Kept: TypeAlias = tuple[PerformanceTable, FloatArray]
+MOST_FILES: Final = 24
+#: The folder of package `ship`.
+PACKAGE: Final = Path(__file__).resolve().parents[1]
+
+
+def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
+    """Return a table from disk, or build and keep it.
+
+    Parameters
+    ----------
+    facts : plain data
+        All that the table depends on, besides the code of this package.
+    build : callable
+        Makes the table.
+
+    Returns
+    -------
+    table, top
+        The same numbers as built.
+    """
+    text = json.dumps([facts, _code_stamp()], sort_keys=True, default=str)
+    name = hashlib.sha256(text.encode()).hexdigest()[:32]
+    path = cache_folder("ship-tables") / f"{name}.npz"
+    found = _read(path)
+    if found is None:
+        found = build()
+        _write(path, found)
+    return found
+
+
+def _code_stamp() -> list[tuple[str, int, int]]:
+    """Size and time of every source file of package `ship`, so that changed code builds anew."""
+    files = sorted(PACKAGE.rglob("*.py"))
+    return [(str(f), f.stat().st_size, f.stat().st_mtime_ns) for f in files]
+
+
+def _read(path: Path) -> Kept | None:
+    """Return the kept table; None when there is none or it is damaged."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            data = {name: file[name] for name in file.files}
+        parts = []
+        for p in range(int(data["count"])):
+            axes = tuple(int(axis) for axis in data[f"axes{p}"])
+            grids = tuple(data[f"grid{p}_{k}"] for k in range(len(axes)))
+            parts.append(TablePart(axes, grids, data[f"values{p}"], float(data["square_stop"][p])))
+        mean, p99, largest, samples = data["error"]
+        error = TableError(float(mean), float(p99), float(largest), int(samples))
+        finish = None
+        if "finish_points" in data:
+            arrays = (data[f"finish_{name}"] for name in FIELDS)
+            finish = Finish("crossing" if data["falls"] else "curve", *arrays)
+        return PerformanceTable(tuple(parts), data["settings"], "", error, finish), data["top"]
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+
+
+def _write(path: Path, kept: Kept) -> None:
+    """Keep a table; a disk that is full or closed costs nothing but the time of the next run."""
+    table, top = kept
+    parts, error, finish = table.parts, table.error, table.finish
+    arrays: dict[str, Any] = {
+        "count": np.array(len(parts)),
+        "settings": table.settings,
+        "square_stop": np.array([part.square_stop for part in parts]),
+        "falls": np.array(finish is not None and finish.falls),
+        "error": np.array([error.mean, error.p99, error.max, error.samples]),
+        "top": top,
+    }
+    for p, part in enumerate(parts):
+        arrays[f"axes{p}"] = np.array(part.axes, np.int64)
+        arrays[f"values{p}"] = part.values
+        arrays |= {f"grid{p}_{k}": grid for k, grid in enumerate(part.grids)}
+    if finish is not None:
+        arrays |= {f"finish_{name}": getattr(finish, name) for name in FIELDS}
+    draft = path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.tmp")
+    try:
+        with draft.open("wb") as file:
+            np.savez(file, **arrays)
+        os.replace(draft, path)
+        _tidy(path.parent)
+    except OSError:
+        draft.unlink(missing_ok=True)
+
+
+def _tidy(folder: Path) -> None:
+    """Remove the oldest tables beyond `MOST_FILES`."""
+    files = sorted(folder.glob("*.npz"), key=lambda file: file.stat().st_mtime)
+    for file in files[:-MOST_FILES]:
+        file.unlink(missing_ok=True)

@@ -1,0 +1,204 @@
+"""Turn a function of conditions into a table: evaluate, measure the error, refine, repeat."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.kernels import codes
+from thalweg.ship.condition_variables import CONDITION_OF
+from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+
+FloatArray = NDArray[np.float64]
+#: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
+Tabulated = Callable[[Mapping[str, FloatArray]], FloatArray]
+
+FLOOR: Final = 0.25  #: relative errors are not taken to less than this share of the greatest value
+LARGEST_TABLE: Final = 32_000_000  #: bytes of one part
+_CHUNK = 40_000
+_SAMPLES = 4000
+_LARGEST_AXIS = 1025
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The range of one axis and the number of grid points to begin with.
+
+    Attributes
+    ----------
+    axis : int
+        Axis id.
+    start, stop : float
+        SI.
+    size : int
+        Grid points.
+    fixed : bool
+        The grid is exact already and is never refined.
+    """
+
+    axis: int
+    start: float
+    stop: float
+    size: int
+    fixed: bool = False
+
+    @property
+    def name(self) -> str:
+        """The condition on this axis."""
+        return CONDITION_OF[self.axis]
+
+    @property
+    def grid(self) -> FloatArray:
+        """The grid points."""
+        return np.linspace(self.start, self.stop, self.size)
+
+    def refined(self) -> Axis:
+        """Return the axis with steps of half the length."""
+        return replace(self, size=2 * self.size - 1)
+
+
+#: what a ship may meet: beyond these a table refuses (but depth reaches on downwards)
+DEFAULT_AXES: Final = {
+    "wind_speed": Axis(codes.AXIS_WIND_SPEED, 0.0, 80.0, 33),
+    "wind_angle": Axis(codes.AXIS_WIND_ANGLE, 0.0, math.pi, 13),
+    "wave_height": Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 24.0, 25),
+    "wave_angle": Axis(codes.AXIS_WAVE_ANGLE, 0.0, math.pi, 13),
+    "wave_period": Axis(codes.AXIS_WAVE_PERIOD, 0.0, 30.0, 16),
+    "depth": Axis(codes.AXIS_DEPTH, 0.0, 400.0, 81),
+}
+
+
+def tabulate_dense(
+    function: Tabulated,
+    axes: Sequence[Axis],
+    *,
+    tolerance: float,
+    largest: int = LARGEST_TABLE,
+    base: FloatArray | float = 0.0,
+    check: Callable[[TablePart], TableError] | None = None,
+) -> tuple[TablePart, TableError]:
+    """Tabulate a function on a full grid, refined until the error meets the tolerance.
+
+    Parameters
+    ----------
+    function : callable
+        Takes conditions by name, arrays that broadcast; returns shape ``(*shape, settings)``.
+    axes : sequence of Axis
+        Where to begin; at least one.
+    tolerance : float
+        Relative error that 99 % of random conditions must meet; see `TableError`.
+    largest : int
+        Bytes the table may take. Refinement stops there; the error says what was reached.
+    base : ndarray
+        What the function is a correction to, per setting; errors are relative to the sum.
+    check : callable, optional
+        Measures the error of a part in its own way.
+
+    Returns
+    -------
+    part : TablePart
+    error : TableError
+    """
+    points = random_conditions(axes, _SAMPLES if check is None else 1, 0)
+    truth = function(points) + base
+    axes = _fitting(axes, largest // (4 * truth.shape[-1]))
+    measure = check or (lambda part: table_error(part.lookup_all(points) + base, truth))
+    while True:
+        values = _on_grid(function, axes)
+        part = TablePart(tuple(a.axis for a in axes), tuple(a.grid for a in axes), values)
+        error = measure(part)
+        if error.p99 <= tolerance:
+            return part, error
+        worst = _worst_axis(values, axes, base)
+        if worst is None or 2 * values.nbytes > largest:
+            return part, error
+        axes[worst] = axes[worst].refined()
+
+
+def constant_part(values: FloatArray) -> TablePart:
+    """Return the part that adds one number per setting, whatever the conditions."""
+    return TablePart((), (), np.asarray(values, np.float32))
+
+
+def tabulate_cubed_speed(speeds: Sequence[float] | FloatArray) -> PerformanceTable:
+    """Return the cube of the ordered speed of every setting [m3/s3], whatever the conditions.
+
+    It takes the place of the fuel rate where a ship's costs are told by it (van Halem 2019).
+    """
+    ordered = np.asarray(speeds, float)
+    exact = TableError(0.0, 0.0, 0.0, 0)
+    return PerformanceTable((constant_part(ordered**3),), ordered, "", exact)
+
+
+def random_conditions(axes: Sequence[Axis], count: int, seed: int) -> dict[str, FloatArray]:
+    """Return conditions drawn evenly over the axes, by name."""
+    draw = np.random.default_rng(seed)
+    return {a.name: draw.uniform(a.start, a.stop, count) for a in axes}
+
+
+def table_error(found: FloatArray, truth: FloatArray) -> TableError:
+    """Measure how far looked-up values are from the model's.
+
+    Where one of both is unknown the table is wrong by all of it; where both are, nothing counts.
+    """
+    sound, known = np.isfinite(truth), np.isfinite(truth) | np.isfinite(found)
+    if not known.any():
+        return TableError(0.0, 0.0, 0.0, 0)
+    top = np.where(sound, np.abs(truth), 0.0).reshape(-1, truth.shape[-1]).max(axis=0)
+    scale = np.maximum(np.maximum(np.abs(truth), FLOOR * top), 1e-12)
+    relative = np.nan_to_num(np.abs(found - truth) / scale, nan=1.0)[known]
+    return TableError(
+        mean=float(relative.mean()),
+        p99=float(np.quantile(relative, 0.99)),
+        max=float(relative.max()),
+        samples=int(known.sum()),
+    )
+
+
+def _fitting(axes: Sequence[Axis], largest: int) -> list[Axis]:
+    """Coarsen the longest axes until the grid has no more than ``largest`` points."""
+    fitting = list(axes)
+    while math.prod(a.size for a in fitting) > largest:
+        longest = max(range(len(fitting)), key=lambda k: fitting[k].size)
+        if fitting[longest].size <= 3:
+            break
+        fitting[longest] = replace(fitting[longest], size=fitting[longest].size // 2 + 1)
+    return fitting
+
+
+def _on_grid(function: Tabulated, axes: Sequence[Axis]) -> NDArray[np.float32]:
+    """Evaluate on the whole grid, a slab of the first axis at a time."""
+    rest = math.prod(a.size for a in axes[1:])
+    rows = max(1, _CHUNK // rest)
+    grids = [a.grid for a in axes]
+    slabs = []
+    for first in range(0, axes[0].size, rows):
+        first_grid = grids[0][first : first + rows]
+        mesh = np.meshgrid(first_grid, *grids[1:], indexing="ij", sparse=True)
+        values = np.asarray(function({a.name: m for a, m in zip(axes, mesh)}), np.float32)
+        shape = (len(first_grid), *(a.size for a in axes[1:]), values.shape[-1])
+        slabs.append(np.broadcast_to(values, shape))
+    return np.concatenate(slabs)
+
+
+def _worst_axis(
+    values: NDArray[np.float32], axes: Sequence[Axis], base: FloatArray | float
+) -> int | None:
+    """Return the axis along which linear interpolation errs most, by second differences."""
+    whole = np.abs(values + np.asarray(base, np.float32))
+    scale = np.maximum(whole, FLOOR * np.nanmax(whole, initial=0.0)) + 1e-12
+    bends = []
+    for k, axis in enumerate(axes):
+        if axis.fixed or 2 * axis.size - 1 > _LARGEST_AXIS or axis.size < 3:
+            bends.append(-1.0)
+            continue
+        bend = np.abs(np.diff(values, 2, axis=k))
+        inner = np.take(scale, np.arange(1, axis.size - 1), axis=k)
+        bends.append(float(np.nanquantile(bend / inner, 0.99)))
+    worst = int(np.argmax(bends)) if bends else 0
+    return worst if bends and bends[worst] > 0.0 else None

@@ -1,0 +1,360 @@
+"""Tables of resistance-based ships: what wind, waves and depth ask for at each of many speeds.
+
+At one speed the resistances of wind, waves and depth add up. So the table keeps each on its own
+axes, for a column of speeds, and finds the speed at which they leave the engines nothing to spare
+(see `thalweg.ship.tables.output_curve`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thalweg.core.errors import ModelRangeError
+from thalweg.kernels import codes
+from thalweg.kernels.leg.table_lookup import FINER
+from thalweg.ship.models.added_resistance_model import Waves
+from thalweg.ship.models.force_balance import Balance
+from thalweg.ship.models.resistance_model import FASTEST, ResistanceModel
+from thalweg.ship.models.root_finding import bracketed_root
+from thalweg.ship.ship_limits import ShipLimits
+from thalweg.ship.tables.output_curve import Finish
+from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+from thalweg.ship.tables.table_cache import Kept
+from thalweg.ship.tables.tabulate import Axis, constant_part, random_conditions, table_error
+
+FloatArray = NDArray[np.float64]
+#: first grids
+_AXES: Final = {
+    "wind_speed": Axis(codes.AXIS_WIND_SPEED, 0.0, 40.0, 26),
+    "wind_angle": Axis(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 37),
+    "wave_height": Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 12.0, 2),
+    "wave_angle": Axis(codes.AXIS_WAVE_ANGLE, 0.0, np.pi, 97),
+    "wave_period": Axis(codes.AXIS_WAVE_PERIOD, 0.0, 30.0, 61),
+}
+_SECTOR: Final = 1537  #: angles of methods that end at the edge of a sector
+_DEPTHS: Final = 129
+_COLUMNS: Final = 25
+CHECKS: Final = 3000  #: random conditions at which errors are told
+_TRIES: Final = 1500  #: others, by which grids are refined
+_ROUNDS: Final = 6
+_MARGIN: Final = 1.005
+_LARGEST: Final = 48_000_000  #: bytes
+_NAMES: Final = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """One part of the resistance that depends on conditions.
+
+    Attributes
+    ----------
+    axes : tuple of Axis
+    force : callable
+        ``f(speed, *axis values)`` [N], arrays that broadcast; over the square of the wave height
+        for waves.
+    square_stop : float
+        See `TablePart`.
+    """
+
+    axes: tuple[Axis, ...]
+    force: Callable[..., FloatArray]
+    square_stop: float = np.nan
+
+    def part(self, speeds: FloatArray) -> TablePart:
+        """Tabulate the force [N] at speeds [m/s], over the wave height squared if that factors."""
+        mesh = np.meshgrid(*(axis.grid for axis in self.axes), indexing="ij", sparse=True)
+        at = [values[..., None] for values in mesh]
+        shape = (*(axis.size for axis in self.axes), len(speeds))
+        force = np.array(np.broadcast_to(self.force(speeds, *at), shape), np.float32)
+        force[np.isnan(force).any(axis=-1)] = np.nan
+        axes = tuple(axis.axis for axis in self.axes)
+        return TablePart(axes, tuple(axis.grid for axis in self.axes), force, self.square_stop)
+
+    def refined(self, part: TablePart, scale: FloatArray) -> Term:
+        """Return the term with steps of half the length on the axis that bends most."""
+        weight = 1.0 if np.isnan(self.square_stop) else (0.5 * self.square_stop) ** 2
+        bends = [
+            float(np.nanquantile(np.abs(np.diff(part.values, 2, axis=k)) * weight / scale, 0.995))
+            for k in range(len(self.axes))
+        ]
+        worst = int(np.argmax(bends))
+        axes = tuple(a.refined() if k == worst else a for k, a in enumerate(self.axes))
+        return replace(self, axes=axes)
+
+
+def tabulate_balance(model: ResistanceModel, load_factor: float, tolerance: float) -> Kept:
+    """Tabulate the speed through water of every setting.
+
+    Parameters
+    ----------
+    model : ResistanceModel
+    load_factor : float
+    tolerance : float
+        See `thalweg.ship.tables.tabulate.table_error`.
+
+    Returns
+    -------
+    table : PerformanceTable
+        Its error is against the methods themselves, at random conditions.
+    top : ndarray
+        Greatest speed of every setting [m/s]: no condition in the table's ranges gives more.
+
+    Raises
+    ------
+    ModelRangeError
+        If power does not rise with speed somewhere.
+    """
+    balance, calm = model.balance(load_factor), model.speeds(load_factor)
+    check_power_rises(model, load_factor)
+    terms = terms_of(balance, model.limits)
+    if not terms:
+        part = constant_part(calm)
+        return PerformanceTable((part,), calm, "", TableError(0.0, 0.0, 0.0, 0)), calm
+    fastest = FASTEST * float(calm.max())
+    speeds = np.linspace(0.0, fastest, _COLUMNS)
+    finish = _finish(model, load_factor, speeds)
+
+    def truth(points: Mapping[str, FloatArray]) -> FloatArray:
+        at, which, shape = flattened(points, len(calm))
+        return model.speed_of(balance, at, which, load_factor).reshape(shape)
+
+    table = refined_table(
+        terms, speeds, finish, calm, truth=truth, tolerance=tolerance, scale=_scale(finish, speeds)
+    )
+    bound = np.array([table.largest(k) for k in range(len(calm))])
+    return table, _MARGIN * np.maximum(bound, calm)
+
+
+def refined_table(
+    terms: list[Term],
+    speeds: FloatArray,
+    finish: Finish,
+    calm: FloatArray,
+    *,
+    truth: Callable[[Mapping[str, FloatArray]], FloatArray],
+    tolerance: float,
+    scale: FloatArray,
+) -> PerformanceTable:
+    """Tabulate terms, the worst of them finer and finer until the error meets the tolerance.
+
+    Parameters
+    ----------
+    terms : list of Term
+    speeds : ndarray
+        Of the columns [m/s].
+    finish : Finish
+    calm : ndarray
+        Settings of the table [m/s].
+    truth : callable
+        The true values of all settings in conditions by name.
+    tolerance : float
+        It stops at 0.8 of this for the conditions it is refined by; the error is told for others.
+    scale : ndarray
+        What counts as a large change of each column [N].
+    """
+    parts = [term.part(speeds) for term in terms]
+    points = conditions_of(terms, _TRIES, 5)
+    true = truth(points)
+    for _ in range(_ROUNDS):
+        table = PerformanceTable(tuple(parts), calm, "", TableError(0, 0, 0), finish)
+        if _error(table, points, true).p99 <= 0.8 * tolerance or 2 * table.nbytes > _LARGEST:
+            break
+        worst = _worst_term(terms, parts, speeds, points, scale)
+        terms = [*terms]
+        terms[worst] = terms[worst].refined(parts[worst], scale)
+        parts[worst] = terms[worst].part(speeds)
+    fresh = conditions_of(terms, CHECKS, 7)
+    return replace(table, error=_error(table, fresh, truth(fresh)))
+
+
+def _error(
+    table: PerformanceTable, points: Mapping[str, FloatArray], true: FloatArray
+) -> TableError:
+    """Measure a table at conditions where the true values are known."""
+    where = {name: values[:, None] for name, values in points.items()}
+    return table_error(table.lookup(where, np.arange(len(table.settings))), true)
+
+
+def _worst_term(
+    terms: list[Term],
+    parts: list[TablePart],
+    speeds: FloatArray,
+    points: Mapping[str, FloatArray],
+    scale: FloatArray,
+) -> int:
+    """Return the index of the term that its table gets wrong most."""
+    errors = []
+    for term, part in zip(terms, parts):
+        at = [points[axis.name][:, None] for axis in term.axes]
+        true = term.force(speeds, *at)
+        if not np.isnan(term.square_stop):
+            true = true * points["wave_height"][:, None] ** 2
+        missed = np.abs(part.lookup_all(points) - true) / scale
+        errors.append(float(np.nanquantile(missed, 0.99)))
+    return int(np.argmax(errors))
+
+
+def _scale(finish: Finish, speeds: FloatArray) -> FloatArray:
+    """Force [N] that takes the whole of a speed, for each column: speed times its slope."""
+    curve = finish.points[:, ::FINER]
+    curve = np.where(np.isfinite(curve), curve, np.nan)
+    slope = np.fmax.reduce(np.abs(np.gradient(curve[:, 1:], speeds[1:], axis=1)), axis=0, initial=0)
+    slope = np.concatenate([slope[:1], slope])
+    return np.maximum(speeds, 0.25 * speeds[-1]) * np.maximum(slope, 1e-3 * slope.max() + 1e-9)
+
+
+def _finish(model: ResistanceModel, load_factor: float, speeds: FloatArray) -> Finish:
+    """What settings have to spare in calm, deep water at and between the columns' speeds [N]."""
+    balance, calm = model.balance(load_factor), model.speeds(load_factor)
+    held = model.orders.kind == "speed"
+    powers = np.array([model.plant.largest_power] if held else model.orders.values)
+    fine = np.linspace(speeds[0], speeds[-1], FINER * (len(speeds) - 1) + 1)
+    spare = (able(balance, fine, powers) - calm_resistance(balance, fine)).T
+    count, step = len(calm), float(speeds[1] - speeds[0])
+    return Finish(
+        kind="crossing",
+        start=np.zeros(count),
+        step=np.full(count, step / FINER),
+        points=np.array(np.broadcast_to(spare, (count, fine.size))),
+        top=calm if held else FASTEST * calm,
+        guess=np.clip((calm / step).astype(np.int64), 0, len(speeds) - 1),
+    )
+
+
+def calm_resistance(balance: Balance, speeds: FloatArray) -> FloatArray:
+    """Resistance in calm, deep water without wind [N], as a column."""
+    return balance.resistance(_calm_at(speeds), speeds)[:, None]
+
+
+def able(balance: Balance, speeds: FloatArray, powers: FloatArray) -> FloatArray:
+    """Resistance [N] at which powers [W] are just used, at every speed; shape (speeds, powers)."""
+    top = 200.0 * float(np.max(balance.calm.total(speeds[-1:], np.array([np.inf]))))
+    v, p = (grid.ravel() for grid in np.meshgrid(speeds, powers, indexing="ij"))
+    if np.isinf(p).any():
+        return np.full((len(speeds), len(powers)), np.inf)
+
+    def excess(resistance: FloatArray, index: NDArray[np.intp]) -> FloatArray:
+        return balance.propulsion.brake_power(v[index], resistance) - p[index]
+
+    root = bracketed_root(excess, np.zeros(v.size), np.full(v.size, top), tolerance=1e-6 * top)
+    return root.reshape(len(speeds), len(powers))
+
+
+def terms_of(balance: Balance, limits: ShipLimits) -> list[Term]:
+    """Return what wind, waves and depth add to the resistance, up to the limits."""
+    axes, found = axes_of(balance, limits), []
+    wind, waves, calm = balance.wind, balance.waves, balance.calm
+    if wind is not None:
+
+        def blown(v: FloatArray, speed: FloatArray, angle: FloatArray) -> FloatArray:
+            still = wind.force(v, np.zeros(()), np.zeros(()))
+            return wind.force(v, speed, angle) - still
+
+        found.append(Term((axes["wind_speed"], axes["wind_angle"]), blown))
+    if waves is not None:
+        found.append(_wave_term(waves, axes))
+    if "depth" in axes:
+
+        def shallow(v: FloatArray, depth: FloatArray) -> FloatArray:
+            return calm.total(v, depth) - calm.total(v, np.asarray(np.inf))
+
+        found.append(Term((axes["depth"],), shallow))
+    return found
+
+
+def _wave_term(waves: Waves, axes: Mapping[str, Axis]) -> Term:
+    stop = axes["wave_height"].stop
+    if waves.method in ("stawave_1", "stawave_2"):
+        axes = {**axes, "wave_angle": replace(axes["wave_angle"], size=_SECTOR)}
+    if "wave_period" in waves.reads:
+
+        def rough(v: FloatArray, angle: FloatArray, period: FloatArray) -> FloatArray:
+            return waves.force(v, np.ones(()), period, angle)
+
+        return Term((axes["wave_angle"], axes["wave_period"]), rough, stop)
+
+    def choppy(v: FloatArray, angle: FloatArray) -> FloatArray:
+        return waves.force(v, np.ones(()), np.asarray(10.0), angle)
+
+    return Term((axes["wave_angle"],), choppy, stop)
+
+
+def axes_of(balance: Balance, limits: ShipLimits) -> dict[str, Axis]:
+    """Return the axes a balance has, by condition: up to the limits, from just below the keel."""
+    found = {name: axis for name, axis in _AXES.items() if name in balance.reads}
+    for name, limit in (("wind_speed", limits.wind_speed), ("wave_height", limits.wave_height)):
+        if name in found:
+            found[name] = replace(found[name], stop=min(found[name].stop, 1.0001 * limit))
+    if "depth" in balance.reads:
+        draught = float(balance.calm.hull.values["draught_m"])
+        length = float(balance.calm.hull.values["length_waterline_m"])
+        stop = draught + 1.1 * length
+        found["depth"] = Axis(codes.AXIS_DEPTH, 1.05 * draught, stop, _DEPTHS)
+    return found
+
+
+def conditions_of(terms: list[Term], count: int, seed: int) -> dict[str, FloatArray]:
+    """Return random conditions over the ranges of terms, by name."""
+    axes = [axis for term in terms for axis in term.axes]
+    axes += [
+        replace(_AXES["wave_height"], stop=term.square_stop)
+        for term in terms
+        if not np.isnan(term.square_stop)
+    ]
+    return random_conditions(axes, count, seed)
+
+
+def flattened(
+    where: Mapping[str, FloatArray], count: int
+) -> tuple[dict[str, FloatArray], FloatArray, tuple[int, ...]]:
+    """Return flat conditions for every setting, the settings, and the shape of the answer."""
+    shape = np.broadcast_shapes(*(np.shape(values) for values in where.values()))
+    at = {
+        name: np.repeat(np.broadcast_to(where.get(name, _rest(name)), shape).ravel(), count)
+        for name in _NAMES
+    }
+    which = np.tile(np.arange(float(count)), int(np.prod(shape)))
+    return at, which, (*shape, count)
+
+
+def check_power_rises(model: ResistanceModel, load_factor: float) -> None:
+    """Refuse a ship whose power falls while its speed rises, calm or in weather.
+
+    Raises
+    ------
+    ModelRangeError
+    """
+    balance = model.balance(load_factor)
+    ranges = axes_of(balance, model.limits)
+    top = float(model.speeds(load_factor).max())
+    ladder = np.linspace(0.3, 1.0, 36) * top
+    draws = random_conditions(list(ranges.values()), 24, 3)
+    at = {name: np.repeat(values, ladder.size) for name, values in draws.items()}
+    at = {**_calm_at(np.tile(ladder, 24)), **at}
+    at["wave_height"] = 0.4 * at["wave_height"]
+    power = balance.brake_power(at, np.tile(ladder, 24)).reshape(24, -1)
+    falls = np.argwhere(np.diff(power, axis=1) < -1e-6 * np.nanmax(power))
+    if falls.size:
+        case, step = falls[0]
+        raise ModelRangeError(
+            f"The ship's power falls from {power[case, step] / 1e3:.0f} to "
+            f"{power[case, step + 1] / 1e3:.0f} kW while its speed rises from {ladder[step]:.2f} "
+            f"to {ladder[step + 1]:.2f} m/s.",
+            "A speed at a power can be found only where power rises with speed.",
+            "Choose other methods for calm or shallow water, or a lower range of speeds.",
+        )
+
+
+def _calm_at(speeds: FloatArray) -> dict[str, FloatArray]:
+    """Calm, deep conditions as many as there are speeds."""
+    return {name: np.full(speeds.shape, _rest(name)) for name in _NAMES}
+
+
+def _rest(name: str) -> float:
+    """The condition that costs nothing."""
+    return {"wave_period": 10.0, "depth": np.inf}.get(name, 0.0)
