@@ -30,12 +30,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from tests.evolution import jet
 
 from thalweg import Chart, Ship
-from thalweg.core.geodesy import along
+from thalweg.core.geodesy import positions_along
 from thalweg.evolution import Evaluator, Genome, evolve, make_evaluator, refine_front
 from thalweg.evolution.indicators import hypervolume
 from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.time_evaluator import rough_lengths
+from thalweg.route.refinement.time_evaluator import approximate_leg_lengths
 from thalweg.sea.frozen_fields import GridFields
 
 EVALUATIONS = 21_000
@@ -55,7 +55,7 @@ def weather() -> GridFields:
     values[..., 1] = 0.3 * stream + 0.1 * np.cos(y - t)
     values[..., 2] = 6.0 - 2.5 * low * (y - 46)
     values[..., 3] = 2.0 + 2.5 * low * (x + 60 - 8 * t)
-    index = np.full(codes.CHANNELS, -1, np.int64)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     wanted = (codes.CURRENT_EAST, codes.CURRENT_NORTH, codes.WIND_EAST, codes.WIND_NORTH)
     index[list(wanted)] = range(4)
     return GridFields(times, 30.0, 0.5, -80.0, 0.5, values, index)
@@ -78,16 +78,16 @@ def ocean() -> Evaluator:
 def crossing(legs: int) -> Genome:
     """Return two great circles with waypoints evenly along them, at the highest setting."""
     share = np.linspace(0.0, 1.0, legs // 2 + 1)
-    east, west = along(*START, *BANKS, share), along(*BANKS, *GOAL, share)
+    east, west = positions_along(*START, *BANKS, share), positions_along(*BANKS, *GOAL, share)
     lat, lon = (np.concatenate([a, b[1:]]) for a, b in zip(east, west))
     return Genome(lat, lon, np.full(legs, OCEAN.settings - 1))
 
 
 def pieces_of(route: Genome) -> int:
     """Return how many pieces the legs of a route are cut into, as the kernel cuts them."""
-    lengths = rough_lengths(route.lat[None], route.lon[None])
-    cut = np.ceil(lengths / OCEAN.world.terms[population_sailing.SPACING])
-    return int(np.maximum(cut, population_sailing.LEAST_PIECES).sum())
+    lengths = approximate_leg_lengths(route.lat[None], route.lon[None])
+    cut = np.ceil(lengths / OCEAN.world.terms[population_sailing.PIECE_SPACING])
+    return int(np.maximum(cut, population_sailing.MIN_PIECES).sum())
 
 
 def timed(label: str, target: float, work, *, runs: int = 3) -> None:
@@ -117,7 +117,9 @@ def evaluations(run: int, route: Genome) -> str:
     for _ in range(rounds):
         moved = places + rng.normal(0.0, away, places.shape)
         population.genes[:, 1:-1, : population_sailing.LON + 1] = moved
-        population.genes[:, :, population_sailing.KNOWN] = 0.0  # every leg is looked up again
+        population.genes[:, :, population_sailing.IS_LOOKED_UP] = (
+            0.0  # every leg is looked up again
+        )
         evaluator.score(population)
         points += POPULATION
     return (

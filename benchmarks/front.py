@@ -21,13 +21,13 @@ import numpy as np
 from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
 
-from thalweg.search import Front, front
+from thalweg.search import NetworkFront, pareto_front
 
 
-def search(grid: world.Grid, given: tuple, bin_min: float, lower: bool) -> Front:
+def search(grid: world.Grid, given: tuple, bin_min: float, lower: bool) -> NetworkFront:
     network, fields = given
     table, fuel = world.tables()
-    return front(
+    return pareto_front(
         network,
         fields,
         table,
@@ -43,7 +43,7 @@ def search(grid: world.Grid, given: tuple, bin_min: float, lower: bool) -> Front
     )
 
 
-def tell(found: Front, seconds: list[float], what: str) -> None:
+def tell(found: NetworkFront, seconds: list[float], what: str) -> None:
     work = found.work
     print(
         f"{what}: median {statistics.median(seconds):.2f} s (best {min(seconds):.2f}), "

@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 from thalweg.chart import Chart
-from thalweg.network import alternatives, globe, shortest, ways_round
+from thalweg.network import alternative_paths, globe, paths_without_canals, shortest_path
 from thalweg.network.global_grid import grid as globe_grid
 
 VOYAGES = {
@@ -38,9 +38,9 @@ def main() -> None:
     parser.add_argument("--resolution", default="i")
     options = parser.parse_args()
     chart = Chart.gshhg(options.resolution)
-    globe_grid.make_grid(chart, globe_grid.Fineness(2, 1))  # compiles or loads the kernels
+    globe_grid.make_grid(chart, globe_grid.GridResolution(2, 1))  # compiles or loads the kernels
     print(f"grid of GSHHG {options.resolution}, level 4 + 6")
-    grid = timed("built", globe_grid.make_grid, chart, globe_grid.Fineness())
+    grid = timed("built", globe_grid.make_grid, chart, globe_grid.GridResolution())
     print(f"  {len(grid.lat):,} nodes, {len(grid.pairs.first):,} legs, {grid.rejected:,} refused")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "grid.npz"
@@ -51,16 +51,16 @@ def main() -> None:
         print(name)
         network = timed("network", globe, chart, *ends)
         start, goal = network.meta.start, network.meta.goal
-        shortest(network, start, goal)
-        distance, _ = timed("A*", shortest, network, start, goal)
-        timed("Dijkstra", shortest, network, start, goal, per_metre=0.0)
+        shortest_path(network, start, goal)
+        distance, _ = timed("A*", shortest_path, network, start, goal)
+        timed("Dijkstra", shortest_path, network, start, goal, per_metre=0.0)
         print(
             f"  {network.n_nodes:,} nodes, {network.n_edges:,} edges, "
             f"{distance[goal] / 1852:.1f} nm"
         )
-        ways = timed("ways round", ways_round, network, chart)
+        ways = timed("ways round", alternative_paths, network, chart)
         print("  " + ", ".join(f"{w.length / 1852:.1f} nm {w.canals}" for w in ways))
-        ways = timed("without canals", alternatives, network, chart)
+        ways = timed("without canals", paths_without_canals, network, chart)
         print("  " + ", ".join(f"{w.length / 1852:.1f} nm {w.canals}" for w in ways))
 
 

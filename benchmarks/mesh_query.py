@@ -26,7 +26,7 @@ from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network import mesh
 from thalweg.sea.frozen_fields import StationFields
 from thalweg.search import earliest_arrival
-from thalweg.search.prepared_network import Waters
+from thalweg.search.prepared_network import PreparedNetwork
 
 SPACING = 300.0  # m
 SPEED, DRAUGHT = 5.0, 5.0
@@ -58,7 +58,7 @@ def tidal_sea(network) -> StationFields:
     values[:, :, 1] = 0.5 * np.sin(phase)
     values[:, :, 2] = 1.8 * np.cos(phase - 0.7)
     values[:, :, 3] = bed
-    index = np.full(codes.CHANNELS, -1, np.int64)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     index[list(CHANNELS)] = np.arange(len(CHANNELS))
     return StationFields(times, values, index)
 
@@ -107,7 +107,7 @@ def main() -> None:
             for (s, g), t in zip(pairs, departs)
         ],
     )
-    waters = Waters.prepare(network, fields)
+    waters = PreparedNetwork.prepare(network, fields)
     runs = []
     for start, goal in pairs[: options.places]:
         began = time.process_time()

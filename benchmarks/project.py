@@ -19,12 +19,16 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.kernels import codes
-from thalweg.network.triangular_mesh.edge_sampling import sampled_on_sides
+from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.network.triangular_mesh.mesh_builder import mesh
 from thalweg.operations.dredging import run_project as running
-from thalweg.operations.dredging.project_inputs import example_file, open_project, open_things
+from thalweg.operations.dredging.project_inputs import (
+    example_file,
+    open_project,
+    open_project_inputs,
+)
 from thalweg.operations.examples.estuary import synthetic_estuary
-from thalweg.search import Passages, Waters
+from thalweg.search import PreparedNetwork, ProfileSearch
 
 
 class Clock:
@@ -45,7 +49,7 @@ def whole_project(volume: float | None) -> None:
     project = open_project(example_file())
     if volume is not None:
         project = replace(project, work=replace(project.work, volume=volume), days=10.0)
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     searches = counted_searches()
     for turn in ("first, may compile", "warm"):
         if turn != "warm":  # a tenth of a day of work compiles all there is
@@ -66,13 +70,13 @@ def whole_project(volume: float | None) -> None:
 def counted_searches() -> list[float]:
     """Count searches from here on."""
     counted: list[float] = []
-    plain = Passages.sail
+    plain = ProfileSearch.sail
 
     def sail(self, depart, **options):
         counted.append(depart)
         return plain(self, depart, **options)
 
-    Passages.sail = sail
+    ProfileSearch.sail = sail
     return counted
 
 
@@ -83,15 +87,15 @@ def single_queries(spacing: float) -> None:
     lat = np.concatenate([[estuary.load[0], estuary.unload[0]], nodes.lat])
     lon = np.concatenate([[estuary.load[1], estuary.unload[1]], nodes.lon])
     clock = Clock()
-    network = sampled_on_sides(mesh(estuary.chart, lat, lon, rings=3))
+    network = sampled_on_triangle_sides(mesh(estuary.chart, lat, lon, rings=3))
     clock.lap(f"network of {network.n_nodes:,} nodes, {network.n_edges:,} edges")
     project = open_project(example_file())
     channels = (codes.CURRENT_EAST, codes.CURRENT_NORTH, codes.WATER_LEVEL)
     period = project.start, project.start + 2 * 86400.0
     fields = estuary.sea.freeze_stations(network.lat, network.lon, *period, channels)
-    waters = Waters.prepare(network, fields)
+    waters = PreparedNetwork.prepare(network, fields)
     clock.lap("two days of fields")
-    ship = open_things(project)[0]
+    ship = open_project_inputs(project)[0]
     for load in (1.0, 0.5, 0.0):
         loaded = ship.with_load_factor(load)
         limits = np.array([loaded.draught + 1.0, np.inf, np.inf])

@@ -24,8 +24,8 @@ from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network.network import Network, NetworkMeta
 from thalweg.sea.frozen_fields import StationFields
-from thalweg.search.earliest_arrival import solve
-from thalweg.search.search_problem import problem
+from thalweg.search.earliest_arrival import solve_earliest_arrival
+from thalweg.search.search_problem import make_search_problem
 
 SPACING = 2000.0  # [m]
 OFFSETS = [
@@ -36,7 +36,7 @@ CHANNELS = (
     codes.CURRENT_NORTH,
     codes.WIND_EAST,
     codes.WIND_NORTH,
-    codes.WAVE_HEIGHT_CH,
+    codes.WAVE_HEIGHT_CHANNEL,
     codes.WAVE_EAST,
     codes.WAVE_NORTH,
     codes.WATER_LEVEL,
@@ -101,7 +101,7 @@ def moving_sea(network: Network, period: float, steps: int) -> StationFields:
         )  # fmt: skip
         for channel, field in enumerate(fields):
             values[:, k, channel] = field
-    index = np.full(codes.CHANNELS, -1, np.int64)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     index[list(CHANNELS)] = np.arange(len(CHANNELS))
     return StationFields(times, values, index)
 
@@ -128,14 +128,18 @@ def main() -> None:
     side = options.side
     network = regular_network(side)
     fields = moving_sea(network, 3.0 * side * SPACING / SPEED, options.times)
-    given = problem(network, fields, speed_table(), setting=0, limits=TOP_LIMITS, top_speed=SPEED)
-    solve(network, given, start=0, goal=1, depart=0.0)  # compile
+    given = make_search_problem(
+        network, fields, speed_table(), setting=0, limits=TOP_LIMITS, top_speed=SPEED
+    )
+    solve_earliest_arrival(network, given, start=0, goal=1, depart=0.0)  # compile
     print(f"{network.n_nodes:,} nodes, {network.n_edges:,} edges, {len(network.via_a):,} middles")
     starts = [0, side * side // 2 + side // 2, side * side - 1, side * side // 4 + 3]
     relaxed, sailed = [], []
     for run in range(options.runs):
         begin = time.process_time()
-        result = solve(network, given, start=starts[run % 4], goal=None, depart=60.0 * run)
+        result = solve_earliest_arrival(
+            network, given, start=starts[run % 4], goal=None, depart=60.0 * run
+        )
         taken = time.process_time() - begin
         relaxed.append(result.relaxed / taken / 1e6)
         sailed.append(result.work.sailed / taken / 1e6)

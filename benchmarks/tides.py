@@ -14,7 +14,7 @@ import numpy as np
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm
-from thalweg.sea.tides.harmonic_analysis import analyse, chosen_constituents
+from thalweg.sea.tides.harmonic_analysis import analyse, select_constituents
 
 VARIABLES = (*nm.CURRENT.pair, nm.WATER_LEVEL)
 START = 1.7e9
@@ -30,7 +30,7 @@ def main() -> None:
     lat, lon = 51.0 + rng.random(nodes), 2.0 + rng.random(nodes)
     run = {n: rng.normal(size=(nodes, times.size)).astype(np.float32) for n in VARIABLES}
     print(
-        f"{nodes} nodes, {times.size} times, {len(chosen_constituents(times, None))} constituents"
+        f"{nodes} nodes, {times.size} times, {len(select_constituents(times, None))} constituents"
     )
 
     began = time.perf_counter()

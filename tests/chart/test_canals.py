@@ -86,8 +86,8 @@ def test_a_canal_that_is_none_is_refused_with_near_matches():
 
 def test_a_ship_that_is_too_large_is_told_why():
     kiel = CANALS[2]
-    assert kiel.why_not(draught=9.0, beam=30.0) == ""
-    said = kiel.why_not(draught=12.0, beam=40.0)
+    assert kiel.transit_restriction(draught=9.0, beam=30.0) == ""
+    said = kiel.transit_restriction(draught=12.0, beam=40.0)
     assert "Kiel Canal" in said and "draught of 12 m" in said and "beam of 40 m" in said
 
 

@@ -119,10 +119,10 @@ def test_the_fingerprint_knows_the_soundings():
 
 def test_the_kernel_gives_the_same_least_depth():
     chart = OPEN.with_depth(grid(RAMP, LAT, LON, "depth"))
-    depths = chart.depth_kernel(50.5, 51.5, 2.5, 3.5)
+    depths = chart.depth_arrays(50.5, 51.5, 2.5, 3.5)
     leg = (51.05, 2.55, 51.35, 3.25)
     assert least_depth(depths, *leg) == pytest.approx(float(chart.depth_along(*leg)))
-    assert least_depth(OPEN.depth_kernel(0, 1, 0, 1), 0.1, 0.1, 0.9, 0.9) == np.inf
+    assert least_depth(OPEN.depth_arrays(0, 1, 0, 1), 0.1, 0.1, 0.9, 0.9) == np.inf
 
 
 def test_unclear_or_broken_depth_is_refused(tmp_path):
@@ -172,9 +172,9 @@ def test_missing_values_that_are_not_marked_are_not_deep_water():
 
 
 def test_the_embedded_depth_warns_but_proves_nothing():
-    assert 4000.0 < OPEN.warning_depth_at(40.0, -55.0) < 6000.0
-    assert 15.0 < OPEN.warning_depth_at(55.0, 3.0) < 45.0  # the North Sea
-    assert OPEN.warning_depth_at(47.0, 8.0) < 0.0
+    assert 4000.0 < OPEN.coarse_depth_at(40.0, -55.0) < 6000.0
+    assert 15.0 < OPEN.coarse_depth_at(55.0, 3.0) < 45.0  # the North Sea
+    assert OPEN.coarse_depth_at(47.0, 8.0) < 0.0
     assert not OPEN.has_depth
 
 

@@ -8,9 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thalweg.chart import Chart
-from thalweg.chart.zones.emission_control_areas import chosen_areas, emission_areas
+from thalweg.chart.zones.emission_control_areas import (
+    emission_control_areas,
+    select_emission_control_areas,
+)
 from thalweg.core.errors import InputError, ThalwegWarning
-from thalweg.core.geodesy import along, direct, distance
+from thalweg.core.geodesy import direct, distance, positions_along
 from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.geometry.cube_sphere import inside, unit_vector
 
@@ -58,7 +61,7 @@ def test_dates_of_areas(date, names):
 
 
 def test_areas_to_come_are_known_but_not_their_limits():
-    areas = {area.name: area for area in emission_areas()}
+    areas = {area.name: area for area in emission_control_areas()}
     assert areas["norwegian-sea"].sulphur_from == "2027-03-01"
     assert areas["canadian-arctic"].sulphur_from == "2027-03-01"
     assert areas["north-east-atlantic"].sulphur_from == "2028-09-01"
@@ -85,7 +88,7 @@ def test_published_points_are_kept_to_the_digit():
         ("north-america-hawaii", (22.548333, -153.009167), 44),
         ("us-caribbean", (17.310278, -67.537222), 54),
     ):
-        rings = chosen_areas(name)[0].rings
+        rings = select_emission_control_areas(name)[0].rings
         points = set(zip(rings.lat.tolist(), rings.lon.tolist()))
         assert first in points
         assert len(points) >= count
@@ -151,11 +154,11 @@ def test_closing_lines_leave_no_coastal_water_out(world, name, box):
 
 def test_share_of_a_leg_half_inside():
     chart = OPEN.with_zones(zone(0, -1, 2, 1))
-    assert chart.eca_share(0.0, -1.0, 0.0, 1.0) == pytest.approx(0.5, abs=2e-6)
-    assert chart.eca_share(0.5, [0.5, 3.0], 0.5, [1.5, 4.0]).tolist() == [1.0, 0.0]
-    assert np.isnan(chart.eca_share(np.nan, 0.0, 0.0, 1.0))
-    assert np.isnan(OPEN.eca_share(np.nan, 0.0, 0.0, 1.0))
-    assert OPEN.eca_share(0.0, 0.0, 0.0, 1.0) == 0.0
+    assert chart.eca_fraction(0.0, -1.0, 0.0, 1.0) == pytest.approx(0.5, abs=2e-6)
+    assert chart.eca_fraction(0.5, [0.5, 3.0], 0.5, [1.5, 4.0]).tolist() == [1.0, 0.0]
+    assert np.isnan(chart.eca_fraction(np.nan, 0.0, 0.0, 1.0))
+    assert np.isnan(OPEN.eca_fraction(np.nan, 0.0, 0.0, 1.0))
+    assert OPEN.eca_fraction(0.0, 0.0, 0.0, 1.0) == 0.0
     assert not OPEN.in_eca(0.0, 0.0)
 
 
@@ -166,17 +169,17 @@ def test_share_is_by_length_on_a_long_oblique_geodesic():
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if along(*ends, middle)[0] < 60.0 else (low, middle)
+        low, high = (middle, high) if positions_along(*ends, middle)[0] < 60.0 else (low, middle)
     length = float(distance(*ends))
-    assert float(chart.eca_share(*ends)) * length == pytest.approx((1.0 - low) * length, abs=0.5)
+    assert float(chart.eca_fraction(*ends)) * length == pytest.approx((1.0 - low) * length, abs=0.5)
 
 
 def test_a_leg_out_of_one_area_and_into_another(seas):
     """Santander road to Boston: exact pieces add up whatever the cuts."""
     ends = (48.0, -12.0, 42.0, -69.0)
-    whole = float(seas.eca_share(*ends))
-    lat, lon = along(*ends, np.linspace(0.0, 1.0, 38))
-    parts = seas.eca_share(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    whole = float(seas.eca_fraction(*ends))
+    lat, lon = positions_along(*ends, np.linspace(0.0, 1.0, 38))
+    parts = seas.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
     lengths = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     assert whole == pytest.approx(float((parts * lengths).sum() / lengths.sum()), abs=1e-6)
     assert 0.1 < whole < 0.5
@@ -200,17 +203,17 @@ def test_share_agrees_with_many_points(lat, lon, course, length, data):
         "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
     }
     chart = OPEN.with_zones(feature)
-    share = float(chart.eca_share(lat, lon, *end))
-    y, x = along(lat, lon, float(end[0]), float(end[1]), (np.arange(2000) + 0.5) / 2000)
+    share = float(chart.eca_fraction(lat, lon, *end))
+    y, x = positions_along(lat, lon, float(end[0]), float(end[1]), (np.arange(2000) + 0.5) / 2000)
     assert share == pytest.approx(chart.in_eca(y, x).mean(), abs=3e-3)
 
 
 def test_areas_across_the_antimeridian():
     chart = OPEN.with_zones(zone(179, -1, -179, 1))
     assert chart.in_eca(0.0, [179.5, -179.5, 178.5, 180.5]).tolist() == [True, True, False, True]
-    assert chart.eca_share(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
+    assert chart.eca_fraction(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
     written_on = OPEN.with_zones(zone(179, -1, 181, 1))
-    assert written_on.eca_share(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
+    assert written_on.eca_fraction(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
     assert written_on.zones.eca[0].contains(0.0, [-179.5, 179.5]).all()
 
 
@@ -225,7 +228,7 @@ def test_a_hole_is_outside():
     chart = OPEN.with_zones(feature)
     assert chart.in_eca(2.0, [0.5, 2.0]).tolist() == [True, False]
     assert chart.zones.eca[0].contains(2.0, [0.5, 2.0]).tolist() == [True, False]
-    assert chart.eca_share(2.0, 0.0, 2.0, 4.0) == pytest.approx(0.5, abs=1e-3)
+    assert chart.eca_fraction(2.0, 0.0, 2.0, 4.0) == pytest.approx(0.5, abs=1e-3)
 
 
 def test_a_control_area_with_a_factor_is_a_price_zone():

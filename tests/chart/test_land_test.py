@@ -18,7 +18,9 @@ from thalweg.kernels.geometry.coast_index import leg_blocked, leg_code
 def densified(lat, lon, lat2, lon2, spacing):
     """Return the geodesic as a shapely line in (lon, lat), longitudes running on."""
     length = float(geodesy.distance(lat, lon, lat2, lon2))
-    y, x = geodesy.along(lat, lon, lat2, lon2, np.linspace(0, 1, int(length / spacing) + 2))
+    y, x = geodesy.positions_along(
+        lat, lon, lat2, lon2, np.linspace(0, 1, int(length / spacing) + 2)
+    )
     y[0], y[-1], x[0], x[-1] = lat, lat2, lon, lon2
     return shapely.LineString(np.stack([lon + (x - lon + 180.0) % 360.0 - 180.0, y], -1))
 

@@ -22,8 +22,8 @@ def test_a_broken_file_is_replaced(tmp_path, harm):
         made.append(1)
         return build_index(SQUARE, 16)
 
-    first = coast_cache.stored(path, make)
-    assert coast_cache.stored(path, make).side == 16
+    first = coast_cache.load_or_build(path, make)
+    assert coast_cache.load_or_build(path, make).side == 16
     assert len(made) == 1
     content = path.read_bytes()
     if harm == "other arrays":
@@ -33,7 +33,7 @@ def test_a_broken_file_is_replaced(tmp_path, harm):
         path.write_bytes(
             {"cut": content[: len(content) // 2], "junk": b"x" * 99, "empty": b""}[harm]
         )
-    again = coast_cache.stored(path, make)
+    again = coast_cache.load_or_build(path, make)
     assert len(made) == 2
     for a, b in zip(first, again):
         assert np.array_equal(a, b)
@@ -42,7 +42,7 @@ def test_a_broken_file_is_replaced(tmp_path, harm):
 
 def test_a_folder_that_cannot_be_written_is_no_harm(tmp_path):
     path = tmp_path / "missing" / "index.npz"
-    assert coast_cache.stored(path, empty_index).side == 1
+    assert coast_cache.load_or_build(path, empty_index).side == 1
     assert not path.exists()
 
 

@@ -9,7 +9,7 @@ import sys
 import pytest
 from matplotlib.figure import Figure
 
-from thalweg.cli.ship_command import add_ship_command, gathered_notes, parse_speeds
+from thalweg.cli.ship_command import add_ship_command, merged_notes, parse_speeds
 from thalweg.cli.ship_plots import _resistance
 from thalweg.core.errors import InputError, ModelRangeError
 
@@ -187,7 +187,7 @@ def test_notes_that_differ_in_a_value_are_printed_once():
         {"speed_kn": speed, "warnings": [f"engine: load is {load}, outside 0 to 1", "too fast"]}
         for speed, load in ((14.0, 1.1), (15.0, 1.2), (16.0, 1.4))
     ]
-    assert gathered_notes(rows) == [
+    assert merged_notes(rows) == [
         ("14 to 16", "engine: load is 1.1 to 1.4, outside 0 to 1"),
         ("14 to 16", "too fast"),
     ]

@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 
 from thalweg.cli.main import main
-from thalweg.operations.examples.synthetic_tracks import Cycle, synthetic_track
+from thalweg.operations.examples.synthetic_tracks import SyntheticCycle, synthetic_track
 from thalweg.sea import Sea
 
-CYCLE = Cycle((52.3, 4.0), (52.1, 4.2))
+CYCLE = SyntheticCycle((52.3, 4.0), (52.1, 4.2))
 
 
 @pytest.fixture(scope="module")

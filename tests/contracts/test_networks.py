@@ -7,7 +7,7 @@ import pytest
 
 from tests.network.worlds import land_chart, triangular_mesh
 from thalweg.chart import Chart
-from thalweg.network import check_network, lattice, mesh, shortest, with_endpoints
+from thalweg.network import check_network, lattice, mesh, shortest_path, with_endpoints
 
 ISLAND = land_chart((-0.05, 0.03, -0.04, 0.04))
 ENDS = ((-0.1, -0.11), (0.11, 0.1))
@@ -40,7 +40,7 @@ BUILDERS = {
 def test_builder_keeps_the_promises(name):
     network = BUILDERS[name]()
     check_network(network, symmetric=True)
-    distance, path = shortest(network, network.meta.start, network.meta.goal)
+    distance, path = shortest_path(network, network.meta.start, network.meta.goal)
     assert path[0] == network.meta.start
     assert path[-1] == network.meta.goal
     assert np.isfinite(distance[network.meta.goal])
@@ -65,5 +65,5 @@ def test_nothing_is_written_by_reading():
     network = lattice(Chart.open_water(), (10, -40), (11, -39), directions=8)
     before = network.length.copy()
     check_network(network)
-    shortest(network, 0)
+    shortest_path(network, 0)
     assert np.array_equal(before, network.length)

@@ -109,12 +109,12 @@ def test_series_equal_samples(sea) -> None:
 
 def test_frozen_fields_are_what_kernels_expect(sea) -> None:
     _, lat, lon = points(sea)
-    fields = sea.freeze_stations(lat, lon, T0, T0 + 3600.0, range(codes.CHANNELS))
+    fields = sea.freeze_stations(lat, lon, T0, T0 + 3600.0, range(codes.CHANNEL_COUNT))
     assert fields.values.dtype == np.float32
     assert fields.values.flags.c_contiguous
     assert (np.diff(fields.times) > 0).all()
     assert fields.times[0] <= T0
-    assert fields.channel_index.shape == (codes.CHANNELS,)
+    assert fields.channel_index.shape == (codes.CHANNEL_COUNT,)
     present = np.flatnonzero(fields.channel_index >= 0)
     assert sorted(fields.channel_index[present]) == list(range(fields.values.shape[2]))
     assert {nm.CHANNEL_VARIABLES[int(c)] for c in present} <= sea.variables

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import thalweg
-from thalweg.cli.exit_codes import report
+from thalweg.cli.exit_codes import print_error
 from thalweg.core.cache_folder import cache_folder
-from thalweg.core.errors import InputError, NoRouteError, near_matches, unknown_name
+from thalweg.core.errors import InputError, NoRouteError, close_matches, unknown_name_error
 from thalweg.core.time import format_time, parse_time, to_datetime64
 
 
@@ -52,8 +52,8 @@ def test_times_go_out_as_they_came_in():
 
 
 def test_near_matches_ignore_case():
-    assert near_matches("roterdam", ["Rotterdam", "Antwerpen"]) == ["Rotterdam"]
-    assert "Did you mean 'Rotterdam'" in str(unknown_name("port", "roterdam", ["Rotterdam"]))
+    assert close_matches("roterdam", ["Rotterdam", "Antwerpen"]) == ["Rotterdam"]
+    assert "Did you mean 'Rotterdam'" in str(unknown_name_error("port", "roterdam", ["Rotterdam"]))
 
 
 def test_an_error_keeps_its_three_parts_and_details():
@@ -68,15 +68,19 @@ def test_details_of_errors_are_standard_json(capsys):
     )
     details = {"value": None, "limits": [0.0, None], "count": 3, "row": [1.5, None]}
     assert error.as_dict()["details"] == details
-    assert report(error, as_json=True) == 2
+    assert print_error(error, as_json=True) == 2
     assert json.loads(capsys.readouterr().out, parse_constant=pytest.fail)["details"] == details
 
 
 #: texts that no program reads but our own: hashed, or between two processes of ours
-_OWN_TEXTS = {("ship/ship.py", 1), ("ship/table_store.py", 1), ("sea/ensemble.py", 1)} | {
-    ("sea/layered.py", 1),
-    ("sea/tidal_run.py", 1),
-    ("sea/grib_worker.py", 1),
+_OWN_TEXTS = {
+    ("ship/ship.py", 1),
+    ("ship/tables/table_cache.py", 1),
+    ("sea/ensemble_layer.py", 1),
+} | {
+    ("sea/layer_stack.py", 1),
+    ("sea/tides/model_run_analysis.py", 1),
+    ("sea/files/grib_worker.py", 1),
 }
 
 

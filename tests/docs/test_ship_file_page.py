@@ -5,13 +5,18 @@ from pathlib import Path
 
 import pytest
 
-from thalweg.ship.file.resistance_ship_builder import RUDDER
+from thalweg.ship.file.resistance_ship_builder import RUDDER_METHODS
 from thalweg.ship.file.ship_builder import SPEED_LOSSES
-from thalweg.ship.file.ship_schema import SECTIONS, TOP
+from thalweg.ship.file.ship_schema import SECTIONS, TOP_LEVEL_KEYS
 from thalweg.ship.methods.engine.specific_consumption import BASE_SFOC
-from thalweg.ship.models.added_resistance_model import WAVES, WIND
-from thalweg.ship.models.calm_water_model import CALM_WATER, FRICTION, SHALLOW_WATER, STERN_SHAPES
-from thalweg.ship.models.propulsion_model import PROPULSION
+from thalweg.ship.models.added_resistance_model import WAVE_METHODS, WIND_METHODS
+from thalweg.ship.models.calm_water_model import (
+    CALM_WATER_METHODS,
+    FRICTION_LINES,
+    SHALLOW_WATER_METHODS,
+    STERN_SHAPES,
+)
+from thalweg.ship.models.propulsion_model import PROPULSION_METHODS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "howto" / "ship_file.md").read_text(encoding="utf-8")
 ROWS = {
@@ -20,21 +25,21 @@ ROWS = {
     for key in re.findall(r"`([a-z0-9_]+)`", cells[0])
 }
 NAMES = {
-    "calm_water": {*CALM_WATER, "table", "cubic", "none"},
-    "waves": {*WAVES, "none"},
-    "wind": {*WIND, "none"},
-    "shallow_water": set(SHALLOW_WATER),
-    "friction": set(FRICTION),
-    "propulsion": set(PROPULSION),
+    "calm_water": {*CALM_WATER_METHODS, "table", "cubic", "none"},
+    "waves": {*WAVE_METHODS, "none"},
+    "wind": {*WIND_METHODS, "none"},
+    "shallow_water": set(SHALLOW_WATER_METHODS),
+    "friction": set(FRICTION_LINES),
+    "propulsion": set(PROPULSION_METHODS),
     "speed_loss": set(SPEED_LOSSES),
-    "rudder": set(RUDDER),
+    "rudder": set(RUDDER_METHODS),
 }
 
 
 def test_every_key_is_on_the_page_and_no_other():
     keys = {key for section in SECTIONS.values() for key in section}
     told = set(ROWS) | {"name", "description", "sources"}
-    assert told - {"table"} == keys | set(TOP)
+    assert told - {"table"} == keys | set(TOP_LEVEL_KEYS)
 
 
 @pytest.mark.parametrize("key", NAMES)

@@ -12,8 +12,8 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.evolution import Genome, Population
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.population import joined
-from thalweg.route.refinement.time_evaluator import Bundle
+from thalweg.route.refinement.population import concatenated_populations
+from thalweg.route.refinement.time_evaluator import TrackBatch
 from thalweg.route.track import Track
 
 rng = np.random.default_rng(7)
@@ -45,10 +45,10 @@ def test_the_quick_sailor_agrees_to_rounding():
     population.genes[0, : n - 1, population_sailing.PIECES] = 7
     _, arrive = evaluator.sail(population)
     still = np.full((1, n), -np.inf)
-    bundle = Bundle(
+    batch = TrackBatch(
         genome.lat[None], genome.lon[None], still, genome.setting[None], depart=np.zeros(1)
     )
-    quick, _ = evaluator.sailor.sail(bundle, pieces=pieces)
+    quick, _ = evaluator.time_evaluator.sail(batch, pieces=pieces)
     assert arrive[0, :n] == pytest.approx(quick[0], rel=1e-12)
 
 
@@ -126,7 +126,7 @@ def test_only_changed_legs_are_looked_up():
     evaluator.score(population)
     evaluator.score(population)
     assert asked == [9 + 11]
-    population.genes[1, 4:6, population_sailing.KNOWN] = 0.0
+    population.genes[1, 4:6, population_sailing.IS_LOOKED_UP] = 0.0
     evaluator.score(population)
     assert asked == [20, 2]
 
@@ -181,7 +181,7 @@ def test_price_and_penalty_zones_and_control_areas():
         def legs_blocked(self, lat1, lon1, lat2, lon2):
             return np.zeros(len(lat1), bool)
 
-        def eca_share(self, lat1, lon1, lat2, lon2, *, finest):
+        def eca_fraction(self, lat1, lon1, lat2, lon2, *, finest):
             return np.full(len(lat1), 0.25)
 
         def zone_factor(self, lat1, lon1, lat2, lon2):
@@ -199,7 +199,9 @@ def test_genomes_go_to_tracks_and_back():
     genome = Genome.from_track(track, settings=5, via=[(1.5, 180.5)])
     assert genome.setting.tolist() == [4, 2]
     assert genome.via.tolist() == [True, True, True]
-    population = joined(Population.of([genome]), Population.of([wavy(9)], room=20))
+    population = concatenated_populations(
+        Population.of([genome]), Population.of([wavy(9)], room=20)
+    )
     assert population.room == 20
     back = population.genome(0)
     assert back.to_track(0.0) == track.replaced(setting=[4, 2])

@@ -9,10 +9,10 @@ import pytest
 from tests.evolution import jet
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
-from thalweg.evolution import Genome, Habits, evolve, refine_front
-from thalweg.evolution.evolve import METHODS, Settling
+from thalweg.evolution import Genome, VariationSettings, evolve, refine_front
+from thalweg.evolution.evolve import METHODS, ConvergenceTest
 from thalweg.evolution.indicators import c_metric, hypervolume, non_dominated
-from thalweg.evolution.initial_population import thriftiest
+from thalweg.evolution.initial_population import least_cost_setting
 from thalweg.evolution.nsga2 import Nsga2
 from thalweg.evolution.scalarised_search import lower_hull, time_prices
 
@@ -161,12 +161,12 @@ def test_runs_end_by_what_limits_them():
 
 
 def test_a_front_has_settled_when_its_distances_vary_no_more():
-    settling = Settling(1e-6)
+    settling = ConvergenceTest(1e-6)
     front = np.array([[0.0, 1.0], [1.0, 0.0]])
     for _ in range(33):
         assert not settling.settled(front)
     assert settling.settled(front)
-    rng, moving = np.random.default_rng(0), Settling(1e-6)
+    rng, moving = np.random.default_rng(0), ConvergenceTest(1e-6)
     assert not any(moving.settled(rng.random((5, 2))) for _ in range(100))
 
 
@@ -174,7 +174,7 @@ def test_asking_and_telling_is_all_there_is():
     evaluator = jet.evaluator()
     rng = np.random.default_rng(0)
     first = evaluator.population([jet.straight(s) for s in range(12)], room=40)
-    strategy = Nsga2(evaluator, first, size=8, habits=Habits(), rng=rng)
+    strategy = Nsga2(evaluator, first, size=8, variation_settings=VariationSettings(), rng=rng)
     assert strategy.ask() is first
     for _ in range(3):
         asked = strategy.ask()
@@ -185,8 +185,8 @@ def test_asking_and_telling_is_all_there_is():
 
 def test_thriftiest_setting_and_prices_of_time():
     evaluator = jet.evaluator()
-    assert thriftiest(evaluator) == 0  # 8.8 kn: 0.0677 t/nm
-    assert thriftiest(jet.evaluator(time_price=10.0)) == 11
+    assert least_cost_setting(evaluator) == 0  # 8.8 kn: 0.0677 t/nm
+    assert least_cost_setting(jet.evaluator(time_price=10.0)) == 11
     prices = time_prices(evaluator, 5)
     assert (np.diff(prices) > 0.0).all()
     hull = lower_hull(np.array([(24 / s, f / s) for s, f in zip(jet.SPEED_KN, jet.FUEL_T_DAY)]))

@@ -3,9 +3,15 @@
 import numpy as np
 import pytest
 
-from thalweg.evolution.mpaes import Climber
-from thalweg.evolution.ranking import best_of, front_of, ranked, strength_fitness, thinned
-from thalweg.evolution.spea2 import archive
+from thalweg.evolution.mpaes import HillClimber
+from thalweg.evolution.ranking import (
+    feasible_front,
+    least_crowded_front,
+    ranks_and_crowding,
+    select_survivors,
+    strength_fitness,
+)
+from thalweg.evolution.spea2 import environmental_selection
 from thalweg.kernels.evolution.dominance import truncate
 
 WORKED = [(1, 5), (2, 3), (4, 1), (3, 4), (5, 5), (4, 4)]
@@ -17,7 +23,7 @@ def scores(points, violation=0.0):
 
 
 def test_worked_crowding_within_a_front():
-    rank, crowding = ranked(scores([(5, 0.5), (1, 5), (4, 1), (2, 3), (6, 6)]))
+    rank, crowding = ranks_and_crowding(scores([(5, 0.5), (1, 5), (4, 1), (2, 3), (6, 6)]))
     assert rank.tolist() == [0, 0, 0, 0, 1]
     assert crowding == pytest.approx([np.inf, np.inf, 1.305556, 1.638889, np.inf], abs=5e-7)
 
@@ -32,16 +38,16 @@ def test_worked_strength_raw_fitness_and_density():
 
 def test_feasibility_comes_first():
     given = scores([(1, 1), (9, 9), (2, 2), (0, 0)], [0.2, 0.0, 0.1, 0.3])
-    rank, _ = ranked(given)
+    rank, _ = ranks_and_crowding(given)
     assert rank.tolist() == [2, 0, 1, 3]
-    assert best_of(given, 2)[0].tolist() == [1, 2]
-    assert front_of(given).tolist() == [1]
+    assert select_survivors(given, 2)[0].tolist() == [1, 2]
+    assert feasible_front(given).tolist() == [1]
     _, raw, _ = strength_fitness(given)
     assert np.argsort(raw).tolist() == [1, 2, 0, 3]
 
 
 def test_of_equal_tracks_one_is_the_better():
-    rank, _ = ranked(scores([(1, 1), (1, 1), (1, 1), (2, 0)]))
+    rank, _ = ranks_and_crowding(scores([(1, 1), (1, 1), (1, 1), (2, 0)]))
     assert sorted(rank.tolist()) == [0, 0, 1, 2]
 
 
@@ -52,7 +58,7 @@ def test_fronts_are_those_of_pymoo():
     rng = np.random.default_rng(3)
     for _ in range(20):
         points = rng.random((120, 2))
-        rank, _ = ranked(scores(points))
+        rank, _ = ranks_and_crowding(scores(points))
         for number, front in enumerate(NonDominatedSorting().do(points)):
             assert np.flatnonzero(rank == number).tolist() == sorted(front)
 
@@ -70,38 +76,40 @@ def test_truncation_removes_the_lexicographically_nearest_as_written_out():
 
 
 def test_archive_is_filled_with_the_fittest_or_thinned():
-    chosen, place = archive(scores(WORKED), 4)
+    chosen, place = environmental_selection(scores(WORKED), 4)
     assert sorted(chosen.tolist()) == [0, 1, 2, 3]
     assert chosen[place == 3].tolist() == [3]
-    chosen, _ = archive(scores(WORKED), 2)
+    chosen, _ = environmental_selection(scores(WORKED), 2)
     assert set(chosen.tolist()) <= {0, 1, 2}
 
 
 def test_thinning_takes_what_loses_least_and_keeps_the_ends():
     given = scores([(1, 5), (2, 3), (2.1, 2.9), (4, 1), (5, 0.5), (6, 6)])
-    assert thinned(given, 4).tolist() == [0, 1, 3, 4]  # (2.1, 2.9) adds 1.9 x 0.1
-    assert thinned(given, 2).tolist() == [0, 4]
-    assert thinned(given, 9).tolist() == [0, 1, 2, 3, 4]
+    assert least_crowded_front(given, 4).tolist() == [0, 1, 3, 4]  # (2.1, 2.9) adds 1.9 x 0.1
+    assert least_crowded_front(given, 2).tolist() == [0, 4]
+    assert least_crowded_front(given, 9).tolist() == [0, 1, 2, 3, 4]
 
 
 def test_a_climber_moves_as_m_paes_says():
     def point(t, c):
         return np.array([t, c, 0.0])
 
-    climber = Climber(point(5, 5), np.array([[5, 5, 0.0], [1, 9, 0.0], [9, 1, 0.0]]))
-    assert not climber.accepts(point(6, 6), 10)  # dominated: a failure
-    assert climber.fails == 1
-    assert climber.accepts(point(4, 4), 10)  # dominates: moves, failures forgotten
-    assert climber.fails == 0
+    climber = HillClimber(point(5, 5), np.array([[5, 5, 0.0], [1, 9, 0.0], [9, 1, 0.0]]))
+    assert not climber.judge(point(6, 6), 10)  # dominated: a failure
+    assert climber.failures == 1
+    assert climber.judge(point(4, 4), 10)  # dominates: moves, failures forgotten
+    assert climber.failures == 0
     assert len(climber.near) == 3
-    assert not climber.accepts(point(2, 9.5), 10)  # something in its archive dominates it
-    crowded = Climber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [2.9, 3.1, 0.0]]))
-    assert crowded.accepts(point(6, 0.5), 10)  # nothing dominates it and there is more room
+    assert not climber.judge(point(2, 9.5), 10)  # something in its archive dominates it
+    crowded = HillClimber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [2.9, 3.1, 0.0]]))
+    assert crowded.judge(point(6, 0.5), 10)  # nothing dominates it and there is more room
     assert crowded.near.shape[0] == 4
     # between its neighbours (5, 5) has more room than (6.9, 3.1); it is no neighbour of itself
-    alone = Climber(point(5, 5), np.array([[5, 5, 0.0], [0, 10, 0.0], [10, 0, 0.0]]))
-    assert not alone.accepts(point(6.9, 3.1), 10)
-    full = Climber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [9, 0, 0.0], [3.1, 2.9, 0.0]]))
-    full.accepts(point(1, 6), 4)
+    alone = HillClimber(point(5, 5), np.array([[5, 5, 0.0], [0, 10, 0.0], [10, 0, 0.0]]))
+    assert not alone.judge(point(6.9, 3.1), 10)
+    full = HillClimber(
+        point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [9, 0, 0.0], [3.1, 2.9, 0.0]])
+    )
+    full.judge(point(1, 6), 4)
     assert full.near.shape[0] == 4  # the most crowded had to go
     assert [0, 9, 0.0] in full.near.tolist()

@@ -12,10 +12,10 @@ def test_the_stamp_follows_the_files(tmp_path, monkeypatch):
     (tmp_path / "leg").mkdir()
     (tmp_path / "leg" / "a.py").write_text("1")
     monkeypatch.setattr(compiled_code_cache, "PACKAGE", tmp_path)
-    first = compiled_code_cache._stamp()
-    assert compiled_code_cache._stamp() == first
+    first = compiled_code_cache._source_hash()
+    assert compiled_code_cache._source_hash() == first
     (tmp_path / "leg" / "a.py").write_text("12")
-    assert compiled_code_cache._stamp() != first
+    assert compiled_code_cache._source_hash() != first
 
 
 def test_old_folders_are_forgotten(tmp_path):
@@ -23,7 +23,7 @@ def test_old_folders_are_forgotten(tmp_path):
         path = tmp_path / str(number)
         path.mkdir()
         os.utime(path, (number, number))
-    compiled_code_cache._forget_old(tmp_path)
+    compiled_code_cache._remove_old_folders(tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["3", "4", "5", "6"]
 
 

@@ -14,13 +14,13 @@ def drain(first, second, order):
     nodes, keys, place = np.empty(n, np.int32), np.empty(n), np.full(n, -1, np.int32)
     size = 0
     for node in range(n):
-        size = heap.put(nodes, keys, place, size, node, first[node])
+        size = heap.push_or_lower(nodes, keys, place, size, node, first[node])
     for node in order:
-        size = heap.put(nodes, keys, place, size, node, second[node])
+        size = heap.push_or_lower(nodes, keys, place, size, node, second[node])
     taken, at = np.empty(n, np.int64), np.empty(n)
     count = 0
     while size > 0:
-        taken[count], at[count], size = heap.take(nodes, keys, place, size)
+        taken[count], at[count], size = heap.pop_least(nodes, keys, place, size)
         count += 1
     return count, taken, at, place
 

@@ -12,8 +12,8 @@ from thalweg.kernels.leg.point_speed import point_speed
 
 def at(table=None, *, course=0.0, depth=np.inf, bounds=None, setting=0, **channels):
     """Return (speed, status) for a course [rad] and channel values by name."""
-    sample = np.full(codes.CHANNELS, np.nan)
-    index = np.full(codes.CHANNELS, -1, np.int64)
+    sample = np.full(codes.CHANNEL_COUNT, np.nan)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     for k, (name, value) in enumerate(channels.items()):
         channel = getattr(codes, name.upper())
         sample[channel], index[channel] = value, k

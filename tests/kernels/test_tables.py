@@ -25,7 +25,7 @@ def test_look_up_agrees_with_scipy_for_every_number_of_axes(count):
     table = make_table((axes, grids, values))
     peer = RegularGridInterpolator(grids, values) if count else None
     for _ in range(50):
-        where = np.zeros(codes.AXES)
+        where = np.zeros(codes.AXIS_COUNT)
         for axis, grid in zip(axes, grids):
             where[axis] = rng.uniform(grid[0], grid[-1])
         expected = peer(where[axes])[0] if count else values

@@ -15,8 +15,8 @@ def marks(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    monkeypatch.setattr(warm_up, "_DONE", tmp_path / "warm")
-    monkeypatch.setattr(warm_up, "_BUSY", tmp_path / "warming")
+    monkeypatch.setattr(warm_up, "_COMPILED_MARKER", tmp_path / "warm")
+    monkeypatch.setattr(warm_up, "_COMPILING_MARKER", tmp_path / "warming")
     before = gc.get_threshold()
     yield tmp_path
     gc.set_threshold(*before)
@@ -28,8 +28,8 @@ def _module(folder, name, text):
 
 
 def test_a_child_does_the_work_and_is_waited_for(marks):
-    warm_up.begin(_module(marks, "does_it", WRITES.format(str(marks / "proof"))))
-    warm_up.finish()
+    warm_up.start_compiling(_module(marks, "does_it", WRITES.format(str(marks / "proof"))))
+    warm_up.wait_until_compiled()
     assert (marks / "proof").read_text() == "done"
 
 
@@ -37,20 +37,20 @@ def test_nothing_is_started_when_all_is_compiled_or_another_is_at_it(marks):
     name = _module(marks, "is_late", WRITES.format(str(marks / "proof")))
     for mark in ("warm", "warming"):
         (marks / mark).touch()
-        warm_up.begin(name)
+        warm_up.start_compiling(name)
         assert not warm_up._children
         (marks / mark).unlink()
 
 
 def test_a_child_that_fails_says_nothing_and_is_not_done(marks, monkeypatch):
     with pytest.raises(RuntimeError, match="no compiler"):
-        warm_up.work(_here(marks, monkeypatch, "raise RuntimeError('no compiler')"))
+        warm_up.compile_in_child(_here(marks, monkeypatch, "raise RuntimeError('no compiler')"))
     assert not (marks / "warm").exists()
     assert not (marks / "warming").exists()
 
 
 def test_work_marks_what_is_compiled(marks, monkeypatch):
-    warm_up.work(_here(marks, monkeypatch, "pass"))
+    warm_up.compile_in_child(_here(marks, monkeypatch, "pass"))
     assert (marks / "warm").exists()
 
 

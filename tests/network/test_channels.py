@@ -5,7 +5,7 @@ import pytest
 
 from thalweg.chart import Chart
 from thalweg.core.geodesy import distance
-from thalweg.network import check_network, lattice, line, shortest
+from thalweg.network import check_network, fixed_route, lattice, shortest_path
 
 KYLE_RHEA = (57.2395, -5.6525)  # 0.6 km wide, between Skye and the mainland
 
@@ -26,7 +26,7 @@ def test_a_channel_much_narrower_than_the_spacing_is_found(gap_deg):
     start, goal = (-0.5, 0.3), (1.5, -0.3)
     network = lattice(walls(gap_deg), start, goal, spacing=10_000.0, coast_levels=0, slack=2.0)
     check_network(network)
-    length = shortest(network, network.meta.start, network.meta.goal)[0][network.meta.goal]
+    length = shortest_path(network, network.meta.start, network.meta.goal)[0][network.meta.goal]
     direct = distance(*start, 0.0, 0.0) + distance(0.0, 0.0, 1.0, 0.0) + distance(1.0, 0.0, *goal)
     assert length == pytest.approx(float(direct), rel=0.01)
 
@@ -48,32 +48,32 @@ def test_a_kyle_of_the_highlands_is_passed_on_a_coarse_lattice():
     away = distance(network.lat, network.lon, *KYLE_RHEA)
     node = int(np.argmin(away))
     assert away[node] < 300.0
-    reached, _ = shortest(network, network.meta.start, node)
+    reached, _ = shortest_path(network, network.meta.start, node)
     north = reached[node]
-    south = shortest(network, node, network.meta.goal)[0][network.meta.goal]
+    south = shortest_path(network, node, network.meta.goal)[0][network.meta.goal]
     assert north + south < 1.25 * reached[network.meta.goal]
 
 
 def test_a_line_has_nodes_along_its_way_and_at_borders():
     chart = Chart.gshhg("i").with_eca("north-sea")
     way = [(61.0, 2.0), (62.5, 2.0), (62.5, -3.0)]
-    network = line(chart, way, spacing=50_000.0)
+    network = fixed_route(chart, way, spacing=50_000.0)
     check_network(network)
     assert (network.meta.start, network.meta.goal) == (0, network.n_nodes - 1)
-    length, path = shortest(network, 0, network.n_nodes - 1)
+    length, path = shortest_path(network, 0, network.n_nodes - 1)
     legs = distance(*way[0], *way[1]) + distance(*way[1], *way[2])
     assert length[-1] == pytest.approx(float(legs), rel=1e-9)
     assert path == list(range(network.n_nodes))
     assert network.length.max() <= 50_000.0 + 1e-6
     assert np.abs(network.lat - 62.0).min() < 1e-4  # the area ends at 62 N
-    share = chart.eca_share(network.lat[:-1], network.lon[:-1], network.lat[1:], network.lon[1:])
+    share = chart.eca_fraction(network.lat[:-1], network.lon[:-1], network.lat[1:], network.lon[1:])
     assert np.all((share < 1e-4) | (share > 1.0 - 1e-4))
 
 
 def test_a_line_through_a_canal_keeps_it():
     chart = Chart.gshhg("i")
     canal = next(c for c in chart.canals if c.name == "kiel")
-    network = line(chart, list(canal.ends), spacing=1000.0)
+    network = fixed_route(chart, list(canal.ends), spacing=1000.0)
     assert network.n_nodes == 2
     assert network.length[0] == canal.length
     assert network.fixed_time[0] == canal.transit_time and network.fee[0] == canal.fee

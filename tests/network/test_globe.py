@@ -12,13 +12,13 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import CANALS
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.network import check_network, globe, shortest
+from thalweg.network import check_network, globe, shortest_path
 from thalweg.network.distance_bounds import distance_bounds
 from thalweg.network.global_grid import grid
 
 ROTTERDAM, SINGAPORE, SUEZ_BAY = (51.98, 4.0), (1.2, 103.9), (29.6, 32.6)
 NEW_YORK, SAN_FRANCISCO = (40.5, -73.9), (37.75, -122.6)
-SMALL = grid.Fineness(2, 1)
+SMALL = grid.GridResolution(2, 1)
 LATITUDE, LONGITUDE = st.floats(-90.0, 90.0), st.floats(-180.0, 180.0)
 
 
@@ -29,7 +29,7 @@ def chart():
 
 def sailed(network):
     """Return the length [nm] of the shortest way and the canals it passes."""
-    distance, path = shortest(network, network.meta.start, network.meta.goal)
+    distance, path = shortest_path(network, network.meta.start, network.meta.goal)
     through = []
     for a, b in itertools.pairwise(path):
         edges = slice(network.indptr[a], network.indptr[a + 1])
@@ -171,7 +171,7 @@ def test_the_grid_is_kept_on_disk_and_a_broken_file_is_replaced(tmp_path, monkey
     chart = Chart.gshhg("c")
     made = grid.globe_grid(chart, SMALL)
     (path,) = (tmp_path / "globe").glob("*.npz")
-    grid._kept_or_made.cache_clear()
+    grid._load_or_make.cache_clear()
     monkeypatch.setattr(grid, "make_grid", lambda *_: pytest.fail("made again"))
     loaded = grid.globe_grid(chart.without_canals("all"), SMALL)
     for name in ("lat", "lon", "rejected", "spacing", "gap"):
@@ -180,11 +180,11 @@ def test_the_grid_is_kept_on_disk_and_a_broken_file_is_replaced(tmp_path, monkey
         assert np.array_equal(getattr(loaded.pairs, name), getattr(made.pairs, name))
     monkeypatch.undo()
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
-    grid._kept_or_made.cache_clear()
+    grid._load_or_make.cache_clear()
     path.write_bytes(b"broken")
     assert np.array_equal(grid.globe_grid(chart, SMALL).lat, made.lat)
     assert path.stat().st_size > 1000
-    grid._kept_or_made.cache_clear()
+    grid._load_or_make.cache_clear()
 
 
 def test_another_coastline_is_another_grid():
@@ -252,8 +252,8 @@ def test_borders_of_priced_zones_are_finer():
 def test_astar_finds_the_same_as_dijkstra(a, b):
     network = globe(Chart.gshhg("c"), NEW_YORK, (45.0, -9.5), coast_levels=2)
     start, goal = a % network.n_nodes, b % network.n_nodes
-    aimed, path = shortest(network, start, goal)
-    plain, _ = shortest(network, start, goal, per_metre=0.0)
+    aimed, path = shortest_path(network, start, goal)
+    plain, _ = shortest_path(network, start, goal, per_metre=0.0)
     assert aimed[goal] == pytest.approx(plain[goal], rel=1e-12)
     if path:
         tail, head = np.array(path[:-1], int), np.array(path[1:], int)

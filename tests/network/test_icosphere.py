@@ -5,9 +5,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thalweg.chart import Chart
-from thalweg.kernels.network.graph_building import mirror_pairs
-from thalweg.network.global_grid.grid import Fineness, _gaps, _sphere, make_grid, positions
-from thalweg.network.global_grid.icosphere import Rule, icosphere
+from thalweg.kernels.network.graph_building import directed_edges_of_pairs
+from thalweg.network.global_grid.grid import (
+    GridResolution,
+    _gaps,
+    _geodesic_grid,
+    make_grid,
+    spherical_positions,
+)
+from thalweg.network.global_grid.icosphere import RefinementRule, icosphere
 
 SEEDS = st.integers(0, 2**31)
 
@@ -22,7 +28,7 @@ def cut_by_circles(seed, levels, count=2):
     def crossed(first, second):
         return (((first @ poles.T) > height) != ((second @ poles.T) > height)).any(axis=1)
 
-    return Rule(crossed, levels)
+    return RefinementRule(crossed, levels)
 
 
 def area(vertices, faces):
@@ -74,7 +80,7 @@ def test_no_vertex_looks_into_a_hole(seed, extra):
     grid = icosphere(2, cut_by_circles(seed, extra))
     first, second = grid.pairs()
     v = grid.vertices
-    indptr, head, _, _ = mirror_pairs(len(v), first, second)
+    indptr, head, _, _ = directed_edges_of_pairs(len(v), first, second)
     assert np.diff(indptr).min() >= 3
     tail = np.repeat(np.arange(len(v)), np.diff(indptr))
     east = np.cross([0.1, 0.2, 1.0], v[tail])
@@ -94,9 +100,9 @@ def test_across_doubles_the_directions_of_a_uniform_grid():
 
 def test_coasts_are_finer_and_every_leg_is_free():
     chart = Chart.gshhg("c")
-    sphere = _sphere(chart, Fineness(3, 2))
-    lat, lon = positions(sphere.vertices)
-    grid = make_grid(chart, Fineness(3, 2, directions=6))
+    sphere = _geodesic_grid(chart, GridResolution(3, 2))
+    lat, lon = spherical_positions(sphere.vertices)
+    grid = make_grid(chart, GridResolution(3, 2, directions=6))
     a, b = grid.pairs.first, grid.pairs.second
     assert not chart.legs_blocked(grid.lat[a], grid.lon[a], grid.lat[b], grid.lon[b]).any()
     assert grid.rejected + len(a) == len(sphere.pairs()[0])

@@ -13,33 +13,37 @@ from tests.network.worlds import geojson, land_chart
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.network import Network, check_network, default_spacing, lattice, shortest
-from thalweg.network.regional_lattice.directions import SIZES, half_offsets, largest_gap
+from thalweg.network import Network, check_network, default_spacing, lattice, shortest_path
+from thalweg.network.regional_lattice.directions import (
+    LARGEST_OFFSETS,
+    largest_angle_gap,
+    unique_offsets,
+)
 
 OPEN = Chart.open_water()
 
 
 def ratio(network: Network) -> float:
     """Length of the shortest way over the network by the geodesic distance."""
-    distance, _ = shortest(network, network.meta.start, network.meta.goal)
+    distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
     a, b = network.meta.start, network.meta.goal
     straight = geodesy.distance(network.lat[a], network.lon[a], network.lat[b], network.lon[b])
     return float(distance[b] / straight)
 
 
-@pytest.mark.parametrize("directions", SIZES)
+@pytest.mark.parametrize("directions", LARGEST_OFFSETS)
 def test_directions_are_all_coprime_offsets(directions):
-    di, dj = half_offsets(directions)
+    di, dj = unique_offsets(directions)
     assert 2 * len(di) == directions
     assert np.all(np.gcd(di, dj) == 1)
-    assert max(np.abs(di).max(), np.abs(dj).max()) == SIZES[directions]
+    assert max(np.abs(di).max(), np.abs(dj).max()) == LARGEST_OFFSETS[directions]
 
 
 def test_gap_gives_the_published_direction_errors():
     # worst ratio of graph length to true length, square lattice with offsets up to R
     published = {8: 1.0824, 16: 1.0275, 32: 1.0131, 48: 1.0075, 80: 1.0049, 96: 1.0034}
     for directions, worst in published.items():
-        gap = largest_gap(*half_offsets(directions))
+        gap = largest_angle_gap(*unique_offsets(directions))
         assert 1.0 / math.cos(gap / 2.0) == pytest.approx(worst, abs=5e-5)
 
 
@@ -48,7 +52,7 @@ def test_every_node_is_reached_within_the_direction_error(directions):
     network = lattice(OPEN, (40, -60), (48, -10), directions=directions, spacing=80e3)
     check_network(network, symmetric=True)
     start = network.meta.start
-    distance, _ = shortest(network, start)
+    distance, _ = shortest_path(network, start)
     straight = geodesy.distance(40, -60, network.lat, network.lon)
     far = straight > 12 * network.meta.spacing_m
     worst = (distance[far] / straight[far]).max()
@@ -58,7 +62,7 @@ def test_every_node_is_reached_within_the_direction_error(directions):
 
 def test_great_circle_lattice_holds_the_geodesic_itself():
     network = lattice(OPEN, (40.6, -73.8), (51.6, -0.5), directions=8, spacing=100e3)
-    distance, path = shortest(network, network.meta.start, network.meta.goal)
+    distance, path = shortest_path(network, network.meta.start, network.meta.goal)
     assert distance[network.meta.goal] == pytest.approx(5551759.4003, rel=2e-6)
     assert len(path) >= 55
 
@@ -101,7 +105,7 @@ def test_levels_are_finer_at_the_coast_and_joined():
         chart, (1, -3), (1, 3), directions=16, spacing=30e3, coast_levels=3, slack=1.0
     )
     check_network(network, symmetric=True)
-    distance, _ = shortest(network, network.meta.start)
+    distance, _ = shortest_path(network, network.meta.start)
     assert np.isfinite(distance).all()
     shore = chart.shore_distance(network.lat, network.lon)
     near = np.flatnonzero(shore < 8e3)
@@ -124,7 +128,7 @@ def test_no_edge_touches_an_island_and_the_way_goes_round_its_corner():
     )  # fmt: skip
     assert not blocked.any()
     assert network.meta.rejected["land"] > 0
-    distance, _ = shortest(network, network.meta.start, network.meta.goal)
+    distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
     corner = sum(
         float(geodesy.distance(*a, *b))
         for a, b in [((0.5, -3), (0, -1)), ((0, -1), (0, 1)), ((0, 1), (0.5, 3))]
@@ -169,7 +173,7 @@ def test_region_grows_until_a_long_way_round_fits():
     corner = 2 * float(geodesy.distance(0, -2, 12, -0.1)) + float(
         geodesy.distance(12, -0.1, 12, 0.1)
     )
-    distance, _ = shortest(network, network.meta.start, network.meta.goal)
+    distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
     assert corner < distance[network.meta.goal] < 1.03 * corner
 
 
@@ -178,7 +182,7 @@ def test_half_the_globe_away_over_a_closed_globe():
     chart = land_chart((-89, 89, -0.5, 0.5))
     network = lattice(chart, (0, -5), (0, 5), directions=16, spacing=400e3, slack=0.1)
     check_network(network)
-    distance, _ = shortest(network, network.meta.start, network.meta.goal)
+    distance, _ = shortest_path(network, network.meta.start, network.meta.goal)
     around = 350.0 / 360.0 * 2 * math.pi * 6378137.0
     over_the_edge = 2 * float(geodesy.distance(0, -5, 84, -0.5))
     assert over_the_edge * 0.99 < distance[network.meta.goal] < around
@@ -186,8 +190,8 @@ def test_half_the_globe_away_over_a_closed_globe():
 
 def test_slack_bounds_the_way_through_every_node():
     network = lattice(OPEN, (10, -40), (12, -30), directions=16, spacing=30e3, slack=0.2)
-    a, _ = shortest(network, network.meta.start)
-    b, _ = shortest(network, network.meta.goal)
+    a, _ = shortest_path(network, network.meta.start)
+    b, _ = shortest_path(network, network.meta.goal)
     limit = 1.2 * a[network.meta.goal] + 4.01 * network.meta.spacing_m
     assert (a + b).max() <= limit
 
@@ -204,7 +208,7 @@ def test_infinite_slack_fills_the_area():
 
 def test_short_voyage_has_the_direct_leg():
     network = lattice(OPEN, (52, 3), (52.01, 3), spacing=2000.0)
-    distance, path = shortest(network, network.meta.start, network.meta.goal)
+    distance, path = shortest_path(network, network.meta.start, network.meta.goal)
     assert distance[network.meta.goal] == pytest.approx(geodesy.distance(52, 3, 52.01, 3), 1e-9)
     assert len(path) <= 2
 
@@ -304,7 +308,7 @@ def test_floro_santander_on_gshhg():
     assert goal is not None
     network = lattice(chart, start[:2], goal[:2], directions=32)
     check_network(network, symmetric=True)
-    distance, path = shortest(network, network.meta.start, network.meta.goal)
+    distance, path = shortest_path(network, network.meta.start, network.meta.goal)
     miles = distance[network.meta.goal] / 1852.0
     assert 1234.5 * 0.999 < miles < 1234.5 / math.cos(network.meta.gap_rad / 2.0)
     dover = geodesy.distance(network.lat[path], network.lon[path], 51.0, 1.45)

@@ -15,9 +15,9 @@ from tests.network.worlds import land_chart, triangular_mesh
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
-from thalweg.network import check_network, mesh, shortest, spacing_fraction, with_endpoints
+from thalweg.network import check_network, mesh, shortest_path, spacing_fraction, with_endpoints
 from thalweg.network.triangular_mesh.node_neighbours import influence, pairs_by_ring
-from thalweg.network.triangular_mesh.thinning import dimensionless_curl, thinned
+from thalweg.network.triangular_mesh.thinning import dimensionless_curl, thin_by_spacing
 
 OPEN = Chart.open_water()
 
@@ -36,7 +36,7 @@ def test_spacing_fraction_is_one_in_still_water_and_never_more():
 def test_thinning_a_square_grid_as_halem_does(largest, kept):
     x, y = (part.ravel() for part in np.meshgrid(np.arange(20) * 0.5, np.arange(20) * 0.5))
     gap = largest * spacing_fraction(1.0, 0.0, alpha=0.0, speed_power=1.0)
-    assert thinned(x, y, gap).sum() == kept
+    assert thin_by_spacing(x, y, gap).sum() == kept
 
 
 @settings(max_examples=40)
@@ -49,12 +49,12 @@ def test_thinning_equals_the_plain_rule(seed, low, high):
     for i in range(1, 60):
         if np.hypot(x[kept] - x[i], y[kept] - y[i]).min() > gap[i]:
             kept.append(i)
-    assert np.flatnonzero(thinned(x, y, gap)).tolist() == kept
+    assert np.flatnonzero(thin_by_spacing(x, y, gap)).tolist() == kept
 
 
 def test_thinning_refuses_unknown_flow():
     with pytest.raises(InputError, match="not a number"):
-        thinned([0.0, 1.0], [0.0, 1.0], [0.1, math.nan])
+        thin_by_spacing([0.0, 1.0], [0.0, 1.0], [0.1, math.nan])
 
 
 def test_curl_of_a_solid_turn():
@@ -93,7 +93,7 @@ def test_direction_error_of_a_regular_mesh(rings, directions, worst):
     assert 1.0 / math.cos(network.meta.gap_rad / 2.0) == pytest.approx(worst, abs=5e-5)
     assert np.diff(network.indptr).max() == directions
     middle = (n // 2) * n + n // 2
-    distance, _ = shortest(network, middle)
+    distance, _ = shortest_path(network, middle)
     straight = geodesy.distance(lat[middle], lon[middle], lat, lon)
     inner = (straight > 5e3) & (straight < 15e3)
     assert (distance[inner] / straight[inner]).max() == pytest.approx(worst, abs=3e-3)
@@ -180,7 +180,7 @@ def test_ends_on_a_mesh():
     bare = mesh(OPEN, lat, lon, triangles)
     network = with_endpoints(bare, OPEN, (-0.0512, -0.0933), (0.0741, 0.0817))
     check_network(network, symmetric=True)
-    distance, path = shortest(network, network.meta.start, network.meta.goal)
+    distance, path = shortest_path(network, network.meta.start, network.meta.goal)
     straight = float(geodesy.distance(-0.0512, -0.0933, 0.0741, 0.0817))
     assert straight < distance[network.meta.goal] < 1.0141 * straight
     assert path[0] == bare.n_nodes

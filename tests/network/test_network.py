@@ -15,8 +15,11 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.network import graph_building
-from thalweg.network import Network, check_network, lattice, shortest, with_endpoints
-from thalweg.network.regional_lattice.conformal_projection import great_circle_frame, mercator_frame
+from thalweg.network import Network, check_network, lattice, shortest_path, with_endpoints
+from thalweg.network.regional_lattice.conformal_projection import (
+    great_circle_projection,
+    mercator_projection,
+)
 
 OPEN = Chart.open_water()
 
@@ -99,10 +102,10 @@ def test_with_endpoints_adds_nodes_in_order(network):
     assert (grown.meta.start, grown.meta.goal) == (n, n + 1)
     for number, place in enumerate(places):
         assert (grown.lat[n + number], grown.lon[n + number]) == place
-        assert np.isfinite(shortest(grown, n)[0][n + number])
+        assert np.isfinite(shortest_path(grown, n)[0][n + number])
     assert grown.n_edges > network.n_edges
-    old, _ = shortest(network, 0)
-    new, _ = shortest(grown, 0)
+    old, _ = shortest_path(network, 0)
+    new, _ = shortest_path(grown, 0)
     assert np.all(new[:n] <= old + 1e-6)
 
 
@@ -124,9 +127,9 @@ def test_static_distances_equal_networkx(seed):
     a, b = rng.integers(0, 30, (2, 70)).astype(np.int32)
     a, b = a[a != b], b[a != b]
     weight = rng.random(len(a))
-    indptr, target, pair, _ = graph_building.mirror_pairs(30, a, b)
+    indptr, target, pair, _ = graph_building.directed_edges_of_pairs(30, a, b)
     distance, parent = np.empty(30), np.empty(30, np.int64)
-    graph_building.static_distances(indptr, target, weight[pair], 0, -1, distance, parent)
+    graph_building.static_dijkstra(indptr, target, weight[pair], 0, -1, distance, parent)
     peer = nx.Graph()
     peer.add_nodes_from(range(30))
     for p, q, w in zip(a.tolist(), b.tolist(), weight.tolist()):
@@ -143,7 +146,7 @@ def test_measure_agrees_with_the_exact_geodesic():
     to = geodesy.direct(lat, lon, course, length)
     here = np.arange(3000, dtype=np.int32)
     measured, middle = np.empty(3000), np.empty(3000, np.float32)
-    graph_building.measure(
+    graph_building.fill_lengths_and_courses(
         np.append(lat, to[0]), np.append(lon, to[1]), here, here + np.int32(3000), measured, middle
     )
     assert np.abs(measured - length).max() < 1e-3
@@ -155,9 +158,9 @@ def test_measure_agrees_with_the_exact_geodesic():
 @given(st.floats(-85, 85), st.floats(-180, 179.9), st.booleans())
 def test_frames_invert_and_are_conformal(lat, lon, turned):
     frame = (
-        great_circle_frame((40, -70), (50, -5), 1e4)
+        great_circle_projection((40, -70), (50, -5), 1e4)
         if turned
-        else mercator_frame((40, -70), 1e4, latitude=45)
+        else mercator_projection((40, -70), 1e4, latitude=45)
     )
     x, y = frame.from_positions(lat, lon)
     back = frame.to_positions(x, y)

@@ -5,7 +5,10 @@ import pytest
 
 from thalweg import Chart
 from thalweg.network import check_network
-from thalweg.network.triangular_mesh.edge_sampling import least_over, sampled_on_sides
+from thalweg.network.triangular_mesh.edge_sampling import (
+    least_along_edges,
+    sampled_on_triangle_sides,
+)
 from thalweg.network.triangular_mesh.mesh_builder import mesh
 
 
@@ -13,7 +16,9 @@ from thalweg.network.triangular_mesh.mesh_builder import mesh
 def network():
     draw = np.random.default_rng(4)
     lat, lon = 52.0 + draw.uniform(0.0, 0.2, 400), 3.0 + draw.uniform(0.0, 0.3, 400)
-    return sampled_on_sides(mesh(Chart.open_water(51.9, 52.3, 2.9, 3.4), lat, lon, rings=3))
+    return sampled_on_triangle_sides(
+        mesh(Chart.open_water(51.9, 52.3, 2.9, 3.4), lat, lon, rings=3)
+    )
 
 
 def test_it_is_a_sound_network_whose_stations_are_its_nodes(network):
@@ -43,7 +48,7 @@ def test_every_crossing_is_of_a_side(network):
 def test_least_along_an_edge_is_found_inside(network):
     depth = np.full(network.n_nodes, 10.0)
     depth[7] = 2.0
-    least = least_over(network, depth)
+    least = least_along_edges(network, depth)
     tails = network.tails()
     ends = np.minimum(depth[tails], depth[network.target])
     assert np.all(least <= ends)

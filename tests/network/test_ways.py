@@ -12,10 +12,10 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.network.static_paths import meridian_crossings
-from thalweg.network import Weighing, alternatives, globe, lattice, ways_round
+from thalweg.network import EdgeWeights, alternative_paths, globe, lattice, paths_without_canals
 from thalweg.network.alternatives.homotopy import obstacles
-from thalweg.network.alternatives.path_search import _kinds
-from thalweg.network.alternatives.path_shortening import pulled, total_cost
+from thalweg.network.alternatives.path_search import _best_of_each_class
+from thalweg.network.alternatives.path_shortening import pull_taut, total_cost
 
 WEST, EAST = (0.0, -1.0), (0.0, 1.0)
 #: An island north of the line between, wider to the south of it, and a rock further south.
@@ -37,7 +37,7 @@ def world():
 
 def test_both_sides_of_an_island_are_found_and_taut(world):
     chart, network = world
-    ways = ways_round(network, chart)
+    ways = alternative_paths(network, chart)
     assert len(ways) == 2
     north = corner_way((0.1, -0.2), (0.1, 0.2))
     south = corner_way((-0.3, -0.2), (-0.3, 0.2))
@@ -55,24 +55,24 @@ def test_both_sides_of_an_island_are_found_and_taut(world):
 
 def test_small_islands_count_when_asked_and_large_ones_need_not(world):
     chart, network = world
-    assert len(ways_round(network, chart, island=1000.0)) == 3
-    assert len(ways_round(network, chart, island=1e6)) == 1
-    assert len(ways_round(network, chart, island=1000.0, most=2)) == 2
+    assert len(alternative_paths(network, chart, island=1000.0)) == 3
+    assert len(alternative_paths(network, chart, island=1e6)) == 1
+    assert len(alternative_paths(network, chart, island=1000.0, most=2)) == 2
 
 
 def test_stretch_bounds_the_ways(world):
     chart, network = world
     north = corner_way((0.1, -0.2), (0.1, 0.2))
     south = corner_way((-0.3, -0.2), (-0.3, 0.2))
-    assert len(ways_round(network, chart, stretch=0.7 * (south / north - 1.0))) == 1
-    assert len(ways_round(network, chart, stretch=1.2 * (south / north - 1.0))) == 2
+    assert len(alternative_paths(network, chart, stretch=0.7 * (south / north - 1.0))) == 1
+    assert len(alternative_paths(network, chart, stretch=1.2 * (south / north - 1.0))) == 2
 
 
 def test_prices_bring_out_the_other_way(world):
     chart, network = world
     tail = network.tails()
     dear = np.where(network.lat[tail] > 0.05, 3.0, 1.0) * network.length
-    ways = ways_round(network, chart, weighings=[Weighing(), Weighing(dear)])
+    ways = alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(), EdgeWeights(dear)])
     assert [way.ratio for way in ways] == [1.0, 1.0]
     assert ways[1].lat.min() < -0.29
 
@@ -81,7 +81,7 @@ def test_signatures_of_trees_are_those_of_their_paths(world):
     chart, network = world
     seen = obstacles(network, chart, 1000.0)
     assert seen.crossings.shape == (network.n_edges, 3)  # the pole, the island, the rock
-    kinds = _kinds(network, seen, Weighing(), 0, 0.6)
+    kinds = _best_of_each_class(network, seen, EdgeWeights(), 0, 0.6)
     assert len({kind.signature for kind in kinds}) == len(kinds) >= 3
     for kind in kinds:
         along = seen.along(chart, network.lat[kind.path], network.lon[kind.path])
@@ -118,12 +118,12 @@ def test_pulling_never_costs_more_and_never_touches_land(seed):
         boxes.append((y - 0.1, y + 0.1, x - 0.08, x + 0.08))
     chart = land_chart(*boxes)
     network = lattice(chart, WEST, EAST, spacing=9000.0, coast_levels=1, directions=8)
-    (way, *_) = ways_round(network, chart, most=1)
+    (way, *_) = alternative_paths(network, chart, most=1)
     before = network.lat[way.path], network.lon[way.path]
     assert way.length <= total_cost(before)
     legs = way.lat[:-1], way.lon[:-1], way.lat[1:], way.lon[1:]
     assert not chart.legs_blocked(*legs).any()
-    again = pulled(chart, way.lat, way.lon)
+    again = pull_taut(chart, way.lat, way.lon)
     assert total_cost(again) <= way.length * (1 + 1e-12)
 
 
@@ -137,7 +137,7 @@ def test_pulling_with_a_cost_goes_round_what_is_dear():
         return length * (1.0 + 4.0 * share * near)
 
     lat, lon = np.array([0.0, 0.0]), np.array([-1.0, 1.0])
-    y, x = pulled(chart, lat, lon, leg_cost=cost)
+    y, x = pull_taut(chart, lat, lon, leg_cost=cost)
     assert total_cost((y, x), cost) < 0.75 * total_cost((lat, lon), cost)
     assert np.abs(y).max() > 0.2
 
@@ -147,7 +147,7 @@ def test_canals_stay_in_pulled_ways_and_count_with_their_length():
     suez = chart.canals[0]
     (a, b), (c, d) = suez.ends
     lat, lon = np.array([32.5, 32.0, a, c, 28.5]), np.array([31.0, 32.0, b, d, 33.2])
-    y, x = pulled(chart, lat, lon)
+    y, x = pull_taut(chart, lat, lon)
     assert (chart.canal_of_legs(y[:-1], x[:-1], y[1:], x[1:]) == 0).sum() == 1
 
 
@@ -162,9 +162,9 @@ def test_canals_stay_in_pulled_ways_and_count_with_their_length():
 def test_ways_without_canals_are_offered_up_to_the_threshold(start, goal, through):
     chart = Chart.gshhg("i")
     network = globe(chart, start, goal, slack=0.6)
-    ways = alternatives(network, chart, threshold=0.6)
+    ways = paths_without_canals(network, chart, threshold=0.6)
     assert [way.canals for way in ways] == through
-    assert len(alternatives(network, chart, threshold=0.005)) == 1
+    assert len(paths_without_canals(network, chart, threshold=0.005)) == 1
     for way in ways:
         legs = way.lat[:-1], way.lon[:-1], way.lat[1:], way.lon[1:]
         assert not chart.legs_blocked(*legs).any()
@@ -177,14 +177,14 @@ def test_ways_without_canals_are_offered_up_to_the_threshold(start, goal, throug
 def test_a_way_by_two_canals_gives_the_runs_of_their_subsets():
     chart = Chart.gshhg("i")
     network = globe(chart, (38.2, 22.5), (27.0, 34.5), slack=0.6)  # Gulf of Corinth to Red Sea
-    ways = alternatives(network, chart, threshold=0.6)
+    ways = paths_without_canals(network, chart, threshold=0.6)
     # no way without Suez lies within the threshold, so two of the four subsets are left
     assert [way.canals for way in ways] == [("corinth", "suez"), ("suez",)]
     toll = network.length + 1e6 * (network.fee == chart.canals[3].fee)
-    first, *_ = alternatives(network, chart, weighing=Weighing(toll), threshold=0.6)
+    first, *_ = paths_without_canals(network, chart, edge_weights=EdgeWeights(toll), threshold=0.6)
     assert first.canals == ("suez",)
-    hours = Weighing(network.times(7.0))
-    by_time, *_ = alternatives(network, chart, weighing=hours)
+    hours = EdgeWeights(network.times(7.0))
+    by_time, *_ = paths_without_canals(network, chart, edge_weights=hours)
     canals = [canal for canal in chart.canals if canal.name in by_time.canals]
     sea = ways[0].length - sum(
         canal.length for canal in chart.canals if canal.name in ways[0].canals
@@ -200,8 +200,8 @@ def test_floro_santander_has_the_three_ways_of_its_prices():
     chart = Chart.gshhg("i").with_eca("north-sea")
     ends = [chart.nearest_navigable(*place)[:2] for place in NORTH_SEA_CASE]
     network = globe(chart, *ends)
-    weighings = [Weighing.priced(network, chart, factor) for factor in (1.0, 1.2, 1.5593)]
-    ways = ways_round(network, chart, weighings=weighings, most=3)
+    edge_weight_sets = [EdgeWeights.priced(network, chart, factor) for factor in (1.0, 1.2, 1.5593)]
+    ways = alternative_paths(network, chart, edge_weight_sets=edge_weight_sets, most=3)
     exact = [(929.5, 1234.5), (310.3, 1290.3), (29.8, 1409.4)]  # inside, total [nm]
     ratios = (1.0, 1.2, 1.5593)
     assert len(ways) == 3
@@ -219,16 +219,16 @@ def test_wrong_input_is_refused(world):
     chart, network = world
     for wrong, said in (({"most": 0}, "0 ways"), ({"stretch": -0.1}, "-0.1")):
         with pytest.raises(InputError, match=said):
-            ways_round(network, chart, **wrong)
+            alternative_paths(network, chart, **wrong)
     with pytest.raises(InputError, match="do not weigh"):
-        ways_round(network, chart, weighings=[Weighing(np.ones(3))])
+        alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(np.ones(3))])
     with pytest.raises(InputError, match="cannot cost"):
-        Weighing.priced(network, chart, 0.0)
+        EdgeWeights.priced(network, chart, 0.0)
     meta = dataclasses.replace(network.meta, start=-1)
     with pytest.raises(InputError, match="no start"):
-        alternatives(dataclasses.replace(network, meta=meta), chart)
+        paths_without_canals(dataclasses.replace(network, meta=meta), chart)
     shut = np.full(network.n_edges, np.inf)
     with pytest.raises(NoRouteError, match="no way"):
-        ways_round(network, chart, weighings=[Weighing(shut)])
+        alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(shut)])
     with pytest.raises(NoRouteError, match="no way"):
-        alternatives(network, chart, weighing=Weighing(shut))
+        paths_without_canals(network, chart, edge_weights=EdgeWeights(shut))

@@ -8,9 +8,9 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import densify
-from thalweg.operations.tracks.activities import CuttingRules, find_activities
+from thalweg.operations.tracks.activities import SegmentationRules, find_activities
 from thalweg.operations.tracks.track_readers import read_tracks
-from thalweg.operations.tracks.work_areas import Areas
+from thalweg.operations.tracks.work_areas import WorkAreas
 
 
 def box(west, south, east, north, **properties):
@@ -51,7 +51,7 @@ def sail(*stops, speed=6.0, interval=60.0):
 
 def kinds(frame, areas=AREAS, **rules):
     log = read_tracks(frame)
-    found = find_activities(log, Areas.read(areas), rules=CuttingRules(**rules))
+    found = find_activities(log, WorkAreas.read(areas), rules=SegmentationRules(**rules))
     for a, b in itertools.pairwise(found):
         assert a.end == pytest.approx(b.start) and a.duration > 0.0
     assert found[0].start == log.time[0] and found[-1].end == log.time[-1]
@@ -73,7 +73,7 @@ def test_a_wait_on_the_way_is_no_sailing():
     assert names == ["loading", "sailing full", "waiting", "sailing full", "unloading"]
     assert found[2].duration == pytest.approx(90 * 60, abs=180)
     assert {a.trip for a in found[1:4]} == {0}
-    names, _ = kinds(sail((PIT, 60), (MIDDLE, 90), (BEACH, 60)), least_wait=7200.0)
+    names, _ = kinds(sail((PIT, 60), (MIDDLE, 90), (BEACH, 60)), min_wait=7200.0)
     assert names == ["loading", "sailing full", "unloading"]
 
 
@@ -127,7 +127,7 @@ def test_areas_across_the_antimeridian():
         box(179.8, -17.0, 180.2, -16.8, activity="loading"),
         box(-179.0, -17.0, -178.8, -16.8, activity="unloading"),
     )
-    places = Areas.read(areas).at([-16.9] * 5, [179.9, -179.9, -179.7, -178.9, 181.1])
+    places = WorkAreas.read(areas).at([-16.9] * 5, [179.9, -179.9, -179.7, -178.9, 181.1])
     assert places.tolist() == [0, 0, -1, 1, 1]
 
 
@@ -144,12 +144,14 @@ def test_areas_across_the_antimeridian():
 )
 def test_areas_that_cannot_be(features, told):
     with pytest.raises(InputError, match=told):
-        Areas.read(collection(*features))
+        WorkAreas.read(collection(*features))
 
 
 def test_areas_of_one_activity_may_overlap_and_neighbours_may_touch():
     touching = box(4.1, 51.95, 4.2, 52.05, activity="unloading")
-    areas = Areas.read(collection(LOADING, box(3.8, 51.9, 4.0, 52.1, activity="load"), touching))
+    areas = WorkAreas.read(
+        collection(LOADING, box(3.8, 51.9, 4.0, 52.1, activity="load"), touching)
+    )
     assert areas.at([52.0, 52.0, 52.0], [3.85, 4.05, 4.15]).tolist() == [0, 0, 1]
 
 
@@ -157,4 +159,4 @@ def test_a_ship_that_never_comes_is_an_error():
     with pytest.raises(InputError, match="never in an area"):
         kinds(sail(((40.0, 4.0), 10), ((40.0, 5.0), 10)))
     with pytest.raises(InputError):
-        CuttingRules(slow=-1.0)
+        SegmentationRules(slow=-1.0)

@@ -14,14 +14,14 @@ from shapely.geometry import Point
 
 from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.time import parse_time
-from thalweg.operations.dredging.project_inputs import open_project, open_things
+from thalweg.operations.dredging.project_inputs import open_project, open_project_inputs
 from thalweg.operations.examples.estuary import synthetic_estuary
-from thalweg.operations.openclsim.leg_planner import Fairways
-from thalweg.operations.openclsim.plugin import SailsFairways
+from thalweg.operations.openclsim.leg_planner import LegPlanner
+from thalweg.operations.openclsim.plugin import PlannedRouteMovable
 
 START = parse_time("2026-05-01T00:00Z")
 PARTS = (
-    core.Identifiable, SailsFairways, core.Processor, core.LoadingFunction,
+    core.Identifiable, PlannedRouteMovable, core.Processor, core.LoadingFunction,
     core.UnloadingFunction, core.HasContainer, core.HasResource, core.Log,
 )  # fmt: skip
 Vessel = type("Vessel", PARTS, {})
@@ -35,9 +35,9 @@ def estuary():
 
 
 @pytest.fixture(scope="module")
-def fairways(estuary):
-    ship = open_things(open_project("example"))[0]
-    return Fairways.open(
+def leg_planner(estuary):
+    ship = open_project_inputs(open_project("example"))[0]
+    return LegPlanner.open(
         ship=ship, sea=estuary.sea, chart=estuary.chart, start=START, days=4.0,
         min_ukc=1.0, margin=0.02, rings=2,
     )  # fmt: skip
@@ -48,7 +48,7 @@ def point(place):
 
 
 @pytest.fixture
-def yard(estuary, fairways):
+def yard(estuary, leg_planner):
     """A simulation with a vessel at the loading site and a site at either end."""
     env = simpy.Environment(initial_time=START)
     registry = {}
@@ -58,7 +58,7 @@ def yard(estuary, fairways):
                  level=0.0, env=env)  # fmt: skip
     vessel = Vessel(
         env=env, name="hopper", id="hopper", geometry=point(estuary.load), capacity=4000.0,
-        fairways=fairways, loading_rate=1.5, unloading_rate=1.5,
+        leg_planner=leg_planner, loading_rate=1.5, unloading_rate=1.5,
     )  # fmt: skip
     return SimpleNamespace(env=env, registry=registry, pit=pit, beach=beach, vessel=vessel)
 
@@ -90,7 +90,7 @@ def project(yard, cycles, amount):
     yard.env.run()
 
 
-def test_a_project_in_openclsim_sails_planned_legs(yard, fairways, estuary):
+def test_a_project_in_openclsim_sails_planned_legs(yard, leg_planner, estuary):
     project(yard, cycles=2, amount=2800.0)
     vessel = yard.vessel
     assert yard.beach.container.get_level() == pytest.approx(5600.0)
@@ -98,7 +98,7 @@ def test_a_project_in_openclsim_sails_planned_legs(yard, fairways, estuary):
     for number, leg in enumerate(vessel.legs):
         loaded = number % 2 == 0
         places = (estuary.load, estuary.unload) if loaded else (estuary.unload, estuary.load)
-        again = fairways.sail(*places, depart=leg.depart, load_factor=0.7 if loaded else 0.0)
+        again = leg_planner.sail(*places, depart=leg.depart, load_factor=0.7 if loaded else 0.0)
         assert leg.arrive == again.arrive
         assert leg.distance == again.distance
         assert leg.clearance >= 1.0
@@ -169,24 +169,26 @@ def test_a_given_duration_is_taken_at_its_word(yard):
         ({"load_steps": True}, "load_steps is True"),
     ],
 )
-def test_fairways_that_cannot_be_are_refused(estuary, fairways, changes, words):
+def test_fairways_that_cannot_be_are_refused(estuary, leg_planner, changes, words):
     asked = {"start": START, "days": 4.0, "min_ukc": 1.0, **changes}
     with pytest.raises(InputError, match=words):
-        Fairways.open(ship=fairways.ship, sea=estuary.sea, chart=estuary.chart, **asked)
+        LegPlanner.open(ship=leg_planner.ship, sea=estuary.sea, chart=estuary.chart, **asked)
 
 
-def test_what_cannot_be_sailed_is_told(yard, fairways, estuary):
+def test_what_cannot_be_sailed_is_told(yard, leg_planner, estuary):
     with pytest.raises(InputError, match="engine order"):
         next(yard.vessel.move(yard.beach, engine_order=0.5))
     with pytest.raises(OutsidePeriodError, match="outside the period"):
-        fairways.sail(estuary.load, estuary.unload, depart=START - 60.0, load_factor=0.0)
+        leg_planner.sail(estuary.load, estuary.unload, depart=START - 60.0, load_factor=0.0)
     with pytest.raises(NoRouteError, match="No way from"):
-        fairways.sail(estuary.load, estuary.unload, depart=fairways.end - 600.0, load_factor=1.0)
+        leg_planner.sail(
+            estuary.load, estuary.unload, depart=leg_planner.end - 600.0, load_factor=1.0
+        )
     with pytest.raises(InputError, match="load factor is"):
-        fairways.sail(estuary.load, estuary.unload, depart=START, load_factor=1.2)
+        leg_planner.sail(estuary.load, estuary.unload, depart=START, load_factor=1.2)
     with pytest.raises(InputError, match="leads to itself"):
-        fairways.sail(estuary.load, estuary.load, depart=START, load_factor=0.0)
+        leg_planner.sail(estuary.load, estuary.load, depart=START, load_factor=0.0)
     with pytest.raises(InputError, match="on land or in a no-go zone"):
-        fairways.sail(estuary.load, (52.9, 3.5), depart=START, load_factor=0.0)
-    assert fairways._rounded(0.61) == 0.7  # never less deep than it lies
-    assert fairways._rounded(0.6) == 0.6
+        leg_planner.sail(estuary.load, (52.9, 3.5), depart=START, load_factor=0.0)
+    assert leg_planner._rounded(0.61) == 0.7  # never less deep than it lies
+    assert leg_planner._rounded(0.6) == 0.6

@@ -16,14 +16,26 @@ from thalweg.cli.main import main
 from thalweg.core.errors import CoverageError, InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import direct, distance, inverse
 from thalweg.core.time import parse_time
-from thalweg.operations.dredging.cycles import Leg
-from thalweg.operations.dredging.loading_curves import Pumping
+from thalweg.operations.dredging.cycles import SailedLeg
+from thalweg.operations.dredging.loading_curves import LoadingCurve
 from thalweg.operations.dredging.project import Project
-from thalweg.operations.dredging.project_environment import World, open_ways, project_network
-from thalweg.operations.dredging.project_inputs import example_file, open_project, open_things
-from thalweg.operations.dredging.project_result import ROWS, finished_run
+from thalweg.operations.dredging.project_environment import (
+    ProjectEnvironment,
+    freeze_site_network,
+    project_network,
+)
+from thalweg.operations.dredging.project_inputs import (
+    example_file,
+    open_project,
+    open_project_inputs,
+)
+from thalweg.operations.dredging.project_result import TABLE_ROWS, summarise_run
 from thalweg.operations.dredging.run_project import run_project
-from thalweg.operations.dredging.verified_legs import LegSailor, _corners, track_of_passage
+from thalweg.operations.dredging.verified_legs import (
+    SiteLegPlanner,
+    _essential_nodes,
+    track_from_passage,
+)
 from thalweg.operations.examples.estuary import bed_depth
 from thalweg.operations.plots.project_plots import draw_routes
 from thalweg.route import evaluate
@@ -41,7 +53,7 @@ def example(**changes):
 @pytest.fixture(scope="module")
 def result():
     project = Project.from_dict(example())
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     return run_project(project, ship=ship, sea=sea, chart=chart)
 
 
@@ -71,7 +83,7 @@ def test_every_leg_keeps_the_clearance_in_the_referees_fine_steps(result):
 
 
 def test_hours_of_a_duration_never_round_to_a_day():
-    written = {key: how for key, _, how in ROWS}["duration_days"]
+    written = {key: how for key, _, how in TABLE_ROWS}["duration_days"]
     assert [written(v) for v in (3.999, 0.5, 1.0, 24.98 / 24.0)] == [
         "4 d 0 h", "0 d 12 h", "1 d 0 h", "1 d 1 h",
     ]  # fmt: skip
@@ -84,15 +96,15 @@ def test_the_least_clearance_is_unknown_where_that_of_a_leg_is(result):
         known,
         legs={**known.legs, "under_keel_clearance": np.full(len(known.legs["length"]), np.nan)},
     )
-    cycles[1] = replace(cycles[1], back=Leg(blind, 0.0))
-    run = finished_run("x", cycles, project=result.project, ship=result.world.ship)
+    cycles[1] = replace(cycles[1], back=SailedLeg(blind, 0.0))
+    run = summarise_run("x", cycles, project=result.project, ship=result.world.ship)
     assert run.totals["least_clearance_m"] is None
 
 
 def test_the_mean_load_factor_is_that_of_the_volumes():
     """Cycles times mean load is the volume; the last cycle carries what is left."""
     project = Project.from_dict(example(base_case=None, volume_m3=15_000, load_factors=[0.5, 1.0]))
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     run = run_project(project, ship=ship, sea=sea, chart=chart).optimised
     last = run.cycles[-1]
     assert last.volume < last.load_factor * 4000.0
@@ -150,7 +162,7 @@ def test_fuel_burnt_in_a_wait_is_counted_once():
     route = example()["base_case"]["route"]
     asked = example(volume_m3=12_000, base_case={"route": route, "load_factor": 1.0})
     project = Project.from_dict(asked)
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     result = run_project(project, ship=ship, sea=sea, chart=chart)
     assert sum(leg.waiting for c in result.base.cycles for leg in c.legs) > 3600.0
     for run in result.runs:
@@ -177,14 +189,14 @@ def test_cost_is_that_of_van_halem(result):
 
 def test_a_leg_that_breaks_a_limit_between_the_nodes_is_planned_with_more_water():
     project = Project.from_dict(example(margin_m=0.0, spacing_m=1200.0, rings=3))
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     period = project.start, project.end
-    world = World.open(project.sites, period, ship=ship, sea=sea, chart=chart)
-    ways = open_ways(world, project_network(world), lambda text: None)
-    sailor = LegSailor(world, ways)
+    world = ProjectEnvironment.open(project.sites, period, ship=ship, sea=sea, chart=chart)
+    ways = freeze_site_network(world, project_network(world), lambda text: None)
+    sailor = SiteLegPlanner(world, ways)
     depart = project.start + 11 * 1800.0
     found = sailor.passages(0.8, outward=True).sail(depart)
-    track = track_of_passage(ways, found, sailor.loaded(0.8).setting)
+    track = track_from_passage(ways, found, sailor.loaded(0.8).setting)
     by_nodes = evaluate(
         track, ship=sailor.loaded(0.8).ship, sea=sea, chart=chart, min_ukc=1.0, strict=False
     )
@@ -200,14 +212,14 @@ def test_corners_keep_a_way_along_a_parallel_near_its_nodes():
     for west in (3.0, 179.6):
         lon = (west + np.linspace(0.0, 0.9, 200) + 180.0) % 360.0 - 180.0
         lat = np.full(200, 52.0)
-        keep = np.flatnonzero(_corners(lat, lon))
+        keep = np.flatnonzero(_essential_nodes(lat, lon))
         assert 8 <= len(keep) <= 25
         for a, b in itertools.pairwise(keep.tolist()):
             along, _, _ = inverse(lat[a], lon[a], lat[a:b], lon[a:b])
             course = float(inverse(lat[a], lon[a], lat[b], lon[b])[1])
             there = direct(lat[a], lon[a], course, along)
             assert np.max(distance(*there, lat[a:b], lon[a:b])) < 0.51
-        straight = _corners(*direct(52.0, west, 1.0, np.linspace(0.0, 60e3, 100)))
+        straight = _essential_nodes(*direct(52.0, west, 1.0, np.linspace(0.0, 60e3, 100)))
         assert np.flatnonzero(straight).tolist() == [0, 99]
 
 
@@ -216,7 +228,7 @@ def test_the_load_chosen_produces_most(result):
     from thalweg.operations.dredging.cycle_simulation import Simulator
 
     world, work = result.world, result.project.work
-    ways = open_ways(world, project_network(world), lambda text: None)
+    ways = freeze_site_network(world, project_network(world), lambda text: None)
     simulator = Simulator(result.project, world, ways)
     first = result.optimised.cycles[0]
     produced = {}
@@ -267,19 +279,21 @@ def test_the_example_is_van_halems_project():
     assert project.work.volume == 425_500.0
     assert project.work.hopper == 4000.0
     assert project.work.load_factors == tuple(k / 10 for k in range(11))
-    ship = open_things(project)[0]
+    ship = open_project_inputs(project)[0]
     assert ship.with_load_factor(1.0).draught == 6.5
     assert ship.with_load_factor(0.0).draught == 3.5
 
 
 def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
-    curve = Pumping.from_data({"minutes": [0, 30, 60], "share": [0, 0.8, 1]}, 4000.0, "loading")
+    curve = LoadingCurve.from_data(
+        {"minutes": [0, 30, 60], "share": [0, 0.8, 1]}, 4000.0, "loading"
+    )
     assert curve.time(0.4) == pytest.approx(15 * 60.0)
     assert curve.time(1.0) - curve.time(0.9) == pytest.approx(15 * 60.0)
     assert curve.time(0.0) == 0.0
-    constant = Pumping.from_data(1.5, 4000.0, "loading")
+    constant = LoadingCurve.from_data(1.5, 4000.0, "loading")
     assert constant.time(0.5) == pytest.approx(2000.0 / 1.5)
-    coupled = Pumping.from_data({"rate_m3_s": 1.5, "fixed_minutes": 10}, 4000.0, "unloading")
+    coupled = LoadingCurve.from_data({"rate_m3_s": 1.5, "fixed_minutes": 10}, 4000.0, "unloading")
     assert coupled.time(0.5) == pytest.approx(2000.0 / 1.5 + 600.0)
 
 
@@ -321,7 +335,7 @@ def test_what_cannot_be_is_refused_at_the_door(changes, words):
 
 def sail(**changes):
     project = Project.from_dict(example(base_case=None, **changes))
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     return run_project(project, ship=ship, sea=sea, chart=chart)
 
 
@@ -363,7 +377,7 @@ def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
     project = Project.from_dict(
         example(base_case=None, load=[51.71, 3.45], unload=[51.77, 3.7], **changes)
     )
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     with pytest.raises(OutsidePeriodError) as caught:
         run_project(project, ship=ship, sea=sea, chart=chart)
     assert "The data end 2026-01-01T11:00:00Z." in caught.value.possible
@@ -384,7 +398,7 @@ def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
 )
 def test_a_sea_that_cannot_be_is_refused(changes, words):
     with pytest.raises(InputError, match=words):
-        open_things(Project.from_dict(example(**changes)))
+        open_project_inputs(Project.from_dict(example(**changes)))
 
 
 def test_a_hopper_larger_than_the_ship_is_refused():
@@ -396,7 +410,7 @@ def test_a_hopper_larger_than_the_ship_is_refused():
 def test_a_base_case_that_leaves_the_data_says_where():
     north = [51.7449, 3.579], [51.72, 3.70], [51.72, 3.74], [51.6596, 3.6514]
     project = Project.from_dict(example(base_case={"route": [list(place) for place in north]}))
-    ship, sea, _ = open_things(project)
+    ship, sea, _ = open_project_inputs(project)
     chart = Chart.open_water(51.0, 52.0, 3.0, 4.0)  # wider than the sea, which ends at 3.724 E
     with pytest.raises(NoRouteError, match="base case") as caught:
         run_project(project, ship=ship, sea=Sea.layered(sea, bed()), chart=chart)
@@ -485,7 +499,7 @@ def test_sites_parted_by_what_no_data_know_are_told(tmp_path):
 
 def test_no_sea_is_never_assumed():
     with pytest.raises(InputError, match="names no sea"):
-        open_things(Project.from_dict(example(sea=None)))
+        open_project_inputs(Project.from_dict(example(sea=None)))
 
 
 def test_command_line(tmp_path, capsys):
@@ -512,7 +526,7 @@ def test_command_line(tmp_path, capsys):
 def test_the_example_for_some_days_on_the_full_network():
     data = yaml.safe_load(example_file().read_text()) | {"volume_m3": 60_000, "days": 8}
     project = Project.from_dict(data)
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     result = run_project(project, ship=ship, sea=sea, chart=chart)
     assert result.provenance["network"]["nodes"] > 5000
     assert result.gains()["production_gain"] >= 0.15
@@ -548,7 +562,7 @@ def san_diego(**changes):
 def test_a_project_on_the_mesh_of_a_real_model():
     """Ways along the rim of the mesh keep the nodes that hold them inside it."""
     project = san_diego()
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     result = run_project(project, ship=ship, sea=sea, chart=chart)
     run = result.optimised
     assert run.feasible
@@ -563,7 +577,7 @@ def test_a_project_on_the_mesh_of_a_real_model():
 
 def test_a_project_outside_the_period_of_its_data():
     project = san_diego(start="2030-01-01T00:00Z")
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     with pytest.raises(OutsidePeriodError, match="outside the data"):
         run_project(project, ship=ship, sea=sea, chart=chart)
 
@@ -572,5 +586,5 @@ def test_a_project_outside_the_period_of_its_data():
 def test_a_project_on_the_tide_of_a_real_model_for_another_year():
     pytest.importorskip("utide")
     project = san_diego(start="2030-01-01T00:00Z", days=2, tides=["M2"])
-    ship, sea, chart = open_things(project)
+    ship, sea, chart = open_project_inputs(project)
     assert run_project(project, ship=ship, sea=sea, chart=chart).optimised.feasible

@@ -10,7 +10,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import direct
 from thalweg.core.time import parse_time
 from thalweg.core.units import KNOT
-from thalweg.operations.tracks.track_cleaning import Cleaning
+from thalweg.operations.tracks.track_cleaning import CleaningRules
 from thalweg.operations.tracks.track_readers import read_tracks
 
 START = parse_time("2026-03-01T00:00Z")
@@ -131,7 +131,7 @@ def test_a_first_position_elsewhere_is_dropped():
 
 def test_gaps_are_marked_and_told():
     frame = straight(40).drop(index=range(10, 25))
-    log = read_tracks(frame, cleaning=Cleaning(longest_gap=600.0))
+    log = read_tracks(frame, cleaning=CleaningRules(longest_gap=600.0))
     assert np.flatnonzero(log.broken).tolist() == [9]
     assert "1 gaps of more than 10 min, 0.3 h in all" in " ".join(log.notes)
     assert not read_tracks(frame).broken.any()
@@ -183,7 +183,7 @@ def test_wrong_requests(tmp_path):
         read_tracks(straight(), columns={"lat": "latt"})
     for rules in ({"longest_gap": 0.0}, {"fastest": np.nan}, {"most_outliers": -1}):
         with pytest.raises(InputError):
-            Cleaning(**rules)
+            CleaningRules(**rules)
 
 
 @given(

@@ -12,15 +12,20 @@ from hypothesis import strategies as st
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import KNOT
-from thalweg.operations.examples.synthetic_tracks import Cycle, synthetic_track
+from thalweg.operations.examples.synthetic_tracks import SyntheticCycle, synthetic_track
 from thalweg.operations.tracks.track_analysis import analyse_tracks
-from thalweg.operations.tracks.track_calibration import calibrate, leg_speeds, over_ground, spread
+from thalweg.operations.tracks.track_calibration import (
+    agreement_statistics,
+    calibrate,
+    leg_speeds,
+    speeds_over_ground,
+)
 from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
 
 TIDE = 44700.0
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
-CYCLE = Cycle((52.3, 4.0), (52.1, 4.2), full_kn=11.0, empty_kn=13.0)
+CYCLE = SyntheticCycle((52.3, 4.0), (52.1, 4.2), full_kn=11.0, empty_kn=13.0)
 TIDAL = Sea.from_functions(
     {
         EAST: lambda t, la, lo: 0.5 * np.sin(2 * np.pi * t / TIDE) + 0.0 * la,
@@ -157,7 +162,7 @@ def test_a_ship_at_its_measured_power_goes_as_fast_as_it_went():
     ship = Ship.load("vox-olympia")
     bed = {"sea_floor_depth_below_geoid": lambda t, la, lo: 30.0 + 0.0 * la}
     sea = Sea.from_functions(bed) + TIDAL.filled(wind=0.0, waves=0.0)
-    cycle = Cycle((52.3, 4.0), (52.1, 4.2), full_kn=9.0, empty_kn=11.0)
+    cycle = SyntheticCycle((52.3, 4.0), (52.1, 4.2), full_kn=9.0, empty_kn=11.0)
     track = synthetic_track(cycle, sea=TIDAL, start=0.0, cycles=4, interval_s=120.0)
     calm = {"wind_speed": 0.0, "wind_angle": 0.0, "wave_height": 0.0, "wave_angle": 0.0}
     met = Conditions(**calm, wave_period=8.0, depth=30.0)
@@ -175,7 +180,7 @@ def test_a_ship_at_its_measured_power_goes_as_fast_as_it_went():
 
 
 def test_spread_of_a_hand_computed_example():
-    fit = spread([1.0, 2.0, 3.0, 4.0, np.nan], [1.5, 2.0, 3.5, 5.0, 9.0])
+    fit = agreement_statistics([1.0, 2.0, 3.0, 4.0, np.nan], [1.5, 2.0, 3.5, 5.0, 9.0])
     assert fit.count == 4
     assert (fit.slope, fit.intercept) == pytest.approx((1.2, 0.0))
     assert fit.r2 == pytest.approx(36.0 / 37.5)
@@ -184,11 +189,11 @@ def test_spread_of_a_hand_computed_example():
 
 
 def test_spread_says_nan_for_what_cannot_be_told():
-    assert np.isnan(spread([], []).rmse)
-    assert np.isnan(spread([1.0, 2.0], [1.0, 2.0]).slope)
-    flat = spread([3.0, 3.0, 3.0], [2.0, 3.0, 4.0])
+    assert np.isnan(agreement_statistics([], []).rmse)
+    assert np.isnan(agreement_statistics([1.0, 2.0], [1.0, 2.0]).slope)
+    flat = agreement_statistics([3.0, 3.0, 3.0], [2.0, 3.0, 4.0])
     assert np.isnan(flat.slope) and flat.rmse == pytest.approx(np.sqrt(2 / 3))
-    assert np.isnan(spread([1.0, 2.0, 3.0], [4.0, 4.0, 4.0]).r2)
+    assert np.isnan(agreement_statistics([1.0, 2.0, 3.0], [4.0, 4.0, 4.0]).r2)
 
 
 @given(
@@ -197,7 +202,7 @@ def test_spread_says_nan_for_what_cannot_be_told():
     offset=st.floats(-2.0, 2.0),
 )
 def test_a_line_is_found_again(x, slope, offset):
-    fit = spread(x, slope * np.array(x) + offset)
+    fit = agreement_statistics(x, slope * np.array(x) + offset)
     assert fit.slope == pytest.approx(slope, rel=1e-6, abs=1e-9)
     assert fit.intercept == pytest.approx(offset, abs=1e-6)
     assert fit.r2 == pytest.approx(1.0, abs=1e-6)
@@ -207,8 +212,8 @@ def test_over_ground_undoes_through_water(analysis):
     pieces = analysis.pieces
     for factor in (0.0, 1.0, 1.7):
         water = np.abs(pieces.ground - factor * pieces.current)
-        assert over_ground(pieces, water, factor) == pytest.approx(pieces.speed)
-    assert np.isnan(over_ground(pieces, 1e-3, 5.0)).any()
+        assert speeds_over_ground(pieces, water, factor) == pytest.approx(pieces.speed)
+    assert np.isnan(speeds_over_ground(pieces, 1e-3, 5.0)).any()
     legs = leg_speeds(pieces, pieces.speed)
     assert calibrate(pieces.part(pieces.leg < 2)) is None and len(legs) == 24
 
@@ -238,8 +243,8 @@ def test_tracks_that_cannot_be_made():
         with pytest.raises(InputError):
             synthetic_track(CYCLE, **asked, **wrong)
     with pytest.raises(InputError, match="is no cycle"):
-        Cycle((52.0, 4.0), (52.0, 4.01))
-    slow = Cycle((52.3, 4.0), (52.1, 4.2), full_kn=1.0)
+        SyntheticCycle((52.0, 4.0), (52.0, 4.01))
+    slow = SyntheticCycle((52.3, 4.0), (52.1, 4.2), full_kn=1.0)
     with pytest.raises(NoRouteError):
         synthetic_track(slow, sea=TIDAL, start=0.0, current_factor=3.0)
     nowhere = Sea.from_functions(

@@ -9,7 +9,11 @@ from hypothesis import strategies as st
 
 from thalweg.core.errors import CoverageError, InputError
 from thalweg.operations.waiting.trip_table import TripTable
-from thalweg.operations.waiting.waiting_optimisation import RULES, optimum_energy, plan_waiting
+from thalweg.operations.waiting.waiting_optimisation import (
+    DEPARTURE_RULES,
+    optimum_energy,
+    plan_waiting,
+)
 from thalweg.operations.waiting.waiting_study import break_even_power, waiting_study
 
 STEP = 60.0
@@ -61,10 +65,10 @@ def test_the_optimum_is_that_of_brute_force(seed, width, hotel, closed):
     out, back = table(rng, 9, closed=closed), table(rng, 9, closed=closed)
     trips = [out, back, out]
     start = int(rng.integers(0, 9))
-    plan = plan_waiting(trips, start=start * STEP, most_wait=width * STEP, hotel_power=hotel)
+    plan = plan_waiting(trips, start=start * STEP, max_wait=width * STEP, hotel_power=hotel)
     expected = brute_force(trips, start, width, hotel)
     assert plan.energy == pytest.approx(expected, rel=1e-12)
-    from_all = optimum_energy(trips, most_wait=width * STEP, hotel_power=hotel)
+    from_all = optimum_energy(trips, max_wait=width * STEP, hotel_power=hotel)
     assert from_all[start] == pytest.approx(expected, rel=1e-12)
 
 
@@ -75,9 +79,9 @@ def test_the_optimum_of_a_table_that_ends_is_that_of_brute_force(seed, width, ho
     expected = brute_force(trips, 0, width, hotel)
     if np.isinf(expected):
         with pytest.raises(CoverageError):
-            plan_waiting(trips, start=0.0, most_wait=width * STEP, hotel_power=hotel)
+            plan_waiting(trips, start=0.0, max_wait=width * STEP, hotel_power=hotel)
         return
-    plan = plan_waiting(trips, start=0.0, most_wait=width * STEP, hotel_power=hotel)
+    plan = plan_waiting(trips, start=0.0, max_wait=width * STEP, hotel_power=hotel)
     assert plan.energy == pytest.approx(expected, rel=1e-12)
 
 
@@ -91,20 +95,20 @@ def test_nothing_beats_the_optimum(seed, cycles, wait, hotel):
     rng = np.random.default_rng(seed)
     trips = [table(rng, 40, closed=0.1), table(rng, 40, closed=0.1)] * cycles
     asked = {"start": 7 * STEP, "most_wait": wait * STEP, "hotel_power": hotel}
-    energy = {rule: plan_waiting(trips, rule=rule, **asked).energy for rule in RULES}
+    energy = {rule: plan_waiting(trips, rule=rule, **asked).energy for rule in DEPARTURE_RULES}
     assert all(energy["optimum"] <= e * (1 + 1e-12) for e in energy.values())
-    longer = plan_waiting(trips, start=7 * STEP, most_wait=(wait + 9) * STEP, hotel_power=hotel)
+    longer = plan_waiting(trips, start=7 * STEP, max_wait=(wait + 9) * STEP, hotel_power=hotel)
     assert longer.energy <= energy["optimum"] * (1 + 1e-12)
-    one = {r: plan_waiting(trips[:1], rule=r, **asked).energy for r in RULES}
+    one = {r: plan_waiting(trips[:1], rule=r, **asked).energy for r in DEPARTURE_RULES}
     assert one["next trip"] == pytest.approx(one["optimum"], rel=1e-12)
     assert one["next trip"] <= one["none"] * (1 + 1e-12)
 
 
-@given(seed=st.integers(0, 2**31), rule=st.sampled_from(RULES), wait=st.integers(0, 9))
+@given(seed=st.integers(0, 2**31), rule=st.sampled_from(DEPARTURE_RULES), wait=st.integers(0, 9))
 def test_plans_can_be_sailed(seed, rule, wait):
     rng = np.random.default_rng(seed)
     trips = [table(rng, 30, closed=0.3) for _ in range(4)]
-    plan = plan_waiting(trips, start=3 * STEP, most_wait=wait * STEP, rule=rule, hotel_power=1e3)
+    plan = plan_waiting(trips, start=3 * STEP, max_wait=wait * STEP, rule=rule, hotel_power=1e3)
     ready, waited = plan.start, 0.0
     for trip, leave, reach in zip(trips, plan.departs, plan.arrives):
         at = round((leave - trip.start) / STEP)
@@ -127,7 +131,7 @@ def test_the_rule_of_the_thesis_looks_at_the_current_alone():
         (50, 40, 50),
         (50, 75, 125),
     ):
-        plan = plan_waiting([flat], start=start * STEP, most_wait=most * STEP, rule="current")
+        plan = plan_waiting([flat], start=start * STEP, max_wait=most * STEP, rule="current")
         assert plan.departs[0] == leaves * STEP
 
 
@@ -135,7 +139,7 @@ def test_waiting_is_possible_into_the_next_period_and_an_infinite_wait_is_one_pe
     cheap = np.full(50, 2.0)
     cheap[3] = 1.0
     trip = TripTable("a", 0.0, STEP, np.full(50, STEP), cheap, cheap, True)
-    late = plan_waiting([trip, trip], start=10 * STEP, most_wait=1e12)
+    late = plan_waiting([trip, trip], start=10 * STEP, max_wait=1e12)
     assert late.energy == 2.0
     assert late.departs == (53 * STEP, 103 * STEP)
 
@@ -144,16 +148,16 @@ def test_break_even_power_is_where_saving_and_cost_meet():
     energy = np.full(100, 10e6)
     energy[20:] = 9e6
     trip = TripTable("a", 0.0, STEP, np.full(100, STEP), energy, np.zeros(100), True)
-    found = break_even_power([trip], start=0.0, most_wait=30 * STEP)
+    found = break_even_power([trip], start=0.0, max_wait=30 * STEP)
     assert found == pytest.approx(1e6 / (20 * STEP), rel=2e-3)
-    assert break_even_power([trip], start=20 * STEP, most_wait=30 * STEP) == 0.0
-    assert break_even_power([trip], start=0.0, most_wait=30 * STEP, largest=500.0) == np.inf
+    assert break_even_power([trip], start=20 * STEP, max_wait=30 * STEP) == 0.0
+    assert break_even_power([trip], start=0.0, max_wait=30 * STEP, largest=500.0) == np.inf
 
 
 def test_a_study_is_a_table_of_plans():
     rng = np.random.default_rng(1)
     trips = [table(rng, 40, name="there"), table(rng, 40, name="back")] * 2
-    study = waiting_study(trips, starts=[0.0, 600.0], most_waits=[0.0, 300.0, 900.0])
+    study = waiting_study(trips, starts=[0.0, 600.0], max_waits=[0.0, 300.0, 900.0])
     frame = study.to_frame()
     assert len(frame) == 4 * 2 * 3
     assert (study.saving("none") == 0.0).all()
@@ -179,12 +183,12 @@ def test_what_cannot_be_is_refused():
         with pytest.raises(InputError):
             plan_waiting(wrong.pop("trips"), start=0.0, **wrong)
     with pytest.raises(InputError):
-        waiting_study([trip], starts=[], most_waits=[0.0])
+        waiting_study([trip], starts=[], max_waits=[0.0])
     never = TripTable("c", 0.0, STEP, *(np.full(5, np.inf),) * 2, np.zeros(5), True)
-    for rule in RULES:
+    for rule in DEPARTURE_RULES:
         with pytest.raises(CoverageError, match="cannot be made at any"):
-            plan_waiting([never], start=0.0, most_wait=0.0, rule=rule)
+            plan_waiting([never], start=0.0, max_wait=0.0, rule=rule)
     ends = table(rng, 10, periodic=False)
-    for rule, start in itertools.product(RULES, (-STEP, 10 * STEP)):
+    for rule, start in itertools.product(DEPARTURE_RULES, (-STEP, 10 * STEP)):
         with pytest.raises(CoverageError):
-            plan_waiting([ends], start=start, most_wait=0.0, rule=rule)
+            plan_waiting([ends], start=start, max_wait=0.0, rule=rule)

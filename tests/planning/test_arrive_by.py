@@ -8,7 +8,7 @@ import pytest
 from thalweg import Chart, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.planning.single import passage
-from thalweg.planning.single.no_route_diagnosis import too_late
+from thalweg.planning.single.no_route_diagnosis import late_arrival_error
 
 KNOT, HOUR, DEPART = 1852.0 / 3600.0, 3600.0, 1767225600.0
 SHIP = Ship.simple(speed_kn=10.0, draught_m=5.0)
@@ -37,7 +37,7 @@ def test_the_shortest_way_is_late_and_another_is_not() -> None:
 
 def test_a_fastest_arrival_in_time_is_not_told_as_too_late() -> None:
     """A search for the least distance keeps one label a node: it may miss a longer, faster way."""
-    error = too_late(DEPART + 10.0 * HOUR, DEPART + 8.0 * HOUR)
+    error = late_arrival_error(DEPART + 10.0 * HOUR, DEPART + 8.0 * HOUR)
     assert error.asked == "The shortest way does not arrive by 2026-01-01T10:00:00Z."
     assert error.possible == "The fastest arrives at 2026-01-01T08:00:00Z."
 
@@ -47,14 +47,14 @@ def test_a_route_that_the_referee_finds_late_is_not_told_as_in_time(monkeypatch)
     hours = float(distance(0.0, 0.0, 0.0, 2.0)) / (10.0 * KNOT) / HOUR
     latest = DEPART + (hours + 0.5) * HOUR
     assert plan(Voyage(**ENDS, arrive_by=latest), **given).best.arrive <= latest
-    refined = passage.refined
+    refined = passage.refine_track
 
-    def slower(task, track, limits):
-        route = refined(task, track, limits)
+    def slower(context, track, limits):
+        route = refined(context, track, limits)
         legs = {**route.legs, "arrive": route.legs["arrive"] + HOUR}
         return dataclasses.replace(route, legs=legs)
 
-    monkeypatch.setattr(passage, "refined", slower)
+    monkeypatch.setattr(passage, "refine_track", slower)
     with pytest.raises(NoRouteError, match="No route arrives by") as caught:
         plan(Voyage(**ENDS, arrive_by=latest), **given)
     assert "earliest arrival is 2026-01-01T13:0" in caught.value.possible

@@ -6,14 +6,14 @@ import pytest
 from tests.conftest import data_file
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.planning.plots.route_profile import draw_profile
-from thalweg.planning.plots.voyage_map import Box, draw_map
+from thalweg.planning.plots.voyage_map import MapExtent, draw_map
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 
 
 @pytest.mark.parametrize("turns", [-360.0, 0.0, 360.0])
 def test_a_line_longer_than_half_the_world_has_no_jump(turns):
-    box = Box(-30.0, 89.0, -260.0, 20.0)
+    box = MapExtent(-30.0, 89.0, -260.0, 20.0)
     lon = np.linspace(4.0, -250.0, 60)
     wrapped = (lon + 180.0) % 360.0 - 180.0 + turns
     assert box.line(wrapped) == pytest.approx(lon)

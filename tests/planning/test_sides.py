@@ -5,8 +5,8 @@ import pytest
 
 from tests.reference.test_floro_santander_seuren_2020 import GOAL, SHIP, START, WAYS
 from thalweg import Chart, Sea, Ship, evaluate
-from thalweg.network import line
-from thalweg.planning.pareto.route_names import LANDS, name_of, names_of_ways
+from thalweg.network import fixed_route
+from thalweg.planning.pareto.route_names import LANDMASSES, land_name, route_labels
 from thalweg.route import Route
 
 SLOW = Ship.simple(speed_kn=10.0, draught_m=5.0)
@@ -31,7 +31,9 @@ def told(chart, *ways, names=None):
     """Return the names of ways over the Gulf of Guinea, the first of them the network."""
     routes = [sailed(way, chart) for way in ways]
     names = names or ["open sea"] * len(routes)
-    return names_of_ways(routes, names, {names[0]: line(chart, ways[0], spacing=50_000.0)}, chart)
+    return route_labels(
+        routes, names, {names[0]: fixed_route(chart, ways[0], spacing=50_000.0)}, chart
+    )
 
 
 WEST, EAST = (0.0, -2.0), (0.0, 2.0)
@@ -76,8 +78,8 @@ def test_every_way_between_two_islands_has_a_name_of_its_own():
 def test_the_three_ways_from_floro_to_santander():
     chart = Chart.gshhg("i")
     routes = [sailed([START, *middle, GOAL], chart, SHIP) for middle in WAYS.values()]
-    network = line(chart, [START, *WAYS["R3"], GOAL], spacing=100_000.0)
-    names = names_of_ways(routes, ["open sea"] * 3, {"open sea": network}, chart)
+    network = fixed_route(chart, [START, *WAYS["R3"], GOAL], spacing=100_000.0)
+    names = route_labels(routes, ["open sea"] * 3, {"open sea": network}, chart)
     assert names[0].startswith("east of Great Britain")  # by Dover
     assert names[1] == "west of Great Britain, east of Skye"  # by Kyle Rhea
     assert names[2] == "west of Great Britain, west of Skye"  # by the Minch
@@ -90,7 +92,7 @@ def test_land_has_its_name(name):
     found = []
     for a, b in zip(rings.start[:-1], rings.start[1:]):
         lat, lon = rings.lat[a:b], np.degrees(np.unwrap(np.radians(rings.lon[a:b])))
-        if name_of(lat, lon) == name:
+        if land_name(lat, lon) == name:
             found.append((lat, lon))
     assert len(found) == 1
-    assert found[0][0].min() < LANDS[name][0] < found[0][0].max()
+    assert found[0][0].min() < LANDMASSES[name][0] < found[0][0].max()

@@ -8,7 +8,10 @@ import pytest
 from thalweg import Chart, Sea, Ship, Voyage, evaluate, plan
 from thalweg.core.errors import InputError
 from thalweg.planning.plots.channel_closures import find_closures
-from thalweg.planning.plots.space_time_diagram import draw_st, write_st
+from thalweg.planning.plots.space_time_diagram import (
+    draw_space_time_diagram,
+    write_space_time_diagram,
+)
 
 M2 = 12.4206012 * 3600.0
 LOW = 1767236400.0  # 2026-01-01T03:00Z
@@ -126,29 +129,31 @@ def test_the_ship_keeps_out_of_what_is_closed(waiting) -> None:
 
 
 def test_pictures_of_plans_and_routes(waiting, tmp_path) -> None:
-    figure = draw_st(waiting, tmp_path / "plan.png")
+    figure = draw_space_time_diagram(waiting, tmp_path / "plan.png")
     told = [text.get_text() for text in figure.legends[0].get_texts()]
     assert told == ["too little water", "ship", f"waits {waiting.best.waiting_h:.2f} h in all",
                     "arrive by"]  # fmt: skip
     left, right = figure.axes[0].get_xlim()
     assert left < 0.0 and right > 7.5  # the latest arrival is in the picture
     assert (tmp_path / "plan.png").stat().st_size > 10_000
-    draw_st(waiting.best, tmp_path / "route.png", ship=SHIP, sea=bar(), min_ukc=1.0)
+    draw_space_time_diagram(waiting.best, tmp_path / "route.png", ship=SHIP, sea=bar(), min_ukc=1.0)
     assert (tmp_path / "route.png").exists()
     with pytest.raises(InputError, match="not given"):
-        draw_st(waiting.best)
+        draw_space_time_diagram(waiting.best)
 
 
 def test_it_is_written_only_where_the_tide_matters(waiting, tmp_path) -> None:
-    assert write_st(waiting, tmp_path) == [tmp_path / "st.png"]
+    assert write_space_time_diagram(waiting, tmp_path) == [tmp_path / "st.png"]
     deep = Sea.from_functions(
         {BED: lambda t, y, x: 30.0 + 0.0 * y, LEVEL: lambda t, y, x: tide(t) + 0.0 * y}
     )
     voyage = Voyage(start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW, min_ukc_m=1.0)
     chart = Chart.open_water(*AREA)
-    assert write_st(plan(voyage, ship=SHIP, sea=deep, chart=chart), tmp_path) == []
+    assert write_space_time_diagram(plan(voyage, ship=SHIP, sea=deep, chart=chart), tmp_path) == []
     calm = Voyage(start=(51.71, 3.45), goal=(51.77, 3.70), depart=LOW)
-    assert write_st(plan(calm, ship=SHIP, sea=Sea.calm(), chart=chart), tmp_path) == []
+    assert (
+        write_space_time_diagram(plan(calm, ship=SHIP, sea=Sea.calm(), chart=chart), tmp_path) == []
+    )
 
 
 def test_a_window_of_departure_is_drawn() -> None:
@@ -157,5 +162,5 @@ def test_a_window_of_departure_is_drawn() -> None:
         depart_window=("2026-01-01T03:00Z", "2026-01-01T09:00Z"),
     )  # fmt: skip
     found = plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA))
-    figure = draw_st(found)
+    figure = draw_space_time_diagram(found)
     assert "departure window" in [text.get_text() for text in figure.legends[0].get_texts()]

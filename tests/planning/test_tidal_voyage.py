@@ -7,7 +7,7 @@ import xarray as xr
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.time import parse_time
 from thalweg.sea import standard_names as nm
-from thalweg.sea.models.stratified_coast import north_sea_current
+from thalweg.sea.models.stratified_coast import stratified_coast_current
 from thalweg.sea.tides.constituents import Constituents
 
 AREA = (51.6, 51.9, 3.40, 3.75)
@@ -40,7 +40,7 @@ def test_a_bar_is_crossed_when_the_tide_of_that_day_allows(gauge):
 
 
 def test_waiting_for_the_flood_along_the_coast_pays_in_time():
-    coast = north_sea_current(
+    coast = stratified_coast_current(
         "spring", coast=(51.75, 4.0), onshore_deg=90.0, flood="2031-07-05T06:00Z", draught=5.0
     )
     sea = Sea.from_functions(coast)

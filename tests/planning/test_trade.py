@@ -9,8 +9,8 @@ import pytest
 from thalweg import Chart, InputError, NoRouteError, Sea, Ship, Voyage, plan
 from thalweg.core.geodesy import distance
 from thalweg.core.time import parse_time
-from thalweg.network import line
-from thalweg.planning.ensemble_plan import MOST_SAILED, _picked
+from thalweg.network import fixed_route
+from thalweg.planning.ensemble_plan import MAX_EVALUATED_ROUTES, _routes_to_evaluate
 
 START, GOAL = (0.0, 0.0), (0.0, 2.0)
 CHART = Chart.open_water(-1.0, 1.0, -0.5, 2.5)
@@ -240,8 +240,8 @@ def test_a_voyage_with_prices_round_trips(tmp_path):
 def test_of_a_plan_for_least_fuel_the_cheapest_routes_are_sailed_in_all_members():
     """They come with the best first and the rest by time: the first ten would be the fastest."""
     answer = still("fuel", cubic_ship(), method="exact")
-    picked = _picked(answer)
-    assert len(answer.routes) > MOST_SAILED == len(picked)
+    picked = _routes_to_evaluate(answer)
+    assert len(answer.routes) > MAX_EVALUATED_ROUTES == len(picked)
     assert picked[0] == 0
     left_out = np.delete(answer.front.values, picked)
     assert answer.front.values[picked].max() <= left_out.min()
@@ -285,7 +285,9 @@ def test_a_speed_that_waves_forbid_leaves_the_slower_ones():
         ship=ship,
         sea=sea,
         chart=CHART,
-        network=lambda chart, start, goal, spacing: line(chart, [start, goal], spacing=10_000.0),
+        network=lambda chart, start, goal, spacing: fixed_route(
+            chart, [start, goal], spacing=10_000.0
+        ),
     )
     assert all(route.feasible for route in found.routes)
     assert found.best.time_h == pytest.approx(LENGTH / (18.0 * KNOT) / HOUR, rel=2e-3)

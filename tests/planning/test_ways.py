@@ -5,10 +5,14 @@ import pytest
 
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.errors import NoRouteError
-from thalweg.network import check_network, lattice, shortest
-from thalweg.network.network_concatenation import Link, joined
-from thalweg.planning.request.chart_restrictions import NORTHERN, open_canals, without_ice
-from thalweg.planning.request.voyage_endpoints import End
+from thalweg.network import check_network, lattice, shortest_path
+from thalweg.network.network_concatenation import CanalLink, concatenate_networks
+from thalweg.planning.request.chart_restrictions import (
+    ICE_LIMIT_NORTH,
+    exclude_closed_canals,
+    exclude_ice_latitudes,
+)
+from thalweg.planning.request.voyage_endpoints import Endpoint
 
 SHIP = Ship.simple(speed_kn=12.0, draught_m=5.0)
 CHART = Chart.gshhg("i")
@@ -20,12 +24,12 @@ def network(start, goal, **more):
 
 
 def length(net):
-    return shortest(net, net.meta.start, net.meta.goal)[0][net.meta.goal]
+    return shortest_path(net, net.meta.start, net.meta.goal)[0][net.meta.goal]
 
 
 def test_joined_networks_are_as_long_as_their_parts():
     parts = [network((0.0, 0.0), (1.0, 2.0)), network((1.0, 2.0), (0.0, 4.0))]
-    whole = joined(parts, [None])
+    whole = concatenate_networks(parts, [None])
     check_network(whole)
     assert whole.n_nodes == parts[0].n_nodes + parts[1].n_nodes - 1
     assert length(whole) == pytest.approx(sum(length(part) for part in parts), rel=1e-12)
@@ -33,8 +37,8 @@ def test_joined_networks_are_as_long_as_their_parts():
 
 def test_a_canal_between_networks_takes_its_time_and_fee():
     parts = [network((0.0, 0.0), (0.0, 1.0)), network((0.0, 1.5), (0.0, 3.0))]
-    link = Link(80_000.0, 36_000.0, 5_000.0)
-    whole = joined(parts, [link])
+    link = CanalLink(80_000.0, 36_000.0, 5_000.0)
+    whole = concatenate_networks(parts, [link])
     check_network(whole)
     canal = np.flatnonzero(np.isfinite(whole.fixed_time))
     assert len(canal) == 1
@@ -61,16 +65,16 @@ def test_the_kiel_canal_is_taken_unless_forbidden():
 
 
 def test_a_deep_ship_does_not_pass_a_shallow_canal():
-    ends = [End("a", *ELBE, 0.0), End("b", *GDANSK, 0.0)]
+    ends = [Endpoint("a", *ELBE, 0.0), Endpoint("b", *GDANSK, 0.0)]
     voyage = Voyage(start=ELBE, goal=GDANSK, depart="2026-01-01T00:00Z")
-    chart, notes = open_canals(CHART, voyage, Ship.simple(draught_m=12.0), ends)
+    chart, notes = exclude_closed_canals(CHART, voyage, Ship.simple(draught_m=12.0), ends)
     assert "kiel" not in [canal.name for canal in chart.canals]
     assert "suez" in [canal.name for canal in chart.canals]
     assert len(notes) == 1 and "Kiel Canal" in notes[0] and "draught of 12 m" in notes[0]
 
 
 def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
-    ends = [End("a", *ELBE, 0.0), End("b", *GDANSK, 0.0)]
+    ends = [Endpoint("a", *ELBE, 0.0), Endpoint("b", *GDANSK, 0.0)]
     data = {
         "name": "x", "hull": {"draught_m": 5.0}, "speeds_kn": [8.0, 12.0],
         "fuel": {"reference_t_per_day": 24.0, "price_per_t": 500.0},
@@ -81,7 +85,7 @@ def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
         ship = Ship.from_dict({**data, "fuel": {**data["fuel"], "currency": currency}})
         depart = "2026-01-01T00:00Z"
         voyage = Voyage(start=ELBE, goal=GDANSK, depart=depart, objective=objective)
-        chart, notes = open_canals(CHART, voyage, ship, ends)
+        chart, notes = exclude_closed_canals(CHART, voyage, ship, ends)
         return "kiel" in [canal.name for canal in chart.canals], notes
 
     assert passed("USD", "cost") == (True, [])
@@ -93,12 +97,14 @@ def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
 
 def test_ice_is_left_out_unless_the_voyage_goes_there():
     def reach(lat):
-        chart = without_ice(CHART, [End("a", 60.0, 0.0, 0.0), End("b", lat, 10.0, 0.0)])
+        chart = exclude_ice_latitudes(
+            CHART, [Endpoint("a", 60.0, 0.0, 0.0), Endpoint("b", lat, 10.0, 0.0)]
+        )
         return chart.is_navigable(np.array([73.0, 79.5]), np.array([10.0, 5.0])).tolist()
 
     assert reach(62.0) == [False, False]
     assert reach(78.0) == [True, True]
-    assert NORTHERN < 72.0  # Bellot Strait, the way round the north of America
+    assert ICE_LIMIT_NORTH < 72.0  # Bellot Strait, the way round the north of America
 
 
 def test_no_way_without_canals_is_said():

@@ -32,7 +32,7 @@ from thalweg.ship.methods.propulsion.b_series import (
 from thalweg.ship.methods.propulsion.propulsion_factors import propulsion
 from thalweg.ship.methods.resistance.hollenbach import hollenbach_1998, hollenbach_validity
 from thalweg.ship.methods.resistance.holtrop_form import hull_form
-from thalweg.ship.methods.resistance.holtrop_mennen import Extremities, holtrop
+from thalweg.ship.methods.resistance.holtrop_mennen import BulbTransomAppendages, holtrop
 from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
     karpov_speed,
     lackenby_1963_speed_loss,
@@ -50,7 +50,7 @@ HULL = hull_form(
     waterplane_coefficient=0.83,
     lcb_percent=0.5,
 )
-ENDS = Extremities(20.0, 4.0, 10.0, 50.0, 1.5, 5.0)
+ENDS = BulbTransomAppendages(20.0, 4.0, 10.0, 50.0, 1.5, 5.0)
 HOLLENBACH = {
     "length_between_perpendiculars": 169.0,
     "length_waterline": 172.0,
@@ -73,9 +73,11 @@ FUJIWARA = FujiwaraShip(178.0, 32.0, 800.0, 2000.0, 500.0, 28.0, 0.0, 8.0)
 PROPELLER = Propeller(6.0, 0.9, 0.6, 4)
 
 CALM = {
-    "holtrop_1982": lambda v, rho=1025.0: holtrop(v, HULL, extremities=ENDS, density=rho),
+    "holtrop_1982": lambda v, rho=1025.0: holtrop(
+        v, HULL, bulb_transom_appendages=ENDS, density=rho
+    ),
     "holtrop_1984": lambda v, rho=1025.0: holtrop(
-        v, HULL, year=1984, extremities=ENDS, density=rho
+        v, HULL, year=1984, bulb_transom_appendages=ENDS, density=rho
     ),
     **{
         f"hollenbach_{variant}": lambda v, rho=1025.0, variant=variant: hollenbach_1998(

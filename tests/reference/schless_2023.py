@@ -10,7 +10,7 @@ from thalweg.core.geodesy import direct
 from thalweg.operations.waiting.trip_durations import trip_table
 from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.sea import Sea
-from thalweg.sea.models.stratified_coast import Scenario, north_sea_current
+from thalweg.sea.models.stratified_coast import TidalEllipse, stratified_coast_current
 from thalweg.ship import Ship
 
 COAST = (52.1, 4.26)
@@ -44,9 +44,9 @@ def offshore(distance: float) -> tuple[float, float]:
     return float(lat), float(lon)
 
 
-def waters(scenario: Scenario, *, decay: float, depth, density_gradient: float = 0.0) -> Sea:
+def waters(scenario: TidalEllipse, *, decay: float, depth, density_gradient: float = 0.0) -> Sea:
     """Return the prescribed ellipse, alike over the draught; strongest northward at time 0."""
-    current = north_sea_current(
+    current = stratified_coast_current(
         scenario,
         coast=COAST,
         onshore_deg=90.0,
@@ -58,7 +58,7 @@ def waters(scenario: Scenario, *, decay: float, depth, density_gradient: float =
 
 
 @cache
-def nourishment(scenario: Scenario, *, rudder: bool = True) -> tuple[TripTable, TripTable]:
+def nourishment(scenario: TidalEllipse, *, rudder: bool = True) -> tuple[TripTable, TripTable]:
     """Return the trips of Table 4.10: full from 20 km offshore to the coast, and empty back."""
     far = offshore(20e3)
 

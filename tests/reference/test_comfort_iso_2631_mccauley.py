@@ -32,13 +32,13 @@ def test_dose_of_two_hours():
     """0.5 m/s2 for two hours: 42.43 m/s^1.5, 14.1 % of people."""
     dose = motion_sickness.motion_sickness_dose(0.5, duration=7200.0)
     assert dose == pytest.approx(42.43, abs=5e-3)
-    assert motion_sickness.sick_percent_iso(dose) == pytest.approx(14.1, abs=0.05)
-    parts = motion_sickness.dose_of_voyage([0.5, 0.5, 0.0], durations=[3600.0, 3600.0, 9000.0])
+    assert motion_sickness.motion_sickness_percent_iso(dose) == pytest.approx(14.1, abs=0.05)
+    parts = motion_sickness.combined_dose([0.5, 0.5, 0.0], durations=[3600.0, 3600.0, 9000.0])
     assert parts == pytest.approx(dose)
 
 
 def test_never_more_than_everyone():
-    assert motion_sickness.sick_percent_iso(1e4) == 100.0
+    assert motion_sickness.motion_sickness_percent_iso(1e4) == 100.0
 
 
 @pytest.mark.parametrize(
@@ -47,30 +47,36 @@ def test_never_more_than_everyone():
      (0.1, 0.17, 30, 15.14)],
 )  # fmt: skip
 def test_mccauley(a, f, minutes, percent):
-    got = motion_sickness.sick_percent_mccauley(
+    got = motion_sickness.motion_sickness_percent_mccauley(
         a * 9.81, frequency_hz=f, duration=60.0 * minutes, gravity=9.81
     )
     assert got == pytest.approx(percent, abs=5.1e-3)
 
 
 def test_ohanlon():
-    got = motion_sickness.sick_percent_ohanlon(
+    got = motion_sickness.motion_sickness_percent_ohanlon(
         0.981, encounter_frequency=2.0 * np.pi * 0.17, gravity=9.81
     )
     assert got == pytest.approx(24.1, abs=0.05)
     middle = -0.819 + 2.32 * np.log10(2.5) ** 2
     level = (np.log10(np.sqrt(2.0 / np.pi) * 0.2) - middle) / 0.4
-    fast = motion_sickness.sick_percent_ohanlon(0.2 * 9.81, encounter_frequency=2.5, gravity=9.81)
+    fast = motion_sickness.motion_sickness_percent_ohanlon(
+        0.2 * 9.81, encounter_frequency=2.5, gravity=9.81
+    )
     assert fast == pytest.approx(50.0 * (1.0 + math.erf(level / math.sqrt(2.0))), rel=1e-9)
 
 
 def test_no_motion_nobody_sick_and_unknown_stays_unknown():
-    sick = motion_sickness.sick_percent_mccauley([0.0, np.nan], frequency_hz=0.2, duration=3600.0)
+    sick = motion_sickness.motion_sickness_percent_mccauley(
+        [0.0, np.nan], frequency_hz=0.2, duration=3600.0
+    )
     assert sick[0] == 0.0
     assert np.isnan(sick[1])
-    still = motion_sickness.sick_percent_mccauley(1.0, frequency_hz=[0.0, np.nan], duration=3600.0)
+    still = motion_sickness.motion_sickness_percent_mccauley(
+        1.0, frequency_hz=[0.0, np.nan], duration=3600.0
+    )
     np.testing.assert_array_equal(still, [0.0, np.nan])
-    sick = motion_sickness.sick_percent_ohanlon([0.0, np.nan], encounter_frequency=1.0)
+    sick = motion_sickness.motion_sickness_percent_ohanlon([0.0, np.nan], encounter_frequency=1.0)
     assert sick[0] == 0.0
     assert np.isnan(sick[1])
 
@@ -83,5 +89,5 @@ def test_weighted_acceleration_of_one_sinusoid():
 
 def test_people_are_sickest_near_one_radian_per_second():
     w = np.linspace(0.3, 4.0, 371)
-    sick = motion_sickness.sick_percent_ohanlon(0.5, encounter_frequency=w)
+    sick = motion_sickness.motion_sickness_percent_ohanlon(0.5, encounter_frequency=w)
     assert w[np.argmax(sick)] == pytest.approx(1.0, abs=0.02)

@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import linprog
 
 from thalweg.chart import Chart
-from thalweg.core.geodesy import along
+from thalweg.core.geodesy import positions_along
 from thalweg.core.units import DAY, NAUTICAL_MILE, TONNE
 from thalweg.planning import Voyage, plan
 from thalweg.route import Route, Track, evaluate, polish
@@ -86,12 +86,12 @@ def fastest(chart) -> dict[str, Route]:
     for name, middle in WAYS.items():
         places = np.array([START, *middle, GOAL])
         lat, lon = places.T
-        share = chart.eca_share(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        share = chart.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
         cut = [tuple(places[0])]
         for k, part in enumerate(share):
             if 1e-6 < part < 1.0 - 1e-6:
                 at = part if chart.in_eca(*places[k]) else 1.0 - part
-                cut.append(tuple(float(x) for x in along(*places[k], *places[k + 1], at)))
+                cut.append(tuple(float(x) for x in positions_along(*places[k], *places[k + 1], at)))
             cut.append(tuple(places[k + 1]))
         found[name] = as_route(Track.from_positions(cut, depart=0), chart)
     return found
@@ -128,7 +128,7 @@ def at_mix(route: Route, inside: np.ndarray, mix: dict[bool, np.ndarray]) -> Tra
             parts[setting] -= piece
             done, rest = done + piece, rest - piece
             ends = (*track.positions[leg], *track.positions[leg + 1])
-            at = along(*ends, done / length) if rest > 1e-3 else ends[2:]
+            at = positions_along(*ends, done / length) if rest > 1e-3 else ends[2:]
             places.append((float(at[0]), float(at[1])))
             settings.append(setting)
     lat, lon = np.array(places).T
@@ -137,7 +137,7 @@ def at_mix(route: Route, inside: np.ndarray, mix: dict[bool, np.ndarray]) -> Tra
 
 def zones_of(route: Route, chart: Chart) -> tuple[np.ndarray, dict[bool, float]]:
     track = route.track
-    share = chart.eca_share(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    share = chart.eca_fraction(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
     inside = share > 0.5
     length = route.legs["length"]
     return inside, {True: float(length[inside].sum()), False: float(length[~inside].sum())}

@@ -76,10 +76,10 @@ def test_names():
 
 def test_same_heat():
     mgo, hfo = fuel_properties.FUELS["mgo"], fuel_properties.FUELS["hfo"]
-    assert fuel_properties.same_heat_mass(100.0, of=hfo, to=mgo) == pytest.approx(
+    assert fuel_properties.equal_energy_mass(100.0, of=hfo, to=mgo) == pytest.approx(
         100.0 * 40.2 / 42.7
     )
-    assert fuel_properties.same_heat_mass(5.0, of=hfo, to=hfo) == 5.0
+    assert fuel_properties.equal_energy_mass(5.0, of=hfo, to=hfo) == 5.0
 
 
 def test_switching_all_none_half():

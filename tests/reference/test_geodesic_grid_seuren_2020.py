@@ -9,7 +9,7 @@ import pytest
 
 from thalweg.chart import Chart
 from thalweg.kernels.network.static_paths import connected_waters
-from thalweg.network.global_grid.grid import Fineness, make_grid
+from thalweg.network.global_grid.grid import GridResolution, make_grid
 from thalweg.network.global_grid.icosphere import icosphere
 
 RADIUS = 3440.0695
@@ -67,7 +67,7 @@ def water_at(grid, root, place):
 
 @pytest.mark.parametrize(("coast_levels", "joined"), [(0, False), (3, True)])
 def test_gibraltar_is_closed_at_level_6_and_open_with_3_more(coast_levels, joined):
-    grid = make_grid(Chart.gshhg("i"), Fineness(6, coast_levels, directions=6))
+    grid = make_grid(Chart.gshhg("i"), GridResolution(6, coast_levels, directions=6))
     root = connected_waters(len(grid.lat), grid.pairs.first, grid.pairs.second)
     atlantic, inside = (water_at(grid, root, place) for place in (ATLANTIC, MEDITERRANEAN))
     assert np.sum(root == inside) > 50

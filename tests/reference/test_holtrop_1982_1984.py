@@ -14,7 +14,7 @@ from thalweg.ship.methods.resistance.holtrop_form import (
     wetted_surface,
 )
 from thalweg.ship.methods.resistance.holtrop_mennen import (
-    Extremities,
+    BulbTransomAppendages,
     bulb_resistance,
     correlation_coefficient,
     holtrop,
@@ -36,7 +36,7 @@ SHIP = hull_form(
     waterplane_coefficient=0.75,
     lcb_percent=-0.75,
 )
-ENDS = Extremities(
+ENDS = BulbTransomAppendages(
     bulb_area=20.0,
     bulb_centre_height=4.0,
     transom_area=16.0,
@@ -71,7 +71,7 @@ def test_1982_example_coefficients_as_printed():
 
 
 def test_1982_example_components_as_printed():
-    got = holtrop(25 * KNOT, SHIP, extremities=ENDS, **WATER)
+    got = holtrop(25 * KNOT, SHIP, bulb_transom_appendages=ENDS, **WATER)
     printed = {"friction": 869.63, "appendage": 8.83, "bulb": 0.049, "transom": 0.0}
     printed |= {"wave_making": 557.11, "correlation": 221.98, "total": 1793.26}
     for name, value in printed.items():
@@ -80,8 +80,8 @@ def test_1982_example_components_as_printed():
 
 def test_the_correlation_is_taken_over_hull_and_appendages():
     """222.07 kN, or 220.57 over the hull alone, which misses the printed 221.98 by 0.64 %."""
-    both = holtrop(25 * KNOT, SHIP, extremities=ENDS, **WATER)
-    hull = holtrop(25 * KNOT, SHIP, extremities=ENDS, correlation_area="hull", **WATER)
+    both = holtrop(25 * KNOT, SHIP, bulb_transom_appendages=ENDS, **WATER)
+    hull = holtrop(25 * KNOT, SHIP, bulb_transom_appendages=ENDS, correlation_area="hull", **WATER)
     area = float(wetted_surface(SHIP, bulb_area=20.0))
     assert both.correlation / hull.correlation == pytest.approx(1.0 + 50.0 / area, rel=1e-9)
     assert both.correlation / 1000.0 == pytest.approx(221.98, rel=5e-4)
@@ -89,7 +89,7 @@ def test_the_correlation_is_taken_over_hull_and_appendages():
 
 
 def test_1982_example_against_an_independent_calculation():
-    got = holtrop(25 * KNOT, SHIP, extremities=ENDS, correlation_area="hull", **WATER)
+    got = holtrop(25 * KNOT, SHIP, bulb_transom_appendages=ENDS, correlation_area="hull", **WATER)
     expected = {
         "friction": 869640.50999445,
         "form_factor": 0.15644425 * 869640.50999445,
@@ -105,7 +105,7 @@ def test_1982_example_against_an_independent_calculation():
 
 
 SPEEDS_1984 = np.array([25.0, 27.0, 29.0, 31.0, 33.0, 35.0]) * KNOT
-ENDS_1984 = Extremities(transom_area=10.0, appendage_area=50.0, appendage_factor=3.0)
+ENDS_1984 = BulbTransomAppendages(transom_area=10.0, appendage_area=50.0, appendage_factor=3.0)
 
 
 def _fast(**more):
@@ -113,7 +113,7 @@ def _fast(**more):
         SPEEDS_1984,
         FAST,
         year=1984,
-        extremities=ENDS_1984,
+        bulb_transom_appendages=ENDS_1984,
         draught_fore=3.1,
         entrance_angle_deg=25.0,
         **WATER,

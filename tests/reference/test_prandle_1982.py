@@ -14,12 +14,12 @@ from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm
 from thalweg.sea.models.current_profiles import WaterColumn, tidal_mean, tidal_profile
 from thalweg.sea.models.stratified_coast import (
-    DECAY,
+    DECAY_LENGTH,
     M2_PERIOD,
-    SCENARIOS,
-    Scenario,
-    north_sea_current,
-    phasors,
+    TIDAL_ELLIPSES,
+    TidalEllipse,
+    ellipse_phasors,
+    stratified_coast_current,
 )
 
 TABLE_2_1 = WaterColumn()  # Schless (2023), Table 2.1
@@ -117,20 +117,22 @@ def test_surface_ellipse_of_a_rectilinear_depth_mean():
 
 
 def test_scenarios_are_those_of_table_4_9():
-    assert [s.ellipticity for s in SCENARIOS.values()] == pytest.approx(
+    assert [s.ellipticity for s in TIDAL_ELLIPSES.values()] == pytest.approx(
         [1 / 2, 1 / 4, 1 / 8, 1 / 16]
     )
-    assert [s.alongshore for s in SCENARIOS.values()] == pytest.approx([0.7, 0.8, 0.9, 1.0])
+    assert [s.alongshore for s in TIDAL_ELLIPSES.values()] == pytest.approx([0.7, 0.8, 0.9, 1.0])
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", TIDAL_ELLIPSES)
 def test_surface_current_runs_through_the_ellipse_clockwise(name):
     sea = Sea.from_functions(
-        north_sea_current(name, coast=(52.0, 4.0), onshore_deg=90.0, flood=0.0, density_gradient=0)
+        stratified_coast_current(
+            name, coast=(52.0, 4.0), onshore_deg=90.0, flood=0.0, density_gradient=0
+        )
     )
     quarter = np.arange(4) * M2_PERIOD / 4.0
     found = sea.sample(list(nm.CURRENT.pair), quarter, 52.0, 4.0)
-    along, across = SCENARIOS[name].alongshore, SCENARIOS[name].cross_shore
+    along, across = TIDAL_ELLIPSES[name].alongshore, TIDAL_ELLIPSES[name].cross_shore
     east, north = (found[n] for n in nm.CURRENT.pair)
     assert north == pytest.approx([along, 0.0, -along, 0.0], abs=1e-9)
     assert east == pytest.approx([0.0, across, 0.0, -across], abs=1e-9)
@@ -138,7 +140,7 @@ def test_surface_current_runs_through_the_ellipse_clockwise(name):
 
 def test_current_fades_offshore_and_turns_with_the_coast():
     """A coast that faces south-west: onshore is north-east (45 degrees), along it north-west."""
-    functions = north_sea_current(
+    functions = stratified_coast_current(
         "spring", coast=(52.0, 4.0), onshore_deg=45.0, flood=0.0, density_gradient=0
     )
     east, north = (functions[n] for n in nm.CURRENT.pair)
@@ -146,7 +148,7 @@ def test_current_fades_offshore_and_turns_with_the_coast():
     lat = 52.0 - np.degrees(offshore * np.sqrt(0.5) / 6371008.8)
     lon = 4.0 - np.degrees(offshore * np.sqrt(0.5) / 6371008.8 / np.cos(np.radians(52.0)))
     point = np.zeros(1), np.array([lat]), np.array([lon])
-    expected = np.exp(-offshore / DECAY) * np.sqrt(0.5)
+    expected = np.exp(-offshore / DECAY_LENGTH) * np.sqrt(0.5)
     assert east(*point) == pytest.approx(-expected, rel=1e-9)
     assert north(*point) == pytest.approx(expected, rel=1e-9)
     on_land = np.zeros(1), np.array([53.0]), np.array([6.0])
@@ -154,9 +156,9 @@ def test_current_fades_offshore_and_turns_with_the_coast():
 
 
 def test_draught_takes_the_mean_of_the_profile():
-    deep = phasors("neap", WaterColumn(), 25.0)
-    shallow = phasors("neap", WaterColumn(), 5.0)
-    surface = phasors("neap", WaterColumn(), 0.0)
+    deep = ellipse_phasors("neap", WaterColumn(), 25.0)
+    shallow = ellipse_phasors("neap", WaterColumn(), 5.0)
+    surface = ellipse_phasors("neap", WaterColumn(), 0.0)
     assert abs(surface[0]) == pytest.approx(0.175)
     assert abs(surface[1]) == pytest.approx(0.525)
     assert abs(deep[1]) == pytest.approx(0.525 / abs(CHECKS[25.0][1]))
@@ -170,9 +172,9 @@ def test_draught_takes_the_mean_of_the_profile():
         lambda: WaterColumn(viscosity=float("nan")),
         lambda: tidal_profile(26.0, TABLE_2_1),
         lambda: tidal_mean(26.0, TABLE_2_1),
-        lambda: phasors("nep", TABLE_2_1),
-        lambda: phasors(Scenario(0.3, 0.5), TABLE_2_1),
-        lambda: north_sea_current(coast=(52, 4), onshore_deg=90, flood=0.0, decay=0.0),
+        lambda: ellipse_phasors("nep", TABLE_2_1),
+        lambda: ellipse_phasors(TidalEllipse(0.3, 0.5), TABLE_2_1),
+        lambda: stratified_coast_current(coast=(52, 4), onshore_deg=90, flood=0.0, decay=0.0),
     ],
 )
 def test_nonsense_is_refused(make):

@@ -16,10 +16,10 @@ import pytest
 
 from tests.reference.schless_2023 import COAST, GENERATOR, TIDE, dredger, offshore, waters
 from thalweg.operations.waiting.trip_durations import trip_table
-from thalweg.sea.models.stratified_coast import SCENARIOS
+from thalweg.sea.models.stratified_coast import TIDAL_ELLIPSES
 from thalweg.ship.methods.propulsion.propulsion_factors import Efficiencies
 from thalweg.ship.methods.resistance.holtrop_form import hull_form, wetted_surface
-from thalweg.ship.methods.resistance.holtrop_mennen import Extremities, holtrop
+from thalweg.ship.methods.resistance.holtrop_mennen import BulbTransomAppendages, holtrop
 from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
     karpov_speed,
     zeng_2019_friction,
@@ -47,7 +47,7 @@ def resistance(speed, depth, draught, drift_deg):
         speed,
         hull,
         year=1984,
-        extremities=Extremities(
+        bulb_transom_appendages=BulbTransomAppendages(
             bulb_area=section * MIDSHIP,
             bulb_centre_height=0.6 * draught,
             transom_area=section,
@@ -137,7 +137,9 @@ def test_table_4_5(angle_deg, kilowatt_hours, hours):
 
 def test_table_4_6():
     """Test case 6, through the ships and seas of the package and at four starting times."""
-    sea = waters(SCENARIOS["neap"], decay=np.inf, depth=lambda time, lat, lon: 20.0 + 0.0 * lat)
+    sea = waters(
+        TIDAL_ELLIPSES["neap"], decay=np.inf, depth=lambda time, lat, lon: 20.0 + 0.0 * lat
+    )
     table = trip_table(
         [offshore(STEPS * STEP), COAST],
         ship=dredger(5.0),

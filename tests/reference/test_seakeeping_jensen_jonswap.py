@@ -50,7 +50,9 @@ def test_peak_factor_of_dnv_and_its_ends():
 @pytest.mark.parametrize(("hs", "tp"), [(2.0, 8.0), (6.0, 11.0), (3.0, 6.0), (2.0, 4.0)])
 def test_fixed_quadrature_keeps_the_height(hs, tp):
     w, weights = spectra.quadrature(tp)
-    m0 = spectra.moment(spectra.jonswap(w, height=hs, period=tp), weights, frequency=w, order=0)
+    m0 = spectra.spectral_moment(
+        spectra.jonswap(w, height=hs, period=tp), weights, frequency=w, order=0
+    )
     assert spectra.significant_height(m0) == pytest.approx(hs, rel=2e-3)
 
 

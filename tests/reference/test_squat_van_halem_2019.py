@@ -26,7 +26,7 @@ CORRECTED = {
 
 def limit(depth, **changes):
     given = {"clearance": 1.0, "gravity": 9.81, "block_coefficient": BLOCK, **HOPPER, **changes}
-    return squat.speed_limit(10.0 * KNOT, depth, **given)
+    return squat.shallow_water_speed_limit(10.0 * KNOT, depth, **given)
 
 
 @pytest.mark.parametrize(("depth", "speed"), CORRECTED.items())
@@ -40,7 +40,7 @@ def test_block_coefficient_of_the_example_is_not_a_thousandth():
 
 def test_the_released_program_is_faster_where_squat_rules():
     """Its squat limit never acts: 3.4749 and 3.5422 m/s at 7.6 and 7.8 m are critical speeds."""
-    critical = squat.critical_speed(10.0 * KNOT, [7.6, 7.8], gravity=9.81, **HOPPER)
+    critical = squat.shallow_water_speed(10.0 * KNOT, [7.6, 7.8], gravity=9.81, **HOPPER)
     assert critical == pytest.approx([3.4749, 3.5422], abs=5.1e-5)
     assert np.all(limit([7.6, 7.8]) < critical)
 
@@ -57,7 +57,7 @@ def test_no_depth_no_speed_and_unknown_stays_unknown():
 
 
 def test_deep_water_gives_the_deep_speed():
-    deep = squat.speed_limit(
+    deep = squat.shallow_water_speed_limit(
         5.0, 5000.0, draught=6.5, breadth=20.0, block_coefficient=0.8, clearance=1.0
     )
     assert 0.999 * 5.0 < deep <= 5.0
@@ -65,13 +65,13 @@ def test_deep_water_gives_the_deep_speed():
 
 def test_infinite_depth_is_deep_water():
     kwargs = {"block_coefficient": 0.8, **HOPPER}
-    assert squat.speed_limit(5.0, np.inf, **kwargs) == pytest.approx(5.0, rel=1e-3)
+    assert squat.shallow_water_speed_limit(5.0, np.inf, **kwargs) == pytest.approx(5.0, rel=1e-3)
     assert squat.barrass_squat(5.0, np.inf, **kwargs) == 0.0
     assert squat.barrass_2004_squat(5.0, np.inf, **kwargs) == 0.0
 
 
 def test_zero_speed_stays_zero():
-    assert squat.critical_speed(0.0, 10.0, **HOPPER) == 0.0
+    assert squat.shallow_water_speed(0.0, 10.0, **HOPPER) == 0.0
     assert squat.barrass_squat(0.0, 10.0, block_coefficient=0.8, **HOPPER) == 0.0
 
 
@@ -91,7 +91,7 @@ def test_barrass_by_hand():
 def test_inverse_of_barrass():
     speeds = np.array([1.0, 3.0, 5.0])
     sunk = squat.barrass_squat(speeds, 9.0, block_coefficient=0.8, **HOPPER)
-    back = squat.speed_for_squat(sunk, 9.0, block_coefficient=0.8, **HOPPER)
+    back = squat.barrass_speed(sunk, 9.0, block_coefficient=0.8, **HOPPER)
     assert back == pytest.approx(speeds, rel=1e-12)
 
 
@@ -103,7 +103,7 @@ def test_a_channel_sinks_the_ship_deeper():
 
 def test_a_narrower_channel_never_lets_the_ship_go_faster():
     widths = np.linspace(20.5, 400.0, 500)
-    speeds = squat.critical_speed(5.0, 9.0, draught=6.5, breadth=20.0, channel_width=widths)
+    speeds = squat.shallow_water_speed(5.0, 9.0, draught=6.5, breadth=20.0, channel_width=widths)
     assert np.all(np.diff(speeds) >= -1e-12)
     open_water = 5.0 * np.sqrt(np.tanh(9.80665 * 9.0 / 25.0))
     assert speeds[0] == pytest.approx(0.390 * open_water, rel=1e-3)  # the cubic at its least
@@ -137,7 +137,7 @@ def test_later_barrass_form_agrees_within_its_scatter():
 
 
 def test_clearance_under_way():
-    assert squat.clearance_under_way(10.0, 6.5, squat=0.5) == pytest.approx(3.0)
+    assert squat.dynamic_under_keel_clearance(10.0, 6.5, squat=0.5) == pytest.approx(3.0)
 
 
 def test_validity():

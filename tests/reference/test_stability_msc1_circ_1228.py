@@ -17,7 +17,7 @@ def check(**changes):
         "wave_period": 8.0,
         "length": 150.0,
     }
-    return checks.stability_checks(**{**given, **changes})
+    return checks.dangerous_situations(**{**given, **changes})
 
 
 @pytest.mark.parametrize(("angle", "period"), [(0.0, 6.667), (180.0, 20.0), (150.0, 17.64)])
@@ -133,4 +133,4 @@ def test_keeping_pace_with_the_waves():
 
 def test_least_height():
     assert check(speed=30.0 * KNOT).surf_riding
-    assert not check(speed=30.0 * KNOT, least_height=2.5).surf_riding
+    assert not check(speed=30.0 * KNOT, harmless_wave_height=2.5).surf_riding

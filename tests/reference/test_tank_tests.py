@@ -42,7 +42,7 @@ from thalweg.ship.methods.resistance.holtrop_form import (
     hull_form,
     wetted_surface,
 )
-from thalweg.ship.methods.resistance.holtrop_mennen import Extremities, holtrop
+from thalweg.ship.methods.resistance.holtrop_mennen import BulbTransomAppendages, holtrop
 
 
 def jbc(waterplane):
@@ -55,7 +55,7 @@ def jbc(waterplane):
         waterplane_coefficient=waterplane,
         lcb_percent=(2.5475 * 2.80 + 2.5) / 2.85,  # about half of the waterline
     )
-    ends = Extremities(bulb_area=60.0 / 40.0**2, bulb_centre_height=6.6 / 40.0)
+    ends = BulbTransomAppendages(bulb_area=60.0 / 40.0**2, bulb_centre_height=6.6 / 40.0)
     return hull, ends, 12.2206, 1.179, 1.179 * 7.0 / 7.46e6
 
 
@@ -70,7 +70,7 @@ def kvlcc2(waterplane):
         waterplane_coefficient=waterplane,
         lcb_percent=(3.48 * 3.20 + 2.75) / 3.255,
     )
-    ends = Extremities(bulb_area=100.0 / scale**2, bulb_centre_height=8.3 / scale)
+    ends = BulbTransomAppendages(bulb_area=100.0 / scale**2, bulb_centre_height=8.3 / scale)
     return hull, ends, 27194.0 / scale**2, 1.047, 1.047 * 320.0 / scale / 4.6e6
 
 
@@ -85,7 +85,7 @@ def kcs(waterplane, bulb):
         waterplane_coefficient=waterplane,
         lcb_percent=(-1.48 * 2.30 + 1.25) / 2.325,
     )
-    ends = Extremities(bulb_area=bulb / scale**2, bulb_centre_height=5.4 / scale)
+    ends = BulbTransomAppendages(bulb_area=bulb / scale**2, bulb_centre_height=5.4 / scale)
     return hull, ends, 0.1803 * 7.2786**2, 2.196, 2.196 * 7.2786 / 1.26e7
 
 
@@ -94,7 +94,7 @@ def coefficient(hull, ends, surface, speed, viscosity, year):
         speed,
         hull,
         year=year,
-        extremities=ends,
+        bulb_transom_appendages=ends,
         wetted_surface_area=surface,
         density=1000.0,
         viscosity=viscosity,

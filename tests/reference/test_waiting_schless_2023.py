@@ -18,11 +18,11 @@ import pytest
 from tests.reference.schless_2023 import GENERATOR, TIDE, nourishment
 from thalweg.operations.waiting.waiting_optimisation import plan_waiting
 from thalweg.operations.waiting.waiting_study import break_even_power, waiting_study
-from thalweg.sea.models.stratified_coast import SCENARIOS, Scenario
+from thalweg.sea.models.stratified_coast import TIDAL_ELLIPSES, TidalEllipse
 
 QUARTERS = [0.0, 0.25 * TIDE, 0.5 * TIDE, 0.75 * TIDE]
 WAITS = np.linspace(0.0, TIDE, 13)
-HALVED = {n: Scenario(s.alongshore, 0.5 * s.cross_shore) for n, s in SCENARIOS.items()}
+HALVED = {n: TidalEllipse(s.alongshore, 0.5 * s.cross_shore) for n, s in TIDAL_ELLIPSES.items()}
 
 
 def one_way(scenario):
@@ -34,7 +34,7 @@ def five_cycles(scenario):
 
 
 def study(trips, hotel_power=0.0):
-    return waiting_study(trips, starts=QUARTERS, most_waits=WAITS, hotel_power=hotel_power)
+    return waiting_study(trips, starts=QUARTERS, max_waits=WAITS, hotel_power=hotel_power)
 
 
 def test_one_way_at_neap_tide_saves_four_and_a_half_per_cent():
@@ -51,12 +51,12 @@ def test_at_first_waiting_from_low_slack_costs_energy():
     for name in ("neap-to-mean", "mean-to-spring", "spring"):
         trips = one_way(HALVED[name])
         none, some = (
-            plan_waiting(trips, start=0.75 * TIDE, most_wait=w, rule="current").energy
+            plan_waiting(trips, start=0.75 * TIDE, max_wait=w, rule="current").energy
             for w in (0.0, 0.1 * TIDE)
         )
         assert some > none * 1.002
     early = [
-        plan_waiting(one_way(HALVED["neap"]), start=0.75 * TIDE, most_wait=w, rule="current").energy
+        plan_waiting(one_way(HALVED["neap"]), start=0.75 * TIDE, max_wait=w, rule="current").energy
         for w in (0.0, 0.02 * TIDE)
     ]
     assert early[1] > early[0]
@@ -87,13 +87,13 @@ def test_savings_shrink_from_neap_to_spring_tide():
 
 def test_savings_with_the_currents_as_printed():
     """Kept as a finding: Table 4.9 as it stands gives 5.4 %, not 3 %."""
-    found = study(five_cycles(SCENARIOS["neap"]))
+    found = study(five_cycles(TIDAL_ELLIPSES["neap"]))
     assert 100.0 * found.saving("current").max() == pytest.approx(5.4, abs=0.1)
     assert 100.0 * found.saving("optimum").max() == pytest.approx(5.6, abs=0.1)
 
 
-@pytest.mark.parametrize("scenarios", [HALVED, SCENARIOS], ids=["halved", "printed"])
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("scenarios", [HALVED, TIDAL_ELLIPSES], ids=["halved", "printed"])
+@pytest.mark.parametrize("name", TIDAL_ELLIPSES)
 def test_waiting_never_pays_with_a_generator_of_327_kw(scenarios, name):
     for trips in (one_way(scenarios[name]), five_cycles(scenarios[name])):
         found = study(trips, GENERATOR)
@@ -110,7 +110,7 @@ def test_generators_of_table_4_11():
 
     def saving(share):
         power = share * GENERATOR
-        return waiting_study(trips, starts=[0.0], most_waits=waits, hotel_power=power).saving(
+        return waiting_study(trips, starts=[0.0], max_waits=waits, hotel_power=power).saving(
             "current"
         )[0]
 
@@ -126,16 +126,16 @@ def test_generators_of_table_4_11():
 def test_break_even_power_lies_between_five_and_ten_per_cent(rudder):
     """Of the 327.1 kW, one way from t0 = 0 by his rule with the 180 minutes allowed."""
     trips = [nourishment(HALVED["neap"], rudder=rudder)[0]]
-    power = break_even_power(trips, start=0.0, most_wait=0.26 * TIDE, rule="current")
+    power = break_even_power(trips, start=0.0, max_wait=0.26 * TIDE, rule="current")
     assert 0.05 < power / GENERATOR < 0.10
-    best = break_even_power(trips, start=0.0, most_wait=0.26 * TIDE, rule="optimum")
+    best = break_even_power(trips, start=0.0, max_wait=0.26 * TIDE, rule="optimum")
     assert 0.10 < best / GENERATOR < 0.25  # shorter waits still save a little
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", TIDAL_ELLIPSES)
 def test_the_optimum_is_never_worse_than_a_rule(name):
     for power in (0.0, 0.1 * GENERATOR):
-        found = study(five_cycles(SCENARIOS[name]), power)
+        found = study(five_cycles(TIDAL_ELLIPSES[name]), power)
         for rule in ("none", "current", "next trip"):
             assert (found.energy("optimum") <= found.energy(rule) * (1 + 1e-12)).all()
         assert (np.diff(found.energy("optimum"), axis=1) <= 1e-3).all()  # more leave, never less

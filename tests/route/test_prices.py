@@ -12,7 +12,7 @@ import pytest
 from thalweg.chart import Chart
 from thalweg.chart.canals import CORINTH, SUEZ, Canal
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import along
+from thalweg.core.geodesy import positions_along
 from thalweg.core.units import DAY, KNOT, NAUTICAL_MILE
 from thalweg.route import Track, evaluate
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
@@ -62,7 +62,7 @@ def test_splitting_a_leg_changes_nothing(cuts):
     chart = OPEN.with_eca("north-sea").with_zones(zone(-8, 45, -7, 60, kind="price", factor=1.3))
     ends = ((63.5, -9.0), (51.0, 1.0))
     whole = evaluate(ends, ship=BULKER, sea=CALM, chart=chart, depart=0)
-    middle = list(zip(*along(*ends[0], *ends[1], np.array(cuts))))
+    middle = list(zip(*positions_along(*ends[0], *ends[1], np.array(cuts))))
     parts = evaluate([ends[0], *middle, ends[1]], ship=BULKER, sea=CALM, chart=chart, depart=0)
     for name in ("fuel_t", "co2_t", "cost", "fuel_eca_t"):
         assert getattr(parts, name) == pytest.approx(getattr(whole, name), rel=1e-6)

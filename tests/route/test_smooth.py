@@ -8,9 +8,9 @@ import pytest
 from tests.route.planar import Islands, Plane, rectangle, ship
 from thalweg.chart import Chart
 from thalweg.route import Track, better_route, evaluate
-from thalweg.route.refinement.polyline import line_of
-from thalweg.route.refinement.string_pulling import pull
-from thalweg.route.refinement.time_evaluator import make_sailor
+from thalweg.route.refinement.polyline import polyline_of_track
+from thalweg.route.refinement.string_pulling import string_pull
+from thalweg.route.refinement.time_evaluator import make_time_evaluator
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -185,7 +185,7 @@ def test_pulling_never_loses_and_keeps_only_what_serves():
     points = [(0, 0), *((x, rng.uniform(-1, 1)) for x in range(1, 60)), (60, 0)]
     track = Track.from_positions([plane.place(*p) for p in points], depart=0)
     fields = Sea.calm().freeze_grid(-1, 1, -1, 1, 0, 1e5, [0, 1], spacing_deg=0.2)
-    sailor = make_sailor(
+    evaluator = make_time_evaluator(
         table=boat.tabulate(),
         chart=None,
         fields=fields,
@@ -194,9 +194,9 @@ def test_pulling_never_loses_and_keeps_only_what_serves():
         by_length=False,
         total=6e4,
     )
-    assert len(pull(line_of(track, sailor), sailor)) == 2
+    assert len(string_pull(polyline_of_track(track, evaluator), evaluator)) == 2
     behind = Islands(rectangle(plane, 10, -5, 11, 0.9))
-    wall = make_sailor(
+    wall = make_time_evaluator(
         table=boat.tabulate(),
         chart=behind,
         fields=fields,
@@ -206,10 +206,12 @@ def test_pulling_never_loses_and_keeps_only_what_serves():
         total=6e4,
     )
     detour = [(0, 0), (5, 0.5), (10.5, 1.0), (20, 0.5), (60, 0)]
-    line = line_of(Track.from_positions([plane.place(*p) for p in detour], depart=0), wall)
-    pulled = pull(line, wall)
+    line = polyline_of_track(
+        Track.from_positions([plane.place(*p) for p in detour], depart=0), wall
+    )
+    pulled = string_pull(line, wall)
     assert len(pulled) == 3
-    assert wall.sail(pulled.bundle())[1][0] <= wall.sail(line.bundle())[1][0]
+    assert wall.sail(pulled.batch())[1][0] <= wall.sail(line.batch())[1][0]
 
 
 def test_a_limit_in_the_field_is_kept():
@@ -233,10 +235,10 @@ def test_a_limit_in_the_field_is_kept():
 
 def test_quick_sailor_measures_like_the_geodesic():
     from thalweg.core.geodesy import distance
-    from thalweg.route.refinement.time_evaluator import Bundle
+    from thalweg.route.refinement.time_evaluator import TrackBatch
 
     fields = Sea.calm().freeze_grid(-85, 85, -100, 100, 0, 1e7, [0, 1], spacing_deg=5.0)
-    sailor = make_sailor(
+    evaluator = make_time_evaluator(
         table=ship(5.0).tabulate(),
         chart=None,
         fields=fields,
@@ -249,18 +251,20 @@ def test_quick_sailor_measures_like_the_geodesic():
     lat, lon = rng.uniform(-70, 70, (200, 2)), rng.uniform(-90, 90, (200, 2))
     lat[:, 1] = lat[:, 0] + rng.uniform(-8, 8, 200)
     lon[:, 1] = lon[:, 0] + rng.uniform(-9, 9, 200)
-    bundle = Bundle(lat, lon, np.full(lat.shape, -math.inf), np.zeros((200, 1), int), np.zeros(200))
-    arrive, length = sailor.sail(bundle)
+    batch = TrackBatch(
+        lat, lon, np.full(lat.shape, -math.inf), np.zeros((200, 1), int), np.zeros(200)
+    )
+    arrive, length = evaluator.sail(batch)
     exact = distance(lat[:, 0], lon[:, 0], lat[:, 1], lon[:, 1])
     assert np.max(np.abs(length / exact - 1)) < 1e-6
     assert np.max(np.abs(arrive[:, 1] * 5.0 / exact - 1)) < 1e-6
 
 
 def test_quick_sailor_knows_the_edges_of_its_raster():
-    from thalweg.route.refinement.time_evaluator import Bundle
+    from thalweg.route.refinement.time_evaluator import TrackBatch
 
     fields = Sea.calm().freeze_grid(-1, 1, -1, 1, 0, 1e4, [0, 1], spacing_deg=0.5)
-    sailor = make_sailor(
+    evaluator = make_time_evaluator(
         table=ship(5.0).tabulate(),
         chart=None,
         fields=fields,
@@ -270,8 +274,8 @@ def test_quick_sailor_knows_the_edges_of_its_raster():
         total=1e5,
     )
     lat, lon = np.zeros((3, 2)), np.array([[0.0, 0.5], [0.0, 1.5], [-0.9, 0.9]])
-    bundle = Bundle(lat, lon, np.full(lat.shape, -math.inf), np.zeros((3, 1), int), np.zeros(3))
-    arrive, cost = sailor.sail(bundle)
+    batch = TrackBatch(lat, lon, np.full(lat.shape, -math.inf), np.zeros((3, 1), int), np.zeros(3))
+    arrive, cost = evaluator.sail(batch)
     assert np.isfinite(cost).tolist() == [True, False, False]  # the last runs out of time
     assert arrive[0, 1] == pytest.approx(0.5 * 111319.49 / 5.0, rel=1e-6)
 

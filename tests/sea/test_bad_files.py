@@ -203,7 +203,7 @@ def test_wind_at_another_height_gives_way_to_wind_at_ten_metres() -> None:
 
 
 def test_whole_classic_files_of_every_version_pass_the_length_check(tmp_path) -> None:
-    from thalweg.sea.files.netcdf3_check import promised_length
+    from thalweg.sea.files.netcdf3_check import expected_length
 
     for format_ in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"):
         for unlimited in ([], ["time"]):
@@ -223,7 +223,7 @@ def test_whole_classic_files_of_every_version_pass_the_length_check(tmp_path) ->
                     out.createVariable("a", "i2", ("time", "lat"))[:] = np.ones((7, 5))
                     out.createVariable("b", "f8", ("time",))[:] = np.ones(7)
             size = path.stat().st_size
-            assert size - 4 <= promised_length(path) <= size, (format_, unlimited)
+            assert size - 4 <= expected_length(path) <= size, (format_, unlimited)
 
 
 def _levels(values, name, units) -> xr.Dataset:

@@ -88,7 +88,7 @@ def test_what_is_the_same_for_all_members_is_one_plain_layer(tmp_path) -> None:
         assert got[level] == pytest.approx(affine(T0, 11.0, 21.0))
         assert got[HS] == pytest.approx((k + 1) * affine(T0, 11.0, 21.0))
     (forecast,) = (layer for layer in sea.layers if isinstance(layer, EnsembleLayer))
-    assert forecast.versions[0].grid is forecast.versions[2].grid
+    assert forecast.member_layers[0].grid is forecast.member_layers[2].grid
 
 
 def test_members_on_a_mesh_share_its_triangles() -> None:
@@ -97,7 +97,7 @@ def test_members_on_a_mesh_share_its_triangles() -> None:
     one = one.drop_vars("swh").assign(swh=many)
     one["swh"].attrs = {"standard_name": HS, "units": "m"}
     sea = Sea.open(one)
-    grids = [version.grid for version in sea.layers[0].versions]
+    grids = [version.grid for version in sea.layers[0].member_layers]
     assert all(grid is grids[0] for grid in grids)
     assert sea.mesh() is not None
     where = T0 + 900.0, 50.5, 2.5

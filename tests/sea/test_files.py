@@ -73,7 +73,7 @@ def test_global_grids_wrap_across_their_seam(first) -> None:
         expected = (1 - f) * field(0, 0, low) + f * field(0, 0, low + 10.0)
         assert value(sea, HS, T0, 11.0, x) == pytest.approx(expected)
     frozen = sea.freeze_stations(
-        [11.0, 11.0], [-179.0, 179.0], T0, T0 + HOUR, [codes.WAVE_HEIGHT_CH]
+        [11.0, 11.0], [-179.0, 179.0], T0, T0 + HOUR, [codes.WAVE_HEIGHT_CHANNEL]
     )
     assert frozen.values[:, 0, 0] == pytest.approx(
         [5.0 + 0.1 * 5 * (1 - np.cos(np.radians(10)))] * 2, rel=1e-3
@@ -543,7 +543,7 @@ def test_holes_in_time_stay_unknown_in_samples_and_in_frozen_fields() -> None:
     sea = Sea.open(regular(hours=[0.0, 1.0, 2.0, 9.0, 10.0, 11.0]))
     time = T0 + np.array([1.5, 2.0, 5.0, 9.0, 9.5]) * HOUR
     assert np.isnan(value(sea, HS, time, 11.0, 21.0)).tolist() == [False, False, True, False, False]
-    fields = sea.freeze_stations([11.0], [21.0], T0, T0 + 11 * HOUR, [codes.WAVE_HEIGHT_CH])
+    fields = sea.freeze_stations([11.0], [21.0], T0, T0 + 11 * HOUR, [codes.WAVE_HEIGHT_CHANNEL])
     at = np.interp(T0 + 5 * HOUR, fields.times, fields.values[0, :, 0])
     assert np.isnan(at)
     gap = sea.describe().gaps[0]
@@ -571,12 +571,16 @@ def test_zarr(tmp_path) -> None:
 def test_frozen_stations_equal_samples_and_reach_one_step_beyond() -> None:
     sea = Sea.open(regular(hours=[0.0, 1.0, 2.0, 3.0, 4.0]))
     lat, lon = np.array([10.2, 12.7, 40.0]), np.array([20.3, 21.9, 21.0])
-    fields = sea.freeze_stations(lat, lon, T0 + 1.5 * HOUR, T0 + 2.5 * HOUR, [codes.WAVE_HEIGHT_CH])
+    fields = sea.freeze_stations(
+        lat, lon, T0 + 1.5 * HOUR, T0 + 2.5 * HOUR, [codes.WAVE_HEIGHT_CHANNEL]
+    )
     assert ((fields.times - T0) / HOUR).tolist() == [1.0, 2.0, 3.0]
     expected = affine(fields.times[None], lat[:2, None], lon[:2, None])
     assert fields.values[:2, :, 0] == pytest.approx(expected, rel=1e-6)
     assert np.isnan(fields.values[2]).all()
-    grid = sea.freeze_grid(10, 13, 20, 22, T0, T0 + HOUR, [codes.WAVE_HEIGHT_CH], spacing_deg=0.5)
+    grid = sea.freeze_grid(
+        10, 13, 20, 22, T0, T0 + HOUR, [codes.WAVE_HEIGHT_CHANNEL], spacing_deg=0.5
+    )
     assert grid.values[1, 1, 3, 0] == pytest.approx(affine(grid.times[1], 10.5, 21.5), rel=1e-6)
 
 
@@ -603,7 +607,7 @@ def test_only_the_box_and_window_are_loaded() -> None:
     sea = Sea.open(dataset)
     loaded.clear()
     sea.freeze_stations(
-        [50.5, 55.0], [-20.5, 2.5], T0 + 10 * HOUR, T0 + 12 * HOUR, [codes.WAVE_HEIGHT_CH]
+        [50.5, 55.0], [-20.5, 2.5], T0 + 10 * HOUR, T0 + 12 * HOUR, [codes.WAVE_HEIGHT_CHANNEL]
     )
     assert {key[0] for key in loaded} <= {9, 10, 11, 12, 13}
     assert {key[1] for key in loaded} == {140}

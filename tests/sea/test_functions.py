@@ -182,7 +182,7 @@ def test_frozen_grid_across_the_antimeridian_has_unwrapped_longitudes() -> None:
         {"sea_surface_wave_significant_height": lambda t, y, x: np.where(x > 0, x, x + 360.0)}
     )
     grid = sea.freeze_grid(
-        -1.0, 1.0, 179.0, -179.0, 0.0, 10.0, [codes.WAVE_HEIGHT_CH], spacing_deg=0.5
+        -1.0, 1.0, 179.0, -179.0, 0.0, 10.0, [codes.WAVE_HEIGHT_CHANNEL], spacing_deg=0.5
     )
     columns = grid.lon0 + grid.dlon * np.arange(grid.values.shape[2])
     assert grid.values.shape[1:] == (5, 5, 1)
@@ -258,7 +258,7 @@ def test_freezing_outside_the_period_says_which_period_there_is() -> None:
         {"sea_surface_wave_significant_height": lambda t, y, x: 1.0}, period=(0, 9)
     )
     with pytest.raises(OutsidePeriodError, match="1970-01-01T00:00:09Z"):
-        sea.freeze_stations([0.0], [0.0], 100.0, 200.0, [codes.WAVE_HEIGHT_CH])
+        sea.freeze_stations([0.0], [0.0], 100.0, 200.0, [codes.WAVE_HEIGHT_CHANNEL])
 
 
 def test_calm_is_steady_and_says_so() -> None:

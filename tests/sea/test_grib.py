@@ -185,7 +185,7 @@ def test_runs_with_steps_become_one_axis_of_valid_times_in_order() -> None:
             "valid_time": (("time", "step"), time[:, None] + step[None, :]),
         },
     )
-    found = grib_worker.dated(data)
+    found = grib_worker.with_valid_time(data)
     assert found["swh"].dims == ("valid_time", "y")
     assert found["swh"].values[:, 0].tolist() == [0.0, 6.0, 12.0, 18.0]
     hours = (found["valid_time"].values - time[1]) / hour

@@ -9,7 +9,7 @@ import xarray as xr
 from tests.sea import hydro
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea.files.vertical_levels import Layers
+from thalweg.sea.files.vertical_levels import VerticalLayers
 from thalweg.sea.grids.point_location import TriangleGrid
 
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
@@ -118,7 +118,7 @@ def test_layers_are_averaged_over_the_draught(tmp_path, kind, draught) -> None:
 )
 def test_the_top_layer_at_fixed_depths_reaches_the_moving_surface(level, thick) -> None:
     """Layers from 0 to 2 and 2 to 4 m below datum, a draught of 4 m."""
-    layers = Layers("z", False, np.array([0.0, 2.0]), np.array([2.0, 4.0]))
+    layers = VerticalLayers("z", False, np.array([0.0, 2.0]), np.array([2.0, 4.0]))
     shares = layers.shares(4.0, np.full((1, 1, 1), level))
     assert shares[0, :, 0, 0] == pytest.approx(thick)
 
@@ -220,7 +220,7 @@ def test_many_times_are_averaged_in_parts(monkeypatch) -> None:
     y, x = lat[hydro.quads()].mean(axis=1), lon[hydro.quads()].mean(axis=1)
     times = hydro.T0 + 3600.0 * hydro.HOURS
     whole = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
-    monkeypatch.setattr("thalweg.sea.files.block_cache.LARGEST_LAYERED", 1000)
+    monkeypatch.setattr("thalweg.sea.files.block_cache.MAX_LAYERED_VALUES", 1000)
     parts = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
     assert np.array_equal(whole, parts, equal_nan=True)
 

@@ -12,10 +12,10 @@ from thalweg.core.units import KNOT
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea.models import cyclone_formulas as models
-from thalweg.sea.models.cyclone_layer import Ambient, load_track, vortex
+from thalweg.sea.models.cyclone_layer import AmbientSea, load_best_track, vortex_state
 
 HS = "sea_surface_wave_significant_height"
-STILL = Ambient(wind=(0.0, 0.0), wave_height=0.0)
+STILL = AmbientSea(wind=(0.0, 0.0), wave_height=0.0)
 
 
 def holland(radius, *, f=0.0, b=1.5, deficit=6000.0, rm=40e3):
@@ -80,7 +80,7 @@ def test_waves_grow_linearly_with_wind_at_a_fetch_and_period_follows_energy() ->
 
 
 def test_the_track_is_the_best_track() -> None:
-    track = load_track("danielle-1998")
+    track = load_best_track("danielle-1998")
     row = np.flatnonzero(track.time == parse_time("1998-09-03T06:00Z"))[0]
     assert (track.lat[row], track.lon[row], track.pressure[row]) == (42.1, -57.5, 96000.0)
     assert track.wind[row] == pytest.approx(70.0 * KNOT * 0.93)
@@ -111,8 +111,8 @@ def test_strongest_modelled_wind_is_that_of_the_track() -> None:
 
 
 def test_symmetric_maximum_is_kept_by_the_fitted_deficit() -> None:
-    track = load_track("danielle-1998")
-    state = vortex(track, track.time[20:])
+    track = load_best_track("danielle-1998")
+    state = vortex_state(track, track.time[20:])
     wind = models.holland_gradient_wind(
         state.radius,
         radius_of_maximum=state.radius,
@@ -140,7 +140,11 @@ def test_series_agree_with_samples_and_fade_is_continuous() -> None:
     sea = Sea.storm()
     start = parse_time("1998-09-04T00:00Z")
     fields = sea.freeze_stations(
-        [45.0, 40.0], [-45.0, -50.0], start, start + 7200.0, [codes.WIND_EAST, codes.WAVE_HEIGHT_CH]
+        [45.0, 40.0],
+        [-45.0, -50.0],
+        start,
+        start + 7200.0,
+        [codes.WIND_EAST, codes.WAVE_HEIGHT_CHANNEL],
     )
     assert fields.times.tolist() == [start, start + 3600.0, start + 7200.0]
     got = sea.sample(

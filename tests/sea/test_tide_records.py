@@ -9,7 +9,7 @@ from tests.conftest import data_file
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import parse_time
 from thalweg.sea import standard_names as nm
-from thalweg.sea.tides.tide_records import is_record, read_record
+from thalweg.sea.tides.tide_records import is_text_record, read_record
 
 NOOS = """#------------------------------------------------------
 # Timeseries retrieved from the MATROOS series database
@@ -90,7 +90,7 @@ def test_a_noos_series_that_cannot_be_read(tmp_path, old, new, words):
 def test_a_dia_series_is_in_middle_european_time_all_year(tmp_path):
     path = tmp_path / "v.dia.gz"
     path.write_bytes(gzip.compress(DIA.replace("20190101", "20190701").encode()))
-    assert is_record(path)
+    assert is_text_record(path)
     record = read_record(path)
     start = parse_time("2019-06-30T23:00Z")
     assert record.times.tolist() == [start + 600.0 * k for k in range(6)]
@@ -182,7 +182,7 @@ def test_a_record_that_cannot_be_unpacked(tmp_path):
     ],
 )
 def test_records_are_told_from_model_runs(name, is_one):
-    assert is_record(data_file(name)) == is_one
+    assert is_text_record(data_file(name)) == is_one
 
 
 def test_the_official_files_are_read_whole():

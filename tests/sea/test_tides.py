@@ -23,9 +23,9 @@ from thalweg.sea.tides import (
     model_run_analysis,
     schureman,
 )
-from thalweg.sea.tides.constituents import Constituents, phasors
+from thalweg.sea.tides.constituents import Constituents, unit_phasors
 from thalweg.sea.tides.harmonic_analysis import analyse, check_rayleigh
-from thalweg.sea.tides.periodic_repeat import drift_deg, repeated
+from thalweg.sea.tides.periodic_repeat import drift_deg, repeat_in_time
 
 utide = pytest.importorskip("utide")
 
@@ -53,16 +53,18 @@ def _utide_times(times):
 def test_arguments_and_nodal_corrections_are_those_of_utide():
     from utide.harmonics import FUV
 
-    names = tuple(n for n in foreman.tables().index if n != "Z0")
+    names = tuple(n for n in foreman.constituent_table().index if n != "Z0")
     times = np.linspace(parse_time("1995-01-01"), parse_time("2035-01-01"), 700)
     f, u, v = FUV(times / 86400.0 + 719163.0, 0.0, np.arange(1, len(names) + 1), 21.3, [0] * 4)
     theirs = f * np.exp(2j * np.pi * (u + v))
-    assert np.abs(phasors(names, times, 21.3, "foreman") - theirs).max() < 2e-6
+    assert np.abs(unit_phasors(names, times, 21.3, "foreman") - theirs).max() < 2e-6
 
 
 @pytest.mark.parametrize("latitude", [0.0, -3.0, 89.0])
 def test_nodal_corrections_exist_at_any_latitude(latitude):
-    assert np.isfinite(foreman.nodal(("M2", "K1", "NO1", "L2"), _hours(1), latitude)).all()
+    assert np.isfinite(
+        foreman.nodal_corrections(("M2", "K1", "NO1", "L2"), _hours(1), latitude)
+    ).all()
 
 
 @pytest.mark.parametrize(
@@ -73,8 +75,8 @@ def test_nodal_corrections_exist_at_any_latitude(latitude):
 def test_schureman_and_foreman_agree(name, tolerance):
     """Two tables of different origin, over two nodal cycles."""
     times = np.linspace(parse_time("1990-01-01"), parse_time("2030-01-01"), 900)
-    ours = phasors((name,), times, 51.0, "schureman")
-    assert np.abs(ours - phasors((name,), times, 51.0, "foreman")).max() < tolerance
+    ours = unit_phasors((name,), times, 51.0, "schureman")
+    assert np.abs(ours - unit_phasors((name,), times, 51.0, "foreman")).max() < tolerance
 
 
 @pytest.mark.parametrize(
@@ -96,13 +98,13 @@ def test_schureman_and_foreman_agree(name, tolerance):
     ],
 )
 def test_compound_names_are_read(name, parts):
-    assert dict(schureman.species(name).parts) == parts
+    assert dict(schureman.constituent_definition(name).parts) == parts
 
 
 @pytest.mark.parametrize("name", ["ST3", "XY2", "M", "", "O2", "M2 and S2", "3L2"])
 def test_unknown_names_are_refused(name):
     with pytest.raises(InputError):
-        schureman.species(name)
+        schureman.constituent_definition(name)
 
 
 # --- analysis
@@ -243,7 +245,7 @@ def test_share_of_variance_that_is_tidal():
 )
 def test_what_no_record_tells(count, wanted, words):
     with pytest.raises(InputError, match=words):
-        harmonic_analysis.chosen_constituents(3600.0 * np.arange(count), wanted)
+        harmonic_analysis.select_constituents(3600.0 * np.arange(count), wanted)
 
 
 def test_progress_is_told_to_the_end():
@@ -281,7 +283,7 @@ def test_rayleigh_of_m2_and_s2():
 
 
 def test_without_names_only_what_can_be_told_apart_is_analysed():
-    names = harmonic_analysis.chosen_constituents(_hours(16), None)
+    names = harmonic_analysis.select_constituents(_hours(16), None)
     assert {"M2", "S2", "K1", "O1"} <= set(names)
     assert not {"N2", "K2", "P1", "SSA"} & set(names)
     check_rayleigh(names, 16 * 24.0)
@@ -314,7 +316,7 @@ def test_a_record_without_numbers_or_of_another_length_is_refused():
 
 def _field(lat, lon, times):
     """Return u, v and level (T, ...): constants that are linear in latitude and longitude."""
-    wave = phasors(("M2", "S2"), times, 52.0, "foreman")
+    wave = unit_phasors(("M2", "S2"), times, 52.0, "foreman")
     m2, s2 = wave[:, 0].real, wave[:, 1].real
     shape = (-1,) + (1,) * lat.ndim
     a, b = 1.0 + 0.1 * (lat - 52.0), 0.3 + 0.05 * (lon - 3.0)
@@ -653,7 +655,7 @@ def test_spring_tide_comes_back_as_low_water_after_the_envelope():
 
 def test_a_run_is_repeated_by_its_period(run):
     sea = Sea.open(run)
-    again = repeated(sea, START, period_h=360.0)
+    again = repeat_in_time(sea, START, period_h=360.0)
     moments = START + 3600.0 * np.array([1.0, 300.0])
     here = sea.sample([LEVEL], moments, 52.0, 3.0)[LEVEL]
     for rounds in (-2, 0, 5):
@@ -673,7 +675,7 @@ def test_a_repeated_run_is_frozen_up_to_its_seam():
     start, length = START, 360.0 * 3600.0
     level = {LEVEL: lambda t, lat, lon: (t - start) / length + 0.0 * lat}
     sea = Sea.from_functions(level, period=(start, start + length), time_step=6 * 3600.0)
-    again = repeated(sea, start, period_h=360.0)
+    again = repeat_in_time(sea, start, period_h=360.0)
     seam = start + length
     channels = [codes.WATER_LEVEL]
     frozen = again.freeze_stations([0.0], [0.0], seam - 86400.0, seam + 86400.0, channels)
@@ -686,9 +688,9 @@ def test_a_repeated_run_is_frozen_up_to_its_seam():
 @pytest.mark.parametrize("period", [354.367, 355.0, 12.4, 0.0, float("nan")])
 def test_other_periods_are_refused(run, period):
     with pytest.raises(InputError, match="not back"):
-        repeated(Sea.open(run), START, period_h=period)
+        repeat_in_time(Sea.open(run), START, period_h=period)
 
 
 def test_what_is_repeated_must_be_there(run):
     with pytest.raises(InputError, match="Repeating needs"):
-        repeated(Sea.open(run), START, period_h=707.974)
+        repeat_in_time(Sea.open(run), START, period_h=707.974)

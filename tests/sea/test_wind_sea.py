@@ -67,7 +67,7 @@ def test_waves_alone_are_frozen_at_the_times_of_the_wind():
     """A ship that asks for waves only gets them, and gaps are told by the wind's own reasons."""
     sea = Sea.from_functions(WIND, area=(40.0, 60.0, -10.0, 10.0), period=(0.0, 86400.0))
     sea = sea.filled(waves="wind")
-    frozen = sea.freeze_stations([45.0], [0.0], 0.0, 3600.0, [codes.WAVE_HEIGHT_CH])
+    frozen = sea.freeze_stations([45.0], [0.0], 0.0, 3600.0, [codes.WAVE_HEIGHT_CHANNEL])
     assert frozen.times[[0, -1]].tolist() == [0.0, 3600.0]
     assert frozen.values[0, :, 0] == pytest.approx(float(carter_1982(13.0)[0]))
     assert sea.period_of([nm.WAVE_HEIGHT]) == (0.0, 86400.0)

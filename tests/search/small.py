@@ -83,7 +83,7 @@ def make_fields(network: Network, times, **channels) -> StationFields:
     names = sorted(channels, key=lambda name: ids[name])
     shape = (len(network.station_lat), len(times))
     values = np.zeros((*shape, len(names)), np.float32)
-    index = np.full(codes.CHANNELS, -1, np.int64)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     for k, name in enumerate(names):
         value = channels[name]
         if callable(value):

@@ -9,7 +9,7 @@ from tests.search.small import grid, limits, make_fields, steady
 from thalweg.core.geodesy import distance
 from thalweg.search import direction_factor, earliest_arrival, lower_bound
 from thalweg.search.lower_bounds import free_space_bound, network_bound
-from thalweg.search.search_problem import problem
+from thalweg.search.search_problem import make_search_problem
 
 
 @pytest.mark.parametrize("gap_deg", [4.0, 19.107, 26.565, 45.0, 60.0])
@@ -91,7 +91,9 @@ def test_the_bound_of_a_coarse_network_is_below_the_finest_network(objective):
 
 def test_the_free_bound_is_the_geodesic_at_full_speed_with_the_strongest_current():
     network, fields = world(1, math.pi / 4)
-    given = problem(network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0)
+    given = make_search_problem(
+        network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0
+    )
     u, v = fields.values[..., 0].astype(float), fields.values[..., 1].astype(float)
     geodesic = float(distance(0.0, 0.0, network.lat[433], network.lon[433]))
     free = free_space_bound(network, given, start=0, goal=433)
@@ -105,7 +107,9 @@ def test_the_free_bound_is_the_geodesic_at_full_speed_with_the_strongest_current
 def test_without_a_valid_factor_the_free_bound_remains():
     network, _ = world(1, math.pi / 4)
     fields = make_fields(network, [0.0, 1e6], current_east=5.5, current_north=0.0)
-    given = problem(network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0)
+    given = make_search_problem(
+        network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0
+    )
     assert network_bound(network, given, start=0, goal=20, depart=0.0).value == 0.0
     bound = lower_bound(network, fields, steady(5.0), **(GIVEN | {"goal": 20}), depart=0.0)
     assert "free space" in bound.kind

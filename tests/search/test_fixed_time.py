@@ -11,7 +11,7 @@ from tests.search.small import NO_LIMITS, limits, make_fields, make_network, ste
 from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
-from thalweg.network import check_network, globe, shortest
+from thalweg.network import check_network, globe, shortest_path
 from thalweg.search import best_departure, earliest_arrival, lower_bound
 
 TIMES = np.linspace(0.0, 400_000.0, 9)
@@ -81,8 +81,8 @@ def test_the_length_of_a_canal_counts_by_distance():
     network = with_canal(square(), [(0, 2)], HOUR, length=90_000.0)
     fields = make_fields(network, TIMES, current_east=0.0, current_north=0.0)
     assert len(search(network, fields, objective="distance").path) == 3
-    assert len(shortest(network, 0, 2)[1]) == 3
-    assert shortest(network, 0, 2, weight=network.times(5.0))[1] == [0, 2]
+    assert len(shortest_path(network, 0, 2)[1]) == 3
+    assert shortest_path(network, 0, 2, weight=network.times(5.0))[1] == [0, 2]
 
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])
@@ -174,7 +174,7 @@ def test_a_ship_sails_the_globe_network_through_a_canal_and_round_when_it_is_for
         ends = {"start": network.meta.start, "goal": network.meta.goal}
         given = {"depart": 0.0, "setting": 0, "limits": NO_LIMITS, "top_speed": speed, **ends}
         result = earliest_arrival(network, fields, table, **given)
-        distance, path = shortest(network, *ends.values(), weight=network.times(speed))
+        distance, path = shortest_path(network, *ends.values(), weight=network.times(speed))
         assert result.arrive == pytest.approx(distance[ends["goal"]], rel=1e-6)
         assert result.path.tolist() == path
         assert lower_bound(network, fields, table, **given).value <= result.duration

@@ -12,9 +12,9 @@ from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_
 from tests.search.test_berths import barred_line
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels import codes
-from thalweg.search import cheapest, earliest_arrival, front
-from thalweg.search.pareto.front_problem import Request, gather
-from thalweg.search.pareto.seed_paths import Way, sail_way
+from thalweg.search import cheapest, earliest_arrival, pareto_front
+from thalweg.search.pareto.front_problem import FrontRequest, make_front_problem
+from thalweg.search.pareto.seed_paths import PlannedPath, sail_planned_path
 
 SPEEDS = np.array([4.0, 6.0, 8.0])
 STILL = {"current_east": 0.0, "current_north": 0.0}
@@ -28,18 +28,18 @@ def ship(speeds=SPEEDS, per_cube=1e-3):
 def search(network, fields, goal, latest, *, tables=None, **options):
     table, fuel = ship() if tables is None else tables
     options = {"limits": NO_LIMITS, "depart": 0.0, "start": 0, **options}
-    return front(network, fields, table, fuel, goal=goal, latest=latest, **options)
+    return pareto_front(network, fields, table, fuel, goal=goal, latest=latest, **options)
 
 
 def world_of(network, fields, latest, *, tables=None, wait=True, weight=1.0, **prices):
     """Return what sails ways one by one, for brute force."""
     table, fuel = ship() if tables is None else tables
     weights = np.broadcast_to(np.asarray(weight, float), (network.n_edges,))
-    request = Request(
+    request = FrontRequest(
         0, network.n_nodes - 1, 0.0, latest, np.arange(table.n_settings), weights,
         prices.get("time_price", 0.0), prices.get("waiting_fuel", 0.0), wait,
     )  # fmt: skip
-    return gather(
+    return make_front_problem(
         network, fields, table, fuel, request=request, limits=NO_LIMITS, top_speed=None
     ), request
 
@@ -91,12 +91,12 @@ def brute_force(network, fields, latest, *, pauses=(0.0,), **prices):
 
 def _sail_pausing(got, request, states, edges, choices, pause):
     leave = np.full(len(edges), -np.inf)
-    point = sail_way(got, request, Way(states, edges, choices, leave))
+    point = sail_planned_path(got, request, PlannedPath(states, edges, choices, leave))
     if point is None or not any(pause):
         return point
     for i, length in enumerate(pause):  # each pause begins upon the arrival found so far
         leave[i] = point.path_arrive[i] + length if length else -np.inf
-        point = sail_way(got, request, Way(states, edges, choices, leave))
+        point = sail_planned_path(got, request, PlannedPath(states, edges, choices, leave))
         if point is None:
             return None
     return point
@@ -213,10 +213,10 @@ def test_points_are_real_ways(seed):
         for i, setting in enumerate(point.setting):
             edge = pairs[int(point.path[i]), int(point.path[i + 1])]
             pause = point.path_depart[i] - point.path_arrive[i]
-            leg = sail_way(
+            leg = sail_planned_path(
                 got,
                 request._replace(depart=point.path_depart[i]),
-                Way(
+                PlannedPath(
                     point.path[i : i + 2],
                     np.array([edge]),
                     np.array([setting]),
@@ -245,8 +245,8 @@ def test_legs_are_those_of_the_earliest_arrival():
     pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(again.tails, network.target))}
     edges = np.array([pairs[a, b] for a, b in itertools.pairwise(fastest.path.tolist())])
     leave = np.where(fastest.path_depart > fastest.path_arrive, fastest.path_depart, -np.inf)[:-1]
-    way = Way(fastest.path, edges, np.full(len(edges), 2), leave)
-    assert sail_way(again, request, way).path_arrive == pytest.approx(
+    way = PlannedPath(fastest.path, edges, np.full(len(edges), 2), leave)
+    assert sail_planned_path(again, request, way).path_arrive == pytest.approx(
         fastest.path_arrive, rel=1e-14
     )
 
@@ -467,7 +467,7 @@ def test_settings_can_be_chosen():
 def tidal_front(network, fields, latest, **more):
     table, fuel = make_table(((), (), np.array([4.0]))), make_table(((), (), np.array([1.0])))
     more = {"limits": limits(depth=5.0), "depart": 0.0, "start": 0, "goal": 5, **more}
-    return front(network, fields, table, fuel, latest=latest, **more)
+    return pareto_front(network, fields, table, fuel, latest=latest, **more)
 
 
 def test_waiting_at_an_anchorage_before_a_bar():

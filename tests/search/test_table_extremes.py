@@ -5,14 +5,14 @@ import pytest
 
 from thalweg import Ship
 from thalweg.kernels.leg.table_lookup import table_value
-from thalweg.ship.tables.table_bounds import extreme
+from thalweg.ship.tables.table_bounds import table_bounds
 
 
 @pytest.mark.parametrize("name", ["handysize-bulker", "s175", "vox-olympia"])
 @pytest.mark.parametrize("what", ["tabulate", "tabulate_fuel"])
 def test_no_value_lies_beyond_the_extremes(name, what):
     arrays = getattr(Ship.load(name), what)().kernel_arrays()
-    low, high = extreme(arrays, np.fmin), extreme(arrays, np.fmax)
+    low, high = table_bounds(arrays, np.fmin), table_bounds(arrays, np.fmax)
     assert len(low) == arrays.n_settings and np.all(low <= high)
     rng = np.random.default_rng(1)
     known = 0

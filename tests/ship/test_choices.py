@@ -14,7 +14,7 @@ from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm
 from thalweg.ship.methods.shallow_water.squat import (
     barrass_2004_speed,
     barrass_2004_squat,
-    critical_speed,
+    shallow_water_speed,
 )
 from thalweg.ship.methods.speed_loss import kwon_speed_loss
 from thalweg.ship.model_check import check_ship_model
@@ -50,7 +50,7 @@ def test_squat_by_barrass_2004_limits_the_speed_in_shallow_water():
     speed = ship.speed_through_water(Conditions(depth=depth), 0)
     sizes = {"draught": 10.0, "breadth": 32.0, "block_coefficient": 42450 / (169 * 32 * 10)}
     left = barrass_2004_speed(depth - 10.5, depth, **sizes)
-    slow = critical_speed(16 * KNOT, depth, draught=10.0, breadth=32.0)
+    slow = shallow_water_speed(16 * KNOT, depth, draught=10.0, breadth=32.0)
     assert speed == pytest.approx(np.minimum(np.minimum(left, slow), 16 * KNOT))
     assert speed[0] == 0.0 and (np.diff(speed) > 0).all()
     sunk = barrass_2004_squat(speed[1:3], depth[1:3], **sizes)

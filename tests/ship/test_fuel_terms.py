@@ -91,7 +91,7 @@ def test_one_currency():
 def test_the_price_of_speed_stands_for_fuel_only_where_fuel_has_no_price():
     costs = {"per_week": 604800.0, "per_second_per_cubed_speed": 0.008, "currency": "EUR"}
     terms = fuel_terms({"costs": costs})
-    assert terms.by_speed and terms.speed_price == 0.008
+    assert terms.by_speed and terms.cubed_speed_price == 0.008
     assert not fuel_terms({"costs": {"per_week": 604800.0}}).by_speed
     assert not fuel_terms({"costs": costs, "fuel": {"price_per_t": 500.0}}).by_speed
     with pytest.raises(InputError, match="prices in EUR"):

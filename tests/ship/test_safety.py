@@ -16,11 +16,11 @@ from thalweg.sea import Sea
 from thalweg.ship import Conditions, Ship
 from thalweg.ship.methods.seakeeping.motion_sickness import (
     motion_sickness_dose,
-    sick_percent_iso,
+    motion_sickness_percent_iso,
     weighted_acceleration,
 )
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, ship_response
-from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import stability_checks
+from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import dangerous_situations
 
 HULL = {
     "length_between_perpendiculars_m": 150.0,
@@ -47,9 +47,9 @@ TABLES = {id(s): s.tabulate().kernel_arrays() for s in (CIRCULAR, BOW, SICK)}
 def _status(ship, setting, angle, height, period):
     """Ask the kernel: course north, waves from ``angle`` to starboard of the bow."""
     arrays = TABLES[id(ship)]
-    sample, index = np.zeros(codes.CHANNELS), np.full(codes.CHANNELS, -1)
+    sample, index = np.zeros(codes.CHANNEL_COUNT), np.full(codes.CHANNEL_COUNT, -1)
     for channel, value in (
-        (codes.WAVE_HEIGHT_CH, height),
+        (codes.WAVE_HEIGHT_CHANNEL, height),
         (codes.WAVE_EAST, -math.sin(angle)),
         (codes.WAVE_NORTH, -math.cos(angle)),
         (codes.WAVE_PERIOD, period),
@@ -102,14 +102,14 @@ def test_kernels_and_model_forbid_the_same_motions_away_from_the_edge(
 
 @given(st.floats(1, 14), st.floats(0, np.pi), st.floats(0, 12), st.floats(3, 20))
 def test_the_circular_is_that_of_the_method(speed, angle, height, period):
-    checks = stability_checks(
+    checks = dangerous_situations(
         speed=speed,
         wave_angle=angle,
         wave_height=height,
         wave_period=0.834 * period,
         length=150.0,
         roll_period=14.0,
-        least_height=1.5,
+        harmless_wave_height=1.5,
     )
     found = CIRCULAR.limits.safety.forbids(
         speed, wave_angle=angle, wave_height=height, wave_period=period
@@ -133,7 +133,7 @@ def test_the_limit_of_acceleration_is_that_of_the_bow():
 def test_the_limit_of_sickness_is_the_share_of_people_after_the_exposure():
     state = ship_response(height=3.0, period=8.0, wave_angle=0.5, speed=7.0, hull=MOTIONS)
     felt = weighted_acceleration(state.acceleration_parts, state.encounter_frequency)
-    percent = float(sick_percent_iso(motion_sickness_dose(felt, duration=4 * 3600.0)))
+    percent = float(motion_sickness_percent_iso(motion_sickness_dose(felt, duration=4 * 3600.0)))
     for factor, expected in ((0.98, True), (1.02, False)):
         limits = {"max_motion_sickness_percent": percent * factor, "motion_sickness_hours": 4}
         found = _ship(limits).limits.safety.forbids(

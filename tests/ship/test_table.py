@@ -11,8 +11,8 @@ from thalweg.core.errors import InputError
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import table_value
 from thalweg.ship import PerformanceTable, TableError, TablePart
-from thalweg.ship.tables.output_curve import Finish
-from thalweg.ship.tables.tabulate import Axis, tabulate_dense
+from thalweg.ship.tables.output_curve import OutputCurve
+from thalweg.ship.tables.tabulate import AxisRange, tabulate_dense
 
 NO_ERROR = TableError(0.0, 0.0, 0.0)
 
@@ -124,7 +124,7 @@ def test_refinement_meets_the_tolerance_and_says_so():
     def bend(where):
         return (10.0 - 0.02 * where["wave_height"] ** 2)[..., None]
 
-    axes = [Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 20.0, 3)]
+    axes = [AxisRange(codes.AXIS_WAVE_HEIGHT, 0.0, 20.0, 3)]
     part, error = tabulate_dense(bend, axes, tolerance=1e-3)
     assert error.p99 <= 1e-3
     assert error.samples == 4000
@@ -138,8 +138,8 @@ def test_refinement_chooses_the_axis_that_bends():
         return (10.0 + 0.1 * where["wave_height"] + np.sin(2 * where["wave_angle"]))[..., None]
 
     axes = [
-        Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 20.0, 5),
-        Axis(codes.AXIS_WAVE_ANGLE, 0.0, np.pi, 5),
+        AxisRange(codes.AXIS_WAVE_HEIGHT, 0.0, 20.0, 5),
+        AxisRange(codes.AXIS_WAVE_ANGLE, 0.0, np.pi, 5),
     ]
     part, _ = tabulate_dense(bend, axes, tolerance=1e-3)
     assert part.values.shape[0] == 5
@@ -150,7 +150,7 @@ def test_refinement_stops_at_the_memory_allowed_and_tells_the_error():
     def step(where):
         return np.where(where["wave_height"] < 7.3, 9.0, 2.0)[..., None]
 
-    axes = [Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 20.0, 5)]
+    axes = [AxisRange(codes.AXIS_WAVE_HEIGHT, 0.0, 20.0, 5)]
     part, error = tabulate_dense(step, axes, tolerance=1e-9, largest=1000)
     assert part.values.nbytes <= 1000
     assert error.max > 0.1
@@ -190,7 +190,7 @@ def _crossing():
     fine = np.linspace(0.0, 4.0, 33)
     spare = np.array([4.0, 8.0, 12.0])[:, None] - 4.0 * fine
     calm = np.array([1.0, 2.0, 3.0])
-    finish = Finish(
+    finish = OutputCurve(
         "crossing", np.zeros(3), np.full(3, 0.125), spare, np.full(3, 3.5), calm.astype(int)
     )
     return PerformanceTable(parts, calm, "crossing", NO_ERROR, finish)
@@ -229,7 +229,9 @@ def test_a_curve_follows_the_sum():
     part = TablePart((0,), (grid,), np.repeat(grid[:, None], 2, axis=1))
     points = np.array([[0.0, 1.0, 4.0, 9.0], [5.0, 5.0, 6.0, 6.0]])
     nothing = np.zeros(2)
-    finish = Finish("curve", np.array([1.0, 0.0]), np.ones(2), points, nothing, nothing.astype(int))
+    finish = OutputCurve(
+        "curve", np.array([1.0, 0.0]), np.ones(2), points, nothing, nothing.astype(int)
+    )
     table = PerformanceTable((part,), np.array([5.0, 6.0]), "curve", NO_ERROR, finish)
     winds = [0.0, 1.0, 2.5, 4.0, 10.0]
     expected = ([0.0, 0.0, 2.5, 9.0, 9.0], [5.0, 5.0, 6.0, 6.0, 6.0])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thalweg.ship import PerformanceTable, TableError, TablePart
-from thalweg.ship.tables.output_curve import Finish
-from thalweg.ship.tables.table_cache import MOST_FILES, kept_table
+from thalweg.ship.tables.output_curve import OutputCurve
+from thalweg.ship.tables.table_cache import MAX_FILES, cached_table
 
 
 @pytest.fixture
@@ -25,15 +25,15 @@ def _table(calls=None):
 
 def test_a_kept_table_is_read_back_without_building(folder):
     calls = []
-    first = kept_table({"ship": 1}, lambda: _table(calls))
-    again = kept_table({"ship": 1}, lambda: _table(calls))
+    first = cached_table({"ship": 1}, lambda: _table(calls))
+    again = cached_table({"ship": 1}, lambda: _table(calls))
     assert len(calls) == 1
     assert again[0].error == first[0].error and again[1].tolist() == [5.0, 9.0]
     (kept,), (built,) = again[0].parts, first[0].parts
     assert kept.axes == (2,) and again[0].finish is None
     assert np.array_equal(kept.values, built.values)
     assert np.array_equal(kept.grids[0], built.grids[0])
-    assert np.isnan(kept.square_stop)
+    assert np.isnan(kept.squared_height_limit)
 
 
 @pytest.mark.parametrize("kind", ["curve", "crossing"])
@@ -43,11 +43,11 @@ def test_what_follows_the_sum_is_kept_too(folder, kind):
     ends = np.array([5.0, 9.0])
     guess = np.array([0, 1])
     points = np.linspace(9.0, 0.0, 9)[None].repeat(2, axis=0)
-    finish = Finish(kind, np.zeros(2), np.full(2, 0.5), points, ends, guess)
+    finish = OutputCurve(kind, np.zeros(2), np.full(2, 0.5), points, ends, guess)
     table = PerformanceTable((part,), ends, "", TableError(0, 0, 0), finish)
     for _ in range(2):
-        kept, _ = kept_table({"kind": kind}, lambda: (table, ends))
-    assert kept.finish.kind == kind and kept.parts[0].square_stop == 6.0
+        kept, _ = cached_table({"kind": kind}, lambda: (table, ends))
+    assert kept.finish.kind == kind and kept.parts[0].squared_height_limit == 6.0
     for name in ("start", "step", "points", "top", "guess"):
         assert np.array_equal(getattr(kept.finish, name), getattr(finish, name))
     where = {"wave_height": [0.0, 1.0, 2.5, 7.0], "wave_angle": 4.0}
@@ -57,27 +57,27 @@ def test_what_follows_the_sum_is_kept_too(folder, kind):
 
 def test_another_ship_has_its_own_table(folder):
     calls = []
-    kept_table({"ship": 1}, lambda: _table(calls))
-    kept_table({"ship": 2}, lambda: _table(calls))
+    cached_table({"ship": 1}, lambda: _table(calls))
+    cached_table({"ship": 2}, lambda: _table(calls))
     assert len(calls) == 2
 
 
 @pytest.mark.parametrize("damage", [b"", b"PK\x03\x04 broken", b"\x93NUMPY"])
 def test_a_damaged_file_is_built_anew(folder, damage):
     calls = []
-    kept_table({"ship": 1}, lambda: _table(calls))
+    cached_table({"ship": 1}, lambda: _table(calls))
     (path,) = folder.glob("*.npz")
     path.write_bytes(damage)
-    kept_table({"ship": 1}, lambda: _table(calls))
+    cached_table({"ship": 1}, lambda: _table(calls))
     assert len(calls) == 2
-    kept_table({"ship": 1}, lambda: _table(calls))
+    cached_table({"ship": 1}, lambda: _table(calls))
     assert len(calls) == 2
 
 
 def test_old_tables_are_removed(folder):
-    for ship in range(MOST_FILES + 3):
-        kept_table({"ship": ship}, _table)
-    assert len(list(folder.glob("*"))) == MOST_FILES
+    for ship in range(MAX_FILES + 3):
+        cached_table({"ship": ship}, _table)
+    assert len(list(folder.glob("*"))) == MAX_FILES
 
 
 def test_a_disk_that_is_full_only_costs_time(folder, monkeypatch):
@@ -87,6 +87,6 @@ def test_a_disk_that_is_full_only_costs_time(folder, monkeypatch):
     monkeypatch.setattr("thalweg.ship.tables.table_cache.np.savez", full)
     calls = []
     for _ in range(2):
-        found = kept_table({"ship": 1}, lambda: _table(calls))
+        found = cached_table({"ship": 1}, lambda: _table(calls))
         assert found[1].tolist() == [5.0, 9.0]
     assert len(calls) == 2

@@ -81,11 +81,11 @@ class Grid:
         nth = np.arange(len(via)) - np.repeat(np.cumsum(samples) - samples, samples) + 1
         s = nth / (samples[via] + 1)
         y, x = row[tail[via]] + s * di[via], column[tail[via]] + s * dj[via]
-        upright = abs(di[via]) >= abs(dj[via])  # crosses rows: between two neighbours of a row
-        y0 = np.where(upright, np.round(y), np.floor(y)).astype(np.int64)
-        x0 = np.where(upright, np.floor(x), np.round(x)).astype(np.int64)
+        is_mercator = abs(di[via]) >= abs(dj[via])  # crosses rows: between two neighbours of a row
+        y0 = np.where(is_mercator, np.round(y), np.floor(y)).astype(np.int64)
+        x0 = np.where(is_mercator, np.floor(x), np.round(x)).astype(np.int64)
         a = x0 + side * y0
-        b = np.where(upright, x0 + 1 + side * y0, x0 + side * (y0 + 1))
+        b = np.where(is_mercator, x0 + 1 + side * y0, x0 + side * (y0 + 1))
         lat, lon = position(self.spacing * column, self.spacing * row)
         lat, lon = position(self.spacing * column, self.spacing * row)
         length = self.spacing * NM * np.hypot(di, dj)
@@ -103,8 +103,10 @@ class Grid:
             price=np.ones(edges, np.float32),
             via_ptr=np.concatenate(([0], np.cumsum(samples))).astype(np.int64),
             via_a=a.astype(np.int32),
-            via_b=np.where((upright & (x == x0)) | (~upright & (y == y0)), a, b).astype(np.int32),
-            via_w=np.where(upright, x - x0, y - y0).astype(np.float32),
+            via_b=np.where((is_mercator & (x == x0)) | (~is_mercator & (y == y0)), a, b).astype(
+                np.int32
+            ),
+            via_w=np.where(is_mercator, x - x0, y - y0).astype(np.float32),
             via_s=s.astype(np.float32),
             can_wait=np.ones(side * side, bool),
             meta=NetworkMeta("square", self.spacing * NM, len(offsets), 0.3),
@@ -116,7 +118,7 @@ def freeze(network: Network, step_h: float = 1.0 / 3.0) -> StationFields:
     hours = np.arange(0.0, LATEST + 6.0, step_h)
     x, y = xy(network.station_lat, network.station_lon)
     u, v = current(hours[None, :], x[:, None], y[:, None])
-    index = np.full(codes.CHANNELS, -1, np.int64)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     index[[codes.CURRENT_EAST, codes.CURRENT_NORTH]] = 0, 1
     values = np.ascontiguousarray(KNOT * np.stack([u, v], axis=-1), np.float32)
     return StationFields(T0 + HOUR * hours, values, index)

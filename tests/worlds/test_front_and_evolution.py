@@ -9,17 +9,19 @@ import pytest
 from tests.evolution import jet
 from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
-from thalweg.evolution import Genome, Habits, evolve
+from thalweg.evolution import Genome, VariationSettings, evolve
 from thalweg.evolution.evolve import METHODS
-from thalweg.evolution.variation import Mix
-from thalweg.search import Front, earliest_arrival, front
-from thalweg.search.pareto.front_problem import Request, gather
+from thalweg.evolution.variation import OperatorWeights
+from thalweg.search import NetworkFront, earliest_arrival, pareto_front
+from thalweg.search.pareto.front_problem import FrontRequest, make_front_problem
 from thalweg.search.pareto.front_result import FrontPoint
-from thalweg.search.pareto.seed_paths import Way, sail_way
+from thalweg.search.pareto.seed_paths import PlannedPath, sail_planned_path
 
 GRID = world.Grid(20.0, 3)
 LATEST = world.T0 + world.LATEST * world.HOUR
-SPEEDS_ONLY = Mix(insert=0.0, translate=0.0, delete=0.0, speed=1.0, split=0.0, merge=0.0)
+SPEEDS_ONLY = OperatorWeights(
+    insert=0.0, translate=0.0, delete=0.0, speed=1.0, split=0.0, merge=0.0
+)
 
 
 @cache
@@ -33,10 +35,10 @@ def fields():
 
 
 @cache
-def exact() -> Front:
+def exact() -> NetworkFront:
     table, fuel = world.tables()
     start, goal = GRID.node(world.START), GRID.node(world.GOAL)
-    return front(
+    return pareto_front(
         network(), fields(), table, fuel, start=start, goal=goal, depart=world.T0,
         latest=LATEST, limits=NO_LIMITS, bin_s=2.0 * world.HOUR / 60.0,
     )  # fmt: skip
@@ -79,13 +81,17 @@ def sailed(genome: Genome) -> FrontPoint | None:
             return None
         edges.append(net.indptr[a] + there[0])
     table, fuel = world.tables()
-    request = Request(
+    request = FrontRequest(
         int(nodes[0]), int(nodes[-1]), world.T0, LATEST, np.arange(table.n_settings),
         np.ones(net.n_edges), 0.0, 0.0, True,
     )  # fmt: skip
-    got = gather(net, fields(), table, fuel, request=request, limits=NO_LIMITS, top_speed=None)
+    got = make_front_problem(
+        net, fields(), table, fuel, request=request, limits=NO_LIMITS, top_speed=None
+    )
     leave = np.full(len(edges), -np.inf)
-    return sail_way(got, request, Way(nodes, np.array(edges), np.asarray(genome.setting), leave))
+    return sail_planned_path(
+        got, request, PlannedPath(nodes, np.array(edges), np.asarray(genome.setting), leave)
+    )
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -94,7 +100,7 @@ def test_evolution_on_the_network_stays_above_front_and_lower_front(method):
     assert np.all(best.gap >= 0.0) and np.median(best.gap) < 0.02
     found = evolve(
         jet.evaluator(), seeds(), method=method, size=len(seeds()), evaluations=3000,
-        settled=None, seed=2, operators=Habits(mix=SPEEDS_ONLY, crossover=0.3),
+        settled=None, seed=2, operators=VariationSettings(mix=SPEEDS_ONLY, crossover=0.3),
     )  # fmt: skip
     points = [point for genome in found.genomes if (point := sailed(genome)) is not None]
     assert len(points) > 20  # most: crossover alone may leave the network

@@ -17,15 +17,15 @@ from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
 from thalweg.evolution.indicators import hypervolume
 from thalweg.route import Track, evaluate
-from thalweg.search import Front, front
+from thalweg.search import NetworkFront, pareto_front
 
 
 @cache
-def found(reach: int, bin_min: float, lower: bool = False) -> tuple[world.Network, Front]:
+def found(reach: int, bin_min: float, lower: bool = False) -> tuple[world.Network, NetworkFront]:
     grid = world.Grid(5.0, reach)
     network = grid.network()
     table, fuel = world.tables()
-    return network, front(
+    return network, pareto_front(
         network,
         world.freeze(network),
         table,
@@ -40,7 +40,7 @@ def found(reach: int, bin_min: float, lower: bool = False) -> tuple[world.Networ
     )
 
 
-def fuel_at(points: Front, hours: float) -> float:
+def fuel_at(points: NetworkFront, hours: float) -> float:
     return world.tonnes(points.cost[points.time <= hours * world.HOUR].min())
 
 

@@ -15,7 +15,7 @@ from tests.worlds.test_waiting_worlds import bar_sea
 from thalweg import Sea, Voyage, plan
 from thalweg.network import with_endpoints
 from thalweg.planning.network_selection import model_mesh
-from thalweg.planning.network_selection.model_mesh import flow_of, pruned_mesh
+from thalweg.planning.network_selection.model_mesh import flow_statistics, pruned_mesh
 
 WATER = HALEM.water(-0.5, 0.5, -0.5, 0.5)
 PERIOD = (T0, T0 + 36_000.0)
@@ -124,7 +124,7 @@ def test_what_the_nodes_are_thinned_by():
     """Case 1: |u| is 2 sqrt(cos2 + cos2) m/s, the curl 2 pi (sin + sin) m/s per degree."""
     run = model(rotating(2.0, False), 0.025)
     length = 0.1 * HALEM.unit
-    speed, curl = flow_of(run, *PERIOD, length=length)
+    speed, curl = flow_statistics(run, *PERIOD, length=length)
     xy, _ = triangular(0.025)
     x, y = xy[:, 0] + 0.5, xy[:, 1] + 0.5
     exact = 2.0 * np.hypot(np.cos(np.pi * x), np.cos(np.pi * y))
@@ -155,7 +155,7 @@ def test_a_mesh_that_is_asked_for_is_thinned_by_the_flow_to_the_resolution():
 
 
 def test_large_models_are_thinned_to_what_can_be_searched(monkeypatch):
-    monkeypatch.setattr(model_mesh, "MOST_NODES", 400)
+    monkeypatch.setattr(model_mesh, "MAX_MESH_NODES", 400)
     found = on_mesh(model(rotating(2.0, False), 0.025))
     assert 100 < found.provenance["networks"][0]["nodes"] <= 402
     assert found.best.time_h * 3600.0 == pytest.approx(26240.4617, rel=2e-3)

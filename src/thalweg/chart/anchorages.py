@@ -28,13 +28,13 @@ def may_wait(
     """
     allowed: NDArray[np.bool_] = np.ones(np.shape(lat), np.bool_)
     if anchorages:
-        allowed = _inside(anchorages, lat, lon)
+        allowed = _inside_any_zone(anchorages, lat, lon)
     if barred:
-        allowed = allowed & ~_inside(barred, lat, lon)
+        allowed = allowed & ~_inside_any_zone(barred, lat, lon)
     return allowed
 
 
-def _inside(zones: Sequence[Any], lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+def _inside_any_zone(zones: Sequence[Any], lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
     """Return which positions lie in a zone, its rim included, on any turn of longitude."""
     import shapely
 

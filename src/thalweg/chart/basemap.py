@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from thalweg.chart.chart import Chart
 
 
-def ring_boxes(rings: Rings) -> tuple[Any, Any, Any, Any]:
+def ring_bounds(rings: Rings) -> tuple[Any, Any, Any, Any]:
     """Return the south, north, west and east [deg] of every ring."""
     if not len(rings):
         return (np.empty(0),) * 4
@@ -41,18 +41,18 @@ def land_polygons(chart: Chart, south: float, north: float, west: float, east: f
         east += 360.0
     box = shapely.box(west, south, east, north)
     rings = chart.land.rings
-    lows, highs, lefts, rights = ring_boxes(rings)
+    lows, highs, lefts, rights = ring_bounds(rings)
     found: list[Any] = []
     for shift in (-360.0, 0.0, 360.0):
         hit = (
             (highs >= south) & (lows <= north) & (rights + shift >= west) & (lefts + shift <= east)
         )
         if hit.any():
-            found += _cut(rings, np.flatnonzero(hit), shift, box)
+            found += _clipped_polygons(rings, np.flatnonzero(hit), shift, box)
     return found
 
 
-def _cut(rings: Rings, chosen: Any, shift: float, box: Any) -> list[Any]:
+def _clipped_polygons(rings: Rings, chosen: Any, shift: float, box: Any) -> list[Any]:
     import shapely
 
     counts = np.diff(rings.start)[chosen]
@@ -71,7 +71,7 @@ def _cut(rings: Rings, chosen: Any, shift: float, box: Any) -> list[Any]:
 
 
 @cache
-def _seams() -> Any:
+def _dataset_cut_meridians() -> Any:
     """Return the meridians at which GSHHG cuts land, as lines."""
     import shapely
 
@@ -94,7 +94,9 @@ def coastline_lines(
     inner = shapely.box(west, south, east, north).buffer(-1e-9)
     lines: list[tuple[FloatArray, FloatArray]] = []
     for polygon in land_polygons(chart, south, north, west, east):
-        outline = shapely.difference(shapely.intersection(polygon.boundary, inner), _seams())
+        outline = shapely.difference(
+            shapely.intersection(polygon.boundary, inner), _dataset_cut_meridians()
+        )
         for part in shapely.get_parts(outline):
             xy = shapely.get_coordinates(part)
             lines.append((xy[:, 1], xy[:, 0]))

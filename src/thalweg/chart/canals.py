@@ -16,11 +16,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
 
-SAME_PLACE: Final = 2.0  # a leg ends at a canal's end when it ends this near to it [m]
-_SAME_DEGREES: Final = 2e-5  # nearer than this in latitude is worth measuring
+END_TOLERANCE: Final = 2.0  # a leg ends at a canal's end when it ends this near to it [m]
+_END_TOLERANCE_DEGREES: Final = 2e-5  # nearer than this in latitude is worth measuring
 _HOUR: Final = 3600.0
 
 
@@ -90,7 +90,9 @@ class Canal:
         lat, lon = np.array(self.path, float).T
         return float(np.sum(distance(lat[:-1], lon[:-1], lat[1:], lon[1:])))
 
-    def why_not(self, *, draught: float | None = None, beam: float | None = None) -> str:
+    def transit_restriction(
+        self, *, draught: float | None = None, beam: float | None = None
+    ) -> str:
         """Return in words why a ship of a draught and beam [m] may not pass; empty if it may."""
         reasons = []
         for what, value, limit in (
@@ -164,7 +166,7 @@ CORINTH: Final = Canal(
 CANALS: Final = (SUEZ, PANAMA, KIEL, CORINTH)
 
 
-def without(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal, ...]:
+def exclude_canals(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal, ...]:
     """Return canals without the named ones ("all" takes all away).
 
     Raises
@@ -173,18 +175,18 @@ def without(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal, ...]:
         If there is no canal of a name; near matches are named.
     """
     known = {canal.name for canal in canals} | {canal.name for canal in CANALS}
-    plain = [_plain(name) for name in names]
+    plain = [_normalised_canal_name(name) for name in names]
     for written, name in zip(names, plain):
         if name not in known | {"all"}:
-            raise unknown_name("canal", str(written), sorted(known | {"all"}))
+            raise unknown_name_error("canal", str(written), sorted(known | {"all"}))
     return () if "all" in plain else tuple(c for c in canals if c.name not in plain)
 
 
-def _plain(name: str) -> str:
+def _normalised_canal_name(name: str) -> str:
     return str(name).strip().casefold().removesuffix("canal").strip(" -_")
 
 
-def of_legs(
+def canal_index_of_legs(
     canals: Sequence[Canal], lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
 ) -> NDArray[np.int64]:
     """Return which canal each leg [deg] runs through, from one end to the other; -1 for none.
@@ -208,8 +210,9 @@ def of_legs(
     for k, canal in enumerate(canals):
         for first, last in (canal.ends, canal.ends[::-1]):
             near = np.flatnonzero(
-                (np.abs(a - first[0]) < _SAME_DEGREES) & (np.abs(c - last[0]) < _SAME_DEGREES)
+                (np.abs(a - first[0]) < _END_TOLERANCE_DEGREES)
+                & (np.abs(c - last[0]) < _END_TOLERANCE_DEGREES)
             )
-            at_first = distance(a[near], b[near], *first) <= SAME_PLACE
-            flat[near[at_first & (distance(c[near], d[near], *last) <= SAME_PLACE)]] = k
+            at_first = distance(a[near], b[near], *first) <= END_TOLERANCE
+            flat[near[at_first & (distance(c[near], d[near], *last) <= END_TOLERANCE)]] = k
     return number

@@ -17,15 +17,15 @@ from thalweg.chart.basemap import coastline_lines, land_polygons
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.chart.coast.coast_cache import gshhg_index
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
-from thalweg.chart.coast.gshhg import read_land
+from thalweg.chart.coast.gshhg import read_land_rings
 from thalweg.chart.coast.leg_tests import leg_status, point_status
 from thalweg.chart.coast.rings import Rings
 from thalweg.chart.coast.snapping import nearest_navigable
-from thalweg.chart.depth.depth_grids import Float32Array, make_layer
-from thalweg.chart.depth.depth_layers import Depths, warning_depth
+from thalweg.chart.depth.depth_grids import Float32Array, make_depth_layer
+from thalweg.chart.depth.depth_layers import DepthLayers, coarse_depth
 from thalweg.chart.ports import PORTS, Port, Ports
 from thalweg.chart.zones import geojson_zones
-from thalweg.chart.zones.emission_control_areas import EcaZone, chosen_areas
+from thalweg.chart.zones.emission_control_areas import EcaZone, select_emission_control_areas
 from thalweg.chart.zones.zone_raster import ZoneRaster, zone_raster
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.bounding_box import WORLD, Area
@@ -37,11 +37,11 @@ from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.depth_sampling import DepthArrays
 from thalweg.kernels.geometry.shore_distance import shore_distances
 
-SIDE: Final = 512  # cells along a face of the index of land from GeoJSON
+LAND_INDEX_CELLS: Final = 512  # cells along a face of the index of land from GeoJSON
 
 
 @dataclass(frozen=True, eq=False)
-class Land:
+class LandPolygons:
     """Land polygons: their name, the grid of their edges, and where their rings come from."""
 
     name: str
@@ -55,7 +55,7 @@ class Land:
 
 
 NO_ZONES: Final = Zones()
-NO_DEPTHS: Final = Depths()
+NO_DEPTHS: Final = DepthLayers()
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +65,10 @@ class Chart:
     Make one with `gshhg`, `open_water` or `from_geojson`.
     """
 
-    land: Land
+    land: LandPolygons
     area: Area = WORLD
     zones: Zones = NO_ZONES
-    depths: Depths = NO_DEPTHS
+    depths: DepthLayers = NO_DEPTHS
     canals: tuple[Canal, ...] = ()
 
     def __post_init__(self) -> None:
@@ -96,7 +96,7 @@ class Chart:
             If the resolution is unknown or not installed.
         """
         index = gshhg_index(resolution)
-        land = Land(f"GSHHG {resolution}", index, lambda: read_land(resolution))
+        land = LandPolygons(f"GSHHG {resolution}", index, lambda: read_land_rings(resolution))
         return cls(land, canals=CANALS)
 
     @classmethod
@@ -108,11 +108,11 @@ class Chart:
         West above east means a box across the antimeridian.
         """
         none = Rings.from_lists([])
-        land = Land("open water", empty_index(), lambda: none)
+        land = LandPolygons("open water", empty_index(), lambda: none)
         return cls(land, Area(float(south), float(north), float(west), float(east)))
 
     @classmethod
-    def from_geojson(cls, land: geojson_zones.Source) -> Chart:
+    def from_geojson(cls, land: geojson_zones.GeoJsonSource) -> Chart:
         """Return a chart whose land is the areas of a GeoJSON file or plain data.
 
         Holes in them are water. Edges are straight in longitude and latitude.
@@ -122,9 +122,9 @@ class Chart:
         InputError
             If it cannot be read, or holds anything but areas.
         """
-        rings = geojson_zones.read_land(land)
-        index = build_index(rings, SIDE)
-        return cls(Land(f"GeoJSON {rings.fingerprint()}", index, lambda: rings))
+        rings = geojson_zones.read_land_areas(land)
+        index = build_index(rings, LAND_INDEX_CELLS)
+        return cls(LandPolygons(f"GeoJSON {rings.fingerprint()}", index, lambda: rings))
 
     def with_depth(
         self,
@@ -154,10 +154,12 @@ class Chart:
         InputError, DatasetError
             If the file cannot be read or its depth is not clear.
         """
-        layer = make_layer(source, variable=variable, positive=positive, spacing_deg=spacing_deg)
-        return replace(self, depths=Depths((*self.depths.layers, layer)))
+        layer = make_depth_layer(
+            source, variable=variable, positive=positive, spacing_deg=spacing_deg
+        )
+        return replace(self, depths=DepthLayers((*self.depths.layers, layer)))
 
-    def with_zones(self, zones: geojson_zones.Source) -> Chart:
+    def with_zones(self, zones: geojson_zones.GeoJsonSource) -> Chart:
         """Return this chart with zones added.
 
         Parameters
@@ -188,8 +190,8 @@ class Chart:
         ----------
         names : str or iterable of str, optional
             Such as "north-sea", "baltic-sea", "mediterranean", "us-caribbean", "north-america";
-            see `thalweg.chart.zones.emission_control_areas.emission_areas`. By default all whose
-            limit on sulphur counts.
+            see `thalweg.chart.zones.emission_control_areas.emission_control_areas`. By default all
+            whose limit on sulphur counts.
         date : time, optional
             When; by default the day the package's dates were looked up (2026-11-21).
 
@@ -203,7 +205,7 @@ class Chart:
         ThalwegWarning
             If an area counts at ``date`` but its limits are not in the package.
         """
-        areas = chosen_areas(names, date=date)
+        areas = select_emission_control_areas(names, date=date)
         zones = tuple(EcaZone(area.name, area.rings) for area in areas)
         return replace(self, zones=self.zones.joined(Zones(eca=zones)))
 
@@ -211,7 +213,7 @@ class Chart:
         """Return which positions [deg] lie inside any emission control area of the chart."""
         return self.zones.in_eca(lat, lon)
 
-    def eca_share(
+    def eca_fraction(
         self,
         lat1: ArrayLike,
         lon1: ArrayLike,
@@ -226,7 +228,7 @@ class Chart:
         ``finest`` [m]. Arguments [deg] broadcast; NaN where a position is no number. About 1 us for
         a leg that touches no outline, 0.1 ms for one that does (many at once; 2 ms for one alone).
         """
-        return self.zones.eca_share(lat1, lon1, lat2, lon2, finest=finest)
+        return self.zones.eca_fraction(lat1, lon1, lat2, lon2, finest=finest)
 
     def zone_raster(
         self, south: float, north: float, west: float, east: float, spacing: float
@@ -235,7 +237,7 @@ class Chart:
 
         See `thalweg.chart.zones.zone_raster.ZoneRaster`: cells wholly outside or inside the
         emission control areas, and mixed ones, for which ``zones.eca_index`` (exact, for
-        `thalweg.kernels.geometry.cube_sphere.inside`) or `eca_share` decides.
+        `thalweg.kernels.geometry.cube_sphere.inside`) or `eca_fraction` decides.
         """
         return zone_raster(self.zones, Area(south, north, west, east).array(), spacing)
 
@@ -251,7 +253,7 @@ class Chart:
         InputError
             If there is no canal of that name; near matches are named.
         """
-        return replace(self, canals=canal_data.without(self.canals, names))
+        return replace(self, canals=canal_data.exclude_canals(self.canals, names))
 
     def canal_of_legs(
         self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
@@ -260,7 +262,7 @@ class Chart:
 
         The ends of the leg lie within 2 m of those of the canal, in either direction.
         """
-        return canal_data.of_legs(self.canals, lat1, lon1, lat2, lon2)
+        return canal_data.canal_index_of_legs(self.canals, lat1, lon1, lat2, lon2)
 
     @cached_property
     def _coast(self) -> CoastArrays:
@@ -337,7 +339,7 @@ class Chart:
         """
         return self.depths.along(lat1, lon1, lat2, lon2)
 
-    def depth_kernel(self, south: float, north: float, west: float, east: float) -> DepthArrays:
+    def depth_arrays(self, south: float, north: float, west: float, east: float) -> DepthArrays:
         """Return the depth of a box [deg] for
         `thalweg.kernels.geometry.depth_sampling.least_depth`.
 
@@ -345,12 +347,12 @@ class Chart:
         """
         return self.depths.arrays((south, north, west, east if east > west else east + 360.0))
 
-    def warning_depth_at(self, lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+    def coarse_depth_at(self, lat: ArrayLike, lon: ArrayLike) -> FloatArray:
         """Return coarse depth of the world [m], to warn with; never a proof of clearance.
 
         Every 30th point of ETOPO1: half a degree apart, shoals between them are not in it.
         """
-        return warning_depth(lat, lon)
+        return coarse_depth(lat, lon)
 
     def zone_factor(
         self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike

@@ -15,10 +15,10 @@ from functools import cached_property
 from importlib import resources
 from typing import Final
 
-from thalweg.core.errors import InputError, near_matches
+from thalweg.core.errors import InputError, close_matches
 
 # Usual names of ports that the indexes have under another name.
-ENGLISH: Final = {
+ENGLISH_NAMES: Final = {
     "alexandria egypt": "EGALY",
     "antwerp": "BEANR",
     "flushing": "NLVLI",
@@ -58,14 +58,14 @@ class Ports:
         """Every port of the index, in the order of the file."""
         packed = resources.files("thalweg.chart").joinpath("data/world_port_index.csv.gz")
         text = gzip.decompress(packed.read_bytes()).decode("utf-8")
-        return tuple(_port(row) for row in csv.DictReader(io.StringIO(text)))
+        return tuple(_port_from_row(row) for row in csv.DictReader(io.StringIO(text)))
 
     @cached_property
     def others(self) -> tuple[Port, ...]:
         """Ports that the index leaves out."""
         table = resources.files("thalweg.chart").joinpath("data/more_ports.csv")
         text = table.read_text(encoding="utf-8")
-        return tuple(_port(row) for row in csv.DictReader(io.StringIO(text)))
+        return tuple(_port_from_row(row) for row in csv.DictReader(io.StringIO(text)))
 
     def lookup(self, text: str) -> Port:
         """Return the port of a name ('Rotterdam', 'Rotterdam, NL') or UN/LOCODE ('NLRTM').
@@ -77,9 +77,11 @@ class Ports:
         InputError
             If there is no such port (with near matches), or several (with their LOCODEs).
         """
-        wanted = folded(text)
+        wanted = normalised_port_name(text)
         known = (*self.all, *self.others)
-        found = [port for port in known if port.locode and folded(port.locode) == wanted]
+        found = [
+            port for port in known if port.locode and normalised_port_name(port.locode) == wanted
+        ]
         found = found[:1] or self._named(text)
         if len(found) == 1:
             return found[0]
@@ -97,25 +99,27 @@ class Ports:
         """Return the ports of a name: exactly, by English name, or as words of a longer name."""
         name, _, country = text.rpartition(",") if "," in text else (text, "", "")
         code = country.strip().upper()
-        wanted = folded(name)
+        wanted = normalised_port_name(name)
         pool, others = (
             [port for port in ports if not code or port.country_code == code]
             for ports in (self.all, self.others)
         )
-        found = [port for port in pool if folded(port.name) == wanted]
-        if not found and wanted in ENGLISH:
-            found = [port for port in (*pool, *others) if port.locode == ENGLISH[wanted]][:1]
+        found = [port for port in pool if normalised_port_name(port.name) == wanted]
+        if not found and wanted in ENGLISH_NAMES:
+            found = [port for port in (*pool, *others) if port.locode == ENGLISH_NAMES[wanted]][:1]
         if not found:
-            found = [port for port in others if folded(port.name) == wanted]
+            found = [port for port in others if normalised_port_name(port.name) == wanted]
         if not found and len(wanted) >= 4:
-            found = [port for port in pool if f" {wanted} " in f" {folded(port.name)} "]
+            found = [
+                port for port in pool if f" {wanted} " in f" {normalised_port_name(port.name)} "
+            ]
         return found
 
     def _unknown(self, text: str) -> InputError:
-        wanted = folded(text.split(",")[0])
-        by_name = {folded(port.name): port for port in (*self.others, *self.all)}
+        wanted = normalised_port_name(text.split(",")[0])
+        by_name = {normalised_port_name(port.name): port for port in (*self.others, *self.all)}
         within = [n for n in by_name if len(wanted) >= 3 and wanted in n.split()]
-        near = list(dict.fromkeys([*near_matches(wanted, by_name, 4), *within]))[:5]
+        near = list(dict.fromkeys([*close_matches(wanted, by_name, 4), *within]))[:5]
         listed = "; ".join(str(by_name[name]) for name in near)
         return InputError(
             f"There is no port named {text!r} in the index of ports.",
@@ -127,17 +131,19 @@ class Ports:
 
 
 #: Letters that are no letter with an accent.
-_LETTERS: Final = str.maketrans({"ø": "o", "æ": "ae", "œ": "oe", "ł": "l", "đ": "d", "ð": "d"})
+_LETTER_SUBSTITUTES: Final = str.maketrans(
+    {"ø": "o", "æ": "ae", "œ": "oe", "ł": "l", "đ": "d", "ð": "d"}
+)
 
 
-def folded(text: str) -> str:
+def normalised_port_name(text: str) -> str:
     """Return text without case, accents, punctuation and double spaces, for comparing."""
-    plain = unicodedata.normalize("NFKD", text.casefold().translate(_LETTERS))
+    plain = unicodedata.normalize("NFKD", text.casefold().translate(_LETTER_SUBSTITUTES))
     kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
     return " ".join("".join(kept).split())
 
 
-def _port(row: dict[str, str]) -> Port:
+def _port_from_row(row: dict[str, str]) -> Port:
     locode = row["unlocode"].replace(" ", "").upper()
     country = row.get("country_code") or locode[:2]
     return Port(row["name"], country, locode, float(row["lat"]), float(row["lon"]))

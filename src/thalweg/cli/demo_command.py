@@ -23,30 +23,30 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan the demonstration voyage, and say what the storm costs a ship that ignores it."""
-    warm_up.begin("thalweg.planning.compile_kernels")
+    warm_up.start_compiling("thalweg.planning.compile_kernels")
     from thalweg.chart import Chart
     from thalweg.planning import plan as make_plan
     from thalweg.planning.demo_voyage import demo_voyage, weather_blind
-    from thalweg.planning.report.output_files import check_folder
+    from thalweg.planning.report.output_files import make_folder
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-    folder = check_folder(arguments.out)
+    folder = make_folder(arguments.out)
     ship, sea, chart = Ship.load("handysize-bulker"), Sea.storm(), Chart.gshhg("i")
-    progress = options.progress_for(arguments)
+    progress = options.progress_callback(arguments)
     found = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=progress)
     files = found.write(folder)
     if arguments.json:
         print(found.to_json())
         return 0
-    plan_command.show(found)
-    _compare(found, weather_blind(found, ship=ship, sea=sea, chart=chart))
+    plan_command.print_plan(found)
+    _print_comparison(found, weather_blind(found, ship=ship, sea=sea, chart=chart))
     for path in files:
         print(f"wrote {path}")
     return 0
 
 
-def _compare(found: Any, blind: Any) -> None:
+def _print_comparison(found: Any, blind: Any) -> None:
     waves = "sea_surface_wave_significant_height"
     worst, worst_blind = (float(route.samples[waves].max()) for route in (found.best, blind))
     print(

@@ -18,7 +18,7 @@ def add_command(commands: Any) -> None:
         description="Re-sail a route in small steps with the ship's own physics.",
     )
     parser.add_argument("route", metavar="ROUTE")
-    options.add_world_options(parser)
+    options.add_ship_and_chart_options(parser)
     parser.add_argument("--depart", metavar="T", help="departure; the file's own time when absent")
     parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed through water")
     parser.set_defaults(run=run)
@@ -27,11 +27,11 @@ def add_command(commands: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate, print and write."""
     from thalweg.planning.plan import route_dict
-    from thalweg.planning.report.output_files import check_folder, write_route
+    from thalweg.planning.report.output_files import make_folder, write_route
     from thalweg.route import evaluate as score
 
     if arguments.out:
-        check_folder(arguments.out)
+        make_folder(arguments.out)
     route = score(
         arguments.route,
         ship=options.open_ship(arguments),
@@ -46,13 +46,13 @@ def run(arguments: argparse.Namespace) -> int:
         found = {**route_dict(route, "given"), "notes": list(route.assumptions)}
         print(json.dumps(found, indent=2, allow_nan=False))
         return 0
-    _show(route)
+    _print_route(route)
     for path in files:
         print(f"wrote {path}")
     return 0
 
 
-def _show(route: Any) -> None:
+def _print_route(route: Any) -> None:
     from rich.console import Console
     from rich.markup import escape
 

@@ -7,8 +7,8 @@ import sys
 
 from thalweg.core.errors import CoverageError, NoRouteError, ThalwegError
 
-DONE, BAD_INPUT, NO_COVERAGE, NO_ROUTE = 0, 2, 3, 4
-STOPPED = 130  # by Ctrl-C, as shells tell it
+SUCCESS, BAD_INPUT, NO_COVERAGE, NO_ROUTE = 0, 2, 3, 4
+INTERRUPTED = 130  # by Ctrl-C, as shells tell it
 
 
 def exit_code(error: ThalwegError) -> int:
@@ -20,7 +20,7 @@ def exit_code(error: ThalwegError) -> int:
     return BAD_INPUT
 
 
-def report(error: ThalwegError, *, as_json: bool) -> int:
+def print_error(error: ThalwegError, *, as_json: bool) -> int:
     """Print an error for a person on stderr, or for a program on stdout; return its exit code."""
     if as_json:
         print(json.dumps(error.as_dict(), indent=2, allow_nan=False))

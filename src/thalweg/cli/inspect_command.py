@@ -27,7 +27,7 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Inspect, print and draw."""
-    from thalweg.planning.report.output_files import check_folder, draw_sea
+    from thalweg.planning.report.output_files import draw_sea, make_folder
     from thalweg.sea import Sea
 
     if arguments.time and not arguments.out:
@@ -36,13 +36,13 @@ def run(arguments: argparse.Namespace) -> int:
             "The map is drawn into the folder of --out.",
             "Add --out DIR, or leave --time out.",
         )
-    folder = check_folder(arguments.out) if arguments.out else None
-    sea = Sea.open(*arguments.file, mapping=options.mapping_of(arguments))
+    folder = make_folder(arguments.out) if arguments.out else None
+    sea = Sea.open(*arguments.file, mapping=options.variable_mapping(arguments))
     found = sea.describe().as_dict()
     if arguments.json:
         print(json.dumps(found, indent=2, allow_nan=False))
     else:
-        _show(found)
+        _print_inspection(found)
     if folder:
         shown = sea.member(0) if sea.members else sea
         picture = draw_sea(shown, folder / "sea.png", time=arguments.time)
@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _show(found: dict[str, Any]) -> None:
+def _print_inspection(found: dict[str, Any]) -> None:
     if found["members"]:
         print(f"Ensemble of {found['members']} members, of which the first is shown")
     print("Recognised")

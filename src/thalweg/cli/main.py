@@ -21,7 +21,7 @@ from thalweg.cli import (
     tracks_command,
     waiting_command,
 )
-from thalweg.cli.exit_codes import STOPPED, report
+from thalweg.cli.exit_codes import INTERRUPTED, print_error
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
 _COMMANDS = (
@@ -82,7 +82,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = build_parser().parse_args(argv)
     except InputError as error:
-        return report(error, as_json=as_json)
+        return print_error(error, as_json=as_json)
     with warnings.catch_warnings():
         warnings.filterwarnings("default", category=ThalwegWarning)
         warnings.showwarning = _show_warning
@@ -91,14 +91,14 @@ def main(argv: Sequence[str] | None = None) -> int:
             sys.stdout.flush()
             return code
         except ThalwegError as error:
-            return report(error, as_json=as_json or getattr(arguments, "json", False))
+            return print_error(error, as_json=as_json or getattr(arguments, "json", False))
         except BrokenPipeError:
             # nobody reads on: what is still to be flushed must not complain at the exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
         except KeyboardInterrupt:
             print("stopped", file=sys.stderr)
-            return STOPPED
+            return INTERRUPTED
 
 
 def _show_warning(message, category, filename, lineno, file=None, line=None):  # type: ignore[no-untyped-def]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 FILLABLE = ("currents", "wind", "waves")
 
 
-def add_world_options(parser: argparse.ArgumentParser) -> None:
+def add_ship_and_chart_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that name ship, sea and chart."""
     parser.add_argument("--ship", required=True, metavar="NAME|FILE", help="library ship or YAML")
     add_sea_options(parser)
@@ -77,7 +77,7 @@ def add_mapping_option(parser: Any) -> None:
     )
 
 
-def mapping_of(arguments: argparse.Namespace) -> dict[str, str]:
+def variable_mapping(arguments: argparse.Namespace) -> dict[str, str]:
     """Return what ``--map`` tells.
 
     Raises
@@ -100,7 +100,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     """Build the sea that the options name."""
     from thalweg.sea import Sea
 
-    policies = dict(_policy(text) for text in arguments.fill)
+    policies = dict(_parse_fill_policy(text) for text in arguments.fill)
     _check_options(arguments)
     if not arguments.calm and not arguments.sea:
         raise InputError(
@@ -109,10 +109,10 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
             "Give --sea FILE..., --sea storm, or ask for --calm.",
         )
     if arguments.calm:
-        return _with_members(Sea.calm(), arguments)
+        return _check_ensemble_choice(Sea.calm(), arguments)
     files = [name for name in arguments.sea if name != "storm"]
     options: dict[str, Any] = {
-        "mapping": mapping_of(arguments),
+        "mapping": variable_mapping(arguments),
         "draught_m": arguments.average_over,
     }
     layers = [Sea.open(*files, **options)] if files else []
@@ -121,7 +121,7 @@ def open_sea(arguments: argparse.Namespace) -> Sea:
     if "storm" in arguments.sea:
         layers.append(Sea.storm())
     sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
-    sea = _with_members(sea, arguments)
+    sea = _check_ensemble_choice(sea, arguments)
     return sea.filled(**policies) if policies else sea
 
 
@@ -144,7 +144,7 @@ def _check_options(arguments: argparse.Namespace) -> None:
             )
 
 
-def _with_members(sea: Sea, arguments: argparse.Namespace) -> Sea:
+def _check_ensemble_choice(sea: Sea, arguments: argparse.Namespace) -> Sea:
     """Return a sea; raise `InputError` if a choice over members is asked for and it has none."""
     if getattr(arguments, "ensemble", None) and not sea.members:
         raise InputError(
@@ -156,7 +156,7 @@ def _with_members(sea: Sea, arguments: argparse.Namespace) -> Sea:
     return sea
 
 
-def _policy(text: str) -> tuple[str, float | str]:
+def _parse_fill_policy(text: str) -> tuple[str, float | str]:
     name, _, value = text.partition("=")
     try:
         if name not in FILLABLE:
@@ -195,7 +195,7 @@ def open_ship(arguments: argparse.Namespace) -> Ship:
     return ship
 
 
-def progress_for(arguments: argparse.Namespace) -> Callable[[str], None] | None:
+def progress_callback(arguments: argparse.Namespace) -> Callable[[str], None] | None:
     """Return a function that shows what is being done, or None when output is piped or JSON."""
     if arguments.json or not sys.stderr.isatty():
         return None

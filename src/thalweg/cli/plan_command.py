@@ -7,13 +7,13 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from thalweg.cli import options
-from thalweg.cli.exit_codes import DONE, NO_ROUTE, STOPPED
+from thalweg.cli.exit_codes import INTERRUPTED, NO_ROUTE, SUCCESS
 from thalweg.kernels.compilation import warm_up
 
 if TYPE_CHECKING:
     from thalweg.planning import Plan, Voyage
 
-_MOST_ROWS = 30
+_MAX_ROWS = 30
 
 
 def add_command(commands: Any) -> None:
@@ -27,7 +27,7 @@ def add_command(commands: Any) -> None:
     parser.add_argument("start", metavar="FROM")
     parser.add_argument("goal", metavar="TO")
     parser.add_argument("--via", action="append", default=[], metavar="P", help="pass this place")
-    options.add_world_options(parser)
+    options.add_ship_and_chart_options(parser)
     when = parser.add_mutually_exclusive_group()
     when.add_argument("--depart", metavar="T", help="departure, ISO 8601 UTC")
     when.add_argument("--depart-window", nargs=2, metavar=("T1", "T2"), help="best departure in it")
@@ -79,12 +79,12 @@ def _add_trade_options(group: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Plan, print and write."""
-    warm_up.begin("thalweg.planning.compile_kernels")
+    warm_up.start_compiling("thalweg.planning.compile_kernels")
     from thalweg.planning import plan
-    from thalweg.planning.report.output_files import check_folder
+    from thalweg.planning.report.output_files import make_folder
 
     if arguments.out:
-        check_folder(arguments.out)
+        make_folder(arguments.out)
     ship, sea = options.open_ship(arguments), options.open_sea(arguments)
     try:
         found = plan(
@@ -94,23 +94,23 @@ def run(arguments: argparse.Namespace) -> int:
             chart=options.open_chart(arguments),
             network=arguments.network,
             resolution=options.resolution_m(arguments.resolution),
-            progress=options.progress_for(arguments),
+            progress=options.progress_callback(arguments),
         )
     except KeyboardInterrupt:
         print("stopped: there was no plan yet, nothing is kept", file=sys.stderr)
-        return STOPPED
+        return INTERRUPTED
     files = found.write(arguments.out) if arguments.out else []
     if arguments.json:
         print(found.to_json())
     else:
-        show(found)
+        print_plan(found)
         each = [path for path in files if path.parent.name == "routes"]
         for path in files:
             if path not in each:
                 print(f"wrote {path}")
         if each:
             print(f"wrote {each[0].parent} ({len(each)} files)")
-    return DONE if found.best.feasible else NO_ROUTE
+    return SUCCESS if found.best.feasible else NO_ROUTE
 
 
 def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:
@@ -148,7 +148,7 @@ def _first_time(sea: Any) -> float:
     return max(starts) if starts else float(round(time.time()))
 
 
-def show(plan: Plan) -> None:
+def print_plan(plan: Plan) -> None:
     """Print a plan for a person."""
     from rich.console import Console
 
@@ -174,18 +174,18 @@ def show(plan: Plan) -> None:
         soft_wrap=True,
     )
     if plan.front is not None:
-        show_front(console, plan)
+        print_front(console, plan)
     for note in plan.notes:
         console.print(f"[yellow]note:[/yellow] {note}", soft_wrap=True)
 
 
-def show_front(console: Any, plan: Plan) -> None:
+def print_front(console: Any, plan: Plan) -> None:
     """Print the routes of a front, and what they save over the weather-blind route."""
     import numpy as np
     from rich import box
     from rich.table import Table
 
-    from thalweg.planning.pareto.exploration import spread
+    from thalweg.planning.pareto.exploration import evenly_spaced_subset
 
     front = plan.front
     assert front is not None  # checked by the caller
@@ -195,10 +195,10 @@ def show_front(console: Any, plan: Plan) -> None:
         justify = "left" if name in ("from", "way") else "right"
         table.add_column(name, justify=justify, no_wrap=name != "way")  # type: ignore[arg-type]
     rows = sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"]))
-    shown = spread(
+    shown = evenly_spaced_subset(
         np.array([row["time_h"] for row in rows]),
         np.array([row[front.column] for row in rows]),
-        _MOST_ROWS,
+        _MAX_ROWS,
     )
     for row in (rows[index] for index in shown):
         gap = "" if row["gap"] is None else f"{100 * row['gap']:.1f}"
@@ -277,8 +277,8 @@ def _cells(row: dict[str, Any]) -> list[str]:
 
 def _shortened(rows: list[list[str]]) -> list[list[str]]:
     """Leave out the middle of a long table; the files hold all of it."""
-    if len(rows) <= _MOST_ROWS:
+    if len(rows) <= _MAX_ROWS:
         return rows
-    half = _MOST_ROWS // 2
+    half = _MAX_ROWS // 2
     dots = [f"... {len(rows) - 2 * half} more", *[""] * (len(rows[0]) - 1)]
     return [*rows[:half], dots, *rows[-half:]]

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from thalweg.cli import options
-from thalweg.cli.exit_codes import DONE, NO_ROUTE
+from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS
 
 
 def add_command(commands: Any) -> None:
@@ -25,27 +25,27 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Sail, print and write."""
-    from thalweg.operations.dredging.project_inputs import open_project, open_things
+    from thalweg.operations.dredging.project_inputs import open_project, open_project_inputs
     from thalweg.operations.dredging.run_project import run_project
-    from thalweg.planning.report.output_files import check_folder
+    from thalweg.planning.report.output_files import make_folder
 
     if arguments.out:
-        check_folder(arguments.out)
+        make_folder(arguments.out)
     project = open_project(arguments.file)
-    ship, sea, chart = open_things(project)
-    tell = options.progress_for(arguments)
+    ship, sea, chart = open_project_inputs(project)
+    tell = options.progress_callback(arguments)
     result = run_project(project, ship=ship, sea=sea, chart=chart, progress=tell)
     files = result.write(arguments.out) if arguments.out else []
     if arguments.json:
         print(result.to_json())
     else:
-        show(result)
+        print_project(result)
         for path in files:
             print(f"wrote {path}")
-    return DONE if result.optimised.feasible else NO_ROUTE
+    return SUCCESS if result.optimised.feasible else NO_ROUTE
 
 
-def show(result: Any) -> None:
+def print_project(result: Any) -> None:
     """Print a project's table for a person."""
     from rich import box
     from rich.console import Console

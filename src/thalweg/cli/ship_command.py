@@ -62,7 +62,7 @@ def run_ship(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(sheet, indent=2, allow_nan=False))
         return 0
-    show_sheet(sheet)
+    print_sheet(sheet)
     for path in pictures:
         print(f"wrote {path}")
     return 0
@@ -71,7 +71,7 @@ def run_ship(arguments: argparse.Namespace) -> int:
 add_command, run = add_ship_command, run_ship
 
 
-_MOST_SPEEDS: Final = 1000
+_MAX_SPEEDS: Final = 1000
 
 
 def parse_speeds(text: str) -> list[float]:
@@ -84,7 +84,7 @@ def parse_speeds(text: str) -> list[float]:
     wrong = InputError(
         f"{text!r} are not speeds.",
         "Speeds are knots: a list 10,12,14, a range 8:16, or a range with a step 8:16:0.5; "
-        f"{_MOST_SPEEDS} at most.",
+        f"{_MAX_SPEEDS} at most.",
         "Write them that way.",
         value=text,
     )
@@ -94,13 +94,13 @@ def parse_speeds(text: str) -> list[float]:
         raise wrong from None
     if not all(math.isfinite(n) and n > 0 for n in numbers):
         raise wrong
-    if ":" not in text and len(numbers) <= _MOST_SPEEDS:
+    if ":" not in text and len(numbers) <= _MAX_SPEEDS:
         return numbers
     if len(numbers) not in (2, 3) or "," in text or numbers[1] < numbers[0]:
         raise wrong
     step = numbers[2] if len(numbers) == 3 else 1.0
     steps = (numbers[1] - numbers[0]) / step + 1e-9
-    if steps >= _MOST_SPEEDS:
+    if steps >= _MAX_SPEEDS:
         raise wrong
     return [numbers[0] + k * step for k in range(math.floor(steps) + 1)]
 
@@ -165,7 +165,7 @@ def _refuse(sheet: dict[str, Any], strict: bool) -> None:
         )
 
 
-def show_sheet(sheet: dict[str, Any]) -> None:
+def print_sheet(sheet: dict[str, Any]) -> None:
     """Print the sheet for a person."""
     from rich import box
     from rich.console import Console
@@ -186,7 +186,7 @@ def show_sheet(sheet: dict[str, Any]) -> None:
         forces = row["resistance_n"]
         cells = [_text(row["speed_kn"], 2)]
         if composed:
-            cells += [_text(_kilo(forces[name]), 1) for name in ("total", "waves", "wind")]
+            cells += [_text(_in_thousands(forces[name]), 1) for name in ("total", "waves", "wind")]
         cii = row["cii"]
         cells += [
             _text(row["brake_power_kw"], 0),
@@ -197,10 +197,10 @@ def show_sheet(sheet: dict[str, Any]) -> None:
         ]
         table.add_row(*cells)
     console.print(table)
-    _show_notes(console, sheet)
+    _print_notes(console, sheet)
 
 
-def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
+def _print_notes(console: Any, sheet: dict[str, Any]) -> None:
     from rich.markup import escape
 
     def show(head: str, text: str) -> None:
@@ -210,7 +210,7 @@ def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
         show("[yellow]warning:[/yellow] ", note)
     for note in sheet["assumed"]:
         show("Assumed: ", note)
-    for where, note in gathered_notes(sheet["conditions"]):
+    for where, note in merged_notes(sheet["conditions"]):
         show(f"[yellow]warning[/yellow] at {where} kn: ", note)
     for note in sheet["missing"]:
         show("Not known: ", note)
@@ -223,7 +223,7 @@ def _show_notes(console: Any, sheet: dict[str, Any]) -> None:
         show("Source: ", source)
 
 
-def gathered_notes(rows: list[dict[str, Any]]) -> list[tuple[str, str]]:
+def merged_notes(rows: list[dict[str, Any]]) -> list[tuple[str, str]]:
     """Return the warnings of rows as (speeds, text); those that differ in a value only, once."""
     found: dict[str, list[tuple[float, str]]] = {}
     for row in rows:
@@ -261,7 +261,7 @@ def _draw(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str)
     return [folder / "ship.json", *draw_ship(ship, sheet, weather, folder)]
 
 
-def _kilo(value: float | None) -> float | None:
+def _in_thousands(value: float | None) -> float | None:
     return None if value is None else value / 1000.0
 
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
-from thalweg.ship.performance_sheet import assumed_period
+from thalweg.ship.performance_sheet import assumed_peak_period
 
 #: component: label and colour, from the hull outwards
-_PARTS = {
+_RESISTANCE_COMPONENTS = {
     "friction": ("friction", "#1b4f72"),
     "form_factor": ("form", "#2e86c1"),
     "appendage": ("appendages", "#85c1e9"),
@@ -28,8 +28,8 @@ _PARTS = {
 }
 
 
-_BANDS = ("#2e7d32", "#9ccc65", "#fff176", "#ffb74d", "#e57373")
-_RIGHT = {"ha": "right", "va": "center", "fontweight": "bold"}
+_RATING_COLOURS = ("#2e7d32", "#9ccc65", "#fff176", "#ffb74d", "#e57373")
+_BAND_LABEL_STYLE = {"ha": "right", "va": "center", "fontweight": "bold"}
 
 
 def draw_ship(
@@ -87,16 +87,16 @@ def _resistance(axes: Any, sheet: Mapping[str, Any]) -> bool:
     speed = np.array([row["speed_kn"] for row in rows])
     parts = {
         name: np.array([row["resistance_n"][name] for row in rows], float) / 1000.0
-        for name in _PARTS
+        for name in _RESISTANCE_COMPONENTS
     }
     most = max(abs(row["resistance_n"]["total"]) for row in rows) / 1000.0
-    shown = [name for name in _PARTS if np.abs(parts[name]).max() > 1e-9 * most]
+    shown = [name for name in _RESISTANCE_COMPONENTS if np.abs(parts[name]).max() > 1e-9 * most]
     if len(rows) == 1:
         return _bars(axes, _title(sheet), {n: float(parts[n][0]) for n in shown}, float(speed[0]))
     up = [np.maximum(parts[name], 0.0) for name in shown]
     down = [np.minimum(parts[name], 0.0) for name in shown]
-    colours = [_PARTS[name][1] for name in shown]
-    axes.stackplot(speed, up, labels=[_PARTS[n][0] for n in shown], colors=colours)
+    colours = [_RESISTANCE_COMPONENTS[name][1] for name in shown]
+    axes.stackplot(speed, up, labels=[_RESISTANCE_COMPONENTS[n][0] for n in shown], colors=colours)
     if any((d < 0).any() for d in down):
         axes.stackplot(speed, down, colors=colours)
     total = sum(parts[name] for name in shown)
@@ -117,7 +117,11 @@ def _bars(axes: Any, name: str, parts: Mapping[str, float], speed: float) -> boo
     """The components at a single speed, the largest on top."""
     names = sorted(parts, key=lambda name: parts[name])
     values = [parts[name] for name in names]
-    places = axes.barh([_PARTS[n][0] for n in names], values, color=[_PARTS[n][1] for n in names])
+    places = axes.barh(
+        [_RESISTANCE_COMPONENTS[n][0] for n in names],
+        values,
+        color=[_RESISTANCE_COMPONENTS[n][1] for n in names],
+    )
     axes.bar_label(places, fmt="%.4g", padding=3, fontsize=8)
     title = f"{name}: {sum(values):.4g} kN at {speed:g} kn"
     axes.set(xlabel="resistance [kN]", title=title)
@@ -161,10 +165,16 @@ def _cii(axes: Any, sheet: Mapping[str, Any]) -> bool:
     limits = known[0]["cii"]["boundaries_2026"]
     top = 1.1 * max([*attained, *(limits or [])])
     for low, high, letter, colour in zip(
-        [0.0, *(limits or [])], [*(limits or []), top], "ABCDE", _BANDS
+        [0.0, *(limits or [])], [*(limits or []), top], "ABCDE", _RATING_COLOURS
     ):
         axes.axhspan(low, high, color=colour, alpha=0.35, linewidth=0)
-        axes.text(0.99, 0.5 * (low + high), letter, transform=axes.get_yaxis_transform(), **_RIGHT)
+        axes.text(
+            0.99,
+            0.5 * (low + high),
+            letter,
+            transform=axes.get_yaxis_transform(),
+            **_BAND_LABEL_STYLE,
+        )
     axes.plot(speed, attained, color="#222222", marker="o", markersize=3)
     axes.set(
         xlabel="speed through water [kn]",
@@ -182,7 +192,7 @@ def _polar(axes: Any, ship: Ship, weather: Mapping[str, float], name: str) -> bo
     angle = np.linspace(0.0, np.pi, 181)
     both, top = np.concatenate([angle, -angle[::-1]]), np.nan
     for label, wind, waves, colour in _strengths(weather):
-        at = {"depth": np.inf, "wave_period": assumed_period(waves), **weather}
+        at = {"depth": np.inf, "wave_period": assumed_peak_period(waves), **weather}
         at |= {"wind_speed": wind, "wave_height": waves}
         conditions = Conditions({**at, "wind_angle": angle, "wave_angle": angle})
         speed = ship.speed_through_water(conditions, len(ship.speeds) - 1) / KNOT

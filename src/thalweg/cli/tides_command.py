@@ -16,14 +16,14 @@ import numpy as np
 from thalweg.cli import options
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time, parse_time
-from thalweg.sea.tides.noos_dia_series import LENGTHS
+from thalweg.sea.tides.noos_dia_series import LENGTH_UNITS
 
 if TYPE_CHECKING:
     from thalweg.sea.tides.constituents import Constituents
     from thalweg.sea.tides.harmonic_analysis import TideAnalysis
 
-MOST_ROWS = 2_000_000  #: times one prediction may have
-SHOWN = 12  #: constituents printed for a reader
+MAX_ROWS = 2_000_000  #: times one prediction may have
+MAX_ROWS_SHOWN = 12  #: constituents printed for a reader
 
 
 def add_command(commands: Any) -> None:
@@ -54,7 +54,7 @@ def _add_analyse(actions: Any) -> None:
         "--at", metavar="LAT,LON", help="position of the record, if it does not tell it"
     )
     parser.add_argument(
-        "--unit", choices=tuple(LENGTHS), help="of levels in two bare columns of a record"
+        "--unit", choices=tuple(LENGTH_UNITS), help="of levels in two bare columns of a record"
     )
     parser.add_argument(
         "--days-since", metavar="DATE", help="first day of the days in two bare columns"
@@ -94,7 +94,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _analyse(arguments: argparse.Namespace) -> int:
     from thalweg.sea.tides.constituent_files import write_constituents
-    from thalweg.sea.tides.tide_records import is_record
+    from thalweg.sea.tides.tide_records import is_text_record
 
     if not (np.isfinite(arguments.rayleigh) and arguments.rayleigh > 0.0):
         raise InputError(
@@ -103,20 +103,20 @@ def _analyse(arguments: argparse.Namespace) -> int:
             "Correct it.",
         )
     out = _writable(arguments.out) if arguments.out else None
-    analysis, told = _record(arguments) if is_record(arguments.file) else _model(arguments)
+    analysis, told = _record(arguments) if is_text_record(arguments.file) else _model(arguments)
     if out:
         write_constituents(analysis.constituents, out)
     found = _summary(analysis, told, arguments.out)
     if arguments.json:
         print(json.dumps(found, indent=2, allow_nan=False))
     else:
-        _show(found)
+        _print_analysis(found)
     return 0
 
 
 def _record(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
-    from thalweg.sea.tides.harmonic_analysis import LEAST_KNOWN, analyse
-    from thalweg.sea.tides.tide_records import read_record, told_name
+    from thalweg.sea.tides.harmonic_analysis import MIN_KNOWN_FRACTION, analyse
+    from thalweg.sea.tides.tide_records import read_record, readable_name
 
     _refuse(arguments, ("map",), "a record", "variables of a model run")
     record = read_record(arguments.file, unit=arguments.unit, days_since=arguments.days_since)
@@ -139,9 +139,9 @@ def _record(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
         if not np.isfinite(mean[0]):
             share = np.isfinite(record.series[name]).mean()
             raise InputError(
-                f"The {told_name(name)} is known at {100.0 * share:.0f} % of the times.",
-                f"At least {100.0 * LEAST_KNOWN:.0f} % of a record must be known, and more than "
-                "there are constants to find.",
+                f"The {readable_name(name)} is known at {100.0 * share:.0f} % of the times.",
+                f"At least {100.0 * MIN_KNOWN_FRACTION:.0f} % of a record must be known, and more "
+                "than there are constants to find.",
                 "Take out a part of the record with fewer gaps, or ask for fewer constituents.",
             )
     return analysis, f"{record.told} at {place[0]:.4f}, {place[1]:.4f}"
@@ -153,7 +153,7 @@ def _model(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
 
     _refuse(arguments, ("at", "unit", "days_since"), "a model run", "a record")
     analysis = tidal_analysis(
-        Sea.open(arguments.file, mapping=options.mapping_of(arguments)),
+        Sea.open(arguments.file, mapping=options.variable_mapping(arguments)),
         constituents=arguments.constituents,
         rayleigh=arguments.rayleigh,
         progress=_progress(arguments),
@@ -213,7 +213,7 @@ def _rows(constants: Constituents, name: str, known: Any) -> list[dict[str, Any]
     return sorted(rows, key=lambda r: -(r["amplitude_median"] or 0.0))
 
 
-def _show(found: dict[str, Any]) -> None:
+def _print_analysis(found: dict[str, Any]) -> None:
     print(found["source"])
     print(f"{found['start']} to {found['end']}, {found['nodes']} nodes")
     for name, rows in found["variables"].items():
@@ -223,12 +223,12 @@ def _show(found: dict[str, Any]) -> None:
         )
         dry = found["nodes_without_tide"][name]
         print(f"{name}: {told}" + (f", {dry} nodes without tide" if dry else ""))
-        for row in rows[:SHOWN]:
+        for row in rows[:MAX_ROWS_SHOWN]:
             size = row.get("amplitude", row.get("amplitude_median"))
             phase = f"  {row['phase_deg']:6.1f} deg" if "phase_deg" in row else "  (median)"
             print(f"  {row['name']:>6}  {row['period_h']:9.4f} h  {size:8.4f}{phase}")
-        if len(rows) > SHOWN:
-            print(f"  and {len(rows) - SHOWN} more")
+        if len(rows) > MAX_ROWS_SHOWN:
+            print(f"  and {len(rows) - MAX_ROWS_SHOWN} more")
     if found["wrote"]:
         print(f"wrote {found['wrote']}")
 
@@ -253,14 +253,14 @@ def _predict(arguments: argparse.Namespace) -> int:
 
 def _writable(path: str) -> Path:
     """Return where to write a file, its folder made; before the work, not after it."""
-    from thalweg.planning.report.output_files import check_folder
+    from thalweg.planning.report.output_files import make_folder
 
     target = Path(path)
     if target.is_dir():
         raise InputError(
             f"{path} is a folder.", "--out is a file here.", "Add the name of a file to it."
         )
-    check_folder(target.parent)
+    make_folder(target.parent)
     return target
 
 
@@ -275,9 +275,9 @@ def _times(arguments: argparse.Namespace) -> np.ndarray[Any, np.dtype[np.float64
             "Correct them.",
         )
     rows = int((end - start) / step + 1e-6) + 1
-    if rows > MOST_ROWS:
+    if rows > MAX_ROWS:
         raise InputError(
-            f"{rows} times are asked for.", f"At most {MOST_ROWS}.", "Use a longer step."
+            f"{rows} times are asked for.", f"At most {MAX_ROWS}.", "Use a longer step."
         )
     return start + step * np.arange(rows, dtype=np.float64)
 

@@ -50,15 +50,15 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Analyse, print and write."""
-    from thalweg.operations.tracks.activities import CuttingRules
+    from thalweg.operations.tracks.activities import SegmentationRules
     from thalweg.operations.tracks.track_analysis import analyse_tracks
-    from thalweg.operations.tracks.track_cleaning import Cleaning
+    from thalweg.operations.tracks.track_cleaning import CleaningRules
     from thalweg.ship import Ship
 
     if arguments.out:
-        from thalweg.planning.report.output_files import check_folder
+        from thalweg.planning.report.output_files import make_folder
 
-        check_folder(arguments.out)
+        make_folder(arguments.out)
     if arguments.ship and not (arguments.sea or arguments.calm):
         raise InputError(
             "A ship is to be compared, but no sea is given.",
@@ -71,8 +71,8 @@ def run(arguments: argparse.Namespace) -> int:
         sea=_sea(arguments),
         ship=Ship.load(arguments.ship) if arguments.ship else None,
         speed_kn=arguments.speed,
-        cutting=CuttingRules(slow=arguments.slow * KNOT),
-        cleaning=Cleaning(
+        cutting=SegmentationRules(slow=arguments.slow * KNOT),
+        cleaning=CleaningRules(
             longest_gap=60.0 * arguments.longest_gap, fastest=arguments.fastest * KNOT
         ),
         columns=_columns(arguments.column),
@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({**analysis.as_dict(), "files": files}, indent=2, allow_nan=False))
         return 0
-    _show(analysis)
+    _print_analysis(analysis)
     for path in files:
         print(f"wrote {path}")
     return 0
@@ -125,7 +125,7 @@ def _write(analysis: TrackAnalysis, out: str) -> list[str]:
     return [str(folder / name) for name in (*frames, "tracks.json", "tracks.png")]
 
 
-def _show(analysis: TrackAnalysis) -> None:
+def _print_analysis(analysis: TrackAnalysis) -> None:
     from rich.console import Console
 
     found, console = analysis.as_dict(), Console(markup=False)  # names may have brackets in them
@@ -136,11 +136,11 @@ def _show(analysis: TrackAnalysis) -> None:
     )
     for note in found["notes"]:
         console.print(f"note: {note}", soft_wrap=True, highlight=False)
-    _show_activities(console, found)
-    _show_models(console, found)
+    _print_activities(console, found)
+    _print_models(console, found)
 
 
-def _show_activities(console: Any, found: dict[str, Any]) -> None:
+def _print_activities(console: Any, found: dict[str, Any]) -> None:
     from rich.table import Table
 
     table = Table(title="activities")
@@ -159,7 +159,7 @@ def _show_activities(console: Any, found: dict[str, Any]) -> None:
         console.print(f"{kind}: {row['mean_kn']:.2f} ± {deviation} kn over {row['legs']} legs")
 
 
-def _show_models(console: Any, found: dict[str, Any]) -> None:
+def _print_models(console: Any, found: dict[str, Any]) -> None:
     from rich.table import Table
 
     table = Table(title="modelled against measured speeds of the legs")

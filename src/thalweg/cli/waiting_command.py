@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 SCENARIOS = ("neap", "neap-to-mean", "mean-to-spring", "spring")
-FINER = 30  #: departures that are planned for each that is sailed
+TABLE_REFINEMENT = 30  #: departures that are planned for each that is sailed
 _SLOW = 1.5  # how much longer than in still water a trip may take, for the length of the tables
 
 
@@ -35,7 +35,7 @@ def add_command(commands: Any) -> None:
     )
     parser.add_argument("start", metavar="FROM", help="LAT,LON where the ship loads")
     parser.add_argument("goal", metavar="TO", help="LAT,LON where it unloads")
-    options.add_world_options(parser)
+    options.add_ship_and_chart_options(parser)
     parser.add_argument(
         "--north-sea",
         choices=SCENARIOS,
@@ -61,18 +61,18 @@ def run(arguments: argparse.Namespace) -> int:
 
     _check(arguments)
     if arguments.out:
-        from thalweg.planning.report.output_files import check_folder
+        from thalweg.planning.report.output_files import make_folder
 
-        check_folder(arguments.out)
+        make_folder(arguments.out)
     trips = _trips(arguments)
     count = arguments.starts or (4 if arguments.north_sea else 1)
     starts = parse_time(arguments.depart) + np.arange(count) * M2_PERIOD / count
-    waits = np.linspace(0.0, arguments.most_wait * HOUR, 13)
+    waits = np.linspace(0.0, arguments.max_wait * HOUR, 13)
     hotel = _hotel_power(arguments)
-    study = waiting_study(trips, starts=starts.tolist(), most_waits=waits, hotel_power=hotel)
+    study = waiting_study(trips, starts=starts.tolist(), max_waits=waits, hotel_power=hotel)
     even = {
         rule: [
-            break_even_power(trips, start=float(s), most_wait=float(waits[-1]), rule=rule)
+            break_even_power(trips, start=float(s), max_wait=float(waits[-1]), rule=rule)
             for s in starts
         ]
         for rule in ("current", "optimum")
@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         found = {**study.as_dict(), "break_even_kw": kilowatts, "files": files}
         print(json.dumps(found, indent=2, allow_nan=False))
         return 0
-    _show(study, even)
+    _print_study(study, even)
     for path in files:
         print(f"wrote {path}")
     return 0
@@ -93,7 +93,7 @@ def _check(arguments: argparse.Namespace) -> None:
     for name, value, least in (
         ("--cycles", arguments.cycles, 0),
         ("--starts", 1 if arguments.starts is None else arguments.starts, 1),
-        ("--most-wait", arguments.most_wait, 0.0),
+        ("--most-wait", arguments.max_wait, 0.0),
         ("--hotel-kw", arguments.hotel_kw or 0.0, 0.0),
     ):
         if not (math.isfinite(value) and value >= least):
@@ -167,7 +167,7 @@ def _trips(arguments: argparse.Namespace) -> list[TripTable]:
                 chart=chart,
                 min_ukc=arguments.ukc,
                 name=name,
-            ).refined(FINER)
+            ).refined(TABLE_REFINEMENT)
         )
     return tables if one_way else tables * arguments.cycles
 
@@ -176,7 +176,7 @@ def _window(arguments: argparse.Namespace, way: list[float], ship: Ship) -> floa
     """Return how long departures are needed [s]."""
     longest = _SLOW * float(inverse(*way)[0]) / float(ship.speeds[-1])
     trips = max(1, 2 * arguments.cycles)
-    return trips * (longest + arguments.most_wait * HOUR)
+    return trips * (longest + arguments.max_wait * HOUR)
 
 
 def _sea(arguments: argparse.Namespace, ends: tuple[Position, Position], draught: float) -> Sea:
@@ -184,10 +184,10 @@ def _sea(arguments: argparse.Namespace, ends: tuple[Position, Position], draught
         return options.open_sea(arguments)
     from thalweg.sea import Sea
     from thalweg.sea.models.current_profiles import WaterColumn
-    from thalweg.sea.models.stratified_coast import north_sea_current
+    from thalweg.sea.models.stratified_coast import stratified_coast_current
 
     onshore = float(np.degrees(inverse(*ends[0], *ends[1])[2]))
-    current = north_sea_current(
+    current = stratified_coast_current(
         arguments.north_sea,
         coast=ends[1],
         onshore_deg=onshore,
@@ -223,7 +223,7 @@ def _write(study: WaitingStudy, arguments: argparse.Namespace) -> list[str]:
     return [str(folder / name) for name in ("waiting.csv", "waiting.json", "waiting.png")]
 
 
-def _show(study: WaitingStudy, even: dict[str, list[float]]) -> None:
+def _print_study(study: WaitingStudy, even: dict[str, list[float]]) -> None:
     from rich.console import Console
     from rich.table import Table
 
@@ -231,9 +231,9 @@ def _show(study: WaitingStudy, even: dict[str, list[float]]) -> None:
     table = Table(title=f"energy against not waiting [%], hotel power {hotel:g} kW")
     for name in ("ready", "rule"):
         table.add_column(name, no_wrap=True)
-    shown = range(3, len(study.most_waits), 3)
+    shown = range(3, len(study.max_waits), 3)
     for j in shown:
-        table.add_column(f"{study.most_waits[j] / HOUR:.1f} h", justify="right")
+        table.add_column(f"{study.max_waits[j] / HOUR:.1f} h", justify="right")
     table.add_column("all [h]", justify="right", no_wrap=True)
     table.add_column("even [kW]", justify="right", no_wrap=True)
     for i, start in enumerate(study.starts):

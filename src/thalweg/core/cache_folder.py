@@ -11,7 +11,7 @@ from pathlib import Path
 
 def cache_folder(name: str = "") -> Path:
     """Return a writable folder for cached data (``THALWEG_CACHE`` overrides its place)."""
-    for base in _candidates():
+    for base in _candidate_folders():
         folder = base / name if name else base
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -19,18 +19,18 @@ def cache_folder(name: str = "") -> Path:
             continue
         if os.access(folder, os.W_OK):
             return folder
-    folder = _own_folder() / name
+    folder = _temporary_folder() / name
     folder.mkdir(exist_ok=True)
     return folder
 
 
 @cache
-def _own_folder() -> Path:
+def _temporary_folder() -> Path:
     """A folder for this process alone, when none lasts."""
     return Path(tempfile.mkdtemp(prefix="thalweg-"))
 
 
-def _candidates() -> list[Path]:
+def _candidate_folders() -> list[Path]:
     override = os.environ.get("THALWEG_CACHE")
     if override:
         return [Path(override)]

@@ -41,7 +41,7 @@ class ThalwegError(Exception):
             "asked": self.asked,
             "possible": self.possible,
             "remedy": self.remedy,
-            "details": {key: _plain(value) for key, value in self.details.items()},
+            "details": {key: _json_value(value) for key, value in self.details.items()},
         }
 
 
@@ -101,17 +101,17 @@ class NoRouteError(ThalwegError):
         super().__init__(asked, possible, remedy, reasons=self.reasons, nearest=nearest, **details)
 
 
-def near_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
+def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
     """Return the known words that look most like ``word``, best first, ignoring case."""
     by_lower = {name.casefold(): name for name in known}
     found = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
     return [by_lower[name] for name in found]
 
 
-def unknown_name(kind: str, word: str, known: Iterable[str]) -> InputError:
+def unknown_name_error(kind: str, word: str, known: Iterable[str]) -> InputError:
     """Build the error for a name that is not among the known ones, with near matches."""
     names = sorted(known)
-    near = near_matches(word, names)
+    near = close_matches(word, names)
     listed = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")
     remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Check the name."
     return InputError(
@@ -119,13 +119,13 @@ def unknown_name(kind: str, word: str, known: Iterable[str]) -> InputError:
     )
 
 
-def _plain(value: Any) -> Any:
+def _json_value(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {str(k): _plain(v) for k, v in value.items()}
+        return {str(k): _json_value(v) for k, v in value.items()}
     if isinstance(value, (list, tuple, set, frozenset)):
-        return [_plain(v) for v in value]
+        return [_json_value(v) for v in value]
     if isinstance(value, (np.ndarray, np.generic)) and value.dtype.kind in "biuf":
-        return _plain(value.tolist())
+        return _json_value(value.tolist())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, (str, int, bool)) or value is None:

@@ -74,7 +74,7 @@ def direct(
     return np.asarray(lat2), wrap_longitude(lon2)
 
 
-def along(
+def positions_along(
     lat1: float, lon1: float, lat2: float, lon2: float, fractions: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
     """Return positions [deg] at fractions of the geodesic from the first to the second."""

@@ -13,16 +13,16 @@ from typing import Any, Protocol, TypeVar
 from thalweg.core.errors import ThalwegWarning
 
 
-class _Run(Protocol):
+class _CancellableResult(Protocol):
     @property
     def cancelled(self) -> bool: ...
 
 
-_Found = TypeVar("_Found", bound=_Run)
+_ResultType = TypeVar("_ResultType", bound=_CancellableResult)
 
 
 @contextmanager
-def ctrl_c() -> Iterator[Callable[[], bool]]:
+def interrupt_requested() -> Iterator[Callable[[], bool]]:
     """Give a function that tells whether Ctrl-C was pressed; pressed again, it interrupts.
 
     Only in the main thread, and only where nobody else handles Ctrl-C; else it is never true.
@@ -44,14 +44,14 @@ def ctrl_c() -> Iterator[Callable[[], bool]]:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def stoppable(function: Callable[..., _Found]) -> Callable[..., _Found]:
+def cancel_on_interrupt(function: Callable[..., _ResultType]) -> Callable[..., _ResultType]:
     """Let Ctrl-C cancel a run that nothing else can cancel, with a warning."""
 
     @wraps(function)
-    def run(*given: Any, **options: Any) -> _Found:
+    def run(*given: Any, **options: Any) -> _ResultType:
         if options.get("cancel") is not None:
             return function(*given, **options)
-        with ctrl_c() as cancel:
+        with interrupt_requested() as cancel:
             found = function(*given, **{**options, "cancel": cancel})
         if found.cancelled:
             message = "Stopped by Ctrl-C: the best so far is kept; more time may find better."

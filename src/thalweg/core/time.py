@@ -12,7 +12,7 @@ from thalweg.core.errors import InputError
 
 TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
-_FIRST, _LAST = -62_135_596_800.0, 253_402_300_799.0  # years 1 to 9999
+_EARLIEST, _LATEST = -62_135_596_800.0, 253_402_300_799.0  # years 1 to 9999
 
 
 def parse_time(value: TimeLike) -> float:
@@ -54,7 +54,7 @@ def parse_time(value: TimeLike) -> float:
         seconds = float(value)
         if not math.isfinite(seconds):
             raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
-        if not _FIRST <= seconds <= _LAST:
+        if not _EARLIEST <= seconds <= _LATEST:
             raise InputError(
                 f"{value!r} seconds since 1970 is no time of a calendar.",
                 "Times lie in the years 1 to 9999; a number counts seconds, not milliseconds.",

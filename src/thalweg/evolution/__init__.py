@@ -1,20 +1,20 @@
 """Evolution of tracks: populations scored by the shared kernel, their operators and fronts."""
 
-from thalweg.evolution.evolve import Evolution, Progress, evolve
+from thalweg.evolution.evolve import EvolutionProgress, EvolutionResult, evolve
 from thalweg.evolution.memetic import refine_front
-from thalweg.evolution.variation import Habits, Mix
+from thalweg.evolution.variation import OperatorWeights, VariationSettings
 from thalweg.route.refinement.population import Genome, Population
-from thalweg.route.refinement.population_evaluator import Evaluator, Prices, make_evaluator
+from thalweg.route.refinement.population_evaluator import Evaluator, ObjectivePrices, make_evaluator
 
 __all__ = [
     "Evaluator",
-    "Evolution",
+    "EvolutionProgress",
+    "EvolutionResult",
     "Genome",
-    "Habits",
-    "Mix",
+    "ObjectivePrices",
+    "OperatorWeights",
     "Population",
-    "Prices",
-    "Progress",
+    "VariationSettings",
     "evolve",
     "make_evaluator",
     "refine_front",

@@ -9,15 +9,15 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.variation import Habits, children
-from thalweg.route.refinement.population import IntArray, Population, joined
+from thalweg.evolution.variation import VariationSettings, reproduce
+from thalweg.route.refinement.population import IntArray, Population, concatenated_populations
 from thalweg.route.refinement.population_evaluator import Evaluator
 
-LEAST_SIZE = 4  #: tracks in a population
-Steps = Generator[Population, FloatArray, None]
+MIN_SIZE = 4  #: tracks in a population
+ScoreRequests = Generator[Population, FloatArray, None]
 
 
-class Strategy(ABC):
+class EvolutionaryAlgorithm(ABC):
     """A search by evolution, driven from outside.
 
     Parameters
@@ -28,7 +28,7 @@ class Strategy(ABC):
         To begin with; the best of it are kept if it is larger than ``size``.
     size : int
         Tracks in the population (and the archive), at least 4.
-    habits : Habits
+    variation_settings : Habits
     rng : numpy.random.Generator
 
     Examples
@@ -43,11 +43,16 @@ class Strategy(ABC):
         first: Population,
         *,
         size: int,
-        habits: Habits,
+        variation_settings: VariationSettings,
         rng: np.random.Generator,
     ) -> None:
         check_size(size)
-        self.evaluator, self.size, self.habits, self.rng = evaluator, size, habits, rng
+        self.evaluator, self.size, self.variation_settings, self.rng = (
+            evaluator,
+            size,
+            variation_settings,
+            rng,
+        )
         self.population, self.scores = first, np.empty((0, 3))
         self._steps = self._search()
         self._asked = next(self._steps)
@@ -61,25 +66,27 @@ class Strategy(ABC):
         self._asked = self._steps.send(scores)
 
     @abstractmethod
-    def _search(self) -> Steps:
+    def _search(self) -> ScoreRequests:
         """Yield populations, be sent their scores; keep ``population`` and ``scores`` current."""
 
-    def _children(self, pairs: IntArray, habits: Habits | None = None) -> Population:
-        return children(
+    def _children(
+        self, pairs: IntArray, variation_settings: VariationSettings | None = None
+    ) -> Population:
+        return reproduce(
             self.population,
             pairs,
             evaluator=self.evaluator,
-            habits=habits or self.habits,
+            variation_settings=variation_settings or self.variation_settings,
             rng=self.rng,
         )
 
-    def _keep(self, chosen: IntArray, young: Population, told: FloatArray) -> None:
+    def _keep(self, chosen: IntArray, offspring: Population, told: FloatArray) -> None:
         """Keep some of the population and its young (counted on from it)."""
         both = np.concatenate([self.scores, told])
-        self.population = joined(self.population, young).take(chosen)
+        self.population = concatenated_populations(self.population, offspring).take(chosen)
         self.scores = both[chosen]
 
-    def _tournament(self, better: IntArray, count: int) -> IntArray:
+    def _binary_tournament(self, better: IntArray, count: int) -> IntArray:
         """Return winners (count,) of binary tournaments; ``better`` is each track's place."""
         drawn = self.rng.integers(0, len(better), size=(count, 2))
         first, second = better[drawn[:, 0]], better[drawn[:, 1]]
@@ -88,10 +95,10 @@ class Strategy(ABC):
 
 def check_size(size: int) -> None:
     """Raise if a population is too small."""
-    if size < LEAST_SIZE:
+    if size < MIN_SIZE:
         raise InputError(
             f"A population of {size} is too small.",
-            f"It has at least {LEAST_SIZE} tracks; 100 or more make a good front.",
+            f"It has at least {MIN_SIZE} tracks; 100 or more make a good front.",
             "Ask for a larger one.",
             field="size",
             value=size,

@@ -10,33 +10,35 @@ from typing import TypeAlias
 
 import numpy as np
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import FloatArray
-from thalweg.core.interrupt import stoppable
-from thalweg.evolution.algorithm import Strategy
+from thalweg.core.interrupt import cancel_on_interrupt
+from thalweg.evolution.algorithm import EvolutionaryAlgorithm
 from thalweg.evolution.indicators import generational_distance
-from thalweg.evolution.initial_population import first_population
+from thalweg.evolution.initial_population import initial_population
 from thalweg.evolution.mpaes import Mpaes
 from thalweg.evolution.nsga2 import Nsga2
-from thalweg.evolution.ranking import front_of, thinned
+from thalweg.evolution.ranking import feasible_front, least_crowded_front
 from thalweg.evolution.spea2 import Spea2
-from thalweg.evolution.variation import Habits
+from thalweg.evolution.variation import VariationSettings
 from thalweg.kernels.leg import population_sailing
 from thalweg.route.refinement.population import Genome, Population
 from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.track import Track
 
-METHODS: dict[str, type[Strategy]] = {"nsga2": Nsga2, "spea2": Spea2, "mpaes": Mpaes}
-N_STOP = 33  #: generations over which the generational distance must have settled
-SETTLED = 3e-4  #: its variance below which it has, in units of the front's mean spacing squared
-MOST_GENERATIONS = 500  #: if nothing else limits a run
-_PROOF = 4.0  # the front is looked at again with pieces so many times shorter
+METHODS: dict[str, type[EvolutionaryAlgorithm]] = {"nsga2": Nsga2, "spea2": Spea2, "mpaes": Mpaes}
+SETTLING_WINDOW = 33  #: generations over which the generational distance must have settled
+SETTLED_VARIANCE = (
+    3e-4  #: its variance below which it has, in units of the front's mean spacing squared
+)
+MAX_GENERATIONS = 500  #: if nothing else limits a run
+_VERIFICATION_REFINEMENT = 4.0  # the front is looked at again with pieces so many times shorter
 
 Cancel: TypeAlias = Callable[[], bool]
 
 
 @dataclass(frozen=True)
-class Progress:
+class EvolutionProgress:
     """How far an evolution is.
 
     Attributes
@@ -55,7 +57,7 @@ class Progress:
 
 
 @dataclass(frozen=True)
-class Limits:
+class StoppingCriteria:
     """When an evolution ends, whichever comes first; None: not by that.
 
     Attributes
@@ -69,7 +71,7 @@ class Limits:
     generations: int | None = None
     evaluations: int | None = None
     seconds: float | None = None
-    settled: float | None = SETTLED
+    settled: float | None = SETTLED_VARIANCE
 
     def __post_init__(self) -> None:
         for name in ("generations", "evaluations", "seconds", "settled"):
@@ -93,7 +95,7 @@ class Limits:
 
 
 @dataclass(frozen=True, eq=False)
-class Evolution:
+class EvolutionResult:
     """The front of an evolution.
 
     Attributes
@@ -133,7 +135,7 @@ class Evolution:
         return len(self.genomes)
 
 
-@stoppable
+@cancel_on_interrupt
 def evolve(
     evaluator: Evaluator,
     seeds: Sequence[Genome | Track],
@@ -143,12 +145,12 @@ def evolve(
     generations: int | None = None,
     evaluations: int | None = None,
     seconds: float | None = None,
-    settled: float | None = SETTLED,
+    settled: float | None = SETTLED_VARIANCE,
     seed: int = 0,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[EvolutionProgress], None] | None = None,
     cancel: Cancel | None = None,
-    operators: Habits | None = None,
-) -> Evolution:
+    operators: VariationSettings | None = None,
+) -> EvolutionResult:
     """Evolve tracks until the front settles or a limit is reached.
 
     Parameters
@@ -169,7 +171,7 @@ def evolve(
     seed : int
         Of the random numbers: the same run again, to the bit.
     progress : callable, optional
-        Called with a `Progress` after every generation.
+        Called with a `EvolutionProgress` after every generation.
     cancel : callable, optional
         Asked after every generation; true ends the run with the best so far. Without it, Ctrl-C
         does so, with a warning; pressed again it interrupts.
@@ -187,74 +189,86 @@ def evolve(
         For an unknown method, no seeds or a population that is too small.
     """
     if method not in METHODS:
-        raise unknown_name("evolutionary method", method, METHODS)
+        raise unknown_name_error("evolutionary method", method, METHODS)
     if generations is None and evaluations is None and seconds is None:
-        generations = MOST_GENERATIONS
-    limits = Limits(generations, evaluations, seconds, settled)
+        generations = MAX_GENERATIONS
+    limits = StoppingCriteria(generations, evaluations, seconds, settled)
     rng = np.random.default_rng(seed)
-    habits = operators or Habits()
-    first = first_population(evaluator, seeds, size=size, habits=habits, rng=rng)
-    strategy = METHODS[method](evaluator, first, size=size, habits=paused(habits, first), rng=rng)
+    variation_settings = operators or VariationSettings()
+    first = initial_population(
+        evaluator, seeds, size=size, variation_settings=variation_settings, rng=rng
+    )
+    strategy = METHODS[method](
+        evaluator,
+        first,
+        size=size,
+        variation_settings=with_wait_mutations(variation_settings, first),
+        rng=rng,
+    )
     begun = clock.perf_counter()
-    work = run(strategy, evaluator, limits, progress=progress, cancel=cancel)
+    work = run_algorithm(strategy, evaluator, limits, progress=progress, cancel=cancel)
     names = [method] * len(strategy.scores)
-    population, scores, origin = proved(evaluator, strategy.population, strategy.scores, names)
-    return evolution_of(
+    population, scores, origin = verified_at_finer_spacing(
+        evaluator, strategy.population, strategy.scores, names
+    )
+    return evolution_result(
         population, scores, origin, work=work, seconds=clock.perf_counter() - begun, size=size
     )
 
 
 @dataclass(frozen=True)
-class Work:
-    """What a run took and why it ended (see `Evolution`)."""
+class RunSummary:
+    """What a run took and why it ended (see `EvolutionResult`)."""
 
     generations: int
     evaluations: int
     stopped: str
 
 
-def run(
-    strategy: Strategy,
+def run_algorithm(
+    strategy: EvolutionaryAlgorithm,
     evaluator: Evaluator,
-    limits: Limits,
+    limits: StoppingCriteria,
     *,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[EvolutionProgress], None] | None = None,
     cancel: Cancel | None = None,
-) -> Work:
+) -> RunSummary:
     """Drive a strategy until it has settled, a limit is reached or it is cancelled."""
-    begun, settling = clock.perf_counter(), Settling(limits.settled)
+    begun, settling = clock.perf_counter(), ConvergenceTest(limits.settled)
     generation = evaluations = 0
     while True:
         asked = strategy.ask()
         strategy.tell(evaluator.score(asked))
         evaluations += len(asked)
         now = clock.perf_counter() - begun
-        front = strategy.scores[front_of(strategy.scores)][:, :2]
+        front = strategy.scores[feasible_front(strategy.scores)][:, :2]
         if progress is not None:
-            progress(Progress(generation, evaluations, now, front))
+            progress(EvolutionProgress(generation, evaluations, now, front))
         stopped = "cancelled" if cancel is not None and cancel() else ""
         stopped = stopped or limits.reached(generation, evaluations, now)
         stopped = stopped or ("settled" if settling.settled(front) else "")
         if stopped:
-            return Work(generation, evaluations, stopped)
+            return RunSummary(generation, evaluations, stopped)
         generation += 1
 
 
-def paused(habits: Habits, population: Population) -> Habits:
+def with_wait_mutations(
+    variation_settings: VariationSettings, population: Population
+) -> VariationSettings:
     """Return habits that change waits too, if a population has any."""
-    waits = bool((population.genes[:, :, population_sailing.WAIT] > 0.0).any())
-    if not waits or habits.mix.pause > 0.0:
-        return habits
-    return replace(habits, mix=replace(habits.mix, pause=0.5))
+    waits = bool((population.genes[:, :, population_sailing.WAITING_TIME] > 0.0).any())
+    if not waits or variation_settings.mix.pause > 0.0:
+        return variation_settings
+    return replace(variation_settings, mix=replace(variation_settings.mix, pause=0.5))
 
 
-class Settling:
+class ConvergenceTest:
     """Whether the front has settled: the variance of its last generational distances."""
 
     def __init__(self, variance: float | None) -> None:
         self._variance = variance
         self._before = np.empty((0, 2))
-        self._distances: deque[float] = deque(maxlen=N_STOP)
+        self._distances: deque[float] = deque(maxlen=SETTLING_WINDOW)
 
     def settled(self, front: FloatArray) -> bool:
         """Take the front of a generation and return whether it has settled."""
@@ -262,34 +276,34 @@ class Settling:
             apart = generational_distance(front, self._before)
             self._distances.append(apart * len(front))
         self._before = front
-        if self._variance is None or len(self._distances) < N_STOP:
+        if self._variance is None or len(self._distances) < SETTLING_WINDOW:
             return False
         return float(np.var(self._distances)) < self._variance
 
 
-def proved(
+def verified_at_finer_spacing(
     evaluator: Evaluator, population: Population, scores: FloatArray, origin: Sequence[str]
 ) -> tuple[Population, FloatArray, list[str]]:
     """Return the tracks that stay feasible when looked at in shorter pieces."""
     still = np.flatnonzero(scores[:, 2] == 0.0)
     if len(still):
-        closer = evaluator.finer(_PROOF).score(population.take(still))
+        closer = evaluator.finer(_VERIFICATION_REFINEMENT).score(population.take(still))
         still = still[closer[:, 2] == 0.0]
     return population.take(still), scores[still], [origin[int(k)] for k in still]
 
 
-def evolution_of(
+def evolution_result(
     population: Population,
     scores: FloatArray,
     origin: Sequence[str],
     *,
-    work: Work,
+    work: RunSummary,
     seconds: float,
     size: int,
-) -> Evolution:
-    """Return the front of scored tracks, at most ``size`` of it, as an `Evolution`."""
-    front = thinned(scores, size)
-    return Evolution(
+) -> EvolutionResult:
+    """Return the front of scored tracks, at most ``size`` of it, as an `EvolutionResult`."""
+    front = least_crowded_front(scores, size)
+    return EvolutionResult(
         tuple(population.take(front).genomes()),
         scores[front, 0].copy(),
         scores[front, 1].copy(),

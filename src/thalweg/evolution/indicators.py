@@ -77,12 +77,14 @@ def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLik
     return hypervolume(points, reference) / whole
 
 
-def hvr2(points: ArrayLike, other: ArrayLike, reference: ArrayLike) -> float:
+def hypervolume_ratio_of_two(points: ArrayLike, other: ArrayLike, reference: ArrayLike) -> float:
     """Return the hypervolume of a front over that of the union of two."""
     return hypervolume_ratio(points, other, reference=reference)
 
 
-def hvr3(points: ArrayLike, second: ArrayLike, third: ArrayLike, reference: ArrayLike) -> float:
+def hypervolume_ratio_of_three(
+    points: ArrayLike, second: ArrayLike, third: ArrayLike, reference: ArrayLike
+) -> float:
     """Return the hypervolume of a front over that of the union of three."""
     return hypervolume_ratio(points, second, third, reference=reference)
 

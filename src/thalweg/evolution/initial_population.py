@@ -8,16 +8,21 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.evolution.variation import FIRST_MIX, Habits, children
+from thalweg.evolution.variation import INITIAL_OPERATOR_WEIGHTS, VariationSettings, reproduce
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.calm_water_rates import calm_speeds
-from thalweg.route.refinement.population import Genome, IntArray, Population, joined
+from thalweg.route.refinement.calm_water_rates import calm_water_values
+from thalweg.route.refinement.population import (
+    Genome,
+    IntArray,
+    Population,
+    concatenated_populations,
+)
 from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.track import Track
 
-MOST_POINTS = 400  #: of a track
-_LEAST_ROOM = 48
-_ROUNDS = 3  # mutants of mutants
+MAX_POINTS = 400  #: of a track
+_MIN_CAPACITY = 48
+_MUTATION_ROUNDS = 3  # mutants of mutants
 
 
 def as_genomes(evaluator: Evaluator, seeds: Sequence[Genome | Track]) -> list[Genome]:
@@ -34,12 +39,12 @@ def as_genomes(evaluator: Evaluator, seeds: Sequence[Genome | Track]) -> list[Ge
     ]
 
 
-def first_population(
+def initial_population(
     evaluator: Evaluator,
     seeds: Sequence[Genome | Track],
     *,
     size: int,
-    habits: Habits,
+    variation_settings: VariationSettings,
     rng: np.random.Generator,
 ) -> Population:
     """Return seeds, each also at the fastest and at the thriftiest setting, and their mutants.
@@ -47,38 +52,42 @@ def first_population(
     At least ``size`` tracks (more if there are more seeds). Room is left for points to come.
     """
     genomes = as_genomes(evaluator, seeds)
-    top, thrifty = evaluator.settings - 1, thriftiest(evaluator)
+    top, thrifty = evaluator.settings - 1, least_cost_setting(evaluator)
     fast = [_at_setting(genome, top) for genome in genomes]
     slow = [_at_setting(genome, thrifty) for genome in genomes]
-    population = evaluator.population([*genomes, *fast, *slow], room=room_for(genomes))
+    population = evaluator.population([*genomes, *fast, *slow], room=capacity_for(genomes))
     base, missing = population, size - len(population)
     mix = replace(
-        FIRST_MIX, pause=float((population.genes[:, :, population_sailing.WAIT] > 0.0).any())
+        INITIAL_OPERATOR_WEIGHTS,
+        pause=float((population.genes[:, :, population_sailing.WAITING_TIME] > 0.0).any()),
     )
-    first = replace(habits, crossover=0.0, mix=mix)
-    for _ in range(_ROUNDS):
+    first = replace(variation_settings, crossover=0.0, mix=mix)
+    for _ in range(_MUTATION_ROUNDS):
         if missing <= 0:
             break
-        wanted = -(-missing // (2 * _ROUNDS))
+        wanted = -(-missing // (2 * _MUTATION_ROUNDS))
         pairs = rng.integers(0, len(base), size=(wanted, 2))
-        young = children(base, pairs, evaluator=evaluator, habits=first, rng=rng)
-        population, base = joined(population, young), joined(base, young)
+        offspring = reproduce(base, pairs, evaluator=evaluator, variation_settings=first, rng=rng)
+        population, base = (
+            concatenated_populations(population, offspring),
+            concatenated_populations(base, offspring),
+        )
     return population
 
 
-def room_for(tracks: Sequence[Genome] | IntArray) -> int:
+def capacity_for(tracks: Sequence[Genome] | IntArray) -> int:
     """Return the room for points that tracks (or tracks of so many points) need to grow."""
     if isinstance(tracks, np.ndarray):
         longest = int(tracks.max())
     else:
         longest = max(len(track) for track in tracks)
-    return max(longest + 8, min(MOST_POINTS, max(_LEAST_ROOM, 2 * longest)))
+    return max(longest + 8, min(MAX_POINTS, max(_MIN_CAPACITY, 2 * longest)))
 
 
-def thriftiest(evaluator: Evaluator) -> int:
+def least_cost_setting(evaluator: Evaluator) -> int:
     """Return the setting of least cost a metre in calm water."""
-    prices, fuel = evaluator.prices, calm_speeds(evaluator.world.fuel)
-    speeds = calm_speeds(evaluator.world.table)
+    prices, fuel = evaluator.prices, calm_water_values(evaluator.world.fuel)
+    speeds = calm_water_values(evaluator.world.table)
     with np.errstate(invalid="ignore", divide="ignore"):
         cost = (fuel * prices.outside + prices.time) / speeds
     return int(np.nanargmin(cost)) if np.isfinite(cost).any() else 0

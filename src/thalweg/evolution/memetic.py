@@ -8,53 +8,57 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.core.interrupt import stoppable
+from thalweg.core.interrupt import cancel_on_interrupt
 from thalweg.evolution.algorithm import check_size
 from thalweg.evolution.evolve import (
-    SETTLED,
+    SETTLED_VARIANCE,
     Cancel,
-    Evolution,
-    Limits,
-    Progress,
-    Work,
-    evolution_of,
-    paused,
-    proved,
-    run,
+    EvolutionProgress,
+    EvolutionResult,
+    RunSummary,
+    StoppingCriteria,
+    evolution_result,
+    run_algorithm,
+    verified_at_finer_spacing,
+    with_wait_mutations,
 )
-from thalweg.evolution.initial_population import as_genomes, first_population, room_for
+from thalweg.evolution.initial_population import as_genomes, capacity_for, initial_population
 from thalweg.evolution.nsga2 import Nsga2
-from thalweg.evolution.ranking import front_of, thinned
-from thalweg.evolution.scalarised_search import fill, polish, prepared
-from thalweg.evolution.variation import Habits
-from thalweg.route.refinement.population import Genome, Population, joined
+from thalweg.evolution.ranking import feasible_front, least_crowded_front
+from thalweg.evolution.scalarised_search import (
+    fill_front,
+    scalarised_local_search,
+    seeds_with_time_prices,
+)
+from thalweg.evolution.variation import VariationSettings
+from thalweg.route.refinement.population import Genome, Population, concatenated_populations
 from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.track import Track
 
-LINES = 48  #: prices of time that are polished for
-SIZE = 300  #: tracks on the front
-GENERATIONS = 50  #: of evolution after polishing, if no limit is given
-_POLISHING = 0.6  # share of the seconds that polishing may take
-CROWD = 200  #: tracks that explore before polishing, at most
-EXPLORING = 60  #: generations they do it for
-EXPLORED = 24  #: of their front that are polished
+TIME_PRICES = 48  #: prices of time that are polished for
+FRONT_SIZE = 300  #: tracks on the front
+DEFAULT_GENERATIONS = 50  #: of evolution after polishing, if no limit is given
+_LOCAL_SEARCH_SHARE = 0.6  # share of the seconds that polishing may take
+EXPLORATION_SIZE = 200  #: tracks that explore before polishing, at most
+EXPLORATION_GENERATIONS = 60  #: generations they do it for
+EXPLORATION_SEEDS = 24  #: of their front that are polished
 
 
-@stoppable
+@cancel_on_interrupt
 def refine_front(
     evaluator: Evaluator,
     seeds: Sequence[Genome | Track],
     *,
-    size: int = SIZE,
-    lines: int = LINES,
+    size: int = FRONT_SIZE,
+    lines: int = TIME_PRICES,
     generations: int | None = None,
     seconds: float | None = None,
-    settled: float | None = SETTLED,
+    settled: float | None = SETTLED_VARIANCE,
     seed: int = 0,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[EvolutionProgress], None] | None = None,
     cancel: Cancel | None = None,
-    operators: Habits | None = None,
-) -> Evolution:
+    operators: VariationSettings | None = None,
+) -> EvolutionResult:
     """Refine a front from tracks on it, such as those of an exact search on a network.
 
     Parameters
@@ -101,35 +105,65 @@ def refine_front(
     """
     check_size(size)
     begun = clock.perf_counter()
-    watch = _Watch(begun, seconds, cancel, progress)
-    habits, rng = operators or Habits(), np.random.default_rng(seed)
+    watch = _LocalSearchMonitor(begun, seconds, cancel, progress)
+    variation_settings, rng = operators or VariationSettings(), np.random.default_rng(seed)
     genomes = as_genomes(evaluator, seeds)
-    pool = _Pool(evaluator)
-    pool.add("seed", evaluator.population(genomes, room=room_for(genomes)))
-    first = first_population(evaluator, genomes, size=min(size, CROWD), habits=habits, rng=rng)
-    strategy = Nsga2(evaluator, first, size=min(size, CROWD), habits=paused(habits, first), rng=rng)
-    work = run(strategy, evaluator, Limits(EXPLORING), progress=progress, cancel=watch.stop)
-    pool.add("nsga2", strategy.population.take(thinned(strategy.scores, EXPLORED)))
+    pool = _CandidatePool(evaluator)
+    pool.add("seed", evaluator.population(genomes, room=capacity_for(genomes)))
+    first = initial_population(
+        evaluator,
+        genomes,
+        size=min(size, EXPLORATION_SIZE),
+        variation_settings=variation_settings,
+        rng=rng,
+    )
+    strategy = Nsga2(
+        evaluator,
+        first,
+        size=min(size, EXPLORATION_SIZE),
+        variation_settings=with_wait_mutations(variation_settings, first),
+        rng=rng,
+    )
+    work = run_algorithm(
+        strategy,
+        evaluator,
+        StoppingCriteria(EXPLORATION_GENERATIONS),
+        progress=progress,
+        cancel=watch.stop,
+    )
+    pool.add(
+        "nsga2", strategy.population.take(least_crowded_front(strategy.scores, EXPLORATION_SEEDS))
+    )
     if not watch.stop():
-        held = polish(prepared(evaluator, pool.population, count=lines), stop=watch.stop)
+        held = scalarised_local_search(
+            seeds_with_time_prices(evaluator, pool.population, count=lines), stop=watch.stop
+        )
         watch.tell(held.scores)
-        pool.add("polish", joined(held.population, fill(held, size)))
-    limits = _limits(generations, seconds, settled, begun)
-    work = Work(0, work.evaluations, "cancelled" if watch.cancelled else "generations")
+        pool.add("polish", concatenated_populations(held.population, fill_front(held, size)))
+    limits = _stopping_criteria(generations, seconds, settled, begun)
+    work = RunSummary(0, work.evaluations, "cancelled" if watch.cancelled else "generations")
     if not watch.cancelled and limits.generations != 0:
         whole = pool.population
-        whole = whole.with_room(room_for(whole.count))
-        strategy = Nsga2(evaluator, whole, size=size, habits=paused(habits, whole), rng=rng)
-        last = run(strategy, evaluator, limits, progress=progress, cancel=cancel)
-        work = Work(last.generations, work.evaluations + last.evaluations, last.stopped)
+        whole = whole.with_capacity(capacity_for(whole.count))
+        strategy = Nsga2(
+            evaluator,
+            whole,
+            size=size,
+            variation_settings=with_wait_mutations(variation_settings, whole),
+            rng=rng,
+        )
+        last = run_algorithm(strategy, evaluator, limits, progress=progress, cancel=cancel)
+        work = RunSummary(last.generations, work.evaluations + last.evaluations, last.stopped)
         pool.add("nsga2", strategy.population)
-    population, scores, origin = proved(evaluator, pool.population, pool.scores, pool.origin)
-    return evolution_of(
+    population, scores, origin = verified_at_finer_spacing(
+        evaluator, pool.population, pool.scores, pool.origin
+    )
+    return evolution_result(
         population, scores, origin, work=work, seconds=clock.perf_counter() - begun, size=size
     )
 
 
-class _Pool:
+class _CandidatePool:
     """All tracks worth keeping, with the stage they come from."""
 
     def __init__(self, evaluator: Evaluator) -> None:
@@ -147,7 +181,7 @@ class _Pool:
     @property
     def population(self) -> Population:
         """All of them."""
-        return joined(*self._parts)
+        return concatenated_populations(*self._parts)
 
     @property
     def scores(self) -> FloatArray:
@@ -155,7 +189,7 @@ class _Pool:
         return np.concatenate(self._scores)
 
 
-class _Watch:
+class _LocalSearchMonitor:
     """Whether to go on polishing, and telling how far it is."""
 
     def __init__(
@@ -163,7 +197,7 @@ class _Watch:
         begun: float,
         seconds: float | None,
         cancel: Cancel | None,
-        progress: Callable[[Progress], None] | None,
+        progress: Callable[[EvolutionProgress], None] | None,
     ) -> None:
         self.begun, self.seconds = begun, seconds
         self.cancel, self.progress = cancel, progress
@@ -173,20 +207,22 @@ class _Watch:
         """Return whether polishing is to end."""
         self.cancelled = self.cancelled or (self.cancel is not None and bool(self.cancel()))
         spent = clock.perf_counter() - self.begun
-        return self.cancelled or (self.seconds is not None and spent > _POLISHING * self.seconds)
+        return self.cancelled or (
+            self.seconds is not None and spent > _LOCAL_SEARCH_SHARE * self.seconds
+        )
 
     def tell(self, scores: FloatArray) -> None:
         """Tell the front of a stage."""
         if self.progress is not None:
-            front = scores[front_of(scores)][:, :2]
+            front = scores[feasible_front(scores)][:, :2]
             spent = clock.perf_counter() - self.begun
-            self.progress(Progress(0, len(scores), spent, front))
+            self.progress(EvolutionProgress(0, len(scores), spent, front))
 
 
-def _limits(
+def _stopping_criteria(
     generations: int | None, seconds: float | None, settled: float | None, begun: float
-) -> Limits:
+) -> StoppingCriteria:
     left = None if seconds is None else max(0.0, seconds - (clock.perf_counter() - begun))
     if generations is None and seconds is None:
-        generations = GENERATIONS
-    return Limits(generations, None, left, settled)
+        generations = DEFAULT_GENERATIONS
+    return StoppingCriteria(generations, None, left, settled)

@@ -7,19 +7,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.algorithm import Steps, Strategy
+from thalweg.evolution.algorithm import EvolutionaryAlgorithm, ScoreRequests
 from thalweg.evolution.indicators import crowding_distance
-from thalweg.evolution.ranking import best_of, dominates
-from thalweg.route.refinement.population import IntArray, joined
+from thalweg.evolution.ranking import dominates, select_survivors
+from thalweg.route.refinement.population import IntArray, concatenated_populations
 
-MOST_FAILS = 5  #: moves in a row to somewhere worse that end a climb
-MOST_MOVES = 20  #: of a climb
-CROSSINGS = 20  #: pairs tried for a child that may join
-_SHARE = 5  # the climbers are so many times fewer than the archive
+MAX_FAILURES = 5  #: moves in a row to somewhere worse that end a climb
+MAX_MOVES = 20  #: of a climb
+RECOMBINATION_TRIALS = 20  #: pairs tried for a child that may join
+_ARCHIVE_PER_CLIMBER = 5  # the climbers are so many times fewer than the archive
 
 
 @dataclass
-class Climber:
+class HillClimber:
     """One local search: what it has to compare with, and how it fares.
 
     Attributes
@@ -33,22 +33,22 @@ class Climber:
 
     score: FloatArray
     near: FloatArray
-    fails: int = 0
+    failures: int = 0
     moves: int = 0
 
     @property
-    def climbs(self) -> bool:
+    def is_active(self) -> bool:
         """Whether it goes on."""
-        return self.fails < MOST_FAILS and self.moves < MOST_MOVES
+        return self.failures < MAX_FAILURES and self.moves < MAX_MOVES
 
-    def accepts(self, tried: FloatArray, most: int) -> bool:
+    def judge(self, tried: FloatArray, most: int) -> bool:
         """Judge a mutant, and stand there if it is accepted."""
         self.moves += 1
         if dominates(self.score, tried):
-            self.fails += 1
+            self.failures += 1
             return False
         if dominates(tried, self.score):
-            self.fails = 0
+            self.failures = 0
             self._remember(tried, most)
             self.score = tried
             return True
@@ -58,7 +58,7 @@ class Climber:
 
     def _test(self, tried: FloatArray, most: int) -> bool:
         """Remember a mutant that nothing known dominates; stand there if it is less crowded."""
-        both = np.vstack([_without(self.near, self.score[None]), self.score, tried])
+        both = np.vstack([_scores_without(self.near, self.score[None]), self.score, tried])
         crowding = crowding_distance(both[:, :2])
         self._remember(tried, most)
         if crowding[-1] > crowding[-2]:
@@ -73,92 +73,94 @@ class Climber:
             self.near = np.delete(self.near, np.argmin(crowding_distance(self.near[:, :2])), axis=0)
 
 
-def _without(scores: FloatArray, some: FloatArray) -> FloatArray:
+def _scores_without(scores: FloatArray, some: FloatArray) -> FloatArray:
     """Return scores (n, 3) without those among some: a twin would make a point look crowded."""
     return scores[(scores[:, None] != some[None]).any(axis=2).all(axis=1)]
 
 
 @dataclass
-class _Climb:
+class _ClimbingRound:
     """The climbers of one round, and which track of the population each stands on."""
 
-    climbers: list[Climber]
+    climbers: list[HillClimber]
     track: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
 
-class Mpaes(Strategy):
+class Mpaes(EvolutionaryAlgorithm):
     """A global archive and climbers, which all move together so that they are scored at once.
 
     The population is the archive G followed by the tracks that climbers stand on.
     """
 
-    def _search(self) -> Steps:
+    def _search(self) -> ScoreRequests:
         told = yield self.population
         self.scores = told
-        chosen, _, _ = best_of(told, self.size)
+        chosen, _, _ = select_survivors(told, self.size)
         self.population, self.scores = self.population.take(chosen), told[chosen]
-        count = max(2, self.size // _SHARE)
-        base = self._spread(count)
+        count = max(2, self.size // _ARCHIVE_PER_CLIMBER)
+        base = self._spread_over_archive(count)
         while True:
-            yield from self._climb(base)
+            yield from self._climb_from(base)
             base = self._archive()
             base = yield from self._recombine(count)
 
-    def _spread(self, count: int) -> IntArray:
+    def _spread_over_archive(self, count: int) -> IntArray:
         """Return climbers spread over the archive."""
         return np.unique(np.linspace(0, len(self.scores) - 1, count).round().astype(np.int64))
 
-    def _climb(self, base: IntArray) -> Steps:
+    def _climb_from(self, base: IntArray) -> ScoreRequests:
         """Let every climber mutate until it fails too often."""
         archive = self.scores[self._archive()]
         climbers = []
         for index in base:
             score = self.scores[index]
             near = archive[~dominates(archive, score[None])]
-            climbers.append(Climber(score, np.vstack([score[None], near])[: self.size]))
-        climb = _Climb(climbers, np.array(base))
-        alone = replace(self.habits, crossover=0.0)
+            climbers.append(HillClimber(score, np.vstack([score[None], near])[: self.size]))
+        climb = _ClimbingRound(climbers, np.array(base))
+        alone = replace(self.variation_settings, crossover=0.0)
         while True:
-            active = np.array([k for k, c in enumerate(climb.climbers) if c.climbs], dtype=np.int64)
+            active = np.array(
+                [k for k, c in enumerate(climb.climbers) if c.is_active], dtype=np.int64
+            )
             if not len(active):
                 return
             pairs = np.resize(climb.track[active], 2 * ((len(active) + 1) // 2)).reshape(-1, 2)
-            young = self._children(pairs, alone)
-            told = yield young
+            offspring = self._children(pairs, alone)
+            told = yield offspring
             before = len(self.scores)
             for place, k in enumerate(active):
-                if climb.climbers[k].accepts(told[place], self.size):
+                if climb.climbers[k].judge(told[place], self.size):
                     climb.track[k] = before + place
-            self._update(climb.track, young, told)
+            self._update(climb.track, offspring, told)
 
-    def _update(self, track: IntArray, young, told: FloatArray) -> None:  # type: ignore[no-untyped-def]
+    def _update(self, track: IntArray, offspring, told: FloatArray) -> None:  # type: ignore[no-untyped-def]
         """Update the archive with all the young; keep it and what climbers stand on."""
         both = np.concatenate([self.scores, told])
-        kept = best_of(both, self.size)[0]
+        kept = select_survivors(both, self.size)[0]
         chosen = np.concatenate([kept, np.setdiff1d(track, kept)])
-        self._keep(chosen, young, told)
+        self._keep(chosen, offspring, told)
         where = np.full(len(both), -1, dtype=np.int64)
         where[chosen] = np.arange(len(chosen))
         track[:] = where[track]
 
     def _archive(self) -> IntArray:
         """Return what nothing dominates, at most ``size`` tracks."""
-        chosen, rank, _ = best_of(self.scores, self.size)
+        chosen, rank, _ = select_survivors(self.scores, self.size)
         return chosen[rank[chosen] == 0]
 
     def _recombine(self, count: int):  # type: ignore[no-untyped-def]
         """Return the climbers of the next round: children that may join, else winners of G."""
-        sure = replace(self.habits, crossover=1.0, mutation=0.0)
+        sure = replace(self.variation_settings, crossover=1.0, mutation=0.0)
         base: list[int] = []
-        for _ in range(CROSSINGS):
+        for _ in range(RECOMBINATION_TRIALS):
             missing = count - len(base)
             pairs = self.rng.integers(0, len(self.scores), size=((missing + 1) // 2, 2))
-            young = self._children(pairs, sure)
-            told = yield young
+            offspring = self._children(pairs, sure)
+            told = yield offspring
             archive = self.scores[self._archive()]
-            fit = [k for k in range(len(told)) if self._joins(told[k], archive, pairs[k // 2])]
+            fit = [k for k in range(len(told)) if self._can_join(told[k], archive, pairs[k // 2])]
             before = len(self.scores)
-            self.population = joined(self.population, young)
+            self.population = concatenated_populations(self.population, offspring)
             self.scores = np.concatenate([self.scores, told])
             base += [before + k for k in fit[:missing]]
             if len(base) == count:
@@ -169,7 +171,7 @@ class Mpaes(Strategy):
             crowding = crowding_distance(self.scores[best, :2])
             place = np.empty(len(best), dtype=np.int64)
             place[np.argsort(-crowding, kind="stable")] = np.arange(len(best))
-            base += best[self._tournament(place, rest)].tolist()
+            base += best[self._binary_tournament(place, rest)].tolist()
         track = np.array(base, dtype=np.int64)
         kept = np.concatenate([best, np.setdiff1d(track, best)])
         where = np.full(len(self.scores), -1, dtype=np.int64)
@@ -177,13 +179,13 @@ class Mpaes(Strategy):
         self.population, self.scores = self.population.take(kept), self.scores[kept]
         return where[track]
 
-    def _joins(self, child: FloatArray, archive: FloatArray, parents: IntArray) -> bool:
+    def _can_join(self, child: FloatArray, archive: FloatArray, parents: IntArray) -> bool:
         """Return whether a child is fit: not dominated by G, and better or less crowded."""
         if dominates(archive, child[None]).any():
             return False
         if dominates(child[None], archive).any():
             return True
         elders = self.scores[parents]
-        both = np.vstack([_without(archive, elders), elders, child])
+        both = np.vstack([_scores_without(archive, elders), elders, child])
         crowding = crowding_distance(both[:, :2])
         return bool(crowding[-1] > crowding[-3:-1].min())

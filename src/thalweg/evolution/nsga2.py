@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from thalweg.evolution.algorithm import Steps, Strategy
-from thalweg.evolution.ranking import best_of
+from thalweg.evolution.algorithm import EvolutionaryAlgorithm, ScoreRequests
+from thalweg.evolution.ranking import select_survivors
 
 
-class Nsga2(Strategy):
+class Nsga2(EvolutionaryAlgorithm):
     """Parents and children together are sorted into fronts; the last to fit by crowding."""
 
-    def _search(self) -> Steps:
+    def _search(self) -> ScoreRequests:
         told = yield self.population
-        chosen, rank, crowding = best_of(told, self.size)
+        chosen, rank, crowding = select_survivors(told, self.size)
         self.population, self.scores = self.population.take(chosen), told[chosen]
         rank, crowding = rank[chosen], crowding[chosen]
         while True:
             place = np.empty(len(rank), dtype=np.int64)
             place[np.lexsort((-crowding, rank))] = np.arange(len(rank))
-            pairs = self._tournament(place, 2 * ((self.size + 1) // 2)).reshape(-1, 2)
-            young = self._children(pairs)
-            told = yield young
-            chosen, rank, crowding = best_of(np.concatenate([self.scores, told]), self.size)
-            self._keep(chosen, young, told)
+            pairs = self._binary_tournament(place, 2 * ((self.size + 1) // 2)).reshape(-1, 2)
+            offspring = self._children(pairs)
+            told = yield offspring
+            chosen, rank, crowding = select_survivors(
+                np.concatenate([self.scores, told]), self.size
+            )
+            self._keep(chosen, offspring, told)
             rank, crowding = rank[chosen], crowding[chosen]

@@ -13,7 +13,7 @@ from thalweg.route.refinement.population import BoolArray, IntArray
 TIME, COST, VIOLATION = 0, 1, 2
 
 
-def ranked(scores: FloatArray) -> tuple[IntArray, FloatArray]:
+def ranks_and_crowding(scores: FloatArray) -> tuple[IntArray, FloatArray]:
     """Return (rank, crowding distance) of scores (N, 3).
 
     Feasible tracks are sorted into non-dominated fronts, 0 the first; those that break something
@@ -34,9 +34,9 @@ def ranked(scores: FloatArray) -> tuple[IntArray, FloatArray]:
     return rank, crowding
 
 
-def best_of(scores: FloatArray, size: int) -> tuple[IntArray, IntArray, FloatArray]:
+def select_survivors(scores: FloatArray, size: int) -> tuple[IntArray, IntArray, FloatArray]:
     """Return (indices of the ``size`` best, rank, crowding): NSGA-II's choice of survivors."""
-    rank, crowding = ranked(scores)
+    rank, crowding = ranks_and_crowding(scores)
     return np.lexsort((-crowding, rank))[:size], rank, crowding
 
 
@@ -56,19 +56,19 @@ def strength_fitness(scores: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
     return strength, raw, raw + density
 
 
-def front_of(scores: FloatArray) -> IntArray:
+def feasible_front(scores: FloatArray) -> IntArray:
     """Return the feasible tracks that nothing dominates, by ascending time."""
-    rank, _ = ranked(scores)
+    rank, _ = ranks_and_crowding(scores)
     chosen = np.flatnonzero((rank == 0) & (scores[:, VIOLATION] == 0.0))
     return chosen[np.argsort(scores[chosen, TIME])]
 
 
-def thinned(scores: FloatArray, size: int) -> IntArray:
+def least_crowded_front(scores: FloatArray, size: int) -> IntArray:
     """Return at most ``size`` tracks of the front, by ascending time.
 
     The one whose loss takes the least from the dominated area goes first; the ends stay.
     """
-    front = front_of(scores)
+    front = feasible_front(scores)
     time, cost = scores[front, TIME], scores[front, COST]
     kept = np.arange(len(front))
     while len(kept) > max(size, 2):

@@ -10,50 +10,57 @@ from dataclasses import dataclass
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.ranking import front_of
+from thalweg.evolution.ranking import feasible_front
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.calm_water_rates import calm_speeds
-from thalweg.route.refinement.finite_differences import Lines, probe_delays
-from thalweg.route.refinement.population import IntArray, Population, joined
+from thalweg.route.refinement.calm_water_rates import calm_water_values
+from thalweg.route.refinement.finite_differences import ScoredTracks, delay_effects
+from thalweg.route.refinement.population import IntArray, Population, concatenated_populations
 from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.refinement.population_moves import (
-    change_speeds,
-    drop,
-    feel,
-    halve,
+    choose_speeds_of_tracks,
+    compass_search_of_tracks,
+    leg_times_and_costs_by_setting,
     points_between,
-    speed_probes,
+    remove_points,
+    split_long_legs,
 )
-from thalweg.route.refinement.population_newton import bend
+from thalweg.route.refinement.population_newton import optimise_lateral_offsets_of_tracks
 
-LEVELS = (12, 24, 40)  #: legs of a track, level by level
-_DROPS = 8  # passes that leave points out at first ...
-_BRING = 2e-4  # ... which bring less than this share of the value
-_RADII = (0.3, 0.08, 0.02)  # of points that feel their way, as shares of the legs beside
-_WIDER = 4.0  # prices of time reach so far beyond those that calm water suggests
+REFINEMENT_LEVELS = (12, 24, 40)  #: legs of a track, level by level
+_REMOVAL_PASSES = 8  # passes that leave points out at first ...
+_REMOVAL_LOSS = 2e-4  # ... which bring less than this share of the value
+_SEARCH_RADII = (0.3, 0.08, 0.02)  # of points that feel their way, as shares of the legs beside
+_PRICE_RANGE_FACTOR = 4.0  # prices of time reach so far beyond those that calm water suggests
 
 
-def polish(
-    lines: Lines, *, stop: Callable[[], bool] = lambda: False, levels: tuple[int, ...] = LEVELS
-) -> Lines:
+def scalarised_local_search(
+    lines: ScoredTracks,
+    *,
+    stop: Callable[[], bool] = lambda: False,
+    levels: tuple[int, ...] = REFINEMENT_LEVELS,
+) -> ScoredTracks:
     """Return better tracks: fewer points first, then bent at ever more of them, and re-timed.
 
     ``stop`` is asked between steps.
     """
-    lines = change_speeds(lines)
-    for _ in range(_DROPS):
+    lines = choose_speeds_of_tracks(lines)
+    for _ in range(_REMOVAL_PASSES):
         before = lines.population.count.sum()
-        lines = drop(lines, allowance=_BRING)
+        lines = remove_points(lines, allowance=_REMOVAL_LOSS)
         if stop() or lines.population.count.sum() == before:
             break
     for level in levels:
         if stop():
             return lines
-        lines = halve(lines, legs=level)
-        lines = change_speeds(bend(lines, rounds=4), rounds=2)
-        for radius in _RADII:
-            lines = feel(lines, radius=radius)
-        lines = change_speeds(bend(lines, rounds=3), rounds=2)
+        lines = split_long_legs(lines, legs=level)
+        lines = choose_speeds_of_tracks(
+            optimise_lateral_offsets_of_tracks(lines, rounds=4), rounds=2
+        )
+        for radius in _SEARCH_RADII:
+            lines = compass_search_of_tracks(lines, radius=radius)
+        lines = choose_speeds_of_tracks(
+            optimise_lateral_offsets_of_tracks(lines, rounds=3), rounds=2
+        )
     return lines
 
 
@@ -63,15 +70,15 @@ def time_prices(evaluator: Evaluator, count: int) -> FloatArray:
     Those at which the ship would change its setting in calm water, with room on both sides;
     spread evenly in the logarithm.
     """
-    speeds, prices = calm_speeds(evaluator.world.table), evaluator.prices
-    cost = calm_speeds(evaluator.world.fuel) * prices.outside + prices.time
+    speeds, prices = calm_water_values(evaluator.world.table), evaluator.prices
+    cost = calm_water_values(evaluator.world.fuel) * prices.outside + prices.time
     with np.errstate(invalid="ignore", divide="ignore"):
         points = np.column_stack([1.0 / speeds, cost / speeds])
     points = points[np.isfinite(points).all(axis=1)]
     slopes = -np.array([slope for slope in hull_slopes(points) if slope < 0.0])
     if not len(slopes):
         return np.full(1, float(np.nanmax(np.append(cost, 0.0))) or 1.0)
-    low, high = slopes.min() / _WIDER, slopes.max() * _WIDER
+    low, high = slopes.min() / _PRICE_RANGE_FACTOR, slopes.max() * _PRICE_RANGE_FACTOR
     return np.geomspace(low, high, count)
 
 
@@ -98,7 +105,7 @@ def lower_hull(points: FloatArray) -> IntArray:
     return np.array(hull, dtype=np.int64)
 
 
-def prepared(evaluator: Evaluator, seeds: Population, *, count: int) -> Lines:
+def seeds_with_time_prices(evaluator: Evaluator, seeds: Population, *, count: int) -> ScoredTracks:
     """Return what to polish: each seed at the price of time its neighbours on the front suggest,
     and for each of ``count`` prices the seed that is best at it.
     """
@@ -106,12 +113,12 @@ def prepared(evaluator: Evaluator, seeds: Population, *, count: int) -> Lines:
     good = np.flatnonzero(scores[:, 2] == 0.0)
     prices = time_prices(evaluator, count)
     if not len(good):
-        return Lines.of(evaluator, seeds, np.full(len(seeds), float(np.median(prices))))
+        return ScoredTracks.of(evaluator, seeds, np.full(len(seeds), float(np.median(prices))))
     table = scores[good, 1] + prices[:, None] * scores[good, 0]
     best = good[np.argmin(table, axis=1)]
     own = _own_prices(scores[good], prices)
     rows = np.concatenate([good, best])
-    return Lines.of(evaluator, seeds.take(rows), np.concatenate([own, prices]))
+    return ScoredTracks.of(evaluator, seeds.take(rows), np.concatenate([own, prices]))
 
 
 def _own_prices(scores: FloatArray, prices: FloatArray) -> FloatArray:
@@ -131,7 +138,7 @@ def _own_prices(scores: FloatArray, prices: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Exchange:
+class SpeedExchanges:
     """What a leg's next setting on its hull brings, by ascending price.
 
     Attributes
@@ -147,14 +154,14 @@ class Exchange:
     cost: FloatArray
 
 
-def fill(lines: Lines, size: int) -> Population:
+def fill_front(lines: ScoredTracks, size: int) -> Population:
     """Return tracks between those of a front, each from its nearest one by changing speeds.
 
     About ``size`` tracks, spread evenly over the front. On one geometry the cheapest way to gain
     or lose time is to change settings in the order of what a second costs, and the last leg in
     part.
     """
-    front = front_of(lines.scores)
+    front = feasible_front(lines.scores)
     if len(front) < 2:
         return lines.population.take(front)
     scores = lines.scores[front]
@@ -162,27 +169,27 @@ def fill(lines: Lines, size: int) -> Population:
     step = np.hypot(*(np.diff(scores[:, :2], axis=0) / np.where(width > 0, width, 1.0)[:2]).T)
     along = np.concatenate([[0.0], np.cumsum(step)])
     targets = np.interp(np.linspace(0.0, along[-1], size), along, scores[:, 0])
-    chosen = Lines(
+    chosen = ScoredTracks(
         lines.evaluator,
         lines.population.take(front),
         lines.price[front],
         scores,
         lines.arrive[front],
     )
-    exchanges = _exchanges(chosen)
+    exchanges = _speed_exchanges(chosen)
     made = []
     for side in (0, 1):
         nearest = np.searchsorted(scores[:, 0], targets) - side
         for target, k in zip(targets, np.clip(nearest, 0, len(front) - 1)):
-            made.append(_retimed(chosen, int(k), exchanges[k], target - scores[k, 0]))
-    return joined(*made)
+            made.append(_with_changed_time(chosen, int(k), exchanges[k], target - scores[k, 0]))
+    return concatenated_populations(*made)
 
 
-def _exchanges(lines: Lines) -> list[tuple[Exchange, Exchange]]:
+def _speed_exchanges(lines: ScoredTracks) -> list[tuple[SpeedExchanges, SpeedExchanges]]:
     """Return for every track what it can exchange to become (faster, slower)."""
     row, place = lines.legs
-    time, cost = speed_probes(lines, row, place)
-    delays = probe_delays(lines)
+    time, cost = leg_times_and_costs_by_setting(lines, row, place)
+    delays = delay_effects(lines)
     ahead, dearer = delays.time[row, place + 1], delays.cost[row, place + 1]
     with np.errstate(invalid="ignore"):
         at_goal, paid = ahead[:, None] * time, cost + dearer[:, None] * time
@@ -190,19 +197,19 @@ def _exchanges(lines: Lines) -> list[tuple[Exchange, Exchange]]:
     out = []
     for k in range(len(lines)):
         legs = np.flatnonzero(row == k)
-        steps = [_steps(at_goal[i], paid[i], int(now[i]), int(place[i])) for i in legs]
-        faster = _sorted([s for a, _ in steps for s in a], cheapest=True)
-        slower = _sorted([s for _, b in steps for s in b], cheapest=False)
+        steps = [_speed_steps(at_goal[i], paid[i], int(now[i]), int(place[i])) for i in legs]
+        faster = _sorted_exchanges([s for a, _ in steps for s in a], cheapest=True)
+        slower = _sorted_exchanges([s for _, b in steps for s in b], cheapest=False)
         out.append((faster, slower))
     return out
 
 
-Step = tuple[float, int, int, float, float]
+SpeedStep = tuple[float, int, int, float, float]
 
 
-def _steps(
+def _speed_steps(
     time: FloatArray, cost: FloatArray, now: int, place: int
-) -> tuple[list[Step], list[Step]]:
+) -> tuple[list[SpeedStep], list[SpeedStep]]:
     """Return one leg's steps along its hull to faster and slower settings: (price, ...)."""
     finite = np.flatnonzero(np.isfinite(time) & np.isfinite(cost))
     if now not in finite:
@@ -211,7 +218,7 @@ def _steps(
     if now not in hull:
         return [], []
     at = int(np.flatnonzero(hull == now)[0])
-    found: tuple[list[Step], list[Step]] = ([], [])
+    found: tuple[list[SpeedStep], list[SpeedStep]] = ([], [])
     for side, way in ((0, hull[at::-1]), (1, hull[at:])):
         for a, b in itertools.pairwise(way):
             dt, dc = float(time[b] - time[a]), float(cost[b] - cost[a])
@@ -219,17 +226,17 @@ def _steps(
     return found
 
 
-def _sorted(steps: list[Step], *, cheapest: bool) -> Exchange:
+def _sorted_exchanges(steps: list[SpeedStep], *, cheapest: bool) -> SpeedExchanges:
     """Return steps in the order to take them: cheap seconds gained first, dear ones saved first."""
     steps = sorted(steps, key=lambda step: step[0] if cheapest else -step[0])
     table = np.array(steps, dtype=float).reshape(-1, 5)
-    return Exchange(
+    return SpeedExchanges(
         table[:, 1].astype(np.int64), table[:, 2].astype(np.int64), table[:, 3], table[:, 4]
     )
 
 
-def _retimed(
-    lines: Lines, k: int, exchange: tuple[Exchange, Exchange], change: float
+def _with_changed_time(
+    lines: ScoredTracks, k: int, exchange: tuple[SpeedExchanges, SpeedExchanges], change: float
 ) -> Population:
     """Return one track made longer or shorter by ``change`` seconds."""
     steps = exchange[0] if change < 0.0 else exchange[1]
@@ -245,17 +252,20 @@ def _retimed(
     if not 0.05 < share < 0.95:
         return one
     place = int(steps.place[full])
-    return _cut(one, place, share, int(steps.setting[full]))
+    return _split_leg_by_speed(one, place, share, int(steps.setting[full]))
 
 
-def _cut(one: Population, place: int, share: float, setting: int) -> Population:
+def _split_leg_by_speed(one: Population, place: int, share: float, setting: int) -> Population:
     """Return a track with the first share of a leg sailed at another setting."""
     n = int(one.count[0])
-    wide = one.with_room(max(one.room, n + 1))
+    wide = one.with_capacity(max(one.room, n + 1))
     genes = wide.genes
     point = points_between(genes[0, [place]], genes[0, [place + 1]], np.array([share]))
     genes[0, place + 1 : n + 1] = np.insert(genes[0, place + 1 : n], 0, point[0], axis=0)
-    genes[0, place, population_sailing.SETTING], genes[0, place, population_sailing.KNOWN] = (
+    (
+        genes[0, place, population_sailing.SETTING],
+        genes[0, place, population_sailing.IS_LOOKED_UP],
+    ) = (
         setting,
         0.0,
     )

@@ -5,31 +5,31 @@ from __future__ import annotations
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.evolution.algorithm import Steps, Strategy
+from thalweg.evolution.algorithm import EvolutionaryAlgorithm, ScoreRequests
 from thalweg.evolution.ranking import normalised, strength_fitness
 from thalweg.kernels.evolution.dominance import truncate
 from thalweg.route.refinement.population import IntArray
 
 
-class Spea2(Strategy):
+class Spea2(EvolutionaryAlgorithm):
     """An archive of what nothing dominates, filled with the fittest or thinned where crowded.
 
     Distances are between objectives as shares of their ranges.
     """
 
-    def _search(self) -> Steps:
+    def _search(self) -> ScoreRequests:
         told = yield self.population
-        chosen, place = archive(told, self.size)
+        chosen, place = environmental_selection(told, self.size)
         self.population, self.scores = self.population.take(chosen), told[chosen]
         while True:
-            pairs = self._tournament(place, 2 * ((self.size + 1) // 2)).reshape(-1, 2)
-            young = self._children(pairs)
-            told = yield young
-            chosen, place = archive(np.concatenate([self.scores, told]), self.size)
-            self._keep(chosen, young, told)
+            pairs = self._binary_tournament(place, 2 * ((self.size + 1) // 2)).reshape(-1, 2)
+            offspring = self._children(pairs)
+            told = yield offspring
+            chosen, place = environmental_selection(np.concatenate([self.scores, told]), self.size)
+            self._keep(chosen, offspring, told)
 
 
-def archive(scores: FloatArray, size: int) -> tuple[IntArray, IntArray]:
+def environmental_selection(scores: FloatArray, size: int) -> tuple[IntArray, IntArray]:
     """Return (indices of the archive, the place of each by fitness, 0 the best)."""
     level = normalised(scores)
     _, _, fitness = strength_fitness(level)

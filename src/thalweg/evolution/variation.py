@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.kernels.evolution import mutation, random_numbers
-from thalweg.kernels.evolution.crossover import breed
+from thalweg.kernels.evolution.crossover import make_offspring
 from thalweg.kernels.geometry.coast_index import CoastArrays
-from thalweg.kernels.leg.population_sailing import COLUMNS
+from thalweg.kernels.leg.population_sailing import GENE_COLUMNS
 from thalweg.route.refinement.population import IntArray, Population
-from thalweg.route.refinement.population_evaluator import Evaluator, in_threads
+from thalweg.route.refinement.population_evaluator import Evaluator, run_in_threads
 
-SHAPES = {
+INSERTION_SHAPES = {
     "rhombus": random_numbers.RHOMBUS,
     "ellipse": random_numbers.ELLIPSE,
     "gaussian": random_numbers.GAUSSIAN,
@@ -25,7 +25,7 @@ SHAPES = {
 
 
 @dataclass(frozen=True)
-class Mix:
+class OperatorWeights:
     """Weights of the operators that change a track.
 
     Attributes
@@ -48,11 +48,13 @@ class Mix:
 
 
 #: What the first mutants are made with (Seuren 2020): tracks from networks have too many points.
-FIRST_MIX = Mix(insert=1.0, translate=1.0, delete=3.0, speed=1.0, split=0.0, merge=0.0)
+INITIAL_OPERATOR_WEIGHTS = OperatorWeights(
+    insert=1.0, translate=1.0, delete=3.0, speed=1.0, split=0.0, merge=0.0
+)
 
 
 @dataclass(frozen=True)
-class Habits:
+class VariationSettings:
     """How children are made.
 
     Attributes
@@ -73,7 +75,7 @@ class Habits:
         mutated.
     """
 
-    mix: Mix = Mix()
+    mix: OperatorWeights = OperatorWeights()
     changes: float = 10.0
     shape: str = "ellipse"
     insert_width: float = 0.1
@@ -82,14 +84,14 @@ class Habits:
     mutation: float = 0.5
 
     def __post_init__(self) -> None:
-        if self.shape not in SHAPES:
+        if self.shape not in INSERTION_SHAPES:
             raise InputError(
                 f"Points cannot be inserted in a {self.shape!r}.",
-                f"Shapes: {', '.join(SHAPES)}.",
+                f"Shapes: {', '.join(INSERTION_SHAPES)}.",
                 "Choose one.",
                 field="shape",
             )
-        weights = [getattr(self.mix, field.name) for field in fields(Mix)]
+        weights = [getattr(self.mix, field.name) for field in fields(OperatorWeights)]
         low, high = self.radius
         chances = all(0.0 <= chance <= 1.0 for chance in (self.crossover, self.mutation))
         right = min(weights) >= 0.0 and sum(weights) > 0.0 and 0.0 < low <= high and chances
@@ -103,22 +105,28 @@ class Habits:
 
     def array(self) -> FloatArray:
         """Return them as the kernel takes them."""
-        out = np.empty(mutation.HABITS)
-        weights = [getattr(self.mix, field.name) for field in fields(Mix)]
-        out[: mutation.OPERATORS] = weights
-        out[mutation.CHANGES], out[mutation.SHAPE] = self.changes, SHAPES[self.shape]
+        out = np.empty(mutation.VARIATION_SETTING_COUNT)
+        weights = [getattr(self.mix, field.name) for field in fields(OperatorWeights)]
+        out[: mutation.OPERATOR_COUNT] = weights
+        out[mutation.CHANGE_SCALE], out[mutation.OFFSET_SHAPE] = (
+            self.changes,
+            INSERTION_SHAPES[self.shape],
+        )
         out[mutation.INSERT_WIDTH] = self.insert_width
-        out[mutation.RADIUS_LEAST], out[mutation.RADIUS_MOST] = self.radius
-        out[mutation.CROSSOVER], out[mutation.MUTATION] = self.crossover, self.mutation
+        out[mutation.RADIUS_MIN], out[mutation.RADIUS_MAX] = self.radius
+        out[mutation.CROSSOVER_PROBABILITY], out[mutation.MUTATION_PROBABILITY] = (
+            self.crossover,
+            self.mutation,
+        )
         return out
 
 
-def children(
+def reproduce(
     population: Population,
     pairs: IntArray,
     *,
     evaluator: Evaluator,
-    habits: Habits,
+    variation_settings: VariationSettings,
     rng: np.random.Generator,
 ) -> Population:
     """Return two children of each pair of parents, not scored yet.
@@ -130,23 +138,23 @@ def children(
         Indices of the parents.
     evaluator : Evaluator
         For its chart and number of settings.
-    habits : Habits
+    variation_settings : Habits
     rng : numpy.random.Generator
         Gives each pair a seed of its own, so that threads do not matter.
     """
     n, room = len(pairs), population.room
     states: NDArray[np.uint64] = rng.integers(0, 2**64, size=(n, 1), dtype=np.uint64)
     born = np.empty((n, 2), dtype=np.int64)
-    young = np.zeros((n, 2, room, COLUMNS))
-    work, weights = np.empty((n, room, COLUMNS)), np.empty((n, 2 * room))
-    given = (evaluator.settings, habits.array())
+    offspring = np.zeros((n, 2, room, GENE_COLUMNS))
+    work, weights = np.empty((n, room, GENE_COLUMNS)), np.empty((n, 2 * room))
+    given = (evaluator.settings, variation_settings.array())
     count = np.ascontiguousarray(population.count)
     genes = np.ascontiguousarray(population.genes)
-    coast = evaluator.chart.kernel() if evaluator.chart is not None else open_coast()
+    coast = evaluator.chart.kernel() if evaluator.chart is not None else coast_without_land()
     chosen = np.ascontiguousarray(pairs, dtype=np.int64)
 
     def part(piece: slice) -> None:
-        breed(
+        make_offspring(
             count,
             genes,
             chosen[piece],
@@ -154,17 +162,17 @@ def children(
             *given,
             states[piece],
             born[piece],
-            young[piece],
+            offspring[piece],
             work[piece],
             weights[piece],
         )
 
-    in_threads(part, n)
-    return Population(born.reshape(-1), young.reshape(2 * n, room, COLUMNS))
+    run_in_threads(part, n)
+    return Population(born.reshape(-1), offspring.reshape(2 * n, room, GENE_COLUMNS))
 
 
 @cache
-def open_coast() -> CoastArrays:
+def coast_without_land() -> CoastArrays:
     """Return the coast of a world without land."""
     from thalweg.chart import Chart
 

@@ -17,7 +17,7 @@ SHIP_RANGE: Final = 8
 NO_GO: Final = 9
 ARRIVE_BY: Final = 10
 SAFETY: Final = 11
-COUNT: Final = 12
+STATUS_COUNT: Final = 12
 
 REASONS: Final[dict[int, str]] = {
     LAND: "land",
@@ -38,14 +38,14 @@ CURRENT_EAST: Final = 0
 CURRENT_NORTH: Final = 1
 WIND_EAST: Final = 2
 WIND_NORTH: Final = 3
-WAVE_HEIGHT_CH: Final = 4
+WAVE_HEIGHT_CHANNEL: Final = 4
 WAVE_EAST: Final = 5
 WAVE_NORTH: Final = 6
 WAVE_PERIOD: Final = 7
 WATER_LEVEL: Final = 8
 BED_DEPTH: Final = 9
 SPEED_FIELD: Final = 10
-CHANNELS: Final = 11
+CHANNEL_COUNT: Final = 11
 
 # Axes of performance tables.
 AXIS_WIND_SPEED: Final = 0
@@ -54,10 +54,10 @@ AXIS_WAVE_HEIGHT: Final = 2
 AXIS_WAVE_ANGLE: Final = 3
 AXIS_WAVE_PERIOD: Final = 4
 AXIS_DEPTH: Final = 5
-AXES: Final = 6
+AXIS_COUNT: Final = 6
 
 # Entries of the array of limits.
 LIMIT_REQUIRED_DEPTH: Final = 0  # draught + under-keel clearance [m]; -inf when not checked
 LIMIT_WAVE_HEIGHT: Final = 1  # [m]; +inf when there is none
 LIMIT_WIND_SPEED: Final = 2  # [m/s]; +inf when there is none
-LIMITS: Final = 3
+LIMIT_COUNT: Final = 3

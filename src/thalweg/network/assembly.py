@@ -24,8 +24,8 @@ from thalweg.network.network import (
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-Rejected: TypeAlias = dict[str, int]
-_CHUNK = 1_000_000
+RejectionCounts: TypeAlias = dict[str, int]
+_CHUNK_SIZE = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -67,29 +67,29 @@ class Pairs:
         return Pairs(self.first[keep], self.second[keep], self.length[keep], self.course[keep])
 
 
-def free_legs(
+def allowed_legs(
     chart: Chart,
     lat: FloatArray,
     lon: FloatArray,
     first: NDArray[np.integer],
     second: NDArray[np.integer],
-) -> tuple[BoolArray, Rejected]:
+) -> tuple[BoolArray, RejectionCounts]:
     """Return which legs between positions the chart allows, and counts of refusals by reason.
 
     Canals are no legs to sail: builders that know them add them as edges of their own.
     """
     chart = chart.without_canals("all")
     free = np.empty(len(first), bool)
-    rejected: Rejected = {}
-    for begin in range(0, len(first), _CHUNK):
-        a, b = first[begin : begin + _CHUNK], second[begin : begin + _CHUNK]
+    rejected: RejectionCounts = {}
+    for begin in range(0, len(first), _CHUNK_SIZE):
+        a, b = first[begin : begin + _CHUNK_SIZE], second[begin : begin + _CHUNK_SIZE]
         status = np.asarray(chart.leg_status(lat[a], lon[a], lat[b], lon[b]))
-        free[begin : begin + _CHUNK] = status == codes.OK
+        free[begin : begin + _CHUNK_SIZE] = status == codes.OK
         add_counts(rejected, count_reasons(status))
     return free, rejected
 
 
-def count_reasons(status: NDArray[np.integer]) -> Rejected:
+def count_reasons(status: NDArray[np.integer]) -> RejectionCounts:
     """Return counts by reason of statuses that are not OK."""
     values, counts = np.unique(status, return_counts=True)
     return {
@@ -99,16 +99,18 @@ def count_reasons(status: NDArray[np.integer]) -> Rejected:
     }
 
 
-def add_counts(total: Rejected, more: Rejected) -> None:
+def add_counts(total: RejectionCounts, more: RejectionCounts) -> None:
     """Add counts by reason to a running total."""
     for reason, count in more.items():
         total[reason] = total.get(reason, 0) + count
 
 
-def measure(lat: FloatArray, lon: FloatArray, first: Int32Array, second: Int32Array) -> Pairs:
+def measured_pairs(
+    lat: FloatArray, lon: FloatArray, first: Int32Array, second: Int32Array
+) -> Pairs:
     """Return pairs with geodesic lengths and mid-edge courses."""
     length, course = np.empty(len(first)), np.empty(len(first), np.float32)
-    graph_building.measure(lat, lon, first, second, length, course)
+    graph_building.fill_lengths_and_courses(lat, lon, first, second, length, course)
     for e in np.flatnonzero(np.isnan(length)):  # nearly antipodal: only ever single edges
         a, b = first[e], second[e]
         length[e], start, end = geodesy.inverse(lat[a], lon[a], lat[b], lon[b])
@@ -122,7 +124,7 @@ def no_samples(count: int) -> Samples:
     return Samples(np.zeros(count + 1, np.int64), empty_int, empty_int, empty, empty)
 
 
-def even_samples(
+def evenly_spaced_samples(
     stations: Stations, pairs: Pairs, spacing: FloatArray | float
 ) -> tuple[Stations, Samples]:
     """Sample pairs at new stations on their geodesics, at most ``spacing`` [m] apart.
@@ -148,7 +150,7 @@ def even_samples(
     return grown, samples
 
 
-def join_samples(parts: list[Samples]) -> Samples:
+def concatenate_samples(parts: list[Samples]) -> Samples:
     """Return the samples of consecutive lots of pairs as one."""
     if len(parts) == 1:
         return parts[0]
@@ -161,7 +163,7 @@ def join_samples(parts: list[Samples]) -> Samples:
 
 
 @dataclass(frozen=True)
-class MirroredPairs:
+class DirectedEdges:
     """Directed edges by tail: their heads, the pair each comes from, and whether reversed."""
 
     indptr: IntArray
@@ -170,9 +172,11 @@ class MirroredPairs:
     back: BoolArray
 
 
-def mirrored(n_nodes: int, pairs: Pairs) -> MirroredPairs:
+def directed_edges(n_nodes: int, pairs: Pairs) -> DirectedEdges:
     """Return an edge each way for every pair."""
-    return MirroredPairs(*graph_building.mirror_pairs(n_nodes, pairs.first, pairs.second))
+    return DirectedEdges(
+        *graph_building.directed_edges_of_pairs(n_nodes, pairs.first, pairs.second)
+    )
 
 
 def assemble(
@@ -182,15 +186,15 @@ def assemble(
     samples: Samples,
     *,
     meta: NetworkMeta,
-    edges: MirroredPairs | None = None,
+    edges: DirectedEdges | None = None,
 ) -> Network:
     """Return the network with an edge each way for every pair; all pairs have been tested."""
     n = stations.n_nodes
-    depth, factor, price = _along(chart, stations, pairs)
-    edges = edges or mirrored(n, pairs)
+    depth, factor, price = _edge_properties(chart, stations, pairs)
+    edges = edges or directed_edges(n, pairs)
     pair = edges.pair
-    fixed_time, fee, own_course = _canals(chart, stations, pairs)
-    via_ptr, via_a, via_b, via_w, via_s = graph_building.mirror_vias(
+    fixed_time, fee, own_course = _canal_properties(chart, stations, pairs)
+    via_ptr, via_a, via_b, via_w, via_s = graph_building.mirror_samples(
         pair, edges.back, samples.ptr, samples.a, samples.b, samples.w, samples.s
     )
     course = own_course[pair]
@@ -214,7 +218,7 @@ def _waiting_places(chart: Chart, stations: Stations, meta: NetworkMeta) -> Bool
     return allowed
 
 
-def _canals(
+def _canal_properties(
     chart: Chart, stations: Stations, pairs: Pairs
 ) -> tuple[FloatArray, FloatArray, Float32Array]:
     """Return the time of pairs that are canals [s], else NaN, their fee [USD], all courses."""
@@ -224,21 +228,21 @@ def _canals(
         return time, fee, pairs.course
     a, b = pairs.first[here], pairs.second[here]
     lat, lon, course = stations.lat, stations.lon, pairs.course.copy()
-    course[here] = measure(lat, lon, a, b).course
+    course[here] = measured_pairs(lat, lon, a, b).course
     for pair, canal in zip(here, chart.canal_of_legs(lat[a], lon[a], lat[b], lon[b])):
         time[pair], fee[pair] = chart.canals[canal].transit_time, chart.canals[canal].fee
     return time, fee, course
 
 
-def _along(
+def _edge_properties(
     chart: Chart, stations: Stations, pairs: Pairs
 ) -> tuple[Float32Array, Float32Array, Float32Array]:
     """Return least depth, penalty factor and price factor of pairs."""
     count = len(pairs.first)
     depth = np.full(count, np.inf, np.float32)
     factor, price = np.ones(count, np.float32), np.ones(count, np.float32)
-    for begin in range(0, count, _CHUNK):
-        part = slice(begin, begin + _CHUNK)
+    for begin in range(0, count, _CHUNK_SIZE):
+        part = slice(begin, begin + _CHUNK_SIZE)
         a, b = pairs.first[part], pairs.second[part]
         ends = (stations.lat[a], stations.lon[a], stations.lat[b], stations.lon[b])
         if chart.has_depth:

@@ -14,7 +14,7 @@ from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, FloatArray
 # triangle inequality together with geodesic edge lengths.
 BOUND_RADIUS: Final = EQUATORIAL_RADIUS * (1.0 - FLATTENING) ** 2
 
-SHRINK: Final = 1.0 - 1e-9  # keeps bounds below the truth in floating point
+ROUNDING_FACTOR: Final = 1.0 - 1e-9  # keeps bounds below the truth in floating point
 
 
 def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float) -> FloatArray:
@@ -27,5 +27,5 @@ def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float
     half_dlon = 0.5 * np.radians(np.asarray(lon, float) - to_lon)
     square = np.sin(0.5 * (phi - to_phi)) ** 2
     square += np.cos(phi) * np.cos(to_phi) * np.sin(half_dlon) ** 2
-    bound = 2.0 * BOUND_RADIUS * SHRINK * np.arcsin(np.sqrt(np.minimum(square, 1.0)))
+    bound = 2.0 * BOUND_RADIUS * ROUNDING_FACTOR * np.arcsin(np.sqrt(np.minimum(square, 1.0)))
     return np.asarray(bound)

@@ -14,33 +14,36 @@ from thalweg.core.geodesy import MEAN_RADIUS, Position
 from thalweg.kernels.network import graph_building
 from thalweg.network.assembly import (
     Pairs,
-    Rejected,
+    RejectionCounts,
     Stations,
     add_counts,
+    allowed_legs,
     assemble,
-    even_samples,
-    free_legs,
-    measure,
+    evenly_spaced_samples,
+    measured_pairs,
 )
 from thalweg.network.network import FloatArray, Int32Array, Network
-from thalweg.network.regional_lattice.conformal_projection import arc, unit_vectors
+from thalweg.network.regional_lattice.conformal_projection import (
+    angle_to_point,
+    conformal_unit_vectors,
+)
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.chart.canals import Canal
 
-REACH = 2.6  #: end points are linked to nodes within this many spacings
-_SHORTEST = 1.0  # links shorter than this are left out [m]
-_NEAREST = 24  # always linked, beside the nearest node in every sector and ring
+LINK_REACH = 2.6  #: end points are linked to nodes within this many spacings
+_SHORTEST_LINK = 1.0  # links shorter than this are left out [m]
+_NEAREST_LINKS = 24  # always linked, beside the nearest node in every sector and ring
 _SECTORS = 96
-_AROUND = (
+_SAMPLES_TO_NEAREST_NODE = (
     3  # the distance to this nearest node, over this many pieces, is how close links are sampled
 )
-_MOST_LINKS = 400
+_MAX_LINKS = 400
 _COLUMNS = ("target", "length", "course", "depth", "factor", "price", "fixed_time", "fee")
 
 
-def check_ends(chart: Chart, start: Position, goal: Position) -> tuple[Position, Position]:
+def check_endpoints(chart: Chart, start: Position, goal: Position) -> tuple[Position, Position]:
     """Return start and goal, checked: sound positions, not the same, on navigable water.
 
     Raises
@@ -50,7 +53,7 @@ def check_ends(chart: Chart, start: Position, goal: Position) -> tuple[Position,
     """
     start = geodesy.check_position(*start, what="start")
     goal = geodesy.check_position(*goal, what="goal")
-    if float(geodesy.distance(*start, *goal)) < _SHORTEST:
+    if float(geodesy.distance(*start, *goal)) < _SHORTEST_LINK:
         raise InputError(
             f"Start and goal are the same place, {geodesy.format_position(*start)}.",
             "A voyage is at least a metre long.",
@@ -74,9 +77,9 @@ def check_at_sea(chart: Chart, place: Position, what: str) -> None:
         )
 
 
-def links(
+def links_to_nodes(
     chart: Chart, lat: FloatArray, lon: FloatArray, point: int, *, n_nodes: int, reach: float
-) -> tuple[Pairs, Rejected]:
+) -> tuple[Pairs, RejectionCounts]:
     """Return allowed links from one position to the nodes within reach.
 
     Parameters
@@ -99,15 +102,15 @@ def links(
     rejected : dict
         Counts of refused links by reason.
     """
-    vectors = unit_vectors(lat[:n_nodes], lon[:n_nodes])
-    away = arc(vectors, unit_vectors(lat[point], lon[point])) * MEAN_RADIUS
-    rejected: Rejected = {}
+    vectors = conformal_unit_vectors(lat[:n_nodes], lon[:n_nodes])
+    away = angle_to_point(vectors, conformal_unit_vectors(lat[point], lon[point])) * MEAN_RADIUS
+    rejected: RejectionCounts = {}
     pairs = _pairs(lat, lon, point, np.empty(0, np.int32))
     for _ in range(5):
-        near = np.flatnonzero((away <= reach) & (away > _SHORTEST)).astype(np.int32)
+        near = np.flatnonzero((away <= reach) & (away > _SHORTEST_LINK)).astype(np.int32)
         pairs = _pairs(lat, lon, point, near)
-        free, rejected = free_legs(chart, lat, lon, pairs.first, pairs.second)
-        pairs = _thinned(pairs.where(free))
+        free, rejected = allowed_legs(chart, lat, lon, pairs.first, pairs.second)
+        pairs = _nearest_pairs_by_sector(pairs.where(free))
         if len(pairs.first):
             break
         reach *= 2.0
@@ -115,12 +118,12 @@ def links(
 
 
 def _pairs(lat: FloatArray, lon: FloatArray, point: int, nodes: Int32Array) -> Pairs:
-    return measure(lat, lon, np.full(len(nodes), point, np.int32), nodes)
+    return measured_pairs(lat, lon, np.full(len(nodes), point, np.int32), nodes)
 
 
-def _thinned(pairs: Pairs) -> Pairs:
+def _nearest_pairs_by_sector(pairs: Pairs) -> Pairs:
     """Of very many links keep the nearest, and the nearest in every sector and ring."""
-    if len(pairs.first) <= _MOST_LINKS:
+    if len(pairs.first) <= _MAX_LINKS:
         return pairs
     order = np.argsort(pairs.length, kind="stable")
     sector = np.floor(pairs.course[order] * (_SECTORS / (2 * np.pi))).astype(np.int64)
@@ -128,7 +131,7 @@ def _thinned(pairs: Pairs) -> Pairs:
     _, first = np.unique(sector * 1000 + ring, return_index=True)
     keep = np.zeros(len(order), bool)
     keep[order[first]] = True
-    keep[order[:_NEAREST]] = True
+    keep[order[:_NEAREST_LINKS]] = True
     return pairs.where(keep)
 
 
@@ -160,7 +163,7 @@ def with_endpoints(
     NoRouteError
         If a position cannot be linked to any node.
     """
-    start, goal = check_ends(chart, start, goal)
+    start, goal = check_endpoints(chart, start, goal)
     places = [start, goal]
     for number, place in enumerate(via, 1):
         places.append(geodesy.check_position(*place, what=f"via point {number}"))
@@ -172,19 +175,19 @@ def with_endpoints(
     add_counts(counts, rejected)
     meta = replace(network.meta, start=network.n_nodes, goal=network.n_nodes + 1, rejected=counts)
     apart = np.minimum(network.meta.spacing_m, _sample_spacing(stations, len(places)))
-    stations, samples = even_samples(stations, pairs, apart[pairs.first - network.n_nodes])
-    return _merge(old, assemble(chart, stations, pairs, samples, meta=meta))
+    stations, samples = evenly_spaced_samples(stations, pairs, apart[pairs.first - network.n_nodes])
+    return _merge_networks(old, assemble(chart, stations, pairs, samples, meta=meta))
 
 
 def _link_all(
     chart: Chart, stations: Stations, count: int, spacing: float
-) -> tuple[Pairs, Rejected]:
+) -> tuple[Pairs, RejectionCounts]:
     """Return the links of the last ``count`` nodes to the others, and between close ones."""
     first = stations.n_nodes - count
-    parts, rejected = [], Rejected()
+    parts, rejected = [], RejectionCounts()
     for point in range(first, stations.n_nodes):
-        pairs, refused = links(
-            chart, stations.lat, stations.lon, point, n_nodes=first, reach=REACH * spacing
+        pairs, refused = links_to_nodes(
+            chart, stations.lat, stations.lon, point, n_nodes=first, reach=LINK_REACH * spacing
         )
         add_counts(rejected, refused)
         if len(pairs.first) == 0:
@@ -197,8 +200,8 @@ def _link_all(
                 nearest=place,
             )
         parts.append(pairs)
-    parts.append(direct_pairs(chart, stations, first, reach=REACH * spacing))
-    return join_pairs(parts), rejected
+    parts.append(direct_pairs(chart, stations, first, reach=LINK_REACH * spacing))
+    return concatenate_pairs(parts), rejected
 
 
 def _sample_spacing(stations: Stations, count: int) -> FloatArray:
@@ -207,26 +210,30 @@ def _sample_spacing(stations: Stations, count: int) -> FloatArray:
     The nodes of a mesh lie close where the water is uneven; links are sampled as closely there.
     """
     first = stations.n_nodes - count
-    vectors = unit_vectors(stations.lat[:first], stations.lon[:first])
-    nth = min(_AROUND, first) - 1
+    vectors = conformal_unit_vectors(stations.lat[:first], stations.lon[:first])
+    nth = min(_SAMPLES_TO_NEAREST_NODE, first) - 1
     near = [
-        np.partition(arc(vectors, unit_vectors(stations.lat[p], stations.lon[p])), nth)[nth]
+        np.partition(
+            angle_to_point(vectors, conformal_unit_vectors(stations.lat[p], stations.lon[p])), nth
+        )[nth]
         for p in range(first, stations.n_nodes)
     ]
-    return np.maximum(np.array(near) * (MEAN_RADIUS / _AROUND), _SHORTEST)
+    return np.maximum(np.array(near) * (MEAN_RADIUS / _SAMPLES_TO_NEAREST_NODE), _SHORTEST_LINK)
 
 
 def direct_pairs(chart: Chart, stations: Stations, first: int, *, reach: float) -> Pairs:
     """Return allowed links within reach [m] between the nodes from ``first`` on."""
     a, b = np.triu_indices(stations.n_nodes - first, 1)
-    pairs = measure(
+    pairs = measured_pairs(
         stations.lat, stations.lon, (a + first).astype(np.int32), (b + first).astype(np.int32)
     )
-    pairs = pairs.where((pairs.length <= reach) & (pairs.length > _SHORTEST))
+    pairs = pairs.where((pairs.length <= reach) & (pairs.length > _SHORTEST_LINK))
     lat, lon = stations.lat, stations.lon
     ends = lat[pairs.first], lon[pairs.first], lat[pairs.second], lon[pairs.second]
     pairs = pairs.where(np.asarray(chart.canal_of_legs(*ends)) < 0)
-    return pairs.where(free_legs(chart, stations.lat, stations.lon, pairs.first, pairs.second)[0])
+    return pairs.where(
+        allowed_legs(chart, stations.lat, stations.lon, pairs.first, pairs.second)[0]
+    )
 
 
 def canal_pairs(canals: Sequence[Canal], first: int) -> Pairs:
@@ -239,7 +246,7 @@ def canal_pairs(canals: Sequence[Canal], first: int) -> Pairs:
     return Pairs(nodes, nodes + np.int32(1), length, np.full(len(canals), np.nan, np.float32))
 
 
-def join_pairs(parts: Sequence[Pairs]) -> Pairs:
+def concatenate_pairs(parts: Sequence[Pairs]) -> Pairs:
     """Return several lots of pairs as one."""
     return Pairs(
         np.concatenate([p.first for p in parts]),
@@ -269,7 +276,7 @@ def _insert_nodes(network: Network, places: Sequence[Position]) -> Network:
     )
 
 
-def _merge(old: Network, new: Network) -> Network:
+def _merge_networks(old: Network, new: Network) -> Network:
     """Return the edges of both networks, on the nodes and stations of the second."""
     tails = np.concatenate([old.tails(), new.tails()])
     order = np.argsort(tails, kind="stable").astype(np.int32)
@@ -280,7 +287,7 @@ def _merge(old: Network, new: Network) -> Network:
     ptr = np.append(old.via_ptr, new.via_ptr[1:] + old.via_ptr[-1])
     forward = np.zeros(len(order), bool)
     vias = (both(name) for name in ("via_a", "via_b", "via_w", "via_s"))
-    via_ptr, via_a, via_b, via_w, via_s = graph_building.mirror_vias(order, forward, ptr, *vias)
+    via_ptr, via_a, via_b, via_w, via_s = graph_building.mirror_samples(order, forward, ptr, *vias)
     columns: dict[str, Any] = {name: both(name)[order] for name in _COLUMNS}
     return replace(
         new, indptr=old.indptr + new.indptr, can_wait=old.can_wait,

@@ -9,16 +9,22 @@ import numpy as np
 
 from thalweg.core import geodesy
 from thalweg.core.geodesy import Position
-from thalweg.network.assembly import Pairs, Stations, assemble, even_samples, measure
+from thalweg.network.assembly import (
+    Pairs,
+    Stations,
+    assemble,
+    evenly_spaced_samples,
+    measured_pairs,
+)
 from thalweg.network.network import FloatArray, Network, NetworkMeta
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-_SAMPLES: Final = 2  # pieces in which every edge is sampled
+_PIECES_PER_EDGE: Final = 2  # pieces in which every edge is sampled
 
 
-def line(chart: Chart, way: Sequence[Position], *, spacing: float) -> Network:
+def fixed_route(chart: Chart, way: Sequence[Position], *, spacing: float) -> Network:
     """Return the network of a way that is given: a ship on it only chooses its speeds.
 
     Parameters
@@ -40,14 +46,14 @@ def line(chart: Chart, way: Sequence[Position], *, spacing: float) -> Network:
     length = np.asarray(geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     parts = np.where(canal, 1, np.maximum(1, np.ceil(length / spacing))).astype(int)
     cuts = [np.arange(n) / n for n in parts]
-    lat, lon = _cut(lat, lon, cuts)
-    lat, lon = _cut(lat, lon, _borders(chart, lat, lon))
+    lat, lon = _split_legs(lat, lon, cuts)
+    lat, lon = _split_legs(lat, lon, _cuts_at_borders(chart, lat, lon))
     canal = np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])) >= 0
     stations = Stations(lat, lon, len(lat))
     first = np.arange(len(lat) - 1, dtype=np.int32)
-    pairs = measure(lat, lon, first, first + np.int32(1))
-    stations, samples = even_samples(
-        stations, pairs, np.where(canal, np.inf, np.maximum(pairs.length, 1.0) / _SAMPLES)
+    pairs = measured_pairs(lat, lon, first, first + np.int32(1))
+    stations, samples = evenly_spaced_samples(
+        stations, pairs, np.where(canal, np.inf, np.maximum(pairs.length, 1.0) / _PIECES_PER_EDGE)
     )
     which = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
     through = np.array([chart.canals[i].length if i >= 0 else np.nan for i in which])
@@ -64,16 +70,16 @@ def line(chart: Chart, way: Sequence[Position], *, spacing: float) -> Network:
     return assemble(chart, stations, pairs, samples, meta=meta)
 
 
-def _borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[FloatArray]:
+def _cuts_at_borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[FloatArray]:
     """Return where every leg is cut: at its beginning, and where it crosses a border once."""
-    share = np.asarray(chart.eca_share(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    share = np.asarray(chart.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     inside = np.asarray(chart.in_eca(lat[:-1], lon[:-1]))
     crosses = (share > 1e-6) & (share < 1.0 - 1e-6)
     at = np.where(inside, share, 1.0 - share)
     return [np.array([0.0, x] if c else [0.0]) for c, x in zip(crosses, at)]
 
 
-def _cut(
+def _split_legs(
     lat: FloatArray, lon: FloatArray, cuts: Sequence[FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
     """Return a way with its legs cut at shares of their length; 0 is their beginning."""

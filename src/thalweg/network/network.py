@@ -148,7 +148,7 @@ class Network:
         return np.repeat(np.arange(self.n_nodes, dtype=np.int32), np.diff(self.indptr))
 
 
-def shortest(
+def shortest_path(
     network: Network,
     start: int,
     goal: int = -1,
@@ -188,7 +188,7 @@ def shortest(
         static_astar(network.indptr, network.target, weights, bound, start, goal, distance, parent)
     else:
         arrays = network.indptr, network.target, weights
-        graph_building.static_distances(*arrays, start, goal, distance, parent)
+        graph_building.static_dijkstra(*arrays, start, goal, distance, parent)
     if goal < 0 or not np.isfinite(distance[goal]):
         return distance, []
     path = [goal]

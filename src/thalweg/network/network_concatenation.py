@@ -15,7 +15,7 @@ _PER_EDGE = ("length", "course", "depth", "factor", "price", "fixed_time", "fee"
 
 
 @dataclass(frozen=True)
-class Link:
+class CanalLink:
     """What leads from the goal of one network to the start of the next: a canal.
 
     Attributes
@@ -33,7 +33,7 @@ class Link:
     fee: float
 
 
-def joined(networks: Sequence[Network], links: Sequence[Link | None]) -> Network:
+def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink | None]) -> Network:
     """Put networks one behind the other.
 
     Parameters
@@ -69,7 +69,7 @@ def joined(networks: Sequence[Network], links: Sequence[Link | None]) -> Network
 
 
 def _numbering(
-    networks: Sequence[Network], links: Sequence[Link | None]
+    networks: Sequence[Network], links: Sequence[CanalLink | None]
 ) -> tuple[list[IntArray], list[BoolArray]]:
     """Return the new number of every node, and which nodes are not one met before."""
     node_of: list[IntArray] = []
@@ -91,7 +91,7 @@ def _numbering(
 
 def _assembled(
     networks: Sequence[Network],
-    links: Sequence[Link | None],
+    links: Sequence[CanalLink | None],
     node_of: list[IntArray],
     kept: list[BoolArray],
 ) -> Network:
@@ -115,7 +115,7 @@ def _assembled(
         tails.append(np.array([a]))
         heads.append(np.array([b]))
         counts.append(np.zeros(1, np.int64))
-        for name, value in _canal(link).items():
+        for name, value in _canal_columns(link).items():
             columns[name].append(np.array([value]))
     tail, count = np.concatenate(tails), np.concatenate(counts)
     order = np.argsort(tail, kind="stable")
@@ -147,7 +147,7 @@ def _assembled(
     )
 
 
-def _canal(link: Link) -> dict[str, float]:
+def _canal_columns(link: CanalLink) -> dict[str, float]:
     """Return the columns of a canal's edge."""
     return {
         "length": link.length,

@@ -18,8 +18,8 @@ def compile_search() -> None:
 
     network = _two_nodes()
     times = np.array([0.0, 7200.0])
-    index = np.full(codes.CHANNELS, -1)
-    index[[codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CH]] = [0, 1, 2]
+    index = np.full(codes.CHANNEL_COUNT, -1)
+    index[[codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CHANNEL]] = [0, 1, 2]
     stations = StationFields(times, np.zeros((2, 2, 3), np.float32), index)
     table = Ship.load("handysize-bulker").tabulate()
     limits = np.array([-np.inf, 8.0, np.inf])

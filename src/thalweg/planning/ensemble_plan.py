@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
-from thalweg.planning.pareto.exploration import not_dominated, spread
+from thalweg.planning.pareto.exploration import evenly_spaced_subset, non_dominated_indices
 from thalweg.planning.pareto.objective import Criterion, find_criterion
-from thalweg.planning.pareto.plan_front import FrontOfPlan
+from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Plan
-from thalweg.planning.request.requirements import least_clearance
-from thalweg.planning.voyage import TRADES, Voyage
-from thalweg.route import Distribution, Route, evaluate_members
+from thalweg.planning.request.requirements import required_under_keel_clearance
+from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
+from thalweg.route import EnsembleResult, Route, evaluate_members
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
 #: Members that are planned for; every route found is then sailed in all members.
-MOST_PLANNED = 3
+MAX_PLANNED_MEMBERS = 3
 #: Routes of a front that are sailed in all members.
-MOST_SAILED = 10
+MAX_EVALUATED_ROUTES = 10
 _QUANTITY = {
     "time": "time_h",
     "front": "time_h",
@@ -36,19 +36,19 @@ _QUANTITY = {
 
 
 @dataclass(frozen=True)
-class Sailed:
+class EnsembleCandidate:
     """A route with the plan it comes from and its place there, sailed in all members."""
 
     member: int
     plan: Plan
     index: int
     route: Route
-    distribution: Distribution
+    distribution: EnsembleResult
     time: float
     value: float
 
 
-def plan_robust(
+def plan_ensemble(
     voyage: Voyage, *, ship: Ship, sea: Sea, plan_one: Callable[[Voyage, Sea], Plan]
 ) -> Plan:
     """Plan with an ensemble.
@@ -79,7 +79,9 @@ def plan_robust(
         If no member has a route.
     """
     measure = voyage.ensemble or "mean"
-    planned = np.unique(np.linspace(0, sea.members - 1, min(MOST_PLANNED, sea.members)).astype(int))
+    planned = np.unique(
+        np.linspace(0, sea.members - 1, min(MAX_PLANNED_MEMBERS, sea.members)).astype(int)
+    )
     plans: dict[int, Plan] = {}
     refusal = None
     tried: list[int] = []
@@ -98,49 +100,59 @@ def plan_robust(
     sailed = [
         item
         for member, plan in plans.items()
-        for item in _sailed(voyage, member, plan, ship, sea, measure)
+        for item in _evaluate_in_all_members(voyage, member, plan, ship, sea, measure)
     ]
     usable = [item for item in sailed if math.isfinite(item.value)] or sailed
-    criterion = find_criterion(voyage, ship) if voyage.objective in TRADES else None
-    chosen = _chosen(voyage, criterion, usable, tried, measure)
+    criterion = find_criterion(voyage, ship) if voyage.objective in TRADE_OFF_OBJECTIVES else None
+    chosen = _select_plan(voyage, criterion, usable, tried, measure)
     stopped = any(plan.cancelled for plan in plans.values())
     return dataclasses.replace(chosen, cancelled=stopped)
 
 
-def _sailed(
+def _evaluate_in_all_members(
     voyage: Voyage, member: int, plan: Plan, ship: Ship, sea: Sea, measure: str
-) -> list[Sailed]:
+) -> list[EnsembleCandidate]:
     """Sail the routes of a plan in all members."""
-    terms = find_criterion(voyage, ship).terms if voyage.objective in TRADES else None
+    terms = find_criterion(voyage, ship).terms if voyage.objective in TRADE_OFF_OBJECTIVES else None
     found = []
-    for index in _picked(plan):
+    for index in _routes_to_evaluate(plan):
         route = plan.routes[index]
         distribution = evaluate_members(
             route,
             ship=ship,
             sea=sea,
             terms=terms,
-            chart=None if plan.surroundings is None else plan.surroundings.chart,
-            min_ukc=least_clearance(voyage, ship),
+            chart=None if plan.plot_context is None else plan.plot_context.chart,
+            min_ukc=required_under_keel_clearance(voyage, ship),
         )
         time = distribution.risk("time_h", measure)
         found.append(
-            Sailed(
-                member, plan, index, route, distribution, time, _value(plan, distribution, measure)
+            EnsembleCandidate(
+                member,
+                plan,
+                index,
+                route,
+                distribution,
+                time,
+                _risk_value(plan, distribution, measure),
             )
         )
     return found
 
 
-def _picked(plan: Plan) -> list[int]:
+def _routes_to_evaluate(plan: Plan) -> list[int]:
     """Return the routes that are sailed in all members: along a front, or the least of it."""
     if plan.front is None or plan.voyage.objective != "front":
-        return [0] if plan.front is None else np.argsort(plan.front.values)[:MOST_SAILED].tolist()
+        return (
+            [0]
+            if plan.front is None
+            else np.argsort(plan.front.values)[:MAX_EVALUATED_ROUTES].tolist()
+        )
     time = np.array([route.time_h for route in plan.routes])
-    return [int(i) for i in spread(time, plan.front.values, MOST_SAILED)]
+    return [int(i) for i in evenly_spaced_subset(time, plan.front.values, MAX_EVALUATED_ROUTES)]
 
 
-def _value(plan: Plan, distribution: Distribution, measure: str) -> float:
+def _risk_value(plan: Plan, distribution: EnsembleResult, measure: str) -> float:
     """Return what a route is chosen by: its risk in the criterion, or its length."""
     if plan.voyage.objective == "distance":
         return distribution.routes[0].distance_nm
@@ -150,8 +162,9 @@ def _value(plan: Plan, distribution: Distribution, measure: str) -> float:
     return distribution.risk(quantity, measure)
 
 
-def _chosen(
-    voyage: Voyage, criterion: Criterion | None, sailed: list[Sailed], planned: list[int],
+def _select_plan(
+    voyage: Voyage, criterion: Criterion | None, sailed: list[EnsembleCandidate],
+    planned: list[int],
     measure: str,
 ) -> Plan:  # fmt: skip
     """Return the plan of the member that the best route comes from, with what is best over all.
@@ -162,7 +175,7 @@ def _chosen(
     time = np.array([item.time for item in sailed])
     value = np.array([item.value for item in sailed])
     if voyage.objective == "front":
-        order = [sailed[index] for index in not_dominated(time, value)]
+        order = [sailed[index] for index in non_dominated_indices(time, value)]
     else:
         order = [sailed[int(np.argmin(value))]]
     first, shown = order[0].plan, order[0].member
@@ -180,13 +193,13 @@ def _chosen(
         routes=routes,
         front=_front(order, routes, criterion),
         notes=tuple(dict.fromkeys(notes)),
-        ensemble=tuple(_row(item) for item in order),
+        ensemble=tuple(_distribution_row(item) for item in order),
     )
 
 
 def _front(
-    order: list[Sailed], routes: tuple[Route, ...], criterion: Criterion | None
-) -> FrontOfPlan | None:
+    order: list[EnsembleCandidate], routes: tuple[Route, ...], criterion: Criterion | None
+) -> ParetoFront | None:
     """Return the front of the chosen routes, which may come from several plans."""
     first = order[0].plan.front
     if first is None or criterion is None:
@@ -200,5 +213,5 @@ def _front(
     )
 
 
-def _row(item: Sailed) -> dict[str, Any]:
+def _distribution_row(item: EnsembleCandidate) -> dict[str, Any]:
     return {"time_risk_h": item.time, "value_risk": item.value, **item.distribution.as_dict()}

@@ -13,21 +13,23 @@ from thalweg.network import Network
 from thalweg.sea import StationFields
 
 if TYPE_CHECKING:
-    from thalweg.planning.single.passage import Task
+    from thalweg.planning.single.passage import PlanningContext
 
 #: Frozen fields larger than this are refused before they are taken [bytes].
 MEMORY_LIMIT = 4_000_000_000
 
 
 @dataclass(frozen=True)
-class Frozen:
+class FrozenSea:
     """The sea at the stations of a network, and what it allows at most."""
 
     stations: StationFields
     top_speed: float
 
 
-def freeze(task: Task, network: Network, start: float, end: float) -> Frozen:
+def freeze_at_stations(
+    context: PlanningContext, network: Network, start: float, end: float
+) -> FrozenSea:
     """Freeze the sea at the stations of a network.
 
     Raises
@@ -36,11 +38,11 @@ def freeze(task: Task, network: Network, start: float, end: float) -> Frozen:
         If it would take more memory than is allowed.
     """
     lat, lon = network.station_lat, network.station_lon
-    steps = len(task.sea.times(start, end))
-    channels = task.needs.channels
+    steps = len(context.sea.times(start, end))
+    channels = context.needs.channels
     extra = None
-    if task.ship.speed_field is not None:
-        extra = {codes.SPEED_FIELD: task.ship.speed_field}
+    if context.ship.speed_field is not None:
+        extra = {codes.SPEED_FIELD: context.ship.speed_field}
     size = len(lat) * steps * (len(channels) + bool(extra)) * 4
     if size > MEMORY_LIMIT:
         raise InputError(
@@ -48,13 +50,13 @@ def freeze(task: Task, network: Network, start: float, end: float) -> Frozen:
             f"At most {MEMORY_LIMIT / 1e9:.0f} GB are taken.",
             "Use a coarser resolution or a shorter window.",
         )
-    stations = task.sea.freeze_stations(lat, lon, start, end, channels, extra=extra)
-    return Frozen(stations, _top_speed(task, stations))
+    stations = context.sea.freeze_stations(lat, lon, start, end, channels, extra=extra)
+    return FrozenSea(stations, _top_speed(context, stations))
 
 
-def _top_speed(task: Task, stations: StationFields) -> float:
+def _top_speed(context: PlanningContext, stations: StationFields) -> float:
     column = stations.channel_index[codes.SPEED_FIELD]
     if column >= 0:
         return float(np.nanmax(stations.values[:, :, column], initial=0.0))
-    top = task.ship.top_speed(task.setting)
-    return float(task.ship.speeds[task.setting] if top is None else top)
+    top = context.ship.top_speed(context.setting)
+    return float(context.ship.speeds[context.setting] if top is None else top)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from contextlib import ExitStack
 from types import TracebackType
 
-from thalweg.core.interrupt import ctrl_c
+from thalweg.core.interrupt import interrupt_requested
 
 
-class Keeper:
+class InterruptGuard:
     """Tells whether Ctrl-C was pressed since there is something to keep.
 
     Before `begin` it interrupts as usual, and so it does when pressed again.
@@ -16,9 +16,9 @@ class Keeper:
 
     def __init__(self) -> None:
         self._stack, self._pressed = ExitStack(), lambda: False
-        self._begun = False
+        self._active = False
 
-    def __enter__(self) -> Keeper:
+    def __enter__(self) -> InterruptGuard:
         return self
 
     def __exit__(
@@ -31,13 +31,13 @@ class Keeper:
 
     def begin(self) -> None:
         """Take over Ctrl-C: a route has been found."""
-        if not self._begun:
-            self._pressed, self._begun = self._stack.enter_context(ctrl_c()), True
+        if not self._active:
+            self._pressed, self._active = self._stack.enter_context(interrupt_requested()), True
 
     def stopped(self) -> bool:
         """Whether Ctrl-C was pressed since."""
         return self._pressed()
 
 
-class Stopped(Exception):
+class SearchInterrupted(Exception):
     """Raised out of a search that is given up; never leaves the planning of a front."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
-from thalweg.planning.pareto.plan_front import FrontOfPlan
+from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 
@@ -44,7 +44,7 @@ class Proof:
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class PlotContext:
     """What the pictures need: the arrival times over the network, the chart, the sea and ship."""
 
     lat: np.ndarray
@@ -73,7 +73,7 @@ class Plan:
         Assumptions and warnings the user must know.
     provenance : mapping
         What is needed to repeat the plan: version, data fingerprints, ship, network, seed.
-    surroundings : Surroundings
+    plot_context : Surroundings
         For drawing; not part of the JSON.
     front : FrontOfPlan, optional
         The trade of time for fuel, energy, cost or CO2, where one was asked; its routes are all of
@@ -90,8 +90,8 @@ class Plan:
     rejections: Mapping[str, int]
     notes: tuple[str, ...]
     provenance: Mapping[str, Any]
-    surroundings: Surroundings | None = field(default=None, repr=False, compare=False)
-    front: FrontOfPlan | None = None
+    plot_context: PlotContext | None = field(default=None, repr=False, compare=False)
+    front: ParetoFront | None = None
     ensemble: tuple[Mapping[str, Any], ...] = ()
     cancelled: bool = False
 
@@ -149,11 +149,11 @@ class Plan:
             "objective": self.voyage.objective,
             "objective_unit": self.unit,
             "routes": [route_dict(route, self.voyage.objective) for route in self.routes],
-            "lower_bound": _number(self.lower_bound),
+            "lower_bound": _finite_or_none(self.lower_bound),
             "lower_bound_kind": self.proof.kind,
-            "lower_bound_certain": _number(self.proof.certain),
-            "gap": _number(self.gap),
-            "solver_total": _number(self.solver_total),
+            "lower_bound_certain": _finite_or_none(self.proof.certain),
+            "gap": _finite_or_none(self.gap),
+            "solver_total": _finite_or_none(self.solver_total),
             "rejections": dict(self.rejections),
             "notes": list(self.notes),
             **more,
@@ -200,26 +200,26 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
         "objective": objective,
         "depart": format_time(route.depart),
         "arrive": format_time(route.arrive),
-        "time_h": _number(route.time_h),
-        "distance_nm": _number(route.distance_nm),
-        "fuel_t": _number(route.fuel_t),
-        "energy_mwh": _number(route.energy_mwh),
-        "co2_t": _number(route.co2_t),
-        route.cost_name: _number(route.cost),
-        "fuel_eca_t": _number(route.fuel_eca_t),
-        "waiting_h": _number(route.waiting_h),
-        "min_ukc_m": _number(route.min_ukc_m),
-        "referee_tolerance_h": _number(route.tolerance_s / HOUR),
+        "time_h": _finite_or_none(route.time_h),
+        "distance_nm": _finite_or_none(route.distance_nm),
+        "fuel_t": _finite_or_none(route.fuel_t),
+        "energy_mwh": _finite_or_none(route.energy_mwh),
+        "co2_t": _finite_or_none(route.co2_t),
+        route.cost_name: _finite_or_none(route.cost),
+        "fuel_eca_t": _finite_or_none(route.fuel_eca_t),
+        "waiting_h": _finite_or_none(route.waiting_h),
+        "min_ukc_m": _finite_or_none(route.min_ukc_m),
+        "referee_tolerance_h": _finite_or_none(route.tolerance_s / HOUR),
         "feasible": route.feasible,
         "violations": [violation.as_dict() for violation in route.violations],
         "waypoints": route.waypoints(),
     }
 
 
-def in_unit(value: float, objective: str) -> float:
+def in_objective_unit(value: float, objective: str) -> float:
     """Turn seconds or metres into the unit of an objective."""
     return value / (NAUTICAL_MILE if objective == "distance" else HOUR)
 
 
-def _number(value: float | None) -> float | None:
+def _finite_or_none(value: float | None) -> float | None:
     return None if value is None or not np.isfinite(value) else float(value)

@@ -13,15 +13,29 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
-from thalweg.planning.network_selection.network_choice import Builder, NetworkChoice
-from thalweg.planning.plan import Plan, Proof, Surroundings, in_unit
-from thalweg.planning.report.provenance import known, network_facts, provenance, route_notes
-from thalweg.planning.request.chart_restrictions import open_canals, with_control_areas, without_ice
-from thalweg.planning.request.coverage_check import check_kinds, covered_ends
-from thalweg.planning.request.requirements import check_period, find_needs
-from thalweg.planning.request.voyage_endpoints import End, check_apart, find_end
-from thalweg.planning.single.passage import Passage, Task, make_passage, table_of
-from thalweg.planning.voyage import TRADES, Voyage
+from thalweg.planning.network_selection.network_choice import NetworkBuilder, NetworkChoice
+from thalweg.planning.plan import Plan, PlotContext, Proof, in_objective_unit
+from thalweg.planning.report.provenance import (
+    finite_or_none,
+    network_summary,
+    provenance,
+    route_warnings,
+)
+from thalweg.planning.request.chart_restrictions import (
+    add_emission_control_areas,
+    exclude_closed_canals,
+    exclude_ice_latitudes,
+)
+from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
+from thalweg.planning.request.requirements import check_period, derive_requirements
+from thalweg.planning.request.voyage_endpoints import Endpoint, check_distinct, resolve_endpoint
+from thalweg.planning.single.passage import (
+    PassageResult,
+    PlanningContext,
+    performance_table_of,
+    plan_passage,
+)
+from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
@@ -34,7 +48,7 @@ def plan(
     ship: Ship,
     sea: Sea,
     chart: Chart | None = None,
-    network: str | Builder = "auto",
+    network: str | NetworkBuilder = "auto",
     resolution: float | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Plan:
@@ -75,9 +89,9 @@ def plan(
         If no route exists within the limits (with the reasons counted).
     """
     chart = Chart.gshhg("i") if chart is None else chart
-    check_kinds(voyage, ship, sea, chart)
+    check_argument_types(voyage, ship, sea, chart)
     if sea.members:
-        from thalweg.planning.ensemble_plan import plan_robust
+        from thalweg.planning.ensemble_plan import plan_ensemble
 
         options = {
             "ship": ship,
@@ -86,7 +100,7 @@ def plan(
             "resolution": resolution,
             "progress": progress,
         }
-        return plan_robust(
+        return plan_ensemble(
             voyage,
             ship=ship,
             sea=sea,
@@ -101,40 +115,40 @@ def plan(
         )
     sea = with_wind_speed(ship, sea)
     choice = NetworkChoice(network, resolution)
-    ends = _ends(voyage, chart)
-    chart, notes = open_canals(chart, voyage, ship, ends)
-    chart, more = with_control_areas(without_ice(chart, ends), voyage, ship)
-    needs = find_needs(voyage, ship=ship, sea=sea, chart=chart)
+    ends = _endpoints(voyage, chart)
+    chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
+    chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
+    needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
     last = check_period(voyage, sea, needs)
     world = {"ship": ship, "sea": sea, "chart": chart}
-    ends = covered_ends(ends, voyage=voyage, needs=needs, last=last, **world)  # type: ignore[arg-type]
-    task = Task(
+    ends = endpoints_within_coverage(ends, voyage=voyage, needs=needs, last=last, **world)  # type: ignore[arg-type]
+    context = PlanningContext(
         voyage=voyage,
         ship=ship,
         sea=sea,
         chart=chart,
         needs=replace(needs, notes=(*notes, *more, *needs.notes)),
-        table=table_of(ship),
+        table=performance_table_of(ship),
         setting=_setting(voyage, ship),
         last=last,
         choice=choice,
         tell=progress or (lambda text: None),
     )
-    if voyage.objective in TRADES:
-        from thalweg.planning.pareto.trade_off_planner import trade
+    if voyage.objective in TRADE_OFF_OBJECTIVES:
+        from thalweg.planning.pareto.trade_off_planner import plan_trade_off
 
-        return trade(task, ends)
-    passages = _make_passages(task, ends)
-    return _gather(task, ends, passages)
+        return plan_trade_off(context, ends)
+    passages = _plan_passages(context, ends)
+    return _assemble_plan(context, ends, passages)
 
 
-def _ends(voyage: Voyage, chart: Chart) -> list[End]:
+def _endpoints(voyage: Voyage, chart: Chart) -> list[Endpoint]:
     places = [("start", voyage.start)]
     places += [(f"via point {i + 1}", place) for i, place in enumerate(voyage.via)]
     places.append(("goal", voyage.goal))
-    ends = [find_end(place, chart, what) for what, place in places]
+    ends = [resolve_endpoint(place, chart, what) for what, place in places]
     for first, second in itertools.pairwise(ends):
-        check_apart(first, second)
+        check_distinct(first, second)
     return ends
 
 
@@ -155,18 +169,20 @@ def _setting(voyage: Voyage, ship: Ship) -> int:
     return best
 
 
-def _make_passages(task: Task, ends: list[End]) -> list[Passage]:
-    window = (task.voyage.earliest_departure, task.voyage.latest_departure)
-    passages: list[Passage] = []
+def _plan_passages(context: PlanningContext, ends: list[Endpoint]) -> list[PassageResult]:
+    window = (context.voyage.earliest_departure, context.voyage.latest_departure)
+    passages: list[PassageResult] = []
     for start, goal in itertools.pairwise(ends):
-        passage = make_passage(task, start, goal, window)
+        passage = plan_passage(context, start, goal, window)
         passages.append(passage)
         window = (passage.route.arrive, passage.route.arrive)
     return passages
 
 
-def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
-    voyage = task.voyage
+def _assemble_plan(
+    context: PlanningContext, ends: list[Endpoint], passages: list[PassageResult]
+) -> Plan:
+    voyage = context.voyage
     routes = [passage.route for passage in passages]
     route = routes[0] if len(routes) == 1 else join_routes(routes)
     refused: Counter[str] = Counter()
@@ -176,43 +192,45 @@ def _gather(task: Task, ends: list[End], passages: list[Passage]) -> Plan:
     total = sum(passage.result.cost for passage in passages)
     bound = sum(passage.bound.value for passage in passages)
     proof = Proof(
-        lower_bound=in_unit(bound, voyage.objective),
+        lower_bound=in_objective_unit(bound, voyage.objective),
         kind=passages[0].bound.kind,
-        certain=in_unit(sum(passage.floor.value for passage in passages), voyage.objective),
-        solver_total=in_unit(total, voyage.objective),
+        certain=in_objective_unit(
+            sum(passage.floor.value for passage in passages), voyage.objective
+        ),
+        solver_total=in_objective_unit(total, voyage.objective),
     )
-    notes = [end.note for end in ends if end.note] + list(task.needs.notes)
+    notes = [end.note for end in ends if end.note] + list(context.needs.notes)
     notes += [note for passage in passages for note in passage.notes]
-    notes += route_notes(task, route)
+    notes += route_warnings(context, route)
     return Plan(
         voyage=voyage,
         routes=(route,),
         proof=proof,
         rejections={reason: count for reason, count in refused.items() if count},
         notes=tuple(dict.fromkeys(notes)),
-        provenance=provenance(task, ends, _networks(passages), [_speed_kn(task)]),
-        surroundings=_surroundings(task, passages),
+        provenance=provenance(context, ends, _network_summaries(passages), [_speed_kn(context)]),
+        plot_context=_plot_context(context, passages),
     )
 
 
-def _networks(passages: list[Passage]) -> list[dict[str, Any]]:
+def _network_summaries(passages: list[PassageResult]) -> list[dict[str, Any]]:
     return [
-        network_facts(p.network, settled=int(p.result.settled), depart=p.route.depart)
+        network_summary(p.network, settled=int(p.result.settled), depart=p.route.depart)
         for p in passages
     ]
 
 
-def _speed_kn(task: Task) -> float | None:
-    return known(float(task.ship.speeds[task.setting]) / KNOT)
+def _speed_kn(context: PlanningContext) -> float | None:
+    return finite_or_none(float(context.ship.speeds[context.setting]) / KNOT)
 
 
-def _surroundings(task: Task, passages: list[Passage]) -> Surroundings:
+def _plot_context(context: PlanningContext, passages: list[PassageResult]) -> PlotContext:
     nodes = [passage.network.n_nodes for passage in passages]
-    return Surroundings(
+    return PlotContext(
         lat=np.concatenate([p.network.station_lat[:n] for p, n in zip(passages, nodes)]),
         lon=np.concatenate([p.network.station_lon[:n] for p, n in zip(passages, nodes)]),
         arrival=np.concatenate([p.isochrones[:n] for p, n in zip(passages, nodes)]),
-        chart=task.chart,
-        sea=task.sea,
-        ship=task.ship,
+        chart=context.chart,
+        sea=context.sea,
+        ship=context.ship,
     )

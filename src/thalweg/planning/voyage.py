@@ -11,7 +11,7 @@ from numbers import Integral
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import TimeLike, format_time, parse_time
 
@@ -20,9 +20,9 @@ Objective: TypeAlias = Literal["time", "distance", "fuel", "energy", "cost", "co
 
 OBJECTIVES: tuple[Objective, ...] = ("time", "distance", "fuel", "energy", "cost", "co2", "front")
 #: Objectives for which the ship's speed is chosen leg by leg.
-TRADES: tuple[Objective, ...] = ("fuel", "energy", "cost", "co2", "front")
+TRADE_OFF_OBJECTIVES: tuple[Objective, ...] = ("fuel", "energy", "cost", "co2", "front")
 METHODS = ("default", "exact", "nsga2", "spea2", "mpaes")
-RISKS = ("mean", "cvar")
+RISK_MEASURES = ("mean", "cvar")
 _LARGEST_FILE = 1_000_000
 
 
@@ -112,13 +112,13 @@ class Voyage:
         object.__setattr__(self, "goal", _place(self.goal, "goal"))
         object.__setattr__(self, "via", tuple(places))
         if self.objective not in OBJECTIVES:
-            raise unknown_name("objective", str(self.objective), OBJECTIVES)
-        self._settle_times()
+            raise unknown_name_error("objective", str(self.objective), OBJECTIVES)
+        self._normalise_times()
         _check_number("speed_kn", self.speed_kn, above=0.0, below=100.0, unit="kn")
         _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
-        self._settle_trade()
+        self._check_trade_off()
 
-    def _settle_trade(self) -> None:
+    def _check_trade_off(self) -> None:
         """Check what concerns prices, canals and methods."""
         price, nothing = "fuel_price_usd", -1e-9
         _check_number(price, self.fuel_price_usd, above=nothing, below=1e5, unit="USD/t")
@@ -126,7 +126,7 @@ class Voyage:
         _check_number(
             "time_price_usd_per_h", self.time_price_usd_per_h, above=nothing, below=1e7, unit="USD"
         )
-        forbidden = (self.forbid,) if isinstance(self.forbid, str) else _listed(self.forbid)
+        forbidden = (self.forbid,) if isinstance(self.forbid, str) else _as_list(self.forbid)
         if not isinstance(self.seed, Integral) or self.seed < 0:
             raise InputError(
                 f"The seed is {self.seed!r}.", "It is a whole number of zero or more.", "Give one.",
@@ -134,10 +134,10 @@ class Voyage:
             )  # fmt: skip
         object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
         if self.method not in METHODS:
-            raise unknown_name("method", str(self.method), METHODS)
-        if self.ensemble is not None and self.ensemble not in RISKS:
-            raise unknown_name("choice over an ensemble", str(self.ensemble), RISKS)
-        if self.objective in TRADES and self.depart_window is not None:
+            raise unknown_name_error("method", str(self.method), METHODS)
+        if self.ensemble is not None and self.ensemble not in RISK_MEASURES:
+            raise unknown_name_error("choice over an ensemble", str(self.ensemble), RISK_MEASURES)
+        if self.objective in TRADE_OFF_OBJECTIVES and self.depart_window is not None:
             raise InputError(
                 f"A departure window cannot be asked with the objective {self.objective!r}.",
                 "Windows are for the objectives 'time' and 'distance'; waiting at the start is "
@@ -146,7 +146,7 @@ class Voyage:
                 field="depart_window",
             )
 
-    def _settle_times(self) -> None:
+    def _normalise_times(self) -> None:
         if (self.depart is None) == (self.depart_window is None):
             raise InputError(
                 "A voyage needs a departure: a time or a window, and not both.",
@@ -154,7 +154,7 @@ class Voyage:
                 "Give one of them.",
             )
         if self.depart_window is not None:
-            if isinstance(self.depart_window, str) or len(_listed(self.depart_window)) != 2:
+            if isinstance(self.depart_window, str) or len(_as_list(self.depart_window)) != 2:
                 raise InputError("A departure window is two times.", "", "Give (earliest, latest).")
             first, last = (parse_time(t) for t in self.depart_window)
             if not first <= last:
@@ -200,7 +200,7 @@ class Voyage:
                 continue
             if field.name == "method" and value == "default":
                 continue
-            data[field.name] = _plain(field.name, value)
+            data[field.name] = _plain_value(field.name, value)
         return data
 
     @classmethod
@@ -209,7 +209,7 @@ class Voyage:
         known = [field.name for field in dataclasses.fields(cls)]
         for key in data:
             if key not in known:
-                raise unknown_name("voyage entry", str(key), known)
+                raise unknown_name_error("voyage entry", str(key), known)
         missing = [key for key in ("start", "goal") if key not in data]
         if missing:
             raise InputError(f"The voyage lacks {' and '.join(missing)}.", "", "Add them.")
@@ -252,7 +252,7 @@ class Voyage:
         path.write_text(text, encoding="utf-8")
 
 
-def _listed(given: Any) -> tuple[Any, ...]:
+def _as_list(given: Any) -> tuple[Any, ...]:
     """Return what is given as a list; a single thing as a list of it."""
     try:
         return tuple(given)
@@ -293,11 +293,11 @@ def _check_number(name: str, value: Any, *, above: float, below: float, unit: st
         )
 
 
-def _plain(name: str, value: Any) -> Any:
+def _plain_value(name: str, value: Any) -> Any:
     if name in ("depart", "arrive_by"):
         return format_time(value)
     if name == "depart_window":
         return [format_time(t) for t in value]
     if name == "via":
-        return [_plain("place", place) for place in value]
+        return [_plain_value("place", place) for place in value]
     return list(value) if isinstance(value, tuple) else value

@@ -1,6 +1,11 @@
 """Routes: tracks to sail, the referee that scores them, and the formats they travel in."""
 
-from thalweg.route.ensemble_evaluation import Distribution, Spread, cvar, evaluate_members
+from thalweg.route.ensemble_evaluation import (
+    EnsembleResult,
+    MemberStatistics,
+    cvar,
+    evaluate_members,
+)
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.route.referee.evaluation import evaluate
 from thalweg.route.referee.wind_speed_only import with_wind_speed
@@ -12,9 +17,9 @@ from thalweg.route.route_concatenation import join
 from thalweg.route.track import Track
 
 __all__ = [
-    "Distribution",
+    "EnsembleResult",
+    "MemberStatistics",
     "Route",
-    "Spread",
     "Track",
     "Violation",
     "better_route",

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from thalweg.route.track import Track
     from thalweg.ship import Ship
 
-_DEEP = 1e4  # depth of calm water [m]
-_PERIOD = 9.0  # of no waves [s]
+_DEEP_WATER = 1e4  # depth of calm water [m]
+_WAVE_PERIOD = 9.0  # of no waves [s]
 
 
 @dataclass(frozen=True)
@@ -145,10 +145,12 @@ def canal_rates(ship: Ship, canal: Canal) -> tuple[float, float]:
     one.
     """
     calm = {name: np.zeros(1) for name in ship.needs}
-    calm |= {n: np.full(1, v) for n, v in ((WAVE_NORTH, 1.0), (WAVE_PERIOD, _PERIOD)) if n in calm}
+    calm |= {
+        n: np.full(1, v) for n, v in ((WAVE_NORTH, 1.0), (WAVE_PERIOD, _WAVE_PERIOD)) if n in calm
+    }
     lat, lon = canal.path[0]
     conditions = Conditions.from_sea(
-        calm, heading=np.zeros(1), time=np.zeros(1), lat=lat, lon=lon, depth=_DEEP
+        calm, heading=np.zeros(1), time=np.zeros(1), lat=lat, lon=lon, depth=_DEEP_WATER
     )
     power, fuel = ship.power_and_fuel(conditions, canal_setting(ship, canal))
     return float(np.asarray(power).reshape(-1)[0]), float(np.asarray(fuel).reshape(-1)[0])

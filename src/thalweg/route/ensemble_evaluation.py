@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import FloatArray
-from thalweg.route.referee.evaluation import Routable, evaluate
+from thalweg.route.referee.evaluation import RouteLike, evaluate
 from thalweg.route.route import Route
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def cvar(values: ArrayLike, alpha: float = ALPHA) -> float:
 
 
 @dataclass(frozen=True)
-class Spread:
+class MemberStatistics:
     """How a number varies over the members that could be sailed.
 
     Attributes
@@ -93,7 +93,7 @@ class Spread:
     count: int
 
     @classmethod
-    def of(cls, values: FloatArray, alpha: float) -> Spread:
+    def of(cls, values: FloatArray, alpha: float) -> MemberStatistics:
         """Return the spread of one number or more."""
         low, high = np.percentile(values, [10.0, 90.0])
         return cls(
@@ -106,7 +106,7 @@ class Spread:
 
 
 @dataclass(frozen=True, eq=False)
-class Distribution:
+class EnsembleResult:
     """A route as the referee found it in every member of an ensemble.
 
     Attributes
@@ -114,7 +114,7 @@ class Distribution:
     routes : tuple of Route
         One per member, in their order, the infeasible ones too.
     alpha : float
-        Share of the members that the tail of `Spread.cvar` leaves out.
+        Share of the members that the tail of `MemberStatistics.cvar` leaves out.
     """
 
     routes: tuple[Route, ...]
@@ -126,26 +126,26 @@ class Distribution:
         return tuple(k for k, route in enumerate(self.routes) if not route.feasible)
 
     @property
-    def time_h(self) -> Spread | None:
+    def time_h(self) -> MemberStatistics | None:
         """Spread of the time [h]; None if no member is feasible."""
         return self.spread("time_h")
 
     @property
-    def fuel_t(self) -> Spread | None:
+    def fuel_t(self) -> MemberStatistics | None:
         """Spread of the fuel [t]; None if unknown."""
         return self.spread("fuel_t")
 
     @property
-    def cost(self) -> Spread | None:
+    def cost(self) -> MemberStatistics | None:
         """Spread of the cost, in the currency of the prices; None without prices."""
         return self.spread("cost")
 
     @property
-    def co2_t(self) -> Spread | None:
+    def co2_t(self) -> MemberStatistics | None:
         """Spread of the carbon dioxide [t]; None if unknown."""
         return self.spread("co2_t")
 
-    def spread(self, quantity: str) -> Spread | None:
+    def spread(self, quantity: str) -> MemberStatistics | None:
         """Return how one of `QUANTITIES` varies over the feasible members.
 
         What is infeasible has no number of its own to take part; `infeasible` and `notes` tell it
@@ -153,12 +153,12 @@ class Distribution:
         """
         values = self.values(quantity)
         values = values[np.isfinite(values)]
-        return Spread.of(values, self.alpha) if values.size else None
+        return MemberStatistics.of(values, self.alpha) if values.size else None
 
     def values(self, quantity: str) -> FloatArray:
         """Return a quantity in every member; inf where infeasible, NaN where unknown."""
         if quantity not in QUANTITIES:
-            raise unknown_name("quantity of a distribution", quantity, QUANTITIES)
+            raise unknown_name_error("quantity of a distribution", quantity, QUANTITIES)
         found = [
             (getattr(route, quantity, None) if route.feasible else math.inf)
             for route in self.routes
@@ -179,7 +179,7 @@ class Distribution:
             inf where an infeasible member has part in it (always in the mean); NaN if unknown.
         """
         if measure not in MEASURES:
-            raise unknown_name("measure of risk", measure, MEASURES)
+            raise unknown_name_error("measure of risk", measure, MEASURES)
         values = self.values(quantity)
         if np.isnan(values).any():
             return math.nan
@@ -227,7 +227,7 @@ class Distribution:
 
 
 def evaluate_members(
-    route: Routable,
+    route: RouteLike,
     *,
     ship: Ship,
     sea: Sea,
@@ -235,7 +235,7 @@ def evaluate_members(
     alpha: float = ALPHA,
     progress: Callable[[int, int], None] | None = None,
     **options: Any,
-) -> Distribution:
+) -> EnsembleResult:
     """Sail one route in every member of an ensemble by the referee.
 
     Parameters
@@ -264,7 +264,7 @@ def evaluate_members(
     InputError
         If the sea is no ensemble, alpha is not in [0, 1), or `evaluate` cannot be asked so.
     """
-    count = _checked(sea, alpha)
+    count = _checked_member_count(sea, alpha)
     if "strict" in options:
         raise InputError(
             "strict is given.", "Members whose data end too early are told.", "Leave it out."
@@ -275,10 +275,10 @@ def evaluate_members(
         routes.append(evaluate(route, ship=ship, sea=sea.member(index), strict=False, **asked))
         if progress is not None:
             progress(index + 1, count)
-    return Distribution(tuple(routes), alpha)
+    return EnsembleResult(tuple(routes), alpha)
 
 
-def _checked(sea: Sea, alpha: float) -> int:
+def _checked_member_count(sea: Sea, alpha: float) -> int:
     cvar((), alpha)
     count = int(getattr(sea, "members", 0))
     if count:

@@ -11,9 +11,9 @@ from thalweg.core.errors import InputError
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
-_TOUCH = 1e-9  # degrees between the end of a route and the start of the next
-_AT_ONCE = 1e-3  # seconds between them that are no wait
-_OF_WAITS = {"waiting_fuel", "waiting_energy", "fuel_in_eca", "co2", "cost"}
+_POSITION_TOLERANCE = 1e-9  # degrees between the end of a route and the start of the next
+_TIME_TOLERANCE = 1e-3  # seconds between them that are no wait
+_QUANTITIES_OF_WAITS = {"waiting_fuel", "waiting_energy", "fuel_in_eca", "co2", "cost"}
 
 
 def join(routes: Sequence[Route]) -> Route:
@@ -34,7 +34,7 @@ def join(routes: Sequence[Route]) -> Route:
     if not routes:
         raise InputError("There are no routes to join.", "", "Give one or more.")
     for before, after in itertools.pairwise(routes):
-        _check_joint(before, after)
+        _check_consecutive(before, after)
     if len({route.currency for route in routes}) > 1:
         raise InputError(
             f"The costs of the routes are in {' and '.join({r.currency for r in routes})}.",
@@ -44,8 +44,11 @@ def join(routes: Sequence[Route]) -> Route:
     first = np.cumsum([0, *(len(route.legs["length"]) for route in routes)])
     length = np.cumsum([0.0, *(route.legs["length"].sum() for route in routes)])
     legs = {name: np.concatenate([route.legs[name] for route in routes]) for name in routes[0].legs}
-    lain = [after.depart - before.arrive > _AT_ONCE for before, after in itertools.pairwise(routes)]
-    for name in _OF_WAITS & legs.keys():
+    lain = [
+        after.depart - before.arrive > _TIME_TOLERANCE
+        for before, after in itertools.pairwise(routes)
+    ]
+    for name in _QUANTITIES_OF_WAITS & legs.keys():
         legs[name][first[1:-1][lain]] = np.nan
     names = [name for name in routes[0].samples if all(name in r.samples for r in routes)]
     samples = {name: np.concatenate([route.samples[name] for route in routes]) for name in names}
@@ -59,21 +62,25 @@ def join(routes: Sequence[Route]) -> Route:
         tuple(violation for route in routes for violation in route.violations),
         sum(route.tolerance_s for route in routes),
         tuple(dict.fromkeys(text for route in routes for text in route.assumptions)),
-        _summed([route.fuel_zones for route in routes]),
+        _summed_by_name([route.fuel_zones for route in routes]),
         routes[0].currency,
     )
 
 
-def _summed(parts: Sequence[Mapping[str, float]]) -> dict[str, float]:
+def _summed_by_name(parts: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """Return sums by name."""
     names = dict.fromkeys(name for part in parts for name in part)
     return {name: sum(part.get(name, 0.0) for part in parts) for name in names}
 
 
-def _check_joint(before: Route, after: Route) -> None:
+def _check_consecutive(before: Route, after: Route) -> None:
     a, b = before.track, after.track
     turn = abs((a.lon[-1] - b.lon[0] + 180.0) % 360.0 - 180.0)
-    if abs(a.lat[-1] - b.lat[0]) > _TOUCH or turn > _TOUCH or not b.depart >= before.arrive - 1e-6:
+    if (
+        abs(a.lat[-1] - b.lat[0]) > _POSITION_TOLERANCE
+        or turn > _POSITION_TOLERANCE
+        or not b.depart >= before.arrive - 1e-6
+    ):
         raise InputError(
             "Two routes do not follow each other.",
             "Each must start where the one before ends, at or after its arrival.",

@@ -67,16 +67,16 @@ def waypoint_columns(route: Route) -> dict[str, FloatArray]:
         "ordered_speed_kn": np.append(legs["ordered_speed"], math.nan) / KNOT,
         "speed_through_water_kn": np.append(_mean_over_time(route), math.nan) / KNOT,
         "speed_over_ground_kn": np.append(over_ground, math.nan) / KNOT,
-        "fuel_t": _so_far(fuel) / TONNE,
-        "energy_mwh": _so_far(legs["energy"] + legs["waiting_energy"]) / MEGAWATT_HOUR,
-        "co2_t": _so_far(legs["co2"]) / TONNE,
-        route.cost_name: _so_far(legs["cost"]),
+        "fuel_t": _cumulative(fuel) / TONNE,
+        "energy_mwh": _cumulative(legs["energy"] + legs["waiting_energy"]) / MEGAWATT_HOUR,
+        "co2_t": _cumulative(legs["co2"]) / TONNE,
+        route.cost_name: _cumulative(legs["cost"]),
         **_conditions(route, at),
         "ukc_m": np.append(legs["under_keel_clearance"], math.nan),
     }
 
 
-def _so_far(values: FloatArray) -> FloatArray:
+def _cumulative(values: FloatArray) -> FloatArray:
     """Return a sum over the legs up to each waypoint."""
     return np.concatenate([[0.0], np.cumsum(values)])
 

@@ -9,7 +9,7 @@ from thalweg.core.time import TimeLike, parse_time
 from thalweg.sea.frozen_fields import WORLD, Area
 
 
-def area_of(area: tuple[float, float, float, float] | None) -> Area:
+def parse_area(area: tuple[float, float, float, float] | None) -> Area:
     """Return the box for (south, north, west, east) [deg]; the world for None."""
     if area is None:
         return WORLD
@@ -26,7 +26,7 @@ def area_of(area: tuple[float, float, float, float] | None) -> Area:
     return Area(south, north, west, east if east > west else east + 360.0)
 
 
-def period_of(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:
+def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:
     """Return (start, end) [s since epoch]."""
     if period is None:
         return None
@@ -42,7 +42,7 @@ def period_of(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] |
     return start, end
 
 
-def step_of(time_step: float | None, *, least: float = 0.0) -> float | None:
+def parse_time_step(time_step: float | None, *, least: float = 0.0) -> float | None:
     """Return a time step [s] that is None, or not less than the least one."""
     if time_step is not None and not (np.isfinite(time_step) and time_step >= least):
         raise InputError(

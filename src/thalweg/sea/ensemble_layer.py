@@ -31,66 +31,66 @@ class EnsembleLayer:
 
     Attributes
     ----------
-    versions : tuple of Layer
+    member_layers : tuple of Layer
         One per member.
     """
 
-    versions: tuple[Layer, ...]
+    member_layers: tuple[Layer, ...]
 
     @property
     def variables(self) -> frozenset[str]:
         """Canonical names of what every member holds."""
-        return self.versions[0].variables
+        return self.member_layers[0].variables
 
     @property
     def area(self) -> Area:
         """The box of positions the members may know."""
-        return self.versions[0].area
+        return self.member_layers[0].area
 
     @property
     def period(self) -> tuple[float, float] | None:
         """First and last time of every member [s since epoch], or None if they hold always."""
-        return self.versions[0].period
+        return self.member_layers[0].period
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Raise: an ensemble has no value of its own."""
-        raise not_one_sea(len(self.versions))
+        raise ensemble_not_allowed_error(len(self.member_layers))
 
     def series(
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Raise: an ensemble has no value of its own."""
-        raise not_one_sea(len(self.versions))
+        raise ensemble_not_allowed_error(len(self.member_layers))
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return the native times of every member."""
-        return self.versions[0].times(start, end)
+        return self.member_layers[0].times(start, end)
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
         """Return whether positions lie where the members may know values."""
-        return self.versions[0].inside(lat, lon)
+        return self.member_layers[0].inside(lat, lon)
 
     def coverage(self) -> list[Coverage]:
         """Return where and when each variable is known, of all members alike."""
-        count = len(self.versions)
-        rows = self.versions[0].coverage()
+        count = len(self.member_layers)
+        rows = self.member_layers[0].coverage()
         return [replace(row, source=f"{row.source} and {count - 1} more members") for row in rows]
 
     def mesh(self) -> Mesh | None:
         """Return the members' triangle mesh, if they have one."""
-        return self.versions[0].mesh()
+        return self.member_layers[0].mesh()
 
     def provenance(self) -> Mapping[str, Any]:
         """Return the facts of the first member, and a hash of those of all."""
-        facts = [dict(version.provenance()) for version in self.versions]
+        facts = [dict(version.provenance()) for version in self.member_layers]
         text = json.dumps(facts, sort_keys=True, default=str)
         digest = hashlib.sha256(text.encode()).hexdigest()[:32]
         return {"kind": "ensemble", "members": len(facts), "first": facts[0], "all": digest}
 
 
-def size_of(layers: Sequence[Layer]) -> int:
+def member_count(layers: Sequence[Layer]) -> int:
     """Return how many members the ensembles among layers have, 0 without any.
 
     Raises
@@ -98,7 +98,7 @@ def size_of(layers: Sequence[Layer]) -> int:
     InputError
         If there are several of different sizes.
     """
-    sizes = {len(x.versions) for x in layers if isinstance(x, EnsembleLayer)}
+    sizes = {len(x.member_layers) for x in layers if isinstance(x, EnsembleLayer)}
     if len(sizes) > 1:
         raise InputError(
             f"Ensembles of {' and '.join(map(str, sorted(sizes)))} members lie in one sea.",
@@ -108,7 +108,7 @@ def size_of(layers: Sequence[Layer]) -> int:
     return sizes.pop() if sizes else 0
 
 
-def not_one_sea(count: int) -> InputError:
+def ensemble_not_allowed_error(count: int) -> InputError:
     """Return the error for an ensemble where one sea is needed."""
     return InputError(
         f"This sea is an ensemble of {count} members, and one sea is needed here.",
@@ -119,7 +119,7 @@ def not_one_sea(count: int) -> InputError:
     )
 
 
-def member_of(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
+def select_member(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
     """Return layers with one version of every ensemble among them.
 
     Raises
@@ -127,7 +127,7 @@ def member_of(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
     InputError
         If there is no ensemble, or no such member.
     """
-    count = size_of(layers)
+    count = member_count(layers)
     if count == 0:
         raise InputError(
             f"Member {index!r} is asked of a sea that is no ensemble.",
@@ -142,10 +142,10 @@ def member_of(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
             f"There is no member {index}.", f"They are 0 to {count - 1}.", "Choose one."
         )
     picked = int(index)
-    return tuple(x.versions[picked] if isinstance(x, EnsembleLayer) else x for x in layers)
+    return tuple(x.member_layers[picked] if isinstance(x, EnsembleLayer) else x for x in layers)
 
 
-def together(seas: Sequence[LayeredSea]) -> tuple[Layer, ...]:
+def ensemble_layers(seas: Sequence[LayeredSea]) -> tuple[Layer, ...]:
     """Return the layers of an ensemble of seas (see `Sea.ensemble`).
 
     Raises
@@ -160,16 +160,20 @@ def together(seas: Sequence[LayeredSea]) -> tuple[Layer, ...]:
     first = seas[0]
     for number, sea in enumerate(seas):
         if sea.members:
-            raise _unlike(number, f"is itself an ensemble of {sea.members}")
+            raise _member_mismatch_error(number, f"is itself an ensemble of {sea.members}")
         for name in sorted(first.variables ^ sea.variables):
             has = "lacks" if name in first.variables else "has"
-            raise _unlike(number, f"{has} {name}, unlike member 0")
+            raise _member_mismatch_error(number, f"{has} {name}, unlike member 0")
         if len(sea.layers) != len(first.layers):
-            raise _unlike(number, f"has {len(sea.layers)} layers, member 0 {len(first.layers)}")
-    return tuple(versions_of([sea.layers[k] for sea in seas]) for k in range(len(first.layers)))
+            raise _member_mismatch_error(
+                number, f"has {len(sea.layers)} layers, member 0 {len(first.layers)}"
+            )
+    return tuple(
+        combine_member_layers([sea.layers[k] for sea in seas]) for k in range(len(first.layers))
+    )
 
 
-def versions_of(layers: Sequence[Layer]) -> Layer:
+def combine_member_layers(layers: Sequence[Layer]) -> Layer:
     """Return one layer for what several members have in one place: theirs, or the one they share.
 
     Raises
@@ -181,49 +185,49 @@ def versions_of(layers: Sequence[Layer]) -> Layer:
     if all(layer is first for layer in layers):
         return first
     for number, layer in enumerate(layers):
-        difference = _difference(first, layer)
+        difference = _layer_difference(first, layer)
         if difference:
-            raise _unlike(number, difference)
+            raise _member_mismatch_error(number, difference)
     return EnsembleLayer(tuple(layers))
 
 
-def _difference(first: Layer, other: Layer) -> str:
+def _layer_difference(first: Layer, other: Layer) -> str:
     """Return in which way a layer cannot be a version of another; nothing if it can."""
     if first.variables != other.variables:
         return "has its variables in other layers than member 0"
     if first.period != other.period:
-        return f"runs {_span(other.period)}, member 0 {_span(first.period)}"
+        return f"runs {_period_text(other.period)}, member 0 {_period_text(first.period)}"
     if isinstance(first, GridLayer) and isinstance(other, GridLayer):
         if not np.array_equal(first.axis.times, other.axis.times):
             return f"has {other.axis.times.size} times, not those of member 0"
         a, b = first.grid, other.grid
-        same = a is b or (a.shape == b.shape and _same_places(a, b))
+        same = a is b or (a.shape == b.shape and _same_positions(a, b))
         rows, columns = b.shape
         return "" if same else f"lies on another grid ({rows} x {columns} places) than member 0"
     mine = [replace(row, source="") for row in first.coverage()]
     theirs = [replace(row, source="") for row in other.coverage()]
-    same = [_facts(row) for row in mine] == [_facts(row) for row in theirs]
+    same = [_coverage_values(row) for row in mine] == [_coverage_values(row) for row in theirs]
     return "" if same else "covers another area or period, or steps differently, than member 0"
 
 
-def _facts(row: Coverage) -> list[Any]:
+def _coverage_values(row: Coverage) -> list[Any]:
     return [getattr(row, name) for name in row.__dataclass_fields__]
 
 
-def _same_places(a: Any, b: Any) -> bool:
+def _same_positions(a: Any, b: Any) -> bool:
     return bool(
         np.array_equal(a.lat, b.lat, equal_nan=True)
         and np.array_equal(a.lon, b.lon, equal_nan=True)
     )
 
 
-def _span(period: tuple[float, float] | None) -> str:
+def _period_text(period: tuple[float, float] | None) -> str:
     if period is None:
         return "for ever"
     return f"from {format_time(period[0])} to {format_time(period[1])}"
 
 
-def _unlike(number: int, difference: str) -> InputError:
+def _member_mismatch_error(number: int, difference: str) -> InputError:
     return InputError(
         f"Member {number} of the ensemble {difference}.",
         "All members lie on the same grid and cover the same times with the same variables.",

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.sea import standard_names as nm
-from thalweg.sea.files.plausible_values import PLAUSIBLE
+from thalweg.sea.files.plausible_values import PLAUSIBLE_RANGES
 
 CALM_PERIOD = 8.0  #: [s] placeholder peak period of waves of height zero
-CALM = {
+CALM_VALUES = {
     nm.EASTWARD_WIND: 0.0,
     nm.NORTHWARD_WIND: 0.0,
     nm.EASTWARD_CURRENT: 0.0,
@@ -19,8 +19,8 @@ CALM = {
     nm.WAVE_TO_NORTH: 1.0,
     nm.WAVE_PERIOD: CALM_PERIOD,
 }
-LIMITS = {"waves": PLAUSIBLE[nm.WAVE_HEIGHT], "ice": (0.0, 1.0)}
-FILLABLE: dict[str, tuple[str, ...]] = {
+FILL_LIMITS = {"waves": PLAUSIBLE_RANGES[nm.WAVE_HEIGHT], "ice": (0.0, 1.0)}
+FILLABLE_VARIABLES: dict[str, tuple[str, ...]] = {
     "currents": nm.CURRENT.pair,
     "wind": nm.WIND.pair,
     "waves": (nm.WAVE_HEIGHT, *nm.WAVES.pair, nm.WAVE_PERIOD),
@@ -29,11 +29,11 @@ FILLABLE: dict[str, tuple[str, ...]] = {
 }
 
 
-def policy_values(policy: str, value: float | tuple[float, float]) -> dict[str, float]:
+def fill_values(policy: str, value: float | tuple[float, float]) -> dict[str, float]:
     """Return canonical variables and values for a filling policy (see `Sea.filled`)."""
-    if policy not in FILLABLE:
-        raise unknown_name("filling policy", policy, FILLABLE)
-    names = FILLABLE[policy]
+    if policy not in FILLABLE_VARIABLES:
+        raise unknown_name_error("filling policy", policy, FILLABLE_VARIABLES)
+    names = FILLABLE_VARIABLES[policy]
     try:
         numbers = np.atleast_1d(np.asarray(value, float))
     except (TypeError, ValueError):
@@ -48,10 +48,10 @@ def policy_values(policy: str, value: float | tuple[float, float]) -> dict[str, 
     if is_pair:
         return dict(zip(names, numbers.tolist()))
     number = float(numbers[0])
-    if policy in LIMITS and not LIMITS[policy][0] <= number <= LIMITS[policy][1]:
+    if policy in FILL_LIMITS and not FILL_LIMITS[policy][0] <= number <= FILL_LIMITS[policy][1]:
         raise InputError(
             f"{policy}={number:g} cannot be.",
-            f"{policy} lie between {LIMITS[policy][0]:g} and {LIMITS[policy][1]:g}.",
+            f"{policy} lie between {FILL_LIMITS[policy][0]:g} and {FILL_LIMITS[policy][1]:g}.",
             "Correct it.",
         )
     if len(names) == 2 and number != 0.0:
@@ -61,5 +61,5 @@ def policy_values(policy: str, value: float | tuple[float, float]) -> dict[str, 
             f"For example filled({policy}=({number:g}, 0.0)).",
         )
     if policy == "waves":
-        return {**{n: CALM[n] for n in names}, nm.WAVE_HEIGHT: number}
+        return {**{n: CALM_VALUES[n] for n in names}, nm.WAVE_HEIGHT: number}
     return dict.fromkeys(names, number)

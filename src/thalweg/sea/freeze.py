@@ -16,11 +16,11 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.frozen_fields import FloatArray, GridFields, IntArray, StationFields
 from thalweg.sea.layer_stack import LayeredSea
 
-Extra: TypeAlias = Callable[
+DerivedChannel: TypeAlias = Callable[
     [Mapping[str, FloatArray], FloatArray, FloatArray, FloatArray], FloatArray
 ]
 
-CHUNK = 1 << 17  #: values computed at a time, so that temporaries stay small
+POINTS_PER_CHUNK = 1 << 17  #: values computed at a time, so that temporaries stay small
 
 
 class SampledSea(Mapping[str, FloatArray]):
@@ -32,7 +32,7 @@ class SampledSea(Mapping[str, FloatArray]):
 
     def __getitem__(self, name: str) -> FloatArray:
         if name not in self._done:
-            if not self._sea.knows(name):
+            if not self._sea.provides(name):
                 raise KeyError(name)
             self._done[name] = self._sea.sample([name], *self._points)[name]
         return self._done[name]
@@ -51,17 +51,17 @@ def freeze_stations(
     *,
     window: tuple[float, float],
     channels: Sequence[int],
-    extra: Mapping[int, Extra],
+    extra: Mapping[int, DerivedChannel],
 ) -> StationFields:
     """Sample the sea at stations for all native times of a window (see `Sea.freeze_stations`)."""
     lat, lon = np.ascontiguousarray(lat, np.float64), np.ascontiguousarray(lon, np.float64)
-    index, present = channel_places(sea, channels, extra)
-    times = frozen_times(sea, window, [n for c in present if (n := _variable(c, extra))], extra)
+    index, present = locate_channels(sea, channels, extra)
+    times = times_to_freeze(sea, window, [n for c in present if (n := _variable(c, extra))], extra)
     values = np.empty((lat.size, times.size, len(present)), np.float32)
-    rows = max(1, CHUNK // times.size)
+    rows = max(1, POINTS_PER_CHUNK // times.size)
     for first in range(0, lat.size, rows):
         part = slice(first, first + rows)
-        _fill(values[part], sea, (times, lat[part], lon[part]), present, extra)
+        _sample_stations(values[part], sea, (times, lat[part], lon[part]), present, extra)
     return StationFields(times, values, index)
 
 
@@ -72,7 +72,7 @@ def freeze_grid(
     window: tuple[float, float],
     channels: Sequence[int],
     spacing_deg: float,
-    extra: Mapping[int, Extra],
+    extra: Mapping[int, DerivedChannel],
 ) -> GridFields:
     """Sample the sea on a regular raster for all native times (see `Sea.freeze_grid`)."""
     south, north, west, east = box
@@ -97,29 +97,29 @@ def freeze_grid(
     return GridFields(stations.times, south, dlat, west, dlon, values, stations.channel_index)
 
 
-def channel_places(
-    sea: LayeredSea, channels: Sequence[int], extra: Mapping[int, Extra]
+def locate_channels(
+    sea: LayeredSea, channels: Sequence[int], extra: Mapping[int, DerivedChannel]
 ) -> tuple[IntArray, list[int]]:
     """Return the place of each channel (-1 if the sea lacks it) and the present channels."""
     wanted = sorted({*channels, *extra})
-    unknown = [c for c in wanted if c not in range(codes.CHANNELS)]
+    unknown = [c for c in wanted if c not in range(codes.CHANNEL_COUNT)]
     if unknown:
         raise InputError(
             f"There is no channel {unknown[0]}.",
-            f"Channels are numbered 0 to {codes.CHANNELS - 1}.",
+            f"Channels are numbered 0 to {codes.CHANNEL_COUNT - 1}.",
             "Use the names in thalweg.kernels.codes.",
         )
     present = [c for c in wanted if c in extra or nm.CHANNEL_VARIABLES.get(c) in sea.variables]
-    index = np.full(codes.CHANNELS, -1, np.int64)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     index[present] = np.arange(len(present))
     return index, present
 
 
-def frozen_times(
+def times_to_freeze(
     sea: LayeredSea,
     window: tuple[float, float],
     variables: Sequence[str],
-    extra: Mapping[int, Extra],
+    extra: Mapping[int, DerivedChannel],
 ) -> FloatArray:
     """Return the times to freeze, or raise if the data know none in the window."""
     start, end = window
@@ -144,16 +144,16 @@ def frozen_times(
     return times
 
 
-def _variable(channel: int, extra: Mapping[int, Extra]) -> str | None:
+def _variable(channel: int, extra: Mapping[int, DerivedChannel]) -> str | None:
     return None if channel in extra else nm.CHANNEL_VARIABLES[channel]
 
 
-def _fill(
+def _sample_stations(
     values: NDArray[np.float32],
     sea: LayeredSea,
     points: tuple[FloatArray, FloatArray, FloatArray],
     present: Sequence[int],
-    extra: Mapping[int, Extra],
+    extra: Mapping[int, DerivedChannel],
 ) -> None:
     """Write the channels of some stations into ``values`` (S, T, K)."""
     times, lat, lon = points
@@ -185,7 +185,7 @@ class FreezableSea(LayeredSea):
         end: float,
         channels: Sequence[int],
         *,
-        extra: Mapping[int, Extra] | None = None,
+        extra: Mapping[int, DerivedChannel] | None = None,
     ) -> StationFields:
         """Return the sea at stations for kernels.
 
@@ -226,7 +226,7 @@ class FreezableSea(LayeredSea):
         channels: Sequence[int],
         *,
         spacing_deg: float,
-        extra: Mapping[int, Extra] | None = None,
+        extra: Mapping[int, DerivedChannel] | None = None,
     ) -> GridFields:
         """Return the sea on a regular raster for kernels; arguments as in `freeze_stations`.
 

@@ -18,7 +18,7 @@ SAMPLED_LEVELS = 8  #: levels looked at for the share of missing values
 
 
 @dataclass(frozen=True)
-class Recognised:
+class RecognisedVariable:
     """A canonical variable and what it is made from.
 
     Attributes
@@ -43,7 +43,7 @@ class Recognised:
 
 
 @dataclass(frozen=True)
-class Gap:
+class DataGap:
     """A stretch of time for which a file has no data between data.
 
     Attributes
@@ -80,11 +80,11 @@ class Inspection:
         Size of the ensemble, of which the first member is shown; 0 if it is one sea.
     """
 
-    recognised: tuple[Recognised, ...]
+    recognised: tuple[RecognisedVariable, ...]
     ignored: tuple[tuple[str, str, str], ...]
     coverage: tuple[Coverage, ...]
     missing: dict[str, float]
-    gaps: tuple[Gap, ...]
+    gaps: tuple[DataGap, ...]
     members: int = 0
 
     def as_dict(self) -> dict[str, Any]:
@@ -98,17 +98,17 @@ class Inspection:
             "members": self.members,
         }
         for row in plain["coverage"]:
-            row["start"], row["end"] = (_text(row[k]) for k in ("start", "end"))
+            row["start"], row["end"] = (_time_text(row[k]) for k in ("start", "end"))
         for row in plain["gaps"]:
-            row["after"], row["before"] = (_text(row[k]) for k in ("after", "before"))
+            row["after"], row["before"] = (_time_text(row[k]) for k in ("after", "before"))
         return plain
 
 
-def _text(time: float | None) -> str | None:
+def _time_text(time: float | None) -> str | None:
     return None if time is None else format_time(time)
 
 
-def inspect(sea: Sea) -> Inspection:
+def inspect_sea(sea: Sea) -> Inspection:
     """Return what is known about the data behind a sea; reads a few levels of every file."""
     from thalweg.sea.grids.gridded_layer import GridLayer
 
@@ -116,7 +116,7 @@ def inspect(sea: Sea) -> Inspection:
     layers = [layer for layer in one.layers if isinstance(layer, GridLayer)]
     missing: dict[str, float] = {}
     for layer in layers:
-        for name, share in _missing(layer).items():
+        for name, share in _missing_fractions(layer).items():
             missing[f"{layer.source}: {name}"] = share
     ignored = dict.fromkeys(row for layer in layers for row in layer.record.ignored)
     return Inspection(
@@ -124,37 +124,37 @@ def inspect(sea: Sea) -> Inspection:
         tuple(ignored),
         tuple(one.coverage()),
         missing,
-        gaps_of(one),
+        data_gaps(one),
         sea.members,
     )
 
 
-def gaps_of(sea: Sea) -> tuple[Gap, ...]:
+def data_gaps(sea: Sea) -> tuple[DataGap, ...]:
     """Return the stretches of time for which files have no data between data."""
     from thalweg.sea.grids.gridded_layer import GridLayer
 
     return tuple(
-        gap for layer in sea.layers if isinstance(layer, GridLayer) for gap in _gaps(layer)
+        gap for layer in sea.layers if isinstance(layer, GridLayer) for gap in _layer_gaps(layer)
     )
 
 
-def _gaps(layer: GridLayer) -> list[Gap]:
+def _layer_gaps(layer: GridLayer) -> list[DataGap]:
     times = layer.axis.times
     return [
-        Gap(layer.source, float(times[k]), float(times[k + 1]))
+        DataGap(layer.source, float(times[k]), float(times[k + 1]))
         for k in np.flatnonzero(layer.axis.holes)
     ]
 
 
-def _missing(layer: GridLayer) -> dict[str, float]:
-    from thalweg.sea.files.block_cache import Window
+def _missing_fractions(layer: GridLayer) -> dict[str, float]:
+    from thalweg.sea.files.block_cache import GridWindow
 
     rows, columns = layer.grid.shape
     count = max(1, layer.axis.times.size)
     levels = np.unique(np.linspace(0, count - 1, SAMPLED_LEVELS).round().astype(int))
     shares: dict[str, list[float]] = {}
     for level in levels:
-        window = Window(int(level), int(level) + 1, 0, rows, 0, columns)
+        window = GridWindow(int(level), int(level) + 1, 0, rows, 0, columns)
         for quantity in layer.quantities:
             for name, values in quantity.read(window, columns).items():
                 shares.setdefault(name, []).append(float(np.isnan(values).mean()))

@@ -10,10 +10,10 @@ import numpy as np
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.layer import Layer, Samples
 
-Reader = Callable[[Layer, Sequence[str], Any], Samples]
+LayerReader = Callable[[Layer, Sequence[str], Any], Samples]
 
 
-def point_reader(time: FloatArray, lat: FloatArray, lon: FloatArray) -> Reader:
+def point_reader(time: FloatArray, lat: FloatArray, lon: FloatArray) -> LayerReader:
     """Return what reads some of the given points from a layer."""
 
     def read(layer: Layer, names: Sequence[str], rows: Any) -> Samples:
@@ -23,7 +23,7 @@ def point_reader(time: FloatArray, lat: FloatArray, lon: FloatArray) -> Reader:
     return read
 
 
-def series_reader(times: FloatArray, lat: FloatArray, lon: FloatArray) -> Reader:
+def series_reader(times: FloatArray, lat: FloatArray, lon: FloatArray) -> LayerReader:
     """Return what reads some of the given stations, at all times, from a layer."""
 
     def read(layer: Layer, names: Sequence[str], rows: Any) -> Samples:
@@ -33,7 +33,7 @@ def series_reader(times: FloatArray, lat: FloatArray, lon: FloatArray) -> Reader
     return read
 
 
-def _pending(names: Sequence[str], merged: Samples) -> Any:
+def _unknown_rows(names: Sequence[str], merged: Samples) -> Any:
     """Return the rows where some of the variables are still unknown; None for all rows."""
     if not names or any(name not in merged for name in names):
         return None
@@ -43,7 +43,7 @@ def _pending(names: Sequence[str], merged: Samples) -> Any:
     return np.flatnonzero(unknown if unknown.ndim == 1 else unknown.any(axis=1))
 
 
-def _take(merged: Samples, found: Samples, rows: Any) -> None:
+def _fill_unknown(merged: Samples, found: Samples, rows: Any) -> None:
     """Put what was found where nothing was known; vectors go as pairs, being NaN as pairs."""
     for name, value in found.items():
         if name not in merged:
@@ -54,22 +54,22 @@ def _take(merged: Samples, found: Samples, rows: Any) -> None:
         old[pick] = np.where(np.isnan(old[pick]), value, old[pick])
 
 
-def merged(
-    layers: Sequence[Layer], names: Sequence[str], read: Reader, shape: tuple[int, ...]
+def merge_layers(
+    layers: Sequence[Layer], names: Sequence[str], read: LayerReader, shape: tuple[int, ...]
 ) -> Samples:
     """Return the variables, each value from the first layer that knows it; NaN if none does."""
     found: Samples = {}
     for layer in layers:
         have = [n for n in names if n in layer.variables]
-        rows = _pending(have, found)
+        rows = _unknown_rows(have, found)
         if have and (rows is None or rows.size):
-            _take(found, read(layer, have, rows), rows)
+            _fill_unknown(found, read(layer, have, rows), rows)
     for name in names:
         found.setdefault(name, np.full(shape, np.nan))
     return found
 
 
-def edges(period: tuple[float, float] | None, start: float, end: float) -> FloatArray:
+def period_edges(period: tuple[float, float] | None, start: float, end: float) -> FloatArray:
     """Return times just outside a layer's period, where another layer takes over."""
     if period is None:
         return np.empty(0)

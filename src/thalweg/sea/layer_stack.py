@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.sea import standard_names as nm
-from thalweg.sea.ensemble_layer import member_of, not_one_sea, size_of
+from thalweg.sea.ensemble_layer import ensemble_not_allowed_error, member_count, select_member
 from thalweg.sea.frozen_fields import Coverage, FloatArray, Mesh
 from thalweg.sea.layer import Layer, Samples
-from thalweg.sea.layer_priority import edges, merged, point_reader, series_reader
+from thalweg.sea.layer_priority import merge_layers, period_edges, point_reader, series_reader
 
-_TWINS = 1e-3  #: [s] within which two layers mean the same time
+_DUPLICATE_TOLERANCE = 1e-3  #: [s] within which two layers mean the same time
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,12 +40,12 @@ class LayeredSea:
     assumptions: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        size_of(self.layers)
+        member_count(self.layers)
 
     @property
     def members(self) -> int:
         """How many members the sea has as an ensemble; 0 if it is one sea."""
-        return size_of(self.layers)
+        return member_count(self.layers)
 
     def member(self, index: int) -> Self:
         """Return one member of an ensemble, a sea like any other.
@@ -60,14 +60,14 @@ class LayeredSea:
         InputError
             If the sea is no ensemble or has no such member.
         """
-        return replace(self, layers=member_of(self.layers, index))
+        return replace(self, layers=select_member(self.layers, index))
 
     @property
     def variables(self) -> frozenset[str]:
         """Canonical names of everything some layer holds (vectors as components)."""
         return frozenset().union(*(layer.variables for layer in self.layers))
 
-    def knows(self, name: str) -> bool:
+    def provides(self, name: str) -> bool:
         """Return whether some layer holds the variable, or what it can be derived from."""
         return all(n in self.variables for n in self._sources(name))
 
@@ -105,7 +105,7 @@ class LayeredSea:
         arrays = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in (time, lat, lon)))
         shape = arrays[0].shape
         flat = [np.ascontiguousarray(a).reshape(-1) for a in arrays]
-        base = merged(
+        base = merge_layers(
             self.layers, self._base(names), point_reader(flat[0], flat[1], flat[2]), flat[0].shape
         )
         return {name: self._derive(name, base).reshape(shape) for name in names}
@@ -116,18 +116,18 @@ class LayeredSea:
         """Return values (S, T) at stations (S,) for every time (T,); faster than `sample`."""
         self.check_single()
         read = series_reader(times, lat, lon)
-        base = merged(self.layers, self._base(names), read, (lat.size, times.size))
+        base = merge_layers(self.layers, self._base(names), read, (lat.size, times.size))
         return {name: self._derive(name, base) for name in names}
 
     def check_single(self) -> None:
         """Raise `InputError` if the sea is an ensemble, where one sea is needed."""
         if self.members:
-            raise not_one_sea(self.members)
+            raise ensemble_not_allowed_error(self.members)
 
     def why_missing(self, name: str, time: float, lat: float, lon: float) -> str:
         """Return why a value is NaN: "variable", "area", "period" or "gap" (a hole in the data)."""
         holders = [x for x in self.layers if set(self._sources(name)) & x.variables]
-        if not holders or not self.knows(name):
+        if not holders or not self.provides(name):
             return "variable"
         point = np.array([lat], float), np.array([lon], float)
         holders = [x for x in holders if x.inside(*point)[0]]
@@ -166,10 +166,10 @@ class LayeredSea:
         layers = [x for x in self.layers if sources is None or x.variables & sources]
         found = [layer.times(start, end) for layer in layers]
         if len(layers) > 1:
-            found += [edges(x.period, start, end) for x in layers if x.period is not None]
+            found += [period_edges(x.period, start, end) for x in layers if x.period is not None]
         if not any(f.size for f in found):
             return np.empty(0)
-        times = _without_twins(np.unique(np.concatenate(found)))
+        times = _without_duplicates(np.unique(np.concatenate(found)))
         return times if times.size > 1 else np.append(times, times + 1.0)
 
     def mesh(self) -> Mesh | None:
@@ -192,8 +192,8 @@ class LayeredSea:
 
     def _sources(self, name: str) -> tuple[str, ...]:
         """Return the canonical variables a name is made from."""
-        name = nm.canonical(name)
-        derived = nm.components_for(name)
+        name = nm.canonical_name(name)
+        derived = nm.vector_of_derived_name(name)
         if derived is None or (name in self.variables and derived[0].east not in self.variables):
             return (name,)
         return derived[0].pair
@@ -201,14 +201,14 @@ class LayeredSea:
     def _base(self, names: Sequence[str]) -> list[str]:
         """Return all variables that must be read, vectors complete."""
         wanted = [s for name in names for s in self._sources(name)]
-        whole = [part for name in wanted for part in nm.group_of(name)]
+        whole = [part for name in wanted for part in nm.inseparable_variables(name)]
         return list(dict.fromkeys(whole))
 
     def _derive(self, name: str, base: Samples) -> FloatArray:
-        kept = nm.canonical(name)
+        kept = nm.canonical_name(name)
         if kept in base:
             return base[kept]
-        vector, part = nm.components_for(kept) or (nm.WIND, "speed")
+        vector, part = nm.vector_of_derived_name(kept) or (nm.WIND, "speed")
         east, north = base[vector.east], base[vector.north]
         if part == "speed":
             return np.asarray(np.hypot(east, north), np.float64)
@@ -216,12 +216,12 @@ class LayeredSea:
         return np.degrees(np.arctan2(sign * east, sign * north)) % 360.0
 
 
-def _without_twins(times: FloatArray) -> FloatArray:
+def _without_duplicates(times: FloatArray) -> FloatArray:
     """Return ascending times without those that follow another within a millisecond.
 
     The first and the last stay exactly as they are: a ship may leave at the one to the bit.
     """
-    kept: FloatArray = times[np.append(True, np.diff(times) > _TWINS)]
+    kept: FloatArray = times[np.append(True, np.diff(times) > _DUPLICATE_TOLERANCE)]
     if kept.size > 1:
         kept[-1] = times[-1]
     return kept

@@ -14,9 +14,9 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.sea import inspection
 from thalweg.sea import standard_names as nm
-from thalweg.sea.argument_checks import area_of, period_of, step_of
-from thalweg.sea.ensemble_layer import together
-from thalweg.sea.fill_policies import CALM, policy_values
+from thalweg.sea.argument_checks import parse_area, parse_period, parse_time_step
+from thalweg.sea.ensemble_layer import ensemble_layers
+from thalweg.sea.fill_policies import CALM_VALUES, fill_values
 from thalweg.sea.freeze import FreezableSea
 from thalweg.sea.inspection import Inspection
 from thalweg.sea.layer import Layer
@@ -132,7 +132,7 @@ class Sea(FreezableSea):
 
         seas = [one if isinstance(one, Sea) else opened(one) for one in members]
         told = tuple(dict.fromkeys(text for sea in seas for text in sea.assumptions))
-        return cls(together(seas), told)
+        return cls(ensemble_layers(seas), told)
 
     @classmethod
     def from_functions(
@@ -178,9 +178,9 @@ class Sea(FreezableSea):
         """
         layer = formulas.layer_of_functions(
             dict(functions),
-            area=area_of(area),
-            period=period_of(period),
-            time_step=step_of(time_step),
+            area=parse_area(area),
+            period=parse_period(period),
+            time_step=parse_time_step(time_step),
         )
         return cls((layer,))
 
@@ -192,7 +192,8 @@ class Sea(FreezableSea):
         which look at angle and period can be asked; it knows no water level and no depth.
         """
         return cls(
-            (formulas.constant_layer(CALM, "calm"),), ("no wind, waves and currents anywhere",)
+            (formulas.constant_layer(CALM_VALUES, "calm"),),
+            ("no wind, waves and currents anywhere",),
         )
 
     @classmethod
@@ -201,7 +202,7 @@ class Sea(FreezableSea):
         name: str = cyclone_layer.DEFAULT_STORM,
         *,
         start: TimeLike | None = None,
-        ambient: cyclone_layer.Ambient | None = None,
+        ambient: cyclone_layer.AmbientSea | None = None,
         time_step: float = cyclone_layer.TIME_STEP,
     ) -> Sea:
         """Return wind and waves of a real cyclone, **modelled** from its best track.
@@ -271,7 +272,7 @@ class Sea(FreezableSea):
         return tidal_sea(
             source,
             constituents=constituents,
-            area=None if area is None else area_of(area),
+            area=None if area is None else parse_area(area),
             rayleigh=rayleigh,
             progress=progress,
             cache=cache,
@@ -307,7 +308,7 @@ class Sea(FreezableSea):
         by_wind = policies.get("waves") == "wind"
         for policy, value in policies.items():
             if not (by_wind and policy == "waves"):
-                values.update(policy_values(policy, value))  # type: ignore[arg-type]
+                values.update(fill_values(policy, value))  # type: ignore[arg-type]
                 told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
         for vector in (nm.WIND, nm.CURRENT):
             if vector.east in values and {vector.east, vector.speed} & self.variables == {
@@ -337,7 +338,7 @@ class Sea(FreezableSea):
 
     def describe(self) -> Inspection:
         """Return what was recognised in the files, what not and why, coverage and gaps."""
-        return inspection.inspect(self)
+        return inspection.inspect_sea(self)
 
     def draw(
         self,
@@ -360,9 +361,9 @@ class Sea(FreezableSea):
         coastline : sequence of (lat, lon), optional
             Lines [deg] drawn on top.
         """
-        from thalweg.sea.sea_maps import draw
+        from thalweg.sea.sea_maps import draw_maps
 
         when = None if time is None else parse_time(time)
-        box = None if area is None else area_of(area)
+        box = None if area is None else parse_area(area)
         lines = [(np.asarray(a, np.float64), np.asarray(o, np.float64)) for a, o in coastline]
-        draw(self, path, time=when, area=box, coastline=lines)
+        draw_maps(self, path, time=when, area=box, coastline=lines)

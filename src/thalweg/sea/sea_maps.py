@@ -19,16 +19,16 @@ from thalweg.sea.grids.gridded_layer import GridLayer
 if TYPE_CHECKING:
     from thalweg.sea.sea import Sea
 
-LONG_SIDE: Final = 320  #: raster points along the longer side of a panel
-ARROWS: Final = 20  #: arrows along the longer side
-TRIALS: Final = 25  #: times looked at to find the most eventful one
-INK, PAPER, UNKNOWN = "#1f2a37", "#ffffff", "#e3e6ea"
+RASTER_POINTS: Final = 320  #: raster points along the longer side of a panel
+ARROWS_ALONG_SIDE: Final = 20  #: arrows along the longer side
+TRIAL_TIMES: Final = 25  #: times looked at to find the most eventful one
+TEXT_COLOUR, BACKGROUND_COLOUR, UNKNOWN_COLOUR = "#1f2a37", "#ffffff", "#e3e6ea"
 
-Line = tuple[FloatArray, FloatArray]
+CoastlinePart = tuple[FloatArray, FloatArray]
 
 
 @dataclass(frozen=True)
-class Panel:
+class MapPanel:
     """How one quantity is drawn.
 
     Attributes
@@ -53,87 +53,93 @@ class Panel:
     around_zero: bool = False
 
 
-PANELS: Final = (
-    Panel("Significant wave height", "m", nm.WAVE_HEIGHT, nm.WAVES.pair, "YlGnBu"),
-    Panel("Wind at 10 m", "m/s", "wind_speed", nm.WIND.pair, "BuPu"),
-    Panel("Surface current", "m/s", "sea_water_speed", nm.CURRENT.pair, "GnBu"),
-    Panel("Water level", "m", nm.WATER_LEVEL, (), "RdBu_r", True),
-    Panel("Peak wave period", "s", nm.WAVE_PERIOD, (), "PuBuGn"),
-    Panel("Sea ice", "fraction", nm.ICE, (), "Blues_r"),
-    Panel("Depth below datum", "m", nm.BED_DEPTH, (), "Blues"),
-    Panel("Air pressure", "hPa", nm.PRESSURE, (), "cividis"),
+MAP_PANELS: Final = (
+    MapPanel("Significant wave height", "m", nm.WAVE_HEIGHT, nm.WAVES.pair, "YlGnBu"),
+    MapPanel("Wind at 10 m", "m/s", "wind_speed", nm.WIND.pair, "BuPu"),
+    MapPanel("Surface current", "m/s", "sea_water_speed", nm.CURRENT.pair, "GnBu"),
+    MapPanel("Water level", "m", nm.WATER_LEVEL, (), "RdBu_r", True),
+    MapPanel("Peak wave period", "s", nm.WAVE_PERIOD, (), "PuBuGn"),
+    MapPanel("Sea ice", "fraction", nm.ICE, (), "Blues_r"),
+    MapPanel("Depth below datum", "m", nm.BED_DEPTH, (), "Blues"),
+    MapPanel("Air pressure", "hPa", nm.PRESSURE, (), "cividis"),
 )
 
 
-def draw(
+def draw_maps(
     sea: Sea,
     path: str | os.PathLike[str],
     *,
     time: float | None = None,
     area: Area | None = None,
-    coastline: Sequence[Line] = (),
+    coastline: Sequence[CoastlinePart] = (),
 ) -> None:
     """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`)."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     sea.check_single()
-    panels = [p for p in PANELS if sea.knows(p.values)]
+    panels = [p for p in MAP_PANELS if sea.provides(p.values)]
     if not panels:
         raise InputError(
             "There is nothing to draw in this sea.",
             f"It holds {', '.join(sorted(sea.variables)) or 'nothing'}.",
             "Open a file with wind, waves, currents, level or depth.",
         )
-    area = area or _area(sea)
-    lat, lon = _raster(area, LONG_SIDE)
-    time = _eventful(sea, panels, lat, lon) if time is None else time
+    area = area or _map_area(sea)
+    lat, lon = _raster_axes(area, RASTER_POINTS)
+    time = _time_of_largest_values(sea, panels, lat, lon) if time is None else time
     columns = min(len(panels), 3 if len(panels) > 4 else 2)
     rows = math.ceil(len(panels) / columns)
-    shape = _shape(area)
+    shape = _aspect_ratio(area)
     width = 5.2 * columns
     height = (4.2 * shape + 0.75) * rows + 0.45
-    figure = Figure(figsize=(width, height), dpi=130, facecolor=PAPER, layout="constrained")
+    figure = Figure(
+        figsize=(width, height), dpi=130, facecolor=BACKGROUND_COLOUR, layout="constrained"
+    )
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for axis, panel in zip(axes, panels):
-        _panel(figure, axis, sea, panel, (time, lat, lon), area)
+        _draw_panel(figure, axis, sea, panel, (time, lat, lon), area)
         for line in coastline:
-            _coast(axis, line, area)
+            _draw_coastline(axis, line, area)
     for axis in axes[len(panels) :]:
         axis.set_axis_off()
     sources = ", ".join(dict.fromkeys(row.source for row in sea.coverage()))
-    title = f"{format_time(time).replace('T', '  ').replace(':00Z', ' UTC')}     {_short(sources)}"
-    figure.suptitle(title, x=0.012, ha="left", fontsize=10, color=INK)
+    title = (
+        f"{format_time(time).replace('T', '  ').replace(':00Z', ' UTC')}     {_shortened(sources)}"
+    )
+    figure.suptitle(title, x=0.012, ha="left", fontsize=10, color=TEXT_COLOUR)
     figure.savefig(path, format="png")
 
 
-def _short(text: str) -> str:
+def _shortened(text: str) -> str:
     return text if len(text) <= 90 else text[:87] + "..."
 
 
-def _area(sea: Sea) -> Area:
+def _map_area(sea: Sea) -> Area:
     """Return the box of the smallest layer of files; the world if there are only formulas."""
     boxes = [layer.area for layer in sea.layers if isinstance(layer, GridLayer)]
     boxes = boxes or [layer.area for layer in sea.layers]
     return min(boxes, key=lambda a: (a.north - a.south) * (a.east - a.west))
 
 
-def _shape(area: Area) -> float:
+def _aspect_ratio(area: Area) -> float:
     """Return height over width of the map, within what fits a page."""
     width = (area.east - area.west) * math.cos(math.radians(0.5 * (area.south + area.north)))
     return min(2.0, max(0.35, (area.north - area.south) / max(width, 1e-6)))
 
 
-def _raster(area: Area, count: int) -> tuple[FloatArray, FloatArray]:
-    shape = _shape(area)
+def _raster_axes(area: Area, count: int) -> tuple[FloatArray, FloatArray]:
+    shape = _aspect_ratio(area)
     ny, nx = (count, int(count / shape)) if shape > 1.0 else (int(count * shape), count)
     return np.linspace(area.south, area.north, max(ny, 8)), np.linspace(
         area.west, area.east, max(nx, 8)
     )
 
 
-def _eventful(sea: Sea, panels: Sequence[Panel], lat: FloatArray, lon: FloatArray) -> float:
+def _time_of_largest_values(
+    sea: Sea, panels: Sequence[MapPanel], lat: FloatArray, lon: FloatArray
+) -> float:
     """Return the time at which the first quantity that changes is largest."""
     for panel in panels:
         start, end = sea.period_of([panel.values])
@@ -141,7 +147,7 @@ def _eventful(sea: Sea, panels: Sequence[Panel], lat: FloatArray, lon: FloatArra
             continue
         native = sea.times(start, end, names=[panel.values])
         native = native[(native >= start) & (native <= end)]
-        trials = native[np.unique(np.linspace(0, native.size - 1, TRIALS).round().astype(int))]
+        trials = native[np.unique(np.linspace(0, native.size - 1, TRIAL_TIMES).round().astype(int))]
         grid = np.meshgrid(lat[::8], lon[::8], indexing="ij")
         values = sea.series([panel.values], trials, grid[0].ravel(), grid[1].ravel())[panel.values]
         if np.isfinite(values).any():
@@ -149,11 +155,11 @@ def _eventful(sea: Sea, panels: Sequence[Panel], lat: FloatArray, lon: FloatArra
     return 0.0
 
 
-def _panel(
+def _draw_panel(
     figure: Any,
     axis: Any,
     sea: Sea,
-    panel: Panel,
+    panel: MapPanel,
     points: tuple[float, FloatArray, FloatArray],
     area: Area,
 ) -> None:
@@ -162,7 +168,7 @@ def _panel(
     values = sea.sample([panel.values], time, lat[:, None], lon[None, :])[panel.values]
     if panel.unit == "hPa":
         values = values / 100.0
-    low, high = _limits(values, panel)
+    low, high = _colour_limits(values, panel)
     colours = axis.pcolormesh(
         lon,
         lat,
@@ -173,32 +179,37 @@ def _panel(
         shading="nearest",
         rasterized=True,
     )
-    axis.set_facecolor(UNKNOWN)
-    if panel.arrows and sea.knows(panel.arrows[0]):
-        _arrows(axis, sea, panel, time, area)
+    axis.set_facecolor(UNKNOWN_COLOUR)
+    if panel.arrows and sea.provides(panel.arrows[0]):
+        _draw_arrows(axis, sea, panel, time, area)
     bar = figure.colorbar(colours, cax=axis.inset_axes([1.02, 0.0, 0.028, 1.0]))
     bar.outline.set_visible(False)
-    bar.ax.tick_params(labelsize=8, colors=INK, length=2)
-    bar.set_label(panel.unit, fontsize=8, color=INK)
-    axis.set_title(panel.title, fontsize=10, loc="left", color=INK)
+    bar.ax.tick_params(labelsize=8, colors=TEXT_COLOUR, length=2)
+    bar.set_label(panel.unit, fontsize=8, color=TEXT_COLOUR)
+    axis.set_title(panel.title, fontsize=10, loc="left", color=TEXT_COLOUR)
     axis.set_xlim(area.west, area.east)
     axis.set_ylim(area.south, area.north)
     axis.set_aspect(1.0 / math.cos(math.radians(0.5 * (area.south + area.north))))
-    axis.xaxis.set_major_formatter(lambda x, _: _degrees((x + 180.0) % 360.0 - 180.0, "EW"))
-    axis.yaxis.set_major_formatter(lambda y, _: _degrees(y, "NS"))
+    axis.xaxis.set_major_formatter(lambda x, _: _degree_label((x + 180.0) % 360.0 - 180.0, "EW"))
+    axis.yaxis.set_major_formatter(lambda y, _: _degree_label(y, "NS"))
     axis.locator_params(nbins=6)
-    axis.tick_params(labelsize=8, colors=INK, length=2)
+    axis.tick_params(labelsize=8, colors=TEXT_COLOUR, length=2)
     axis.grid(color="white", linewidth=0.4, alpha=0.6)
     for side in axis.spines.values():
         side.set_linewidth(0.5)
         side.set_color("#9aa3af")
     if not np.isfinite(values).any():
         axis.text(
-            0.5, 0.5, "no data at this time", transform=axis.transAxes, ha="center", color=INK
+            0.5,
+            0.5,
+            "no data at this time",
+            transform=axis.transAxes,
+            ha="center",
+            color=TEXT_COLOUR,
         )
 
 
-def _limits(values: FloatArray, panel: Panel) -> tuple[float, float]:
+def _colour_limits(values: FloatArray, panel: MapPanel) -> tuple[float, float]:
     known = values[np.isfinite(values)]
     if known.size == 0:
         return 0.0, 1.0
@@ -212,8 +223,8 @@ def _limits(values: FloatArray, panel: Panel) -> tuple[float, float]:
     return low, max(float(high), low + 1e-3)
 
 
-def _arrows(axis: Any, sea: Sea, panel: Panel, time: float, area: Area) -> None:
-    lat, lon = _raster(area, ARROWS)
+def _draw_arrows(axis: Any, sea: Sea, panel: MapPanel, time: float, area: Area) -> None:
+    lat, lon = _raster_axes(area, ARROWS_ALONG_SIDE)
     lat, lon = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
     got = sea.sample(list(panel.arrows), time, lat[:, None], lon[None, :])
     u, v = (got[n] for n in panel.arrows)
@@ -227,13 +238,14 @@ def _arrows(axis: Any, sea: Sea, panel: Panel, time: float, area: Area) -> None:
     rows, columns = np.nonzero(known)
     axis.quiver(
         lon[columns], lat[rows], u[known], v[known],
-        scale=typical * ARROWS * 1.25,
-        color=INK, alpha=0.8, width=0.0028, headwidth=3.6, headlength=4.2, headaxislength=3.8,
+        scale=typical * ARROWS_ALONG_SIDE * 1.25,
+        color=TEXT_COLOUR, alpha=0.8, width=0.0028, headwidth=3.6, headlength=4.2,
+        headaxislength=3.8,
         pivot="middle",
     )  # fmt: skip
 
 
-def _coast(axis: Any, line: Line, area: Area) -> None:
+def _draw_coastline(axis: Any, line: CoastlinePart, area: Area) -> None:
     lat, lon = line
     middle = 0.5 * (area.west + area.east)
     lon = (np.asarray(lon) - middle + 180.0) % 360.0 - 180.0 + middle
@@ -241,7 +253,7 @@ def _coast(axis: Any, line: Line, area: Area) -> None:
     axis.plot(broken, lat, color="#6b7280", linewidth=0.6)
 
 
-def _degrees(value: float, letters: str) -> str:
+def _degree_label(value: float, letters: str) -> str:
     if abs(value) < 1e-9:
         return "0°"
     return f"{abs(value):g}°{letters[0] if value > 0 else letters[1]}"

@@ -30,7 +30,7 @@ ICE: Final = "sea_ice_area_fraction"
 
 
 @dataclass(frozen=True)
-class Vector:
+class VectorNames:
     """A horizontal vector and the names of its other spellings.
 
     Attributes
@@ -55,17 +55,17 @@ class Vector:
         return self.east, self.north
 
 
-WIND: Final = Vector(
+WIND: Final = VectorNames(
     EASTWARD_WIND, NORTHWARD_WIND, "wind_speed", "wind_to_direction", "wind_from_direction"
 )
-CURRENT: Final = Vector(
+CURRENT: Final = VectorNames(
     EASTWARD_CURRENT,
     NORTHWARD_CURRENT,
     "sea_water_speed",
     "sea_water_velocity_to_direction",
     "sea_water_velocity_from_direction",
 )
-WAVES: Final = Vector(
+WAVES: Final = VectorNames(
     WAVE_TO_EAST,
     WAVE_TO_NORTH,
     "",
@@ -73,14 +73,14 @@ WAVES: Final = Vector(
     "sea_surface_wave_from_direction",
 )
 VECTORS: Final = (WIND, CURRENT, WAVES)
-VECTOR_OF: Final[dict[str, Vector]] = {name: v for v in VECTORS for name in v.pair}
+VECTOR_OF: Final[dict[str, VectorNames]] = {name: v for v in VECTORS for name in v.pair}
 
 CHANNEL_VARIABLES: Final[dict[int, str]] = {
     codes.CURRENT_EAST: EASTWARD_CURRENT,
     codes.CURRENT_NORTH: NORTHWARD_CURRENT,
     codes.WIND_EAST: EASTWARD_WIND,
     codes.WIND_NORTH: NORTHWARD_WIND,
-    codes.WAVE_HEIGHT_CH: WAVE_HEIGHT,
+    codes.WAVE_HEIGHT_CHANNEL: WAVE_HEIGHT,
     codes.WAVE_EAST: WAVE_TO_EAST,
     codes.WAVE_NORTH: WAVE_TO_NORTH,
     codes.WAVE_PERIOD: WAVE_PERIOD,
@@ -105,18 +105,18 @@ CANONICAL_UNITS: Final[dict[str, str]] = {
     "sea_water_speed": "m/s",
 }
 
-_LEVEL = re.compile(
+_LEVEL_PATTERN = re.compile(
     r"^(tidal_)?(sea|water)_surface_(height|elevation)(_above_\w+|_anomaly|_relative_to_\w+)?"
     r"(_due_to_\w+)?$"
 )
-_DEPTH = re.compile(r"^sea_floor_depth(_below_\w+)?$")
+_DEPTH_PATTERN = re.compile(r"^sea_floor_depth(_below_\w+)?$")
 _BED_LEVELS = frozenset(
     {"bed_level", "sea_floor_altitude", "altitude_of_sea_floor", "sea_floor_height"}
     | {f"height_above_{d}" for d in ("mean_sea_level", "geoid", "reference_ellipsoid")}
 )
 
 
-def canonical(name: str) -> str:
+def canonical_name(name: str) -> str:
     """Return the name a variable is kept under: spellings of level and depth become one.
 
     Examples
@@ -128,9 +128,9 @@ def canonical(name: str) -> str:
     """
     if name == TOTAL_DEPTH:
         return name
-    if _DEPTH.match(name):
+    if _DEPTH_PATTERN.match(name):
         return BED_DEPTH
-    if _LEVEL.match(name):
+    if _LEVEL_PATTERN.match(name):
         return WATER_LEVEL
     if name in ("surface_air_pressure_at_sea_level", "air_pressure_at_sea_level"):
         return PRESSURE
@@ -142,13 +142,13 @@ def is_bed_level(name: str) -> bool:
     return name in _BED_LEVELS
 
 
-def group_of(name: str) -> tuple[str, ...]:
+def inseparable_variables(name: str) -> tuple[str, ...]:
     """Return the variables that must come from one layer together with this one."""
     vector = VECTOR_OF.get(name)
     return vector.pair if vector else (name,)
 
 
-def components_for(name: str) -> tuple[Vector, str] | None:
+def vector_of_derived_name(name: str) -> tuple[VectorNames, str] | None:
     """Return the vector and part ("speed", "towards", "origin") a derived name is made from."""
     for vector in VECTORS:
         for part in ("speed", "towards", "origin"):

@@ -10,9 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.search.earliest_arrival import Method, Objective, check_request, solve
-from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
-from thalweg.search.search_problem import Problem, problem
+from thalweg.search.earliest_arrival import Method, Objective, check_request, solve_earliest_arrival
+from thalweg.search.limited_waiting import (
+    earliest_arrival_with_restricted_waiting,
+    waiting_is_restricted,
+)
+from thalweg.search.search_problem import SearchProblem, make_search_problem
 from thalweg.search.search_result import SearchResult
 
 if TYPE_CHECKING:
@@ -20,10 +23,10 @@ if TYPE_CHECKING:
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
 
-_MOST_DEPARTURES = 97  # of the first pass
-_MOST_FROM_BERTHS = 25  # where every departure is a search by waves
-_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-_EQUAL = 1e-3  # costs closer than this are equal [s or m]
+_MAX_DEPARTURES = 97  # of the first pass
+_MAX_DEPARTURES_RESTRICTED_WAITING = 25  # where every departure is a search by waves
+_GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
+_COST_TOLERANCE = 1e-3  # costs closer than this are equal [s or m]
 
 
 def best_departure(
@@ -86,8 +89,8 @@ def best_departure(
             "Exchange the two times.",
         )
     check_request(network.n_nodes, start, goal, first, objective, method)
-    berths = wait and objective == "time" and berths_matter(network)
-    given = problem(
+    berths = wait and objective == "time" and waiting_is_restricted(network)
+    given = make_search_problem(
         network,
         fields,
         table,
@@ -99,11 +102,11 @@ def best_departure(
 
     def sail(depart: float) -> SearchResult:
         if berths:
-            return earliest_from_berths(
+            return earliest_arrival_with_restricted_waiting(
                 network, given, start=start, goal=goal, depart=depart, limits=limits,
                 arrive_by=arrive_by,
             )  # fmt: skip
-        return solve(
+        return solve_earliest_arrival(
             network,
             given,
             start=start,
@@ -115,21 +118,21 @@ def best_departure(
             method=method,
         )
 
-    most = _MOST_FROM_BERTHS if berths else _MOST_DEPARTURES
+    most = _MAX_DEPARTURES_RESTRICTED_WAITING if berths else _MAX_DEPARTURES
     departures = _departures(given, first, last, step, most)
     tried = [sail(t) for t in departures]
     tried += [sail(t) for t in _after_waiting(tried, last)]
-    best = min(tried, key=_rank)
+    best = min(tried, key=_comparison_key)
     if not best.found:
         return tried[0]
     near = int(np.searchsorted(departures, best.depart))
     low = departures[max(near - 1, 0)]
     high = departures[min(near + 1, len(departures) - 1)]
     while high - low > tolerance:
-        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        left, right = high - _GOLDEN_RATIO * (high - low), low + _GOLDEN_RATIO * (high - low)
         pair = sail(left), sail(right)
-        best = min((best, *pair), key=_rank)
-        if _rank(pair[0]) <= _rank(pair[1]):
+        best = min((best, *pair), key=_comparison_key)
+        if _comparison_key(pair[0]) <= _comparison_key(pair[1]):
             high = right
         else:
             low = left
@@ -137,7 +140,7 @@ def best_departure(
 
 
 def _departures(
-    given: Problem, first: float, last: float, step: float | None, most: int
+    given: SearchProblem, first: float, last: float, step: float | None, most: int
 ) -> NDArray[np.float64]:
     if step is not None and step > 0.0:
         count = max(2, math.ceil((last - first) / step) + 1)
@@ -155,8 +158,8 @@ def _after_waiting(tried: list[SearchResult], last: float) -> list[float]:
     return sorted(t for t in left if t <= last)
 
 
-def _rank(result: SearchResult) -> tuple[float, float, float]:
+def _comparison_key(result: SearchResult) -> tuple[float, float, float]:
     if not result.found:
         return math.inf, math.inf, math.inf
-    cost = round(result.cost / _EQUAL)
-    return cost, round(result.duration / _EQUAL), result.depart
+    cost = round(result.cost / _COST_TOLERANCE)
+    return cost, round(result.duration / _COST_TOLERANCE), result.depart

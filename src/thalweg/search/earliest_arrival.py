@@ -15,15 +15,24 @@ from thalweg.kernels.search.label_setting import (
     RELAXED,
     SAILED,
     SETTLED,
-    Labels,
-    Query,
-    Workspace,
+    NodeLabels,
+    SearchQuery,
+    SearchWorkspace,
     label_setting,
     new_labels,
-    new_workspace,
+    new_search_workspace,
 )
-from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
-from thalweg.search.search_problem import SHRINK, Problem, canal_speed, distance_bounds, problem
+from thalweg.search.limited_waiting import (
+    earliest_arrival_with_restricted_waiting,
+    waiting_is_restricted,
+)
+from thalweg.search.search_problem import (
+    ROUNDING_FACTOR,
+    SearchProblem,
+    canal_speed,
+    distance_bounds,
+    make_search_problem,
+)
 from thalweg.search.search_result import SearchResult, SearchWork
 
 if TYPE_CHECKING:
@@ -109,8 +118,8 @@ def earliest_arrival(
     """
     goal = -1 if goal is None else int(goal)
     check_request(network.n_nodes, start, goal, depart, objective, method)
-    berths = wait and goal >= 0 and objective == "time" and berths_matter(network)
-    given = problem(
+    berths = wait and goal >= 0 and objective == "time" and waiting_is_restricted(network)
+    given = make_search_problem(
         network,
         fields,
         table,
@@ -120,11 +129,11 @@ def earliest_arrival(
         ends=(start, goal) if wait and not berths else None,
     )
     if berths:
-        return earliest_from_berths(
+        return earliest_arrival_with_restricted_waiting(
             network, given, start=int(start), goal=goal, depart=float(depart), limits=limits,
             arrive_by=arrive_by,
         )  # fmt: skip
-    return solve(
+    return solve_earliest_arrival(
         network,
         given,
         start=start,
@@ -137,9 +146,9 @@ def earliest_arrival(
     )
 
 
-def solve(
+def solve_earliest_arrival(
     network: Network,
-    given: Problem,
+    given: SearchProblem,
     *,
     start: int,
     goal: int | None,
@@ -157,14 +166,14 @@ def solve(
     goal = -1 if goal is None else int(goal)
     check_request(network.n_nodes, start, goal, depart, objective, method)
     station = given.network.station
-    slowness = SHRINK / given.fastest
-    soonest = SHRINK / max(given.fastest, canal_speed(network))
+    slowness = ROUNDING_FACTOR / given.fastest
+    soonest = ROUNDING_FACTOR / max(given.fastest, canal_speed(network))
     away = np.zeros(len(station))
     lat, lon = network.station_lat, network.station_lon
     if goal >= 0 and method == "astar":
         to = float(lat[goal]), float(lon[goal])
         away = shortened * distance_bounds(network.lat, network.lon, *to)[station]
-    query = Query(
+    query = SearchQuery(
         start=int(start),
         goal=goal,
         depart=float(depart),
@@ -172,9 +181,9 @@ def solve(
         by_distance=objective == "distance",
         wait=bool(wait),
         slowness=slowness,
-        per_metre=SHRINK if objective == "distance" else soonest,
+        per_metre=ROUNDING_FACTOR if objective == "distance" else soonest,
     )
-    labels, memory = new_labels(len(station)), new_workspace(len(station))
+    labels, memory = new_labels(len(station)), new_search_workspace(len(station))
     label_setting(given.network, given.sea, given.ship, query, away, labels, memory)
     return _result(network, station, query, labels, memory)
 
@@ -200,7 +209,11 @@ def check_request(
 
 
 def _result(
-    network: Network, station: NDArray[np.int32], query: Query, labels: Labels, memory: Workspace
+    network: Network,
+    station: NDArray[np.int32],
+    query: SearchQuery,
+    labels: NodeLabels,
+    memory: SearchWorkspace,
 ) -> SearchResult:
     path = _path(labels, query)  # of states
     arrive = labels.time[path]
@@ -220,12 +233,12 @@ def _result(
         path_depart=leave,
         cost=float(labels.cost[query.goal]) if len(path) else math.inf,
         node_arrival=node_arrival,
-        nearest_node=_nearest(network, node_arrival, query.goal),
+        nearest_node=_nearest_reached_node(network, node_arrival, query.goal),
         work=work,
     )
 
 
-def _path(labels: Labels, query: Query) -> NDArray[np.int64]:
+def _path(labels: NodeLabels, query: SearchQuery) -> NDArray[np.int64]:
     if query.goal < 0 or not labels.settled[query.goal]:
         return np.empty(0, np.int64)
     nodes = [query.goal]
@@ -234,7 +247,7 @@ def _path(labels: Labels, query: Query) -> NDArray[np.int64]:
     return np.array(nodes[::-1], np.int64)
 
 
-def _nearest(network: Network, node_arrival: NDArray[np.float64], goal: int) -> int:
+def _nearest_reached_node(network: Network, node_arrival: NDArray[np.float64], goal: int) -> int:
     if goal < 0:
         return -1
     reached = np.flatnonzero(np.isfinite(node_arrival))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.edge_departure import edge_arrivals
-from thalweg.search.search_problem import problem
+from thalweg.search.search_problem import make_search_problem
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
@@ -102,7 +102,9 @@ def sampled_arrivals(
     statuses : ndarray (E, D)
         Codes of `thalweg.kernels.codes`.
     """
-    given = problem(network, fields, table, setting=setting, limits=limits, top_speed=top_speed)
+    given = make_search_problem(
+        network, fields, table, setting=setting, limits=limits, top_speed=top_speed
+    )
     count = len(given.network.target)
     chosen = np.arange(count) if edges is None else np.asarray(edges, np.int64)
     tails = np.searchsorted(given.network.indptr, chosen, side="right") - 1

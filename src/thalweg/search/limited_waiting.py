@@ -23,44 +23,49 @@ from thalweg.kernels.search.label_setting import (
     RELAXED,
     SAILED,
     SETTLED,
-    Labels,
-    Query,
+    NodeLabels,
+    SearchQuery,
     label_setting,
     new_labels,
-    new_workspace,
+    new_search_workspace,
 )
-from thalweg.search.search_problem import SHRINK, Problem, canal_speed, distance_bounds
+from thalweg.search.search_problem import (
+    ROUNDING_FACTOR,
+    SearchProblem,
+    canal_speed,
+    distance_bounds,
+)
 from thalweg.search.search_result import SearchResult, SearchWork
-from thalweg.search.tidal_states import node_times_afloat
+from thalweg.search.tidal_states import afloat_intervals
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
 
 FloatArray = NDArray[np.float64]
 
-STEP = 600.0  #: longest time between two waves [s]
-LEAST_WAVES = 24  #: ... and at least so many over the time looked at
-_EQUAL = 1e-6  # arrivals closer than this are one [s]
-_HALVINGS = 10  # of the step before the best wave, in which an earlier one is looked for
+DEPARTURE_STEP = 600.0  #: longest time between two waves [s]
+MIN_DEPARTURE_ROUNDS = 24  #: ... and at least so many over the time looked at
+_TIME_TOLERANCE = 1e-6  # arrivals closer than this are one [s]
+_BISECTIONS = 10  # of the step before the best wave, in which an earlier one is looked for
 
 
-class Stay(NamedTuple):
+class WaitInterval(NamedTuple):
     """Lying at a node: since when, until when at most [s], and by which wave it was reached."""
 
     arrive: float
     until: float
-    wave: int
+    round_index: int
 
 
-class Wave(NamedTuple):
+class DepartureRound(NamedTuple):
     """A departure [s] from all nodes where a ship then lies, and by which stay it lies there."""
 
     time: float
-    stays: dict[int, Stay]
+    stays: dict[int, WaitInterval]
 
 
 @dataclass
-class Sweep:
+class WaitingSearch:
     """What waves have found so far.
 
     Attributes
@@ -72,22 +77,22 @@ class Sweep:
         [s].
     stays : dict
         By node, one for each time it is afloat.
-    waves : list of Wave
+    rounds : list of Wave
     counts, refused : int64 array
         Of all searches.
     """
 
     network: Network
-    given: Problem
+    given: SearchProblem
     goal: int
     depart: float
     horizon: float
-    stays: dict[int, list[Stay]] = field(default_factory=dict)
-    waves: list[Wave] = field(default_factory=list)
+    stays: dict[int, list[WaitInterval]] = field(default_factory=dict)
+    rounds: list[DepartureRound] = field(default_factory=list)
     counts: NDArray[np.int64] = field(default_factory=lambda: np.zeros(3, np.int64))
     refused: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
 
-    def present(self, time: float) -> dict[int, Stay]:
+    def present(self, time: float) -> dict[int, WaitInterval]:
         """Return the nodes where a ship can lie at a time, and how it came there."""
         found = {}
         for node, stays in self.stays.items():
@@ -96,10 +101,12 @@ class Sweep:
                 found[node] = here[0]
         return found
 
-    def send(self, time: float, sources: Sequence[int], goal: int, horizon: float) -> Labels:
+    def search_from(
+        self, time: float, sources: Sequence[int], goal: int, horizon: float
+    ) -> NodeLabels:
         """Sail without waiting from several nodes at one time."""
         start = len(self.given.network.station)
-        arrays = _with_source(self.given.network, sources, max(self.goal, 0))
+        arrays = _with_common_source(self.given.network, sources, max(self.goal, 0))
         return self.search(arrays, start, time, goal, horizon, wait=False)
 
     def search(
@@ -111,7 +118,7 @@ class Sweep:
         horizon: float,
         *,
         wait: bool,
-    ) -> Labels:
+    ) -> NodeLabels:
         """Search from one state of a network."""
         count = len(arrays.station)
         away = np.zeros(count)
@@ -119,12 +126,12 @@ class Sweep:
             lat, lon = self.network.lat, self.network.lon
             bounds = distance_bounds(lat, lon, float(lat[goal]), float(lon[goal]))
             away[: self.network.n_nodes] = bounds
-        soonest = SHRINK / max(self.given.fastest, canal_speed(self.network))
-        query = Query(
+        soonest = ROUNDING_FACTOR / max(self.given.fastest, canal_speed(self.network))
+        query = SearchQuery(
             start=start, goal=goal, depart=time, horizon=horizon, by_distance=False, wait=wait,
-            slowness=SHRINK / self.given.fastest, per_metre=soonest,
+            slowness=ROUNDING_FACTOR / self.given.fastest, per_metre=soonest,
         )  # fmt: skip
-        labels, memory = new_labels(count), new_workspace(count)
+        labels, memory = new_labels(count), new_search_workspace(count)
         label_setting(arrays, self.given.sea, self.given.ship, query, away, labels, memory)
         self.counts = self.counts + memory.counts[: len(self.counts)]
         if not len(self.refused):
@@ -133,14 +140,14 @@ class Sweep:
         return labels
 
 
-def berths_matter(network: Network) -> bool:
+def waiting_is_restricted(network: Network) -> bool:
     """Return whether a ship may wait at some nodes but not at all of them."""
     return not bool(np.all(network.can_wait))
 
 
-def earliest_from_berths(
-    network: Network, given: Problem, *, start: int, goal: int, depart: float,
-    limits: ArrayLike, arrive_by: float | None = None, step: float = STEP,
+def earliest_arrival_with_restricted_waiting(
+    network: Network, given: SearchProblem, *, start: int, goal: int, depart: float,
+    limits: ArrayLike, arrive_by: float | None = None, step: float = DEPARTURE_STEP,
 ) -> SearchResult:  # fmt: skip
     """Find the way of least time where waiting is allowed at some nodes only.
 
@@ -174,33 +181,33 @@ def earliest_from_berths(
     """
     horizon = math.inf if arrive_by is None else float(arrive_by)
     end = min(horizon, float(given.sea.times[-1]))
-    sweep = Sweep(network, given, goal, depart, end)
-    sweep.stays[start] = [Stay(depart, math.inf if network.can_wait[start] else depart, -1)]
-    afloat = _afloat(network, given, np.asarray(limits, float), start)
+    sweep = WaitingSearch(network, given, goal, depart, end)
+    sweep.stays[start] = [WaitInterval(depart, math.inf if network.can_wait[start] else depart, -1)]
+    afloat = _safe_intervals(network, given, np.asarray(limits, float), start)
     reached = np.full(network.n_nodes, math.inf)
     best, best_wave = math.inf, -1
-    least = _waiting_anywhere(sweep, start)
+    least = _arrival_with_unrestricted_waiting(sweep, start)
     for time in _departures(depart, end, step):
         sources = sweep.present(time)
-        if time >= min(best, end) or _soonest(sweep, sources, time) >= best:
+        if time >= min(best, end) or _arrival_lower_bound(sweep, sources, time) >= best:
             break
-        if sweep.waves and (best <= least + _EQUAL or least == math.inf):
+        if sweep.rounds and (best <= least + _TIME_TOLERANCE or least == math.inf):
             break
-        sweep.waves.append(Wave(float(time), sources))
+        sweep.rounds.append(DepartureRound(float(time), sources))
         safe = all(any(s.until == math.inf for s in sweep.stays.get(n, ())) for n in afloat)
-        labels = sweep.send(float(time), list(sources), goal if safe else -1, min(end, best))
+        labels = sweep.search_from(float(time), list(sources), goal if safe else -1, min(end, best))
         arrival = labels.time[: network.n_nodes]
         settled = labels.settled[: network.n_nodes]
         np.minimum(reached, np.where(settled, arrival, math.inf), out=reached)
-        _moor(sweep, arrival, settled, afloat)
+        _record_waits(sweep, arrival, settled, afloat)
         if settled[goal] and arrival[goal] < best:
-            best, best_wave = float(arrival[goal]), len(sweep.waves) - 1
+            best, best_wave = float(arrival[goal]), len(sweep.rounds) - 1
     if best_wave >= 0:
-        best_wave = _earlier(sweep, best_wave, best)
-    return _answer(sweep, start, best_wave, reached)
+        best_wave = _refine_departure(sweep, best_wave, best)
+    return _assemble_result(sweep, start, best_wave, reached)
 
 
-def _waiting_anywhere(sweep: Sweep, start: int) -> float:
+def _arrival_with_unrestricted_waiting(sweep: WaitingSearch, start: int) -> float:
     """Return when a ship would arrive that may wait anywhere, afloat or not: no wave is sooner."""
     network = sweep.given.network
     free = network._replace(
@@ -212,11 +219,13 @@ def _waiting_anywhere(sweep: Sweep, start: int) -> float:
 
 def _departures(depart: float, end: float, step: float) -> FloatArray:
     span = max(end - depart, 0.0)
-    count = max(LEAST_WAVES, math.ceil(span / step))
+    count = max(MIN_DEPARTURE_ROUNDS, math.ceil(span / step))
     return np.asarray(depart + np.arange(count + 1) * (span / count if count else 0.0))
 
 
-def _soonest(sweep: Sweep, sources: dict[int, Stay], time: float) -> float:
+def _arrival_lower_bound(
+    sweep: WaitingSearch, sources: dict[int, WaitInterval], time: float
+) -> float:
     """Return a time before which no wave that leaves now can be at the goal."""
     network, goal = sweep.network, sweep.goal
     nodes = np.flatnonzero(network.can_wait)
@@ -225,18 +234,18 @@ def _soonest(sweep: Sweep, sources: dict[int, Stay], time: float) -> float:
     lat, lon = network.lat, network.lon
     away = distance_bounds(lat[nodes], lon[nodes], float(lat[goal]), float(lon[goal]))
     fastest = max(sweep.given.fastest, canal_speed(network))
-    return time + float(away.min()) * SHRINK / fastest if len(nodes) else math.inf
+    return time + float(away.min()) * ROUNDING_FACTOR / fastest if len(nodes) else math.inf
 
 
-def _afloat(
-    network: Network, given: Problem, limits: FloatArray, start: int
+def _safe_intervals(
+    network: Network, given: SearchProblem, limits: FloatArray, start: int
 ) -> dict[int, FloatArray]:
     """Return the times (begin, end) during which a ship lies safely at each node of waiting."""
     nodes = np.flatnonzero(network.can_wait)
     nodes = nodes[nodes != start]
     always = np.array([[-math.inf, math.inf]])
     required = float(limits[LIMIT_REQUIRED_DEPTH])
-    spans = node_times_afloat(given.network, given.sea, required, nodes)
+    spans = afloat_intervals(given.network, given.sea, required, nodes)
     if spans is None:
         return {int(node): always for node in nodes}
     return {
@@ -245,14 +254,14 @@ def _afloat(
     }
 
 
-def _moor(
-    sweep: Sweep,
+def _record_waits(
+    sweep: WaitingSearch,
     arrival: FloatArray,
     settled: NDArray[np.bool_],
     afloat: dict[int, FloatArray],
 ) -> None:
     """Note where the last wave can stay, if no ship lies there as early in that time afloat."""
-    wave = len(sweep.waves) - 1
+    round_index = len(sweep.rounds) - 1
     for node, spans in afloat.items():
         if not settled[node] or node == sweep.goal:
             continue
@@ -265,43 +274,45 @@ def _moor(
         if same and same[0].arrive <= time:
             continue
         sweep.stays[node] = [s for s in stays if s.until != span[0, 1]]
-        sweep.stays[node].append(Stay(time, float(span[0, 1]), wave))
+        sweep.stays[node].append(WaitInterval(time, float(span[0, 1]), round_index))
 
 
-def _earlier(sweep: Sweep, wave: int, best: float) -> int:
+def _refine_departure(sweep: WaitingSearch, round_index: int, best: float) -> int:
     """Look between the best wave and the one before for an earlier one; return the best."""
-    if wave == 0:
-        return wave
-    low, high = sweep.waves[wave - 1].time, sweep.waves[wave].time
-    for _ in range(_HALVINGS):
+    if round_index == 0:
+        return round_index
+    low, high = sweep.rounds[round_index - 1].time, sweep.rounds[round_index].time
+    for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
         sources = sweep.present(middle)
-        labels = sweep.send(middle, list(sources), sweep.goal, best)
+        labels = sweep.search_from(middle, list(sources), sweep.goal, best)
         if labels.settled[sweep.goal] and labels.time[sweep.goal] <= best:
             best, high = float(labels.time[sweep.goal]), middle
-            sweep.waves.append(Wave(middle, sources))
-            wave = len(sweep.waves) - 1
+            sweep.rounds.append(DepartureRound(middle, sources))
+            round_index = len(sweep.rounds) - 1
         else:
             low = middle
-    return wave
+    return round_index
 
 
-def _answer(sweep: Sweep, start: int, wave: int, reached: FloatArray) -> SearchResult:
+def _assemble_result(
+    sweep: WaitingSearch, start: int, round_index: int, reached: FloatArray
+) -> SearchResult:
     """Put the way together, from the goal back from berth to berth."""
     nodes: list[int] = []
     arrive: list[float] = []
     leave: list[float] = []
     to = sweep.goal
-    while wave >= 0:
-        sent = sweep.waves[wave]
-        labels = sweep.send(sent.time, list(sent.stays), to, math.inf)
+    while round_index >= 0:
+        sent = sweep.rounds[round_index]
+        labels = sweep.search_from(sent.time, list(sent.stays), to, math.inf)
         path = _path(labels, to, len(sweep.given.network.station))
         times = labels.time[path]
         berth = sent.stays[path[0]]
         nodes = [*path, *nodes[1:]]
         arrive = [berth.arrive, *times[1:].tolist(), *arrive[1:]]
         leave = [sent.time, *times[1:-1].tolist(), *(leave or [float(times[-1])])]
-        to, wave = path[0], berth.wave
+        to, round_index = path[0], berth.round_index
     counts = sweep.counts
     work = SearchWork(
         settled=int(counts[SETTLED]),
@@ -324,7 +335,7 @@ def _answer(sweep: Sweep, start: int, wave: int, reached: FloatArray) -> SearchR
     )
 
 
-def _path(labels: Labels, goal: int, source: int) -> list[int]:
+def _path(labels: NodeLabels, goal: int, source: int) -> list[int]:
     """Return the nodes from the first after the source to the goal."""
     nodes = [goal]
     while int(labels.before[nodes[-1]]) != source:
@@ -332,7 +343,7 @@ def _path(labels: Labels, goal: int, source: int) -> list[int]:
     return nodes[::-1]
 
 
-def _with_source(network: NetworkArrays, nodes: Sequence[int], place: int) -> NetworkArrays:
+def _with_common_source(network: NetworkArrays, nodes: Sequence[int], place: int) -> NetworkArrays:
     """Return the network with one state more, from which all given nodes are reached at once."""
     edges = len(nodes)
 

@@ -12,18 +12,25 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.geodesy import distance
 from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, LIMIT_WAVE_HEIGHT, LIMIT_WIND_SPEED
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.search.earliest_arrival import Objective, solve
-from thalweg.search.search_problem import SHRINK, Problem, canal_speed, problem
+from thalweg.search.earliest_arrival import Objective, solve_earliest_arrival
+from thalweg.search.search_problem import (
+    ROUNDING_FACTOR,
+    SearchProblem,
+    canal_speed,
+    make_search_problem,
+)
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
 
-_RELAXED = 0.02  # limits are loosened by this share for the bound on the network
-_FREE = "free space: geodesic distance over the largest speed over ground in the data (rigorous)"
-_FREE_DISTANCE = "free space: geodesic distance (rigorous)"
-_NETWORK = (
+_LIMIT_RELAXATION = 0.02  # limits are loosened by this share for the bound on the network
+_FREE_SPACE_TIME_NOTE = (
+    "free space: geodesic distance over the largest speed over ground in the data (rigorous)"
+)
+_FREE_SPACE_DISTANCE_NOTE = "free space: geodesic distance (rigorous)"
+_NETWORK_BOUND_NOTE = (
     "network: search with lengths times {kappa:.4f} for the directions between edges, limits "
     "loosened by 2 %, waiting everywhere (exact for routes among the network's nodes in locally "
     "uniform water, indicative otherwise)"
@@ -31,7 +38,7 @@ _NETWORK = (
 
 
 @dataclass(frozen=True)
-class Bound:
+class LowerBound:
     """A lower bound of a voyage.
 
     Attributes
@@ -132,7 +139,7 @@ def lower_bound(
     objective: Objective = "time",
     known: float | None = None,
     any_departure: bool = False,
-) -> Bound:
+) -> LowerBound:
     """Bound the time (or distance) of every route between two nodes from below.
 
     Parameters
@@ -151,7 +158,9 @@ def lower_bound(
     Bound
         The larger of `free_space_bound` and `network_bound`, as far as both hold.
     """
-    given = problem(network, fields, table, setting=setting, limits=limits, top_speed=top_speed)
+    given = make_search_problem(
+        network, fields, table, setting=setting, limits=limits, top_speed=top_speed
+    )
     free = free_space_bound(network, given, start=start, goal=goal, objective=objective)
     if any_departure:
         return free
@@ -161,29 +170,29 @@ def lower_bound(
 
 
 def free_space_bound(
-    network: Network, given: Problem, *, start: int, goal: int, objective: Objective = "time"
-) -> Bound:
+    network: Network, given: SearchProblem, *, start: int, goal: int, objective: Objective = "time"
+) -> LowerBound:
     """Bound by the geodesic at the largest speed over ground that the data allow anywhere.
 
     Rigorous for the given fields: no route is shorter than the geodesic and none is sailed faster
     than the top speed through water plus the strongest current, or than canals are passed.
     """
     lat, lon = network.station_lat, network.station_lon
-    geodesic = SHRINK * float(distance(lat[start], lon[start], lat[goal], lon[goal]))
+    geodesic = ROUNDING_FACTOR * float(distance(lat[start], lon[start], lat[goal], lon[goal]))
     if objective == "distance":
-        return Bound(geodesic, _FREE_DISTANCE)
-    return Bound(geodesic / max(given.fastest, canal_speed(network)), _FREE)
+        return LowerBound(geodesic, _FREE_SPACE_DISTANCE_NOTE)
+    return LowerBound(geodesic / max(given.fastest, canal_speed(network)), _FREE_SPACE_TIME_NOTE)
 
 
 def network_bound(
     network: Network,
-    given: Problem,
+    given: SearchProblem,
     *,
     start: int,
     goal: int,
     depart: float,
     objective: Objective = "time",
-) -> Bound:
+) -> LowerBound:
     """Bound by the same search with every length shortened by `direction_factor`.
 
     In water that is uniform over a cell of the network, open to the sides, and for a ship whose
@@ -201,18 +210,18 @@ def network_bound(
     gap = float(network.meta.gap_rad)
     rho = 0.0 if objective == "distance" else given.top_current / given.top_speed
     kappa = direction_factor(gap, rho)
-    kind = _NETWORK.format(kappa=kappa)
+    kind = _NETWORK_BOUND_NOTE.format(kappa=kappa)
     if kappa <= 0.0:
-        return Bound(0.0, kind, 0.0)
+        return LowerBound(0.0, kind, 0.0)
     arrays = given.network
     shorter = arrays._replace(
         length=np.where(np.isnan(arrays.fixed_time), kappa, 1.0) * arrays.length,
         factor=np.ones_like(arrays.factor),
         can_wait=np.ones_like(arrays.can_wait),
     )
-    ship = given.ship._replace(limits=_loosened(given.ship.limits))
+    ship = given.ship._replace(limits=_relaxed_limits(given.ship.limits))
     relaxed = given._replace(network=shorter, ship=ship)
-    result = solve(
+    result = solve_earliest_arrival(
         network,
         relaxed,
         start=start,
@@ -221,12 +230,12 @@ def network_bound(
         objective=objective,
         shortened=kappa,
     )
-    return Bound(result.cost if result.found else 0.0, kind, kappa, result.path)
+    return LowerBound(result.cost if result.found else 0.0, kind, kappa, result.path)
 
 
-def _loosened(limits: NDArray[np.float64]) -> NDArray[np.float64]:
+def _relaxed_limits(limits: NDArray[np.float64]) -> NDArray[np.float64]:
     loose = limits.copy()
-    loose[LIMIT_REQUIRED_DEPTH] -= _RELAXED * abs(limits[LIMIT_REQUIRED_DEPTH])
-    loose[LIMIT_WAVE_HEIGHT] *= 1.0 + _RELAXED
-    loose[LIMIT_WIND_SPEED] *= 1.0 + _RELAXED
+    loose[LIMIT_REQUIRED_DEPTH] -= _LIMIT_RELAXATION * abs(limits[LIMIT_REQUIRED_DEPTH])
+    loose[LIMIT_WAVE_HEIGHT] *= 1.0 + _LIMIT_RELAXATION
+    loose[LIMIT_WIND_SPEED] *= 1.0 + _LIMIT_RELAXATION
     return loose

@@ -17,12 +17,12 @@ from thalweg.kernels.leg.table_lookup import TableArrays, table_value
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search import tidal_intervals
 from thalweg.kernels.search.field_bounds import largest_current, largest_speed_field
-from thalweg.search.search_problem import SHRINK, network_arrays, sea_arrays, ship_arrays
+from thalweg.search.search_problem import ROUNDING_FACTOR, network_arrays, sea_arrays, ship_arrays
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
     from thalweg.sea.frozen_fields import StationFields
-    from thalweg.search.profile_search import Passages
+    from thalweg.search.profile_search import ProfileSearch
     from thalweg.ship.tables.performance_table import PerformanceTable
 
 FloatArray = NDArray[np.float64]
@@ -32,7 +32,7 @@ _MOST_DEPTH = 60.0  # deeper than this the greatest speed is that anywhere [m]
 
 
 @dataclass(frozen=True, eq=False)
-class Waters:
+class PreparedNetwork:
     """A network and a frozen sea, prepared for many searches.
 
     Attributes
@@ -51,11 +51,11 @@ class Waters:
     network: NetworkArrays
     sea: SeaArrays
     tails: NDArray[np.int32]
-    arriving_ptr: IntArray
-    arriving: NDArray[np.int32]
+    incoming_ptr: IntArray
+    incoming_edges: NDArray[np.int32]
 
     @classmethod
-    def prepare(cls, network: Network, fields: StationFields) -> Waters:
+    def prepare(cls, network: Network, fields: StationFields) -> PreparedNetwork:
         """Gather what searches read.
 
         Raises
@@ -81,7 +81,7 @@ class Waters:
     @cached_property
     def strongest(self) -> NDArray[np.float32]:
         """Strongest current of every station towards each of sixteen directions [m/s]."""
-        found = np.empty((self.sea.values.shape[0], kernel.SECTORS), np.float32)
+        found = np.empty((self.sea.values.shape[0], kernel.CURRENT_DIRECTIONS), np.float32)
         kernel.strongest_currents(self.sea, found)
         return found
 
@@ -122,7 +122,7 @@ class Waters:
         limits: ArrayLike,
         top_speed: float,
         wait: bool = True,
-    ) -> Passages:
+    ) -> ProfileSearch:
         """Prepare the passages of a ship between two nodes; arguments as in `earliest_arrival`."""
         count = len(self.network.can_wait)
         if not (0 <= start < count and 0 <= goal < count and start != goal):
@@ -131,7 +131,7 @@ class Waters:
                 f"The network has nodes 0 to {count - 1}, and the two differ.",
                 "",
             )
-        from thalweg.search.profile_search import Passages
+        from thalweg.search.profile_search import ProfileSearch
 
         ship = ship_arrays(table, setting, limits)
         field_top = largest_speed_field(self.sea)
@@ -144,12 +144,12 @@ class Waters:
             )
         states = self._states(ship, (start, goal), wait)
         ahead = self._ahead(ship, goal, fastest, field_top >= 0.0)
-        slowness = SHRINK / (fastest + self.top_current)
-        return Passages(self, ship, states, ahead, (start, goal), slowness, wait)
+        slowness = ROUNDING_FACTOR / (fastest + self.top_current)
+        return ProfileSearch(self, ship, states, ahead, (start, goal), slowness, wait)
 
     def _states(
         self, ship: ShipArrays, ends: tuple[int, int], wait: bool
-    ) -> tidal_intervals.States:
+    ) -> tidal_intervals.TidalStates:
         """Return the times afloat of every node; start and goal stay single."""
         count = len(self.network.can_wait)
         required = float(ship.limits[LIMIT_REQUIRED_DEPTH])
@@ -160,32 +160,34 @@ class Waters:
         counts = np.ones(count, np.int64)
         split = wait and required > -math.inf and varies
         if split:
-            tidal_intervals.count_afloat(self.sea, self.charted, changing, required, counts)
+            tidal_intervals.count_tidal_states(self.sea, self.charted, changing, required, counts)
         ptr = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
         size = int(ptr[-1])
-        states = tidal_intervals.States(
+        states = tidal_intervals.TidalStates(
             ptr, np.empty(size, np.int32), *(np.empty(size) for _ in range(3))
         )
         if not split:
             changing[:] = False
-        tidal_intervals.fill_afloat(self.sea, self.charted, changing, required, states)
+        tidal_intervals.fill_tidal_states(self.sea, self.charted, changing, required, states)
         return states
 
-    def _ahead(self, ship: ShipArrays, goal: int, fastest: float, field: bool) -> kernel.Ahead:
+    def _ahead(
+        self, ship: ShipArrays, goal: int, fastest: float, field: bool
+    ) -> kernel.TravelTimeBounds:
         """Return lower bounds of the time to the goal and of every edge [s]."""
         caps = np.full(1, fastest) if field else _speed_caps(ship, fastest)
         times = np.empty(len(self.tails))
         required = float(ship.limits[LIMIT_REQUIRED_DEPTH])
-        kernel.least_times(
+        kernel.least_edge_times(
             self.network, self.tails, self.sea, self.strongest, caps, required, times
         )
         count = len(self.network.can_wait)
         ahead = np.empty(count)
         memory = np.empty(count, np.int32), np.empty(count), np.full(count, -1, np.int32)
-        kernel.backward_bounds(
-            self.arriving_ptr, self.arriving, self.tails, times, goal, ahead, memory
+        kernel.least_times_to_goal(
+            self.incoming_ptr, self.incoming_edges, self.tails, times, goal, ahead, memory
         )
-        return kernel.Ahead(ahead, times)
+        return kernel.TravelTimeBounds(ahead, times)
 
 
 def _speed_caps(ship: ShipArrays, fastest: float) -> FloatArray:
@@ -201,10 +203,14 @@ def _speed_caps(ship: ShipArrays, fastest: float) -> FloatArray:
         for part in range(len(table.part_axes))
         if table.part_axes[part, 0] == AXIS_DEPTH
     ]
-    depth = np.unique(np.concatenate([*grids, np.arange(0.0, _MOST_DEPTH, kernel.CAP_STEP)]))
+    depth = np.unique(
+        np.concatenate([*grids, np.arange(0.0, _MOST_DEPTH, kernel.SPEED_CAP_DEPTH_STEP)])
+    )
     speed = np.array([_known_speed(table, d, ship.setting) for d in depth])
     most = np.minimum(np.maximum.accumulate(speed), fastest)
-    up_to = kernel.CAP_STEP * (1.0 + np.arange(int(_MOST_DEPTH / kernel.CAP_STEP)))
+    up_to = kernel.SPEED_CAP_DEPTH_STEP * (
+        1.0 + np.arange(int(_MOST_DEPTH / kernel.SPEED_CAP_DEPTH_STEP))
+    )
     at = np.minimum(np.searchsorted(depth, up_to), len(depth) - 1)
     return np.append(most[at], fastest)
 

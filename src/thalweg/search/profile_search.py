@@ -2,7 +2,8 @@
 
 A project sails between the same two places hundreds of times. What does not depend on the departure
 is prepared once: the network and the frozen sea as kernels see them and the strongest currents
-(`Waters`), then for each ship the bounds of the time to go and the times afloat (`Passages`).
+(`PreparedNetwork`), then for each ship the bounds of the time to go and the times afloat
+(`ProfileSearch`).
 """
 
 from __future__ import annotations
@@ -18,23 +19,26 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, ShipArrays
 from thalweg.kernels.search import repeated_search as kernel
-from thalweg.kernels.search.tidal_intervals import States
-from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
-from thalweg.search.prepared_network import Waters
-from thalweg.search.search_problem import SHRINK, Problem
+from thalweg.kernels.search.tidal_intervals import TidalStates
+from thalweg.search.limited_waiting import (
+    earliest_arrival_with_restricted_waiting,
+    waiting_is_restricted,
+)
+from thalweg.search.prepared_network import PreparedNetwork
+from thalweg.search.search_problem import ROUNDING_FACTOR, SearchProblem
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-_SPARE = 1e-3  # an arrival this much above a known one is still looked at [s]
-_EAGER = 1.5  # weight of the time to go in a hasty search ...
-_HASTY = 2000  # ... which settles at most so many nodes
+_ARRIVAL_SLACK = 1e-3  # an arrival this much above a known one is still looked at [s]
+_HEURISTIC_WEIGHT = 1.5  # weight of the time to go in a hasty search ...
+_MAX_SETTLED_WEIGHTED = 2000  # ... which settles at most so many nodes
 _FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
-_SAME = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
+_SAME_ARRIVAL = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
 
 
 @dataclass(frozen=True, eq=False)
-class Passage:
+class NetworkPassage:
     """One departure and the way it sails.
 
     Attributes
@@ -79,7 +83,7 @@ class Profile:
         How many of them were searched; the others wait for the next one of these and sail with it.
     """
 
-    passages: tuple[Passage, ...]
+    passages: tuple[NetworkPassage, ...]
     searched: int
 
     @property
@@ -94,7 +98,7 @@ class Profile:
 
 
 @dataclass(frozen=True, eq=False)
-class Passages:
+class ProfileSearch:
     """All passages of one ship between two nodes, searched when they are asked for.
 
     Attributes
@@ -113,10 +117,10 @@ class Passages:
         Whether the ship may wait.
     """
 
-    waters: Waters
+    waters: PreparedNetwork
     ship: ShipArrays
-    states: States
-    ahead: kernel.Ahead
+    states: TidalStates
+    ahead: kernel.TravelTimeBounds
     ends: tuple[int, int]
     slowness: float
     wait: bool
@@ -132,8 +136,8 @@ class Passages:
         return given._replace(opens=np.array(given.opens), closes=np.array(given.closes))
 
     @cached_property
-    def _marks(self) -> kernel.Marks:
-        return kernel.new_marks(len(self.states.node))
+    def _workspace(self) -> kernel.ProfileWorkspace:
+        return kernel.new_profile_workspace(len(self.states.node))
 
     @cached_property
     def _room(self) -> tuple[NDArray[np.int32], FloatArray, FloatArray]:
@@ -142,7 +146,7 @@ class Passages:
 
     def sail(
         self, depart: float, *, known: float = math.inf, arrive_by: float = math.inf
-    ) -> Passage:
+    ) -> NetworkPassage:
         """Find the earliest arrival of one departure.
 
         Parameters
@@ -162,14 +166,18 @@ class Passages:
         """
         depart = float(depart)
         latest = min(float(arrive_by), float(self.waters.sea.times[-1]))
-        longest = (latest - depart) * self._dearest
+        longest = (latest - depart) * self._largest_penalty
         if not (math.isfinite(depart) and self.shortest <= longest):
-            return _nothing(depart)
-        limit = (known - depart) * self._dearest + _SPARE if known < math.inf else 0.0
-        search = self._from_berths if self._has_berths else self._search
-        if known == math.inf and not self._has_berths:
+            return _passage_not_found(depart)
+        limit = (
+            (known - depart) * self._largest_penalty + _ARRIVAL_SLACK if known < math.inf else 0.0
+        )
+        search = (
+            self._search_with_restricted_waiting if self._waiting_is_restricted else self._search
+        )
+        if known == math.inf and not self._waiting_is_restricted:
             slack = 1.6 * self.shortest + _FIRST_SLACK
-            limit = self._possible(depart, min(slack, longest), latest)
+            limit = self._feasible_cost(depart, min(slack, longest), latest)
         while True:
             limit = limit if limit >= self.shortest else 1.6 * self.shortest + _FIRST_SLACK
             found = search(depart, min(limit, longest), latest)
@@ -178,64 +186,74 @@ class Passages:
             limit = max(2.0 * limit, 1.6 * self.shortest + _FIRST_SLACK)
 
     @cached_property
-    def _dearest(self) -> float:
+    def _largest_penalty(self) -> float:
         """The largest penalty factor: what a second costs at most."""
         return float(np.max(self.waters.network.factor, initial=1.0))
 
-    def _possible(self, depart: float, limit: float, latest: float) -> float:
+    def _feasible_cost(self, depart: float, limit: float, latest: float) -> float:
         """Return a cost [s] that some way has, found by a hasty search; 0 if it finds none."""
-        _, cost = self._labelled(depart, limit, latest, _EAGER, _HASTY)
-        kernel.forget(self._marks)
-        return cost + _SPARE if cost < math.inf else 0.0
+        _, cost = self._labelled(depart, limit, latest, _HEURISTIC_WEIGHT, _MAX_SETTLED_WEIGHTED)
+        kernel.reset_workspace(self._workspace)
+        return cost + _ARRIVAL_SLACK if cost < math.inf else 0.0
 
     @cached_property
-    def _has_berths(self) -> bool:
+    def _waiting_is_restricted(self) -> bool:
         """Whether the ship may wait at some nodes but not at all of them."""
-        return self.wait and berths_matter(self.waters.source)
+        return self.wait and waiting_is_restricted(self.waters.source)
 
-    def _from_berths(self, depart: float, limit: float, latest: float) -> Passage:
+    def _search_with_restricted_waiting(
+        self, depart: float, limit: float, latest: float
+    ) -> NetworkPassage:
         """Search where waiting is allowed at some nodes only (`thalweg.search.limited_waiting`)."""
         waters = self.waters
-        top = SHRINK / self.slowness - waters.top_current
-        given = Problem(waters.network, waters.sea, self.ship, top, waters.top_current)
-        found = earliest_from_berths(
+        top = ROUNDING_FACTOR / self.slowness - waters.top_current
+        given = SearchProblem(waters.network, waters.sea, self.ship, top, waters.top_current)
+        found = earliest_arrival_with_restricted_waiting(
             waters.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
             limits=self.ship.limits, arrive_by=min(depart + limit, latest),
         )  # fmt: skip
-        return Passage(
+        return NetworkPassage(
             depart, found.arrive, found.path, found.path_arrive, found.path_depart, found.settled
         )
 
-    def _search(self, depart: float, limit: float, latest: float) -> Passage:
+    def _search(self, depart: float, limit: float, latest: float) -> NetworkPassage:
         trip, cost = self._labelled(depart, limit, latest)
-        marks = self._marks
+        marks = self._workspace
         settled = int(marks.counts[kernel.SETTLED])
         if cost == math.inf:
-            kernel.forget(marks)
-            return replace(_nothing(depart), settled=settled)
+            kernel.reset_workspace(marks)
+            return replace(_passage_not_found(depart), settled=settled)
         nodes, arrive, leave = self._room
-        count = kernel.trace(self.states, marks, trip, nodes, arrive, leave)
-        kernel.forget(marks)
+        count = kernel.trace_departure(self.states, marks, trip, nodes, arrive, leave)
+        kernel.reset_workspace(marks)
         path, when, out = nodes[-count:], arrive[-count:].copy(), leave[-count:].copy()
-        return Passage(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
+        return NetworkPassage(depart, float(when[-1]), path.astype(np.int64), when, out, settled)
 
     def _labelled(
         self,
         depart: float,
         limit: float,
         latest: float,
-        eager: float = 1.0,
+        heuristic_weight: float = 1.0,
         most: int = sys.maxsize,
-    ) -> tuple[kernel.Trip, float]:
+    ) -> tuple[kernel.DepartureQuery, float]:
         """Search one departure; return it and its cost. The marks hold its labels."""
         first = self.states.ptr
         start, goal = int(first[self.ends[0]]), int(first[self.ends[1]])
-        trip = kernel.Trip(
-            start, goal, depart, float(limit), latest, self.slowness, bool(self.wait), eager, most
+        trip = kernel.DepartureQuery(
+            start,
+            goal,
+            depart,
+            float(limit),
+            latest,
+            self.slowness,
+            bool(self.wait),
+            heuristic_weight,
+            most,
         )
         sea = self.waters.by_time
-        cost = kernel.sail_once(
-            self._network, self.states, sea, self.ship, trip, self.ahead, self._marks
+        cost = kernel.search_departure(
+            self._network, self.states, sea, self.ship, trip, self.ahead, self._workspace
         )
         return trip, float(cost)
 
@@ -263,9 +281,9 @@ class Passages:
         times = np.asarray(departures, float).ravel()
         if times.size == 0 or not np.all(np.isfinite(times)) or np.any(np.diff(times) <= 0.0):
             raise InputError("The departures do not ascend.", "Times in order [s].", "Sort them.")
-        found: dict[int, Passage] = {}
+        found: dict[int, NetworkPassage] = {}
         waits = self.wait and bool(self.waters.network.can_wait[self.ends[0]])
-        if waits and self._dearest == 1.0:
+        if waits and self._largest_penalty == 1.0:
             self._halve(times, found, arrive_by)
         else:
             for k, t in enumerate(times):
@@ -276,40 +294,42 @@ class Passages:
             if k in found:
                 following = k
             else:
-                found[k] = _sooner(found[following], float(times[k]))
+                found[k] = _with_earlier_departure(found[following], float(times[k]))
         return Profile(tuple(found[k] for k in range(len(times))), searched)
 
-    def _halve(self, times: FloatArray, found: dict[int, Passage], arrive_by: float) -> None:
+    def _halve(self, times: FloatArray, found: dict[int, NetworkPassage], arrive_by: float) -> None:
         last = len(times) - 1
         for k in {0, last}:
             found[k] = self.sail(times[k], arrive_by=arrive_by)
         open_ranges = [(0, last)] if last > 0 else []
         while open_ranges:
             low, high = open_ranges.pop()
-            if high - low < 2 or _together(found[low], found[high]):
+            if high - low < 2 or _arrive_together(found[low], found[high]):
                 continue
             middle = (low + high) // 2
             later = found[high]
             known = (
-                later.arrive if later.arrive - times[middle] < _worth_knowing(self) else math.inf
+                later.arrive
+                if later.arrive - times[middle] < _longest_useful_passage(self)
+                else math.inf
             )
             found[middle] = self.sail(times[middle], known=known, arrive_by=arrive_by)
             open_ranges += [(low, middle), (middle, high)]
 
 
-def _worth_knowing(passages: Passages) -> float:
+def _longest_useful_passage(passages: ProfileSearch) -> float:
     """Return how long a passage may take for its arrival to bound an earlier one [s]."""
     return 3.0 * passages.shortest + _FIRST_SLACK
 
 
-def _together(first: Passage, second: Passage) -> bool:
+def _arrive_together(first: NetworkPassage, second: NetworkPassage) -> bool:
     """Whether two departures arrive at one moment, or the first not at all."""
     if not first.found:
         return True  # who leaves later does not arrive either
-    return second.found and abs(second.arrive - first.arrive) <= _SAME
+    return second.found and abs(second.arrive - first.arrive) <= _SAME_ARRIVAL
 
 
-def _sooner(passage: Passage, depart: float) -> Passage:
+def _with_earlier_departure(passage: NetworkPassage, depart: float) -> NetworkPassage:
     """Return a passage whose ship waits at the start since an earlier moment."""
     if not passage.found:
         return replace(passage, depart=depart, settled=0)
@@ -318,6 +338,6 @@ def _sooner(passage: Passage, depart: float) -> Passage:
     return replace(passage, depart=depart, node_arrive=arrive, settled=0)
 
 
-def _nothing(depart: float) -> Passage:
+def _passage_not_found(depart: float) -> NetworkPassage:
     none = np.empty(0)
-    return Passage(depart, math.inf, np.empty(0, np.int64), none, none)
+    return NetworkPassage(depart, math.inf, np.empty(0, np.int64), none, none)

@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance
-from thalweg.kernels.codes import CHANNELS, LIMIT_REQUIRED_DEPTH, LIMITS
+from thalweg.kernels.codes import CHANNEL_COUNT, LIMIT_COUNT, LIMIT_REQUIRED_DEPTH
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArrays
 from thalweg.kernels.leg.table_lookup import ARRAY_TYPES, TableArrays, axes_needed
 from thalweg.kernels.search.field_bounds import largest_current, largest_speed_field, tidal_extremes
-from thalweg.network.distance_bounds import BOUND_RADIUS, SHRINK, distance_bounds
+from thalweg.network.distance_bounds import BOUND_RADIUS, ROUNDING_FACTOR, distance_bounds
 from thalweg.search.tidal_states import tidal_states
 
 if TYPE_CHECKING:
@@ -25,19 +25,19 @@ FloatArray = NDArray[np.float64]
 
 __all__ = [
     "BOUND_RADIUS",
-    "SHRINK",
-    "Problem",
+    "ROUNDING_FACTOR",
+    "SearchProblem",
     "canal_speed",
+    "contiguous_array",
     "distance_bounds",
+    "make_search_problem",
     "network_arrays",
-    "plain",
-    "problem",
     "sea_arrays",
     "ship_arrays",
 ]
 
 
-class Problem(NamedTuple):
+class SearchProblem(NamedTuple):
     """A network, a sea and a ship as kernels see them, with bounds of what the ship can do.
 
     Attributes
@@ -62,7 +62,7 @@ class Problem(NamedTuple):
         return self.top_speed + self.top_current
 
 
-class _Borrowed:
+class _WritableView:
     """The memory of a read-only array, offered as writable: kernels never write to their input.
 
     One numba signature then serves frozen and ordinary arrays alike.
@@ -74,33 +74,33 @@ class _Borrowed:
         self.__array_interface__ = {**array.__array_interface__, "data": (address, False)}
 
 
-def plain(values: ArrayLike, dtype: type) -> NDArray[Any]:
+def contiguous_array(values: ArrayLike, dtype: type) -> NDArray[Any]:
     """Return values as a C-contiguous array of one type that numba sees as writable."""
     array: NDArray[Any] = np.ascontiguousarray(values, dtype)
-    return array if array.flags.writeable else np.asarray(_Borrowed(array))
+    return array if array.flags.writeable else np.asarray(_WritableView(array))
 
 
 def network_arrays(network: Network) -> NetworkArrays:
     """Return the arrays of a network that searches read."""
     count = len(network.can_wait)
     return NetworkArrays(
-        plain(network.indptr, np.int64),
-        plain(network.target, np.int32),
-        plain(network.length, np.float64),
-        plain(network.course, np.float32),
-        plain(network.depth, np.float32),
-        plain(network.factor, np.float32),
-        plain(network.via_ptr, np.int64),
-        plain(network.via_a, np.int32),
-        plain(network.via_b, np.int32),
-        plain(network.via_w, np.float32),
-        plain(network.via_s, np.float32),
-        plain(network.can_wait, np.bool_),
+        contiguous_array(network.indptr, np.int64),
+        contiguous_array(network.target, np.int32),
+        contiguous_array(network.length, np.float64),
+        contiguous_array(network.course, np.float32),
+        contiguous_array(network.depth, np.float32),
+        contiguous_array(network.factor, np.float32),
+        contiguous_array(network.via_ptr, np.int64),
+        contiguous_array(network.via_a, np.int32),
+        contiguous_array(network.via_b, np.int32),
+        contiguous_array(network.via_w, np.float32),
+        contiguous_array(network.via_s, np.float32),
+        contiguous_array(network.can_wait, np.bool_),
         np.arange(count, dtype=np.int32),
         np.full(count, -np.inf),
         np.full(count, np.inf),
         np.full(count, np.inf),
-        plain(network.fixed_time, np.float64),
+        contiguous_array(network.fixed_time, np.float64),
     )
 
 
@@ -112,19 +112,23 @@ def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
     InputError
         If there are fewer than two times, or times that do not increase.
     """
-    times = plain(fields.times, np.float64)
+    times = contiguous_array(fields.times, np.float64)
     if len(times) < 2 or not np.all(np.diff(times) > 0.0):
         raise InputError(
             f"The fields of the sea have {len(times)} times, or times that do not increase.",
             "A search interpolates between at least two increasing times.",
             "Freeze the sea over a period, not an instant.",
         )
-    index = plain(fields.channel_index, np.int64)
-    values = plain(fields.values, np.float32)
+    index = contiguous_array(fields.channel_index, np.int64)
+    values = contiguous_array(fields.values, np.float32)
     channels = np.zeros(values.shape[2], np.int64)
     present = np.flatnonzero(index >= 0)
     channels[index[present]] = present
-    if len(index) != CHANNELS or len(present) != len(channels) or values.shape[1] != len(times):
+    if (
+        len(index) != CHANNEL_COUNT
+        or len(present) != len(channels)
+        or values.shape[1] != len(times)
+    ):
         raise InputError(
             f"Fields of shape {values.shape} do not go with {len(times)} times and "
             f"{len(present)} channels.",
@@ -156,20 +160,20 @@ def ship_arrays(
             f"The ship has no setting {setting}.", f"It has settings 0 to {count - 1}.", ""
         )
     kinds: dict[str, Any] = {
-        name: plain(getattr(raw, name), kind) for name, kind in ARRAY_TYPES.items()
+        name: contiguous_array(getattr(raw, name), kind) for name, kind in ARRAY_TYPES.items()
     }
     arrays = raw._replace(n_settings=count, **kinds)
-    bounds = plain(limits, np.float64)
-    if bounds.shape != (LIMITS,) or np.any(np.isnan(bounds)):
+    bounds = contiguous_array(limits, np.float64)
+    if bounds.shape != (LIMIT_COUNT,) or np.any(np.isnan(bounds)):
         raise InputError(
-            f"The limits {bounds} are not {LIMITS} numbers.",
+            f"The limits {bounds} are not {LIMIT_COUNT} numbers.",
             "They are required depth [m], wave height [m] and wind speed [m/s].",
             "Use -inf or +inf for what is not limited.",
         )
     return ShipArrays(arrays, int(setting), bounds, int(axes_needed(arrays)))
 
 
-def problem(
+def make_search_problem(
     network: Network,
     fields: StationFields,
     table: PerformanceTable | TableArrays,
@@ -178,7 +182,7 @@ def problem(
     limits: ArrayLike,
     top_speed: float,
     ends: tuple[int, int | None] | None = None,
-) -> Problem:
+) -> SearchProblem:
     """Gather what a search reads.
 
     With ``ends`` (start and goal) the nodes between them that fall dry become several states.
@@ -209,7 +213,7 @@ def problem(
     if ends is not None:
         keep = ends[0], -1 if ends[1] is None else ends[1]
         arrays = tidal_states(arrays, sea, ship.limits, keep)
-    return Problem(arrays, sea, ship, fastest, float(largest_current(sea)))
+    return SearchProblem(arrays, sea, ship, fastest, float(largest_current(sea)))
 
 
 def canal_speed(network: Network) -> float:

@@ -19,11 +19,11 @@ from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-_ROUNDING = 1e-3  # depths are in single precision [m]
-_SLOWEST = 0.1  # no edge is sailed slower than this over ground [m/s]
+_DEPTH_TOLERANCE = 1e-3  # depths are in single precision [m]
+_MIN_SPEED_OVER_GROUND = 0.1  # no edge is sailed slower than this over ground [m/s]
 
 
-class Afloat(NamedTuple):
+class AfloatIntervals(NamedTuple):
     """Times afloat, sorted by node and time: node, first and last moment [s]."""
 
     node: IntArray
@@ -56,25 +56,25 @@ def tidal_states(
     if required == -np.inf or not varies:
         return network
     depth = _depths(network, sea)
-    afloat = depth >= required - _ROUNDING
+    afloat = depth >= required - _DEPTH_TOLERANCE
     changing = network.can_wait & ~afloat.all(axis=1)
     changing[[node for node in keep if node >= 0]] = False
     chosen = np.flatnonzero(changing)
     if len(chosen) == 0:
         return network
-    times = _times_afloat(chosen, afloat[chosen], depth[chosen] - required, sea.times)
-    return _split(network, chosen, times)
+    times = _find_afloat_intervals(chosen, afloat[chosen], depth[chosen] - required, sea.times)
+    return _split_nodes(network, chosen, times)
 
 
-def node_times_afloat(
+def afloat_intervals(
     network: NetworkArrays, sea: SeaArrays, required: float, nodes: IntArray
-) -> Afloat | None:
+) -> AfloatIntervals | None:
     """Return when some nodes have the required depth [m]; None if depth does not matter."""
     varies = sea.channel_index[WATER_LEVEL] >= 0 or sea.channel_index[BED_DEPTH] >= 0
     if required == -np.inf or not varies or not len(nodes):
         return None
     spare = _depths(network, sea)[nodes] - required
-    return _times_afloat(nodes, spare >= -_ROUNDING, spare, sea.times)
+    return _find_afloat_intervals(nodes, spare >= -_DEPTH_TOLERANCE, spare, sea.times)
 
 
 def _depths(network: NetworkArrays, sea: SeaArrays) -> NDArray[np.float32]:
@@ -96,9 +96,9 @@ def _depths(network: NetworkArrays, sea: SeaArrays) -> NDArray[np.float32]:
     return np.asarray(depth)
 
 
-def _times_afloat(
+def _find_afloat_intervals(
     nodes: IntArray, afloat: NDArray[np.bool_], spare: NDArray[np.float32], times: FloatArray
-) -> Afloat:
+) -> AfloatIntervals:
     """Find when each node is afloat; depth is linear between the times of the data."""
     edge = np.zeros((len(nodes), 1), bool)
     steps = np.diff(np.concatenate([edge, afloat, edge], axis=1).astype(np.int8), axis=1)
@@ -116,10 +116,10 @@ def _times_afloat(
 
     begin = np.where(start == 0, -np.inf, crossing(np.maximum(start - 1, 0), start))
     end = np.where(stop == last, np.inf, crossing(np.minimum(stop + 1, last), stop))
-    return Afloat(nodes[row], begin, end)
+    return AfloatIntervals(nodes[row], begin, end)
 
 
-def _split(network: NetworkArrays, chosen: IntArray, times: Afloat) -> NetworkArrays:
+def _split_nodes(network: NetworkArrays, chosen: IntArray, times: AfloatIntervals) -> NetworkArrays:
     count = len(network.can_wait)
     first = np.ones(len(times.node), bool)
     first[1:] = times.node[1:] != times.node[:-1]
@@ -161,7 +161,7 @@ def _copy_edges(network: NetworkArrays, states: NetworkArrays, begin: FloatArray
     head = order[_ranges(where[network.target[edge]], ways)]
     tail, edge = np.repeat(tail, ways), np.repeat(edge, ways)
     latest = np.where(network.can_wait[states.station[tail]], states.until[tail], np.inf)
-    longest = np.fmax(network.length[edge] / _SLOWEST, network.fixed_time[edge])
+    longest = np.fmax(network.length[edge] / _MIN_SPEED_OVER_GROUND, network.fixed_time[edge])
     latest = np.maximum(latest, states.closes[tail]) + longest
     follow = (states.closes[head] > states.opens[tail]) & (begin[head] <= latest)
     tail, edge, head = tail[follow], edge[follow], head[follow]

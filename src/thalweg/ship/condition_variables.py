@@ -20,7 +20,7 @@ WATER_LEVEL: Final = "sea_surface_height_above_geopotential_datum"
 BED_DEPTH: Final = "sea_floor_depth_below_geoid"
 
 #: conditions that are axes of performance tables, with the axis id the kernels know them by
-AXIS_OF: Final[dict[str, int]] = {
+AXIS_OF_CONDITION: Final[dict[str, int]] = {
     "wind_speed": codes.AXIS_WIND_SPEED,
     "wind_angle": codes.AXIS_WIND_ANGLE,
     "wave_height": codes.AXIS_WAVE_HEIGHT,
@@ -28,7 +28,7 @@ AXIS_OF: Final[dict[str, int]] = {
     "wave_period": codes.AXIS_WAVE_PERIOD,
     "depth": codes.AXIS_DEPTH,
 }
-CONDITION_OF: Final[dict[int, str]] = {axis: name for name, axis in AXIS_OF.items()}
+CONDITION_OF_AXIS: Final[dict[int, str]] = {axis: name for name, axis in AXIS_OF_CONDITION.items()}
 
 #: conditions that depend on the ship's heading
 HEADING_DEPENDENT: Final = frozenset({"wind_angle", "wave_angle", "heading"})

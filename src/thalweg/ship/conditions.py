@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, near_matches
+from thalweg.core.errors import InputError, close_matches
 from thalweg.ship.condition_variables import (
     BED_DEPTH,
     EASTWARD_CURRENT,
@@ -60,7 +60,9 @@ class Conditions(Mapping[str, FloatArray]):
     _values: dict[str, FloatArray]
 
     def __init__(self, values: Mapping[str, ArrayLike] | None = None, /, **more: ArrayLike) -> None:
-        arrays = {name: _frozen(name, value) for name, value in {**(values or {}), **more}.items()}
+        arrays = {
+            name: _read_only(name, value) for name, value in {**(values or {}), **more}.items()
+        }
         try:
             shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         except ValueError:
@@ -118,7 +120,7 @@ class Conditions(Mapping[str, FloatArray]):
         return self.with_values(**new) if new else self
 
     def _missing(self, name: str) -> InputError:
-        near = near_matches(name, self._values)
+        near = close_matches(name, self._values)
         hint = f" Did you mean {' or '.join(repr(n) for n in near)}?" if near else ""
         return InputError(
             f"The ship model reads {name!r}, which is not among the conditions.",
@@ -177,7 +179,7 @@ def relative_angle(from_east: ArrayLike, from_north: ArrayLike, heading: ArrayLi
     return np.arctan2(np.abs(abeam), ahead + 0.0)
 
 
-def _frozen(name: str, value: ArrayLike) -> FloatArray:
+def _read_only(name: str, value: ArrayLike) -> FloatArray:
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError):

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any, Final
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import DAY, TONNE
 from thalweg.ship.methods.engine.fuel_properties import Fuel, fuel_named
 
-WHAT: Final = ("fuel", "cost", "co2")
+FUEL_QUANTITIES: Final = ("fuel", "cost", "co2")
 
 
 @dataclass(frozen=True)
@@ -27,12 +27,12 @@ class FuelTerms:
         Per kilogram, in ``currency``; NaN when unknown.
     eca_price_factor : float
         Price inside over price outside; NaN where they are two prices of their own.
-    own_carbon : float or None
+    own_carbon_factor : float or None
         CO2 per fuel [kg/kg] given for the ship itself, of the fuel burnt outside.
     currency : str
     time_price : float
         Price of time (hire) [currency/s].
-    speed_price : float
+    cubed_speed_price : float
         Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
         van Halem (2019); NaN when unknown. It stands for fuel where fuel has no price.
     """
@@ -42,28 +42,30 @@ class FuelTerms:
     price_outside: float
     price_inside: float
     eca_price_factor: float = 1.0
-    own_carbon: float | None = None
+    own_carbon_factor: float | None = None
     currency: str = ""
     time_price: float = 0.0
-    speed_price: float = math.nan
+    cubed_speed_price: float = math.nan
 
     @property
     def by_speed(self) -> bool:
         """Whether sailing costs by its cubed speed, since fuel has no price."""
-        return math.isnan(self.price_outside) and not math.isnan(self.speed_price)
+        return math.isnan(self.price_outside) and not math.isnan(self.cubed_speed_price)
 
     @property
     def carbon_outside(self) -> float:
         """CO2 per fuel burnt outside control areas [kg/kg]; NaN when unknown."""
-        return _carbon(self.outside, self.own_carbon)
+        return _carbon_factor(self.outside, self.own_carbon_factor)
 
     @property
     def carbon_inside(self) -> float:
         """CO2 per fuel burnt inside control areas [kg/kg]; NaN when unknown."""
-        return _carbon(self.inside, self.own_carbon if self.inside is self.outside else None)
+        return _carbon_factor(
+            self.inside, self.own_carbon_factor if self.inside is self.outside else None
+        )
 
     @property
-    def mass_inside(self) -> float:
+    def relative_mass_inside(self) -> float:
         """Mass burnt inside for one of the fuel burnt outside, of the same heat; 1 for one fuel."""
         if self.inside is None or self.outside is None or self.inside is self.outside:
             return 1.0
@@ -83,16 +85,16 @@ class FuelTerms:
         -------
         float
             Per kilogram as the ship's model tells fuel, which is the fuel burnt outside; inside,
-            another fuel burns by the same heat (`mass_inside`). NaN when unknown.
+            another fuel burns by the same heat (`relative_mass_inside`). NaN when unknown.
 
         Raises
         ------
         InputError
             If ``what`` is none of the three.
         """
-        if what not in WHAT:
-            raise unknown_name("sum of fuel", str(what), WHAT)
-        mass = self.mass_inside if inside else 1.0
+        if what not in FUEL_QUANTITIES:
+            raise unknown_name_error("sum of fuel", str(what), FUEL_QUANTITIES)
+        mass = self.relative_mass_inside if inside else 1.0
         if what == "cost":
             return mass * (self.price_inside if inside else self.price_outside)
         if what == "co2":
@@ -124,9 +126,9 @@ class FuelTerms:
             For a price below zero, a factor not above zero, numbers that are not finite, a factor
             without any price, or US dollars beside prices in another currency.
         """
-        _check("price of fuel", usd_per_t, "USD/t", zero=True)
-        _check("price factor inside control areas", eca_price_factor, "", zero=False)
-        _check("price of time", time_usd_per_day, "USD/day", zero=True)
+        _check_price("price of fuel", usd_per_t, "USD/t", zero=True)
+        _check_price("price factor inside control areas", eca_price_factor, "", zero=False)
+        _check_price("price of time", time_usd_per_day, "USD/day", zero=True)
         outside = self.price_outside if usd_per_t is None else usd_per_t / TONNE
         if eca_price_factor is not None and math.isnan(outside):
             raise InputError(
@@ -203,10 +205,10 @@ def fuel_terms(data: Mapping[str, Any]) -> FuelTerms:
         price_outside=price / TONNE,
         price_inside=given.get("eca_price_per_t", price * factor) / TONNE,
         eca_price_factor=factor,
-        own_carbon=None if own is None else float(own),
+        own_carbon_factor=None if own is None else float(own),
         currency=_currency(given, costs),
         time_price=_time_price(costs),
-        speed_price=float(costs.get("per_second_per_cubed_speed", math.nan)),
+        cubed_speed_price=float(costs.get("per_second_per_cubed_speed", math.nan)),
     )
 
 
@@ -233,13 +235,13 @@ def _currency(given: Mapping[str, Any], costs: Mapping[str, Any]) -> str:
     return named.pop() if named else ""
 
 
-def _carbon(fuel: Fuel | None, own: float | None) -> float:
+def _carbon_factor(fuel: Fuel | None, own: float | None) -> float:
     if own is not None:
         return own
     return math.nan if fuel is None else fuel.carbon_factor
 
 
-def _check(what: str, value: float | None, unit: str, *, zero: bool) -> None:
+def _check_price(what: str, value: float | None, unit: str, *, zero: bool) -> None:
     if value is None:
         return
     good = isinstance(value, Real) and math.isfinite(value)

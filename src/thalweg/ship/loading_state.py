@@ -73,18 +73,18 @@ class Loading:
 
     def draught_at(self, load_factor: ArrayLike) -> FloatArray:
         """Draught [m] at load factors."""
-        return between(self.draught_empty, self.draught_full, load_factor)
+        return interpolate_loading(self.draught_empty, self.draught_full, load_factor)
 
     def displacement_at(self, load_factor: ArrayLike) -> FloatArray:
         """Displaced volume [m3] at load factors."""
-        return between(self.displacement_empty, self.displacement_full, load_factor)
+        return interpolate_loading(self.displacement_empty, self.displacement_full, load_factor)
 
     def at(self, load_factor: float) -> Loading:
         """Return the same ship loaded differently."""
         return replace(self, load_factor=float(load_factor))
 
 
-def between(empty: ArrayLike, full: ArrayLike, load_factor: ArrayLike) -> FloatArray:
+def interpolate_loading(empty: ArrayLike, full: ArrayLike, load_factor: ArrayLike) -> FloatArray:
     """Interpolate linearly from an empty ship's value to a full one's; NaN outside 0 to 1."""
     factor = np.asarray(load_factor, float)
     factor = np.where((factor >= 0.0) & (factor <= 1.0), factor, np.nan)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.ship.condition_variables import AXIS_OF
+from thalweg.ship.condition_variables import AXIS_OF_CONDITION
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.model_protocol import ShipModel
 from thalweg.ship.models.function_model import FunctionModel
@@ -17,8 +17,8 @@ from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.tabulate import DEFAULT_AXES
 
 FloatArray = NDArray[np.float64]
-_COUNT = 64
-_SPAN = {"wind_speed": 20.0, "wave_height": 4.0, "wave_period": 14.0, "depth": 200.0}
+_SAMPLES = 64
+_CONDITION_SPANS = {"wind_speed": 20.0, "wave_height": 4.0, "wave_period": 14.0, "depth": 200.0}
 
 
 def check_ship_model(
@@ -50,24 +50,24 @@ def check_ship_model(
     ship_model = model.model if isinstance(model, Ship) else model
     if load_factor is None:
         load_factor = model.loading.load_factor if isinstance(model, Ship) else 1.0
-    if isinstance(ship_model, FunctionModel) and ship_model.is_field:
+    if isinstance(ship_model, FunctionModel) and ship_model.is_speed_field:
         return
     conditions = _conditions(ship_model, load_factor)
     faults: list[str] = []
     checks: tuple[Callable[[ShipModel, Conditions, float], list[str]], ...] = (
         _settings_ascend,
-        _values_are_sound,
-        _numbers_equal_arrays,
-        _unknown_stays_unknown,
-        _calm_rises,
-        _bounded,
+        _values_are_valid,
+        _scalars_equal_arrays,
+        _nan_stays_nan,
+        _calm_power_rises,
+        _top_speed_holds,
     )
     for check in checks:
         faults += check(ship_model, conditions, load_factor)
-        if faults and check is _values_are_sound:
+        if faults and check is _values_are_valid:
             break  # what follows needs speeds of the right shape
     else:
-        faults += _table_is_true(ship_model, load_factor, tolerance)
+        faults += _table_error_holds(ship_model, load_factor, tolerance)
     if faults:
         raise InputError(
             f"The ship model breaks its contract: {'; '.join(faults)}.",
@@ -82,10 +82,10 @@ def _conditions(model: ShipModel, load_factor: float) -> Conditions:
     draw = np.random.default_rng(17)
     values: dict[str, FloatArray | float] = {"load_factor": load_factor}
     for name in sorted(model.reads - {"load_factor"}):
-        high = _SPAN.get(name, np.pi if name in AXIS_OF else 1.0)
+        high = _CONDITION_SPANS.get(name, np.pi if name in AXIS_OF_CONDITION else 1.0)
         low = {"wave_period": 4.0, "depth": 40.0}.get(name, 0.0)
-        values[name] = draw.uniform(low, high, _COUNT)
-    values.setdefault("spare", np.zeros(_COUNT))
+        values[name] = draw.uniform(low, high, _SAMPLES)
+    values.setdefault("spare", np.zeros(_SAMPLES))
     return Conditions(values)
 
 
@@ -97,7 +97,7 @@ def _settings_ascend(model: ShipModel, conditions: Conditions, load_factor: floa
     return [] if sound else ["speeds are not positive and ascending"]
 
 
-def _values_are_sound(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
+def _values_are_valid(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
     faults = []
     for setting in range(len(model.speeds(load_factor))):
         speed = np.asarray(model.speed_through_water(conditions, setting))
@@ -114,11 +114,11 @@ def _values_are_sound(model: ShipModel, conditions: Conditions, load_factor: flo
     return faults
 
 
-def _numbers_equal_arrays(
+def _scalars_equal_arrays(
     model: ShipModel, conditions: Conditions, load_factor: float
 ) -> list[str]:
     whole = model.speed_through_water(conditions, 0)
-    for k in (0, _COUNT // 2, _COUNT - 1):
+    for k in (0, _SAMPLES // 2, _SAMPLES - 1):
         one = Conditions(
             {
                 name: np.broadcast_to(values, conditions.shape)[k]
@@ -131,22 +131,20 @@ def _numbers_equal_arrays(
     return []
 
 
-def _unknown_stays_unknown(
-    model: ShipModel, conditions: Conditions, load_factor: float
-) -> list[str]:
+def _nan_stays_nan(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
     faults = []
     for name in sorted(model.reads - {"load_factor"}):
-        unknown = conditions.with_values(**{name: np.full(_COUNT, np.nan)})
+        unknown = conditions.with_values(**{name: np.full(_SAMPLES, np.nan)})
         if not np.isnan(model.speed_through_water(unknown, 0)).all():
             faults.append(f"an unknown {name} gives a known speed")
     return faults
 
 
-def _calm_rises(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
+def _calm_power_rises(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
     """More speed takes more power and fuel in calm, deep water."""
     calm = Conditions(
         {
-            **dict.fromkeys(AXIS_OF, 0.0),
+            **dict.fromkeys(AXIS_OF_CONDITION, 0.0),
             "wave_period": 10.0,
             "depth": 1e4,
             "load_factor": load_factor,
@@ -163,7 +161,7 @@ def _calm_rises(model: ShipModel, conditions: Conditions, load_factor: float) ->
     return faults
 
 
-def _bounded(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
+def _top_speed_holds(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
     for setting in range(len(model.speeds(load_factor))):
         top = model.top_speed(setting, load_factor)
         highest = float(np.nanmax(model.speed_through_water(conditions, setting)))
@@ -172,7 +170,7 @@ def _bounded(model: ShipModel, conditions: Conditions, load_factor: float) -> li
     return []
 
 
-def _table_is_true(model: ShipModel, load_factor: float, tolerance: float) -> list[str]:
+def _table_error_holds(model: ShipModel, load_factor: float, tolerance: float) -> list[str]:
     """The table's parts, summed, stray no further than the table says."""
     parts, error, *more = model.tabulate(load_factor, tolerance)
     finish = more[0] if more else None
@@ -183,7 +181,7 @@ def _table_is_true(model: ShipModel, load_factor: float, tolerance: float) -> li
     draw = np.random.default_rng(23)
     where: dict[str, FloatArray | float] = {"load_factor": load_factor, "spare": np.zeros(400)}
     for name, (low, high) in sorted(table.ranges.items()):
-        usual = _SPAN.get(name, DEFAULT_AXES[name].stop)
+        usual = _CONDITION_SPANS.get(name, DEFAULT_AXES[name].stop)
         where[name] = draw.uniform(low, max(min(high, usual), low), 400)
     conditions = Conditions(where)
     truth = model.speed_through_water(conditions, 0)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.tables.output_curve import Finish
+from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import TableError, TablePart
 
 FloatArray = NDArray[np.float64]
@@ -78,7 +78,7 @@ class ShipModel(Protocol):
         self, load_factor: float, tolerance: float
     ) -> (
         tuple[tuple[TablePart, ...], TableError]
-        | tuple[tuple[TablePart, ...], TableError, Finish | None]
+        | tuple[tuple[TablePart, ...], TableError, OutputCurve | None]
     ):
         """Parts whose sum is, or leads to, the speed through water [m/s]; their measured error.
 

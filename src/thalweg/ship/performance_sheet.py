@@ -19,14 +19,17 @@ from thalweg.ship.methods.carbon_intensity import (
     required_cii,
 )
 from thalweg.ship.methods.seakeeping.wave_spectra import pierson_moskowitz_period
-from thalweg.ship.models.propulsion_model import set_aside
-from thalweg.ship.performance_sheet_seaway import Seaway
+from thalweg.ship.models.propulsion_model import unused_efficiencies
+from thalweg.ship.performance_sheet_seaway import ShipInSeaway
 from thalweg.ship.ship import Ship
 
 FloatArray = NDArray[np.float64]
 _CALM_PERIOD = 10.0  #: [s]; nothing depends on it
-_SIZED = (("wave_height", "wave_angle", "waves"), ("wind_speed", "wind_angle", "wind"))
-COMPONENTS = (
+_DIRECTIONAL_WEATHER = (
+    ("wave_height", "wave_angle", "waves"),
+    ("wind_speed", "wind_angle", "wind"),
+)
+SHEET_COMPONENTS = (
     *("total", "friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
     *("correlation", "waves", "wind", "shallow", "rudder"),
 )
@@ -73,16 +76,16 @@ def performance_sheet(
         )
     conditions = _conditions(ship, weather or {})
     composed = hasattr(ship.model, "power_at_speed")
-    speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _usual_speeds(ship)
+    speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _default_speeds(ship)
     if speeds.size == 0 or not (np.isfinite(speeds) & (speeds > 0)).all():
         raise InputError(
             "The speeds asked for are not all positive numbers.",
             "Speeds are in knots, such as 8:16 or 10,12,14.",
             "Correct them.",
         )
-    speeds, left_out = (speeds, []) if composed else _orderable(ship, speeds)
-    rows = (_composed_rows if composed else _nominal_rows)(ship, conditions, speeds)
-    seaway = Seaway.of(ship, conditions)
+    speeds, left_out = (speeds, []) if composed else _admissible_speeds(ship, speeds)
+    rows = (_resistance_model_rows if composed else _known_speed_rows)(ship, conditions, speeds)
+    seaway = ShipInSeaway.of(ship, conditions)
     for row in rows:
         _add_seaway(row, seaway)
     return {
@@ -90,10 +93,18 @@ def performance_sheet(
         "draught_m": ship.draught,
         "load_factor": ship.loading.load_factor,
         "weather": {name: _number(value) for name, value in (weather or {}).items()},
-        "assumed": [*_assumed(weather or {}), *_left_aside(ship), *_unloaded(ship)],
+        "assumed": [
+            *_weather_assumptions(weather or {}),
+            *_unused_entries(ship),
+            *_load_factor_without_effect(ship),
+        ],
         "conditions": rows,
-        "warnings": [*left_out, *_unfelt(ship, weather or {}), *_beyond(ship, weather or {})],
-        "missing": _missing(ship, rows),
+        "warnings": [
+            *left_out,
+            *_weather_without_model(ship, weather or {}),
+            *_weather_beyond_limits(ship, weather or {}),
+        ],
+        "missing": _missing_results(ship, rows),
         "settings": _settings(ship, conditions),
         "estimated": [{"key": e.key, "value": e.value, "method": e.method} for e in ship.estimated],
         "sources": list(ship.data.get("sources", ())),
@@ -104,22 +115,22 @@ def performance_sheet(
 
 def _conditions(ship: Ship, weather: Mapping[str, float]) -> Conditions:
     calm = {name: 0.0 for name in ("wind_speed", "wind_angle", "wave_height", "wave_angle")}
-    period = assumed_period(weather.get("wave_height", 0.0))
+    period = assumed_peak_period(weather.get("wave_height", 0.0))
     return Conditions({**calm, "wave_period": period, "depth": np.inf, **weather})
 
 
-def assumed_period(height: float) -> float:
+def assumed_peak_period(height: float) -> float:
     """Peak period [s] of waves whose period is not told: a fully developed sea's."""
     return float(pierson_moskowitz_period(height)) if height > 0.0 else _CALM_PERIOD
 
 
-def _assumed(weather: Mapping[str, float]) -> list[str]:
+def _weather_assumptions(weather: Mapping[str, float]) -> list[str]:
     """Say what was taken for weather that was only half told."""
     height, found = weather.get("wave_height", 0.0), []
     if height > 0.0 and "wave_period" not in weather:
-        period = assumed_period(height)
+        period = assumed_peak_period(height)
         found.append(f"a peak period of {period:.3g} s, of a fully developed sea")
-    for size, angle, words in _SIZED:
+    for size, angle, words in _DIRECTIONAL_WEATHER:
         if weather.get(size, 0.0) > 0.0 and angle not in weather:
             found.append(f"{words} from ahead")
         if size not in weather and angle in weather:
@@ -129,7 +140,7 @@ def _assumed(weather: Mapping[str, float]) -> list[str]:
     return found
 
 
-def _orderable(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
+def _admissible_speeds(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
     """The speeds a ship with known speeds can be ordered to, and a warning of the others.
 
     Raises
@@ -156,23 +167,23 @@ def _orderable(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
 
 
 #: what the weather must be called, and the conditions a ship reads that feel it
-_FELT = {
+_WEATHER_EFFECTS = {
     "wave_height": ("waves are", {"wave_height"}),
     "wind_speed": ("the wind is", {"wind_speed"}),
     "depth": ("the depth of the water is", {"depth"}),
 }
 
 
-def _unfelt(ship: Ship, weather: Mapping[str, float]) -> list[str]:
+def _weather_without_model(ship: Ship, weather: Mapping[str, float]) -> list[str]:
     """Warn of weather that is given and that the ship has no model of."""
     return [
         f"{word} given, but this ship's models leave its speed and power as they are"
-        for name, (word, read) in _FELT.items()
+        for name, (word, read) in _WEATHER_EFFECTS.items()
         if weather.get(name, 0.0) > 0.0 and np.isfinite(weather[name]) and not ship.reads & read
     ]
 
 
-def _beyond(ship: Ship, weather: Mapping[str, float]) -> list[str]:
+def _weather_beyond_limits(ship: Ship, weather: Mapping[str, float]) -> list[str]:
     """Warn of what no plan takes the ship into: weather beyond its limits, water too shallow."""
     limits = {
         "wave_height": ("waves of", "m", ship.limits.wave_height),
@@ -189,7 +200,7 @@ def _beyond(ship: Ship, weather: Mapping[str, float]) -> list[str]:
     ]
 
 
-def _add_seaway(row: dict[str, Any], seaway: Seaway) -> None:
+def _add_seaway(row: dict[str, Any], seaway: ShipInSeaway) -> None:
     """Add squat and motions to a row, with their warnings."""
     speed = row["speed_kn"]
     if speed is None:
@@ -201,14 +212,16 @@ def _add_seaway(row: dict[str, Any], seaway: Seaway) -> None:
     row["warnings"] += [*touching, *dangers]
 
 
-def _usual_speeds(ship: Ship) -> FloatArray:
+def _default_speeds(ship: Ship) -> FloatArray:
     own = ship.speeds
     if not hasattr(ship.model, "power_at_speed") or len(own) > 4:
         return own
     return np.linspace(0.6, 1.1, 6) * own.max()
 
 
-def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> list[dict[str, Any]]:
+def _resistance_model_rows(
+    ship: Ship, conditions: Conditions, speeds: FloatArray
+) -> list[dict[str, Any]]:
     parts = ship.resistance(conditions, speeds)
     parts["wave_making"] = parts["wave_making"] + parts.pop("residuary")
     power = ship.power_at_speed(conditions, speeds)
@@ -219,7 +232,7 @@ def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> li
     fuel = np.where(power <= plant.largest_power, plant.fuel(power), np.nan)
     rows = []
     for k, speed in enumerate(speeds):
-        at = {n: np.array([float(np.asarray(conditions[n]))]) for n in _FLAT}
+        at = {n: np.array([float(np.asarray(conditions[n]))]) for n in _CONDITION_NAMES}
         notes = [str(n) for n in balance.notes(at, speeds[k : k + 1])]
         notes += [str(n) for n in plant.notes(power[k : k + 1])]
         notes += [str(n) for n in loss.notes(weather)] if loss is not None else []
@@ -228,7 +241,7 @@ def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> li
         rows.append(
             {
                 **_row(ship, speed, fuel[k]),
-                "resistance_n": {name: _number(parts[name][k]) for name in COMPONENTS},
+                "resistance_n": {name: _number(parts[name][k]) for name in SHEET_COMPONENTS},
                 "effective_power_kw": _number(parts["total"][k] * speed / 1e3),
                 "brake_power_kw": _number(power[k] / 1e3),
                 "warnings": notes,
@@ -237,10 +250,12 @@ def _composed_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> li
     return rows
 
 
-_FLAT = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
+_CONDITION_NAMES = ("wind_speed", "wind_angle", "wave_height", "wave_angle", "wave_period", "depth")
 
 
-def _nominal_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> list[dict[str, Any]]:
+def _known_speed_rows(
+    ship: Ship, conditions: Conditions, speeds: FloatArray
+) -> list[dict[str, Any]]:
     ordered = ship if np.array_equal(speeds, ship.speeds) else ship.with_speeds(speeds)
     rows = []
     for k, speed in enumerate(np.unique(speeds)):
@@ -251,7 +266,7 @@ def _nominal_rows(ship: Ship, conditions: Conditions, speeds: FloatArray) -> lis
             {
                 **_row(ship, attained, fuel),
                 "ordered_speed_kn": _number(speed / KNOT),
-                "resistance_n": dict.fromkeys(COMPONENTS),
+                "resistance_n": dict.fromkeys(SHEET_COMPONENTS),
                 "effective_power_kw": None,
                 "brake_power_kw": _number(power / 1e3),
                 "warnings": [str(n) for n in ordered.notes(conditions, k)],
@@ -298,7 +313,7 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
     return found
 
 
-def _left_aside(ship: Ship) -> list[str]:
+def _unused_entries(ship: Ship) -> list[str]:
     """Say what a ship file gives that its calm-water method does not look at."""
     data = ship.data
     method = data.get("models", {}).get("calm_water", "none")
@@ -312,11 +327,11 @@ def _left_aside(ship: Ship) -> list[str]:
     ) or "reference_t_per_day" in data.get("fuel", {})
     found = [f"calm_water: {method} leaves the {w} aside" for w, there in given.items() if there]
     chain = data.get("models", {}).get("propulsion", "efficiencies")
-    idle = set_aside(data.get("propulsion", {}), chain)
+    idle = unused_efficiencies(data.get("propulsion", {}), chain)
     return [*found, *(f"propulsion.{key} is left aside" for key in idle)]
 
 
-def _unloaded(ship: Ship) -> list[str]:
+def _load_factor_without_effect(ship: Ship) -> list[str]:
     """Say that a ship with one draught is the same at every load factor."""
     own, given = ship.loading, ship.data.get("loading", {})
     differs = {"draught_empty_m", "speeds_empty_kn", "displacement_empty_m3", "weight_empty_t"}
@@ -325,7 +340,7 @@ def _unloaded(ship: Ship) -> list[str]:
     return [f"load factor {own.load_factor:g} changes nothing: the ship file tells no empty ship"]
 
 
-def _missing(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
+def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Say what the sheet does not know, and which keys of the ship file would tell it."""
 
     def known(name: str) -> bool:

@@ -12,17 +12,21 @@ from thalweg.ship.conditions import Conditions
 from thalweg.ship.hull.hull import Hull, complete_hull
 from thalweg.ship.methods.seakeeping.motion_sickness import (
     motion_sickness_dose,
-    sick_percent_iso,
+    motion_sickness_percent_iso,
     weighted_acceleration,
 )
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, motions_validity, ship_response
-from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import stability_checks
-from thalweg.ship.methods.shallow_water.squat import clearance_under_way, squat_validity
-from thalweg.ship.models.seaway_limits import EXPOSURE, MEAN_PERIOD, natural_roll_period
-from thalweg.ship.models.squat_model import Squat, squat_of
+from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import dangerous_situations
+from thalweg.ship.methods.shallow_water.squat import dynamic_under_keel_clearance, squat_validity
+from thalweg.ship.models.seaway_limits import (
+    EXPOSURE_TIME,
+    MEAN_TO_PEAK_PERIOD_RATIO,
+    natural_roll_period,
+)
+from thalweg.ship.models.squat_model import SquatModel, squat_model_of
 from thalweg.ship.ship import Ship
 
-_DANGERS: Final = {
+_DANGER_WORDS: Final = {
     "surf_riding": "surf-riding and broaching-to",
     "successive_high_waves": "successive high waves",
     "synchronous_roll": "synchronous roll",
@@ -31,7 +35,7 @@ _DANGERS: Final = {
 
 
 @dataclass(frozen=True)
-class Seaway:
+class ShipInSeaway:
     """A ship in given water and waves.
 
     Attributes
@@ -47,25 +51,25 @@ class Seaway:
     conditions: Conditions
 
     @classmethod
-    def of(cls, ship: Ship, conditions: Conditions) -> Seaway:
+    def of(cls, ship: Ship, conditions: Conditions) -> ShipInSeaway:
         """Take the hull's particulars as the ship's model has them, at the ship's draught."""
         balance = getattr(ship.model, "balance", None)
         if balance is not None:
             return cls(ship, balance(ship.loading.load_factor).calm.hull, conditions)
         hull = complete_hull(ship.data.get("hull", {}))
-        afloat, sunk = {"draught_m": ship.draught}, squat_of(ship.data, hull, ship.loading)
+        afloat, sunk = {"draught_m": ship.draught}, squat_model_of(ship.data, hull, ship.loading)
         if sunk is not None and ship.draught > 0.0:
             afloat["block_coefficient"] = sunk.block_coefficient
         return cls(ship, Hull({**hull.values, **afloat}), conditions)
 
     def squat(self, speed: float) -> tuple[dict[str, Any] | None, list[str]]:
         """Squat and clearance [m] at a speed [m/s] where the depth is known, and warnings."""
-        squat: Squat | None = squat_of(self.ship.data, self.hull, self.ship.loading)
+        squat: SquatModel | None = squat_model_of(self.ship.data, self.hull, self.ship.loading)
         depth = float(self.conditions.depth)
         if squat is None or not np.isfinite(depth):
             return None, []
         sunk = float(squat.sinkage(speed, depth, self.ship.loading.load_factor))
-        left = float(clearance_under_way(depth, self.ship.draught, squat=sunk))
+        left = float(dynamic_under_keel_clearance(depth, self.ship.draught, squat=sunk))
         least = squat.clearance
         notes = [
             str(n)
@@ -97,14 +101,14 @@ class Seaway:
             **common, wave_angle=at.wave_angle, hull=hull, forward=0.5 * hull.length
         )
         felt = weighted_acceleration(middle.acceleration_parts, middle.encounter_frequency)
-        dose = motion_sickness_dose(felt, duration=EXPOSURE)
+        dose = motion_sickness_dose(felt, duration=EXPOSURE_TIME)
         found: Mapping[str, Any] = {
             "significant_heave_m": middle.heave.significant_amplitude,
             "significant_pitch_deg": np.degrees(middle.pitch.significant_amplitude),
             "largest_heave_3h_m": middle.heave.most_probable_maximum(),
             "largest_pitch_3h_deg": np.degrees(middle.pitch.most_probable_maximum()),
             "bow_acceleration_rms_m_s2": np.sqrt(bow.acceleration.m0),
-            "motion_sickness_2h_percent": sick_percent_iso(dose),
+            "motion_sickness_2h_percent": motion_sickness_percent_iso(dose),
         }
         notes = [str(note) for note in motions_validity(speed, hull)]
         return {k: _number(v) for k, v in found.items()}, [*notes, *self._dangers(speed, hull)]
@@ -112,18 +116,18 @@ class Seaway:
     def _dangers(self, speed: float, hull: MotionHull) -> list[str]:
         """What MSC.1/Circ.1228 warns of at a speed [m/s]."""
         own = natural_roll_period(self.hull, hull)
-        checks = stability_checks(
+        checks = dangerous_situations(
             speed=speed,
             wave_angle=self.conditions.wave_angle,
             wave_height=self.conditions.wave_height,
-            wave_period=MEAN_PERIOD * self.conditions.wave_period,
+            wave_period=MEAN_TO_PEAK_PERIOD_RATIO * self.conditions.wave_period,
             length=hull.length,
             roll_period=own,
-            least_height=0.01 * hull.length,
+            harmless_wave_height=0.01 * hull.length,
         )
         return [
             f"MSC.1/Circ.1228: {words} may occur"
-            for name, words in _DANGERS.items()
+            for name, words in _DANGER_WORDS.items()
             if bool(getattr(checks, name))
         ]
 

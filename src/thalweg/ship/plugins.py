@@ -8,17 +8,17 @@ from typing import Any, Final
 
 from thalweg.core.errors import InputError
 
-GROUP: Final = "thalweg.ships"
+ENTRY_POINT_GROUP: Final = "thalweg.ships"
 
 
 def plugin_names() -> list[str]:
     """Return the names of the ships that other packages offer."""
     from importlib.metadata import entry_points
 
-    return sorted({entry.name for entry in entry_points(group=GROUP)})
+    return sorted({entry.name for entry in entry_points(group=ENTRY_POINT_GROUP)})
 
 
-def plugin(name: str) -> Any:
+def load_plugin(name: str) -> Any:
     """Return what another package offers under a name, or None.
 
     It is a `Ship`, a mapping like a ship file, a model as in
@@ -32,7 +32,7 @@ def plugin(name: str) -> Any:
     """
     from importlib.metadata import entry_points
 
-    for entry in entry_points(group=GROUP):
+    for entry in entry_points(group=ENTRY_POINT_GROUP):
         if entry.name != name:
             continue
         try:

@@ -16,7 +16,7 @@ from thalweg.ship.model_protocol import ShipModel
 FloatArray = NDArray[np.float64]
 
 
-class Answers:
+class ShipQueries:
     """The part of `thalweg.ship.Ship` that answers for conditions."""
 
     name: str

@@ -23,7 +23,7 @@ from thalweg.ship.file.ship_builder import (
     build_model,
     estimates_of_known_speeds,
     simple_data,
-    with_safety,
+    with_safety_limits,
 )
 from thalweg.ship.file.ship_file import library_names, read_ship
 from thalweg.ship.file.ship_schema import check_ship_data
@@ -31,10 +31,10 @@ from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
 from thalweg.ship.hull.hull import complete_hull
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model_protocol import Estimate, ShipModel
-from thalweg.ship.models.fuel_from_power import hotel_fuel, hotel_power
+from thalweg.ship.models.fuel_from_power import hotel_load_fuel_rate, hotel_power
 from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
-from thalweg.ship.plugins import plugin
-from thalweg.ship.queries import Answers
+from thalweg.ship.plugins import load_plugin
+from thalweg.ship.queries import ShipQueries
 from thalweg.ship.ship_limits import ShipLimits
 from thalweg.ship.tables.performance_table import PerformanceTable
 
@@ -43,7 +43,7 @@ _SINGLE_PRECISION = 2.0**-23
 
 
 @dataclass(frozen=True, eq=False)
-class Ship(Answers):
+class Ship(ShipQueries):
     """A ship: how fast it goes and what it burns in given conditions, and what it must not meet.
 
     Made by `Ship.load`, `Ship.from_dict`, `Ship.simple` or `Ship.from_speed_function`.
@@ -86,7 +86,7 @@ class Ship(Answers):
             If there is none (with near matches), or the file holds what cannot be.
         """
         known = not isinstance(name_or_path, str) or name_or_path in library_names()
-        offered = None if known else plugin(str(name_or_path))
+        offered = None if known else load_plugin(str(name_or_path))
         if offered is None:
             data, source = read_ship(name_or_path)
             return cls.from_dict(data, source=source)
@@ -128,7 +128,7 @@ class Ship(Answers):
             name=checked["name"],
             model=model,
             loading=loading,
-            limits=with_safety(build_limits(checked), checked, hull, loading),
+            limits=with_safety_limits(build_limits(checked), checked, hull, loading),
             data=MappingProxyType(checked),
             estimated=getattr(
                 model, "estimated", estimates_of_known_speeds(checked, hull, loading)
@@ -369,7 +369,7 @@ class Ship(Answers):
     @property
     def waiting_fuel_rate(self) -> float:
         """Fuel rate while lying still [kg/s]: the hotel load; 0 if the ship states none."""
-        return hotel_fuel(self.data)
+        return hotel_load_fuel_rate(self.data)
 
     def fingerprint(self) -> str:
         """Return a text that is the same for ships that behave the same, and for no others."""

@@ -14,35 +14,35 @@ from typing import Final
 import numpy as np
 
 from thalweg.chart.coast.coast_index_builder import build_index
-from thalweg.chart.coast.gshhg import CLOSED_CANALS, data_files, read_land
+from thalweg.chart.coast.gshhg import CLOSED_CANALS, data_files, read_land_rings
 from thalweg.core.cache_folder import cache_folder
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
-FORMAT: Final = 2  # raise when the arrays or the way they are made change
-SIDES: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
+CACHE_FORMAT: Final = 2  # raise when the arrays or the way they are made change
+CELLS_BY_RESOLUTION: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
 
 
 def gshhg_index(resolution: str) -> IndexArrays:
     """Return the index of a GSHHG resolution, from disk if it was made before."""
     size = data_files(resolution)[1].stat().st_size
     canals = hashlib.sha256(repr(CLOSED_CANALS).encode()).hexdigest()[:8]
-    side = SIDES[resolution]
-    path = cache_folder("coast") / f"gshhg-{resolution}-{size}-{side}-{canals}-v{FORMAT}.npz"
-    return stored(path, lambda: build_index(read_land(resolution), side))
+    side = CELLS_BY_RESOLUTION[resolution]
+    path = cache_folder("coast") / f"gshhg-{resolution}-{size}-{side}-{canals}-v{CACHE_FORMAT}.npz"
+    return load_or_build(path, lambda: build_index(read_land_rings(resolution), side))
 
 
-def stored(path: Path, make: Callable[[], IndexArrays]) -> IndexArrays:
+def load_or_build(path: Path, make: Callable[[], IndexArrays]) -> IndexArrays:
     """Return the index in a file, or make it and write the file; a broken file is replaced."""
     try:
-        return _load(path)
+        return _load_index(path)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         index = make()
     with contextlib.suppress(OSError):
-        _save(path, index)
+        _save_index(path, index)
     return index
 
 
-def _load(path: Path) -> IndexArrays:
+def _load_index(path: Path) -> IndexArrays:
     with np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in IndexArrays._fields if name != "side"}
         index = IndexArrays(side=int(file["side"]), **arrays)
@@ -53,7 +53,7 @@ def _load(path: Path) -> IndexArrays:
     return index
 
 
-def _save(path: Path, index: IndexArrays) -> None:
+def _save_index(path: Path, index: IndexArrays) -> None:
     handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
     try:
         with os.fdopen(handle, "wb") as file:

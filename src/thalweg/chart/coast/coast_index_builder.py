@@ -11,22 +11,28 @@ from numpy.typing import NDArray
 
 from thalweg.chart.coast.rings import Rings
 from thalweg.core.geodesy import FloatArray
-from thalweg.kernels.geometry.cube_sphere import FIRST_ROW, POLAR, RADIUS, IndexArrays, cell_middle
+from thalweg.kernels.geometry.cube_sphere import (
+    AXIS_RATIO_SQUARED,
+    FIRST_ROW,
+    RADIUS,
+    IndexArrays,
+    cell_middle,
+)
 from thalweg.kernels.geometry.winding_numbers import carry_windings
 
-LONGEST_PIECE: Final = 10_000.0 / RADIUS  # edges are cut into pieces no longer than this [rad]
-LARGEST_BULGE: Final = 1.0 / RADIUS  # and bulging no more than this [rad]
-MARGIN: Final = 8.0e-5  # edges are listed in cells this near on the face (about 500 m)
-FARTHEST: Final = 0.5  # distances are not told beyond this [rad]
+MAX_SEGMENT_LENGTH: Final = 10_000.0 / RADIUS  # edges are cut into pieces no longer than this [rad]
+MAX_BULGE: Final = 1.0 / RADIUS  # and bulging no more than this [rad]
+CELL_MARGIN: Final = 8.0e-5  # edges are listed in cells this near on the face (about 500 m)
+MAX_CLEARANCE: Final = 0.5  # distances are not told beyond this [rad]
 IntArray = NDArray[np.int64]
 
 
-class Pieces(NamedTuple):
+class CoastSegments(NamedTuple):
     """Edges cut short: both ends as unit vectors, and whether each goes on from the one before."""
 
     start: FloatArray
     end: FloatArray
-    goes_on: NDArray[np.bool_]
+    continues_previous: NDArray[np.bool_]
 
 
 def build_index(rings: Rings, side: int) -> IndexArrays:
@@ -41,10 +47,10 @@ def build_index(rings: Rings, side: int) -> IndexArrays:
     """
     if not len(rings):
         return empty_index()
-    pieces = _cut(rings)
-    cell_ids, edge_ids = _listed(pieces, side)
-    index = _rows(pieces, cell_ids, edge_ids, side)
-    carry_windings(index, _seeds(rings, side))
+    pieces = _cut_edges(rings)
+    cell_ids, edge_ids = _segments_by_cell(pieces, side)
+    index = _assemble_index(pieces, cell_ids, edge_ids, side)
+    carry_windings(index, _seed_windings(rings, side))
     _set_clearance(index, pieces)
     return index
 
@@ -53,7 +59,7 @@ def empty_index() -> IndexArrays:
     """Return an index without any polygon."""
     return IndexArrays(
         1,
-        np.full(6, FARTHEST, np.float32),
+        np.full(6, MAX_CLEARANCE, np.float32),
         np.zeros(1, np.int64),
         np.zeros(0, np.int32),
         np.zeros((0, 3)),
@@ -67,14 +73,16 @@ def unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
     Poles and both names of the antimeridian are exact, so that they meet.
     """
     phi, lam = np.radians(lat), np.radians(lon)
-    c, s = np.cos(phi), POLAR * np.sin(phi)
+    c, s = np.cos(phi), AXIS_RATIO_SQUARED * np.sin(phi)
     c = np.where(np.abs(lat) >= 90.0, 0.0, c)
     scale = 1.0 / np.sqrt(c * c + s * s)
     east = np.where(np.abs(lon) == 180.0, 0.0, np.sin(lam))
     return np.stack([c * np.cos(lam) * scale, c * east * scale, s * scale], -1)
 
 
-def _seams(lat0: FloatArray, lat1: FloatArray, lon0: FloatArray, lon1: FloatArray) -> IntArray:
+def _shared_meridian_edges(
+    lat0: FloatArray, lat1: FloatArray, lon0: FloatArray, lon1: FloatArray
+) -> IntArray:
     """Return the edges along meridians that two polygons share, where one land was cut in two."""
     k = np.flatnonzero((lon0 == lon1) & (lat0 != lat1))
     low, high = np.minimum(lat0[k], lat1[k]), np.maximum(lat0[k], lat1[k])
@@ -85,33 +93,33 @@ def _seams(lat0: FloatArray, lat1: FloatArray, lon0: FloatArray, lon1: FloatArra
     return k[((turns == 0.0) & (often > 1))[which.ravel()]]
 
 
-def _cut(rings: Rings) -> Pieces:
+def _cut_edges(rings: Rings) -> CoastSegments:
     """Cut edges so that arcs stay near the straight line in longitude and latitude."""
     lat0, lat1 = rings.lat[:-1], rings.lat[1:]
     lon0, lon1 = rings.lon[:-1], rings.lon[1:]
     keep = (lat0 != lat1) | (lon0 != lon1)
     keep &= ~((np.abs(lat0) >= 90.0) & (np.abs(lat1) >= 90.0))
     keep[rings.start[1:-1] - 1] = False
-    keep[_seams(lat0, lat1, lon0, lon1)] = False
+    keep[_shared_meridian_edges(lat0, lat1, lon0, lon1)] = False
     edge = np.flatnonzero(keep)
     lat0, lat1, lon0, lon1 = lat0[edge], lat1[edge], lon0[edge], lon1[edge]
     north, east = np.radians(lat1 - lat0), np.radians(lon1 - lon0)
     middle = np.radians((lat0 + lat1) / 2.0)
     bulge = np.abs(np.sin(2.0 * middle)) / 16.0 * east**2 + np.abs(north * east) / 8.0
     length = np.hypot(north, east * np.cos(middle) + np.abs(north * east) / 2.0)
-    parts = np.ceil(np.maximum(np.sqrt(bulge / LARGEST_BULGE), length / LONGEST_PIECE))
+    parts = np.ceil(np.maximum(np.sqrt(bulge / MAX_BULGE), length / MAX_SEGMENT_LENGTH))
     parts = np.maximum(parts, 1.0).astype(np.int64)
     first = np.cumsum(parts) - parts
     which = np.repeat(np.arange(len(edge)), parts)
     number = np.arange(len(which)) - first[which]
-    start = _at(lat0, lat1, lon0, lon1, which, number / parts[which])
-    end = _at(lat0, lat1, lon0, lon1, which, (number + 1) / parts[which])
+    start = _positions_on_edges(lat0, lat1, lon0, lon1, which, number / parts[which])
+    end = _positions_on_edges(lat0, lat1, lon0, lon1, which, (number + 1) / parts[which])
     joins = np.append(False, np.diff(edge) == 1)
-    goes_on = (number > 0) | joins[which]
-    return Pieces(start, end, goes_on)
+    continues_previous = (number > 0) | joins[which]
+    return CoastSegments(start, end, continues_previous)
 
 
-def _at(
+def _positions_on_edges(
     lat0: FloatArray,
     lat1: FloatArray,
     lon0: FloatArray,
@@ -133,7 +141,7 @@ def _face_components(xyz: FloatArray, face: int) -> tuple[FloatArray, FloatArray
     return xyz[:, (axis + 1) % 3], xyz[:, (axis + 2) % 3], outward
 
 
-def _listed(pieces: Pieces, side: int) -> tuple[IntArray, IntArray]:
+def _segments_by_cell(pieces: CoastSegments, side: int) -> tuple[IntArray, IntArray]:
     """Return (cell, piece) pairs, sorted: which pieces may lie in or near which cells."""
     count = len(pieces.start)
     keys: list[IntArray] = []
@@ -144,7 +152,7 @@ def _listed(pieces: Pieces, side: int) -> tuple[IntArray, IntArray]:
         u1, v1, w1 = _face_components(pieces.end[near], face)
         box = []
         for a, b in ((u0 / w0, u1 / w1), (v0 / w0, v1 / w1)):
-            low, high = np.minimum(a, b) - MARGIN, np.maximum(a, b) + MARGIN
+            low, high = np.minimum(a, b) - CELL_MARGIN, np.maximum(a, b) + CELL_MARGIN
             box += [np.floor((low + 1.0) * 0.5 * side), np.floor((high + 1.0) * 0.5 * side)]
         i0, i1, j0, j1 = (x.astype(np.int64) for x in box)
         on = (i1 >= 0) & (i0 < side) & (j1 >= 0) & (j0 < side)
@@ -161,10 +169,12 @@ def _listed(pieces: Pieces, side: int) -> tuple[IntArray, IntArray]:
     return key // count, key % count
 
 
-def _rows(pieces: Pieces, cells: IntArray, edges: IntArray, side: int) -> IndexArrays:
+def _assemble_index(
+    pieces: CoastSegments, cells: IntArray, edges: IntArray, side: int
+) -> IndexArrays:
     """Return the index with its rows of edges, cells outside them still zero."""
     new_cell = np.append(True, np.diff(cells) != 0)
-    chained = np.append(False, np.diff(edges) == 1) & ~new_cell & pieces.goes_on[edges]
+    chained = np.append(False, np.diff(edges) == 1) & ~new_cell & pieces.continues_previous[edges]
     vertices = np.cumsum(2 - chained)
     xyz = np.empty((vertices[-1], 3))
     first = np.zeros(vertices[-1], np.uint8)
@@ -178,7 +188,7 @@ def _rows(pieces: Pieces, cells: IntArray, edges: IntArray, side: int) -> IndexA
     return IndexArrays(side, cell, row_start.astype(np.int64), winding, xyz, first)
 
 
-def _seeds(rings: Rings, side: int) -> IntArray:
+def _seed_windings(rings: Rings, side: int) -> IntArray:
     """Return the winding number at the middle of the first cell of each face."""
     keep = np.ones(len(rings.lat) - 1, bool)
     keep[rings.start[1:-1] - 1] = False
@@ -187,7 +197,7 @@ def _seeds(rings: Rings, side: int) -> IntArray:
     seeds = np.zeros(6, np.int64)
     for face in range(6):
         x, y, z = cell_middle(face, 0, 0, side)
-        lat = np.degrees(np.arctan2(z, POLAR * np.hypot(x, y)))
+        lat = np.degrees(np.arctan2(z, AXIS_RATIO_SQUARED * np.hypot(x, y)))
         for lon in np.degrees(np.arctan2(y, x)) + np.array([-360.0, 0.0, 360.0]):
             k = np.flatnonzero((lon0 <= lon) != (lon1 <= lon))
             at = lat0[k] + (lon - lon0[k]) / (lon1[k] - lon0[k]) * (lat1[k] - lat0[k])
@@ -195,7 +205,7 @@ def _seeds(rings: Rings, side: int) -> IntArray:
     return seeds
 
 
-def _set_clearance(index: IndexArrays, pieces: Pieces) -> None:
+def _set_clearance(index: IndexArrays, pieces: CoastSegments) -> None:
     """Write a lower bound of the distance [rad] to the edges into each cell outside."""
     from scipy.spatial import cKDTree
 
@@ -220,7 +230,7 @@ def _set_clearance(index: IndexArrays, pieces: Pieces) -> None:
             turned[..., face // 2] *= -1.0
         chord, _ = tree.query(turned.reshape(-1, 3), workers=2)
         away = 2.0 * np.arcsin(np.minimum(chord, 2.0) / 2.0).reshape(blocks, blocks)
-        bound = np.clip(away - reach - lengths.max() - 1e-4, 0.0, FARTHEST)
+        bound = np.clip(away - reach - lengths.max() - 1e-4, 0.0, MAX_CLEARANCE)
         fine = np.repeat(np.repeat(bound, size, 0), size, 1).astype(np.float32)
         sea = cells[face] > 0.0
         cells[face][sea] = np.maximum(cells[face][sea], fine[sea])

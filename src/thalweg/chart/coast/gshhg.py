@@ -69,7 +69,7 @@ def _folders() -> list[Path]:
     return folders
 
 
-def read_land(resolution: str) -> Rings:
+def read_land_rings(resolution: str) -> Rings:
     """Return the land rings of a resolution, with the strips that close Suez and Panama.
 
     Raises

@@ -11,7 +11,7 @@ from thalweg.core.geodesy import FloatArray, direct, inverse
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes, point_codes
 
-SURE_PIECE: Final = 100_000.0  # legs this short are exact to 3 mm in the kernel [m]
+EXACT_LEG_LENGTH: Final = 100_000.0  # legs this short are exact to 3 mm in the kernel [m]
 
 
 def leg_status(
@@ -25,14 +25,14 @@ def leg_status(
     unsure = np.empty(len(a), np.bool_)
     leg_codes(coast, a, b, c, d, code, unsure)
     for k in np.flatnonzero(unsure):
-        code[k] = _in_pieces(coast, a[k], b[k], c[k], d[k])
+        code[k] = _status_in_parts(coast, a[k], b[k], c[k], d[k])
     return code.reshape(ends[0].shape)
 
 
-def _in_pieces(coast: CoastArrays, lat1: float, lon1: float, lat2: float, lon2: float) -> int:
+def _status_in_parts(coast: CoastArrays, lat1: float, lon1: float, lat2: float, lon2: float) -> int:
     """Return the status of a leg cut at points of the exact geodesic."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
-    count = int(np.ceil(length / SURE_PIECE)) + 1
+    count = int(np.ceil(length / EXACT_LEG_LENGTH)) + 1
     lat, lon = direct(lat1, lon1, course, np.linspace(0.0, float(length), count + 1))
     lat[0], lon[0], lat[-1], lon[-1] = lat1, lon1, lat2, lon2
     code, unsure = np.empty(count, np.int8), np.empty(count, np.bool_)

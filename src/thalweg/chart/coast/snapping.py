@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from thalweg.chart.chart import Chart
 
 METRES_PER_DEGREE: Final = 111_195.0
-REACH: Final = 40_000.0  # water that goes on this far beyond the search is the open sea [m]
-STEPS: Final = 90  # half the points along a side of the search grid
+OPEN_SEA_MARGIN: Final = (
+    40_000.0  # water that goes on this far beyond the search is the open sea [m]
+)
+HALF_GRID_POINTS: Final = 90  # half the points along a side of the search grid
 
 
 def nearest_navigable(
@@ -30,9 +32,9 @@ def nearest_navigable(
     a step (0.1, 0.3 or 0.5 km) farther than the nearest water there is.
     """
     for radius in sorted({min(r, largest) for r in (5_000.0, 20_000.0, largest)}):
-        lats, lons = _grid(lat, lon, radius + min(REACH, 3.0 * radius))
+        lats, lons = _search_grid(lat, lon, radius + min(OPEN_SEA_MARGIN, 3.0 * radius))
         free = chart.is_navigable(lats, lons)
-        k = np.flatnonzero(_open_sea(chart, lats, lons, free, radius == largest))
+        k = np.flatnonzero(_connected_to_open_sea(chart, lats, lons, free, radius == largest))
         if len(k):
             away = geodesy.distance(lat, lon, lats.ravel()[k], lons.ravel()[k])
             best = int(np.argmin(away))
@@ -42,15 +44,20 @@ def nearest_navigable(
     return None
 
 
-def _grid(lat: float, lon: float, half: float) -> tuple[FloatArray, FloatArray]:
-    share = np.arange(-STEPS, STEPS + 1) / STEPS * half / METRES_PER_DEGREE
+def _search_grid(lat: float, lon: float, half: float) -> tuple[FloatArray, FloatArray]:
+    share = (
+        np.arange(-HALF_GRID_POINTS, HALF_GRID_POINTS + 1)
+        / HALF_GRID_POINTS
+        * half
+        / METRES_PER_DEGREE
+    )
     north = np.clip(lat + share, -90.0, 90.0)
     east = share / max(np.cos(np.radians(lat)), 0.02)
     lats, lons = np.meshgrid(north, lon + np.clip(east, -179.0, 179.0), indexing="ij")
     return lats, lons
 
 
-def _open_sea(
+def _connected_to_open_sea(
     chart: Chart, lats: FloatArray, lons: FloatArray, free: NDArray[np.bool_], last: bool
 ) -> NDArray[np.bool_]:
     """Return (flat) which free points are joined to the border, or at last the largest water."""

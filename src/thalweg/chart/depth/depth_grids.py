@@ -19,7 +19,7 @@ Float32Array = NDArray[np.float32]
 DepthFunction = Callable[[FloatArray, FloatArray], Any]
 
 #: names (standard names or variable names) of heights, positive up, and of depths, positive down
-HEIGHTS: Final = frozenset(
+HEIGHT_NAMES: Final = frozenset(
     (
         *("height", "altitude", "elevation", "z", "bed", "topo", "topography", "band1"),
         *("bed_level", "surface_altitude", "bedrock_altitude", "sea_floor_altitude"),
@@ -27,7 +27,7 @@ HEIGHTS: Final = frozenset(
         "height_above_reference_ellipsoid",
     )
 )
-DEPTHS: Final = frozenset(
+DEPTH_NAMES: Final = frozenset(
     (
         *("depth", "deptho", "depths", "bathymetry", "bathy", "water_depth", "bed_depth"),
         *("sea_floor_depth", "sea_floor_depth_below_geoid", "sea_floor_depth_below_sea_surface"),
@@ -37,8 +37,8 @@ DEPTHS: Final = frozenset(
         "model_sea_floor_depth_below_geoid",
     )
 )
-HIGHEST, DEEPEST = 9_500.0, 12_000.0  # [m] above and below datum that is believed
-UNITS: Final = {
+MAX_HEIGHT, MAX_DEPTH = 9_500.0, 12_000.0  # [m] above and below datum that is believed
+UNIT_FACTORS: Final = {
     "m": 1.0,
     "meter": 1.0,
     "metre": 1.0,
@@ -50,7 +50,7 @@ UNITS: Final = {
 
 
 @dataclass(frozen=True)
-class GridLayer:
+class DepthGrid:
     """Depth on latitudes and longitudes [deg], both ascending; read when needed."""
 
     name: str
@@ -90,25 +90,25 @@ class GridLayer:
         if j1 - j0 < 2 or not ranges:
             return None
         if around and (len(ranges) > 1 or len(turns) == 1):
-            return self._round(j0, j1, first, wide, step)
+            return self._whole_circle(j0, j1, first, wide, step)
         i0, i1, _ = max(ranges, key=lambda r: r[1] - r[0])
         if i1 - i0 < 2:
             return None
         values = self.read(slice(j0, j1), slice(i0, i1))
-        return _regular(self.lat[j0:j1], self.lon[i0:i1], values)
+        return _on_equal_steps(self.lat[j0:j1], self.lon[i0:i1], values)
 
-    def _round(
+    def _whole_circle(
         self, j0: int, j1: int, first: float, wide: float, step: float
     ) -> tuple[tuple[float, float, float, float], Float32Array]:
         """Return whole circles of latitude, the first meridian repeated at the end."""
         values = self.read(slice(j0, j1), slice(0, len(self.lon)))
         values = np.concatenate([values, values[:, :1]], 1)
         lon = np.append(self.lon, self.lon[0] + 360.0)
-        return _regular(self.lat[j0:j1], lon, values)
+        return _on_equal_steps(self.lat[j0:j1], lon, values)
 
 
 @dataclass(frozen=True)
-class FunctionLayer:
+class DepthFunctionLayer:
     """Depth from a function of (lat, lon) [deg]; laid on a grid for legs."""
 
     name: str
@@ -137,7 +137,7 @@ class FunctionLayer:
         return (lat[0], step, lon[0], step), self.at(y, x).astype(np.float32)
 
 
-def _regular(
+def _on_equal_steps(
     lat: FloatArray, lon: FloatArray, values: Float32Array
 ) -> tuple[tuple[float, float, float, float], Float32Array]:
     """Return values on equal steps; uneven grids are put on their finest step by least sounding."""
@@ -157,9 +157,9 @@ def _regular(
     return (grids[0], grids[1], grids[2], grids[3]), values
 
 
-def make_layer(
+def make_depth_layer(
     source: Any, *, variable: str | None, positive: str | None, spacing_deg: float | None
-) -> GridLayer | FunctionLayer:
+) -> DepthGrid | DepthFunctionLayer:
     """Return the depth layer of a file, an xarray object or a function of (lat, lon).
 
     Raises
@@ -168,12 +168,12 @@ def make_layer(
         If there is no such file, or the variable, its sign, its units or its grid is unclear.
     """
     if callable(source):
-        return FunctionLayer(getattr(source, "__name__", "function"), source, spacing_deg)
+        return DepthFunctionLayer(getattr(source, "__name__", "function"), source, spacing_deg)
     if positive not in (None, "up", "down"):
         raise InputError(f"positive={positive!r} is no direction.", "It is 'up' or 'down'.", "")
-    name, data = _opened(source)
-    array = _chosen(data, variable, name)
-    scale = _sign(array, positive, name) * _unit(array, name)
+    name, data = _open_source(source)
+    array = _select_depth_variable(data, variable, name)
+    scale = _depth_sign(array, positive, name) * _unit_factor(array, name)
     lat_name, lon_name = _axes(array)
     array = array.squeeze(drop=True).transpose(lat_name, lon_name)
     lat, lon = np.asarray(array[lat_name], float), np.asarray(array[lon_name], float)
@@ -197,23 +197,23 @@ def make_layer(
         _check_plausible(depth, name)
         return depth
 
-    return GridLayer(name, lat, lon, read)
+    return DepthGrid(name, lat, lon, read)
 
 
 def _check_plausible(depth: Float32Array, name: str) -> None:
     """Raise for depths that are none: missing values that are not marked would be deep water."""
-    odd = depth[(depth < -HIGHEST) | (depth > DEEPEST)]
+    odd = depth[(depth < -MAX_HEIGHT) | (depth > MAX_DEPTH)]
     if odd.size:
         raise DatasetError(
             f"The depth in {name} reaches {odd[0]:g} m.",
-            f"Depths between {-HIGHEST:g} and {DEEPEST:g} m are believed: wrong units, or missing "
-            "values that are not marked?",
+            f"Depths between {-MAX_HEIGHT:g} and {MAX_DEPTH:g} m are believed: wrong units, or "
+            "missing values that are not marked?",
             "Correct the file's units or _FillValue.",
             file=name,
         )
 
 
-def _opened(source: Any) -> tuple[str, Any]:
+def _open_source(source: Any) -> tuple[str, Any]:
     import xarray as xr
 
     if isinstance(source, xr.DataArray):
@@ -244,7 +244,7 @@ def _axes(array: Any) -> tuple[str, str]:
     return found.get("lat", ""), found.get("lon", "")
 
 
-def _chosen(data: Any, variable: str | None, name: str) -> Any:
+def _select_depth_variable(data: Any, variable: str | None, name: str) -> Any:
     gridded = []
     for key in data.data_vars:
         wide = [d for d in data[key].dims if data[key].sizes[d] > 1]
@@ -253,7 +253,7 @@ def _chosen(data: Any, variable: str | None, name: str) -> Any:
     if variable is not None:
         known = [variable] if variable in gridded else []
     else:
-        known = [k for k in gridded if _words(data[k]) & (HEIGHTS | DEPTHS)]
+        known = [k for k in gridded if _variable_names(data[k]) & (HEIGHT_NAMES | DEPTH_NAMES)]
         known = known or (gridded if len(gridded) == 1 else [])
     if len(known) == 1:
         return data[known[0]]
@@ -276,20 +276,20 @@ def _chosen(data: Any, variable: str | None, name: str) -> Any:
     )
 
 
-def _words(array: Any) -> set[str]:
+def _variable_names(array: Any) -> set[str]:
     standard = str(array.attrs.get("standard_name", "")).casefold()
     return {str(array.name).casefold(), standard}
 
 
-def _sign(array: Any, positive: str | None, name: str) -> float:
+def _depth_sign(array: Any, positive: str | None, name: str) -> float:
     given = positive or str(array.attrs.get("positive", "")).casefold()
     if given in ("up", "down"):
         return -1.0 if given == "up" else 1.0
     standard = str(array.attrs.get("standard_name", "")).casefold()
     for word in (standard, str(array.name).casefold()):
-        if word in HEIGHTS:
+        if word in HEIGHT_NAMES:
             return -1.0
-        if word in DEPTHS:
+        if word in DEPTH_NAMES:
             return 1.0
     raise DatasetError(
         f"It is not clear whether {array.name!r} of {name} is positive up or down.",
@@ -299,13 +299,13 @@ def _sign(array: Any, positive: str | None, name: str) -> float:
     )
 
 
-def _unit(array: Any, name: str) -> float:
+def _unit_factor(array: Any, name: str) -> float:
     unit = str(array.attrs.get("units", "")).casefold().strip().removesuffix("s")
-    if unit not in UNITS:
+    if unit not in UNIT_FACTORS:
         raise DatasetError(
             f"The depth in {name} has the unit {unit!r}.",
-            "Units that are known: " + ", ".join(u for u in UNITS if u) + ".",
+            "Units that are known: " + ", ".join(u for u in UNIT_FACTORS if u) + ".",
             "Convert it to metres.",
             file=name,
         )
-    return UNITS[unit]
+    return UNIT_FACTORS[unit]

@@ -12,29 +12,31 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.coast.coast_index_builder import unit_vectors
-from thalweg.chart.depth.depth_grids import Float32Array, FunctionLayer, GridLayer
+from thalweg.chart.depth.depth_grids import DepthFunctionLayer, DepthGrid, Float32Array
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray, along
-from thalweg.kernels.geometry.cube_sphere import POLAR
-from thalweg.kernels.geometry.depth_sampling import DepthArrays, depth_points, least_depths
+from thalweg.core.geodesy import FloatArray, positions_along
+from thalweg.kernels.geometry.cube_sphere import AXIS_RATIO_SQUARED
+from thalweg.kernels.geometry.depth_sampling import DepthArrays, depths_at_points, least_depths
 
-MOST_CELLS: Final = 60_000_000  # soundings held in memory at once
-LONG: Final = 5.0  # legs wider than this are cut first [deg]
-DENSE: Final = 1.0 / 600.0  # legs are sampled this close on functions without a spacing [deg]
-ALL: Final = -1
+MAX_SOUNDINGS: Final = 60_000_000  # soundings held in memory at once
+MAX_LEG_EXTENT: Final = 5.0  # legs wider than this are cut first [deg]
+DEFAULT_SAMPLE_SPACING: Final = (
+    1.0 / 600.0
+)  # legs are sampled this close on functions without a spacing [deg]
+ALL_LAYERS: Final = -1
 Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
-class Depths:
+class DepthLayers:
     """Layers of depth by priority; windows of them are read and kept when needed."""
 
-    layers: tuple[GridLayer | FunctionLayer, ...] = ()
+    layers: tuple[DepthGrid | DepthFunctionLayer, ...] = ()
     _kept: dict[int, tuple[Box, DepthArrays]] = field(
         default_factory=dict, compare=False, repr=False
     )
 
-    def arrays(self, box: Box, only: int = ALL) -> DepthArrays:
+    def arrays(self, box: Box, only: int = ALL_LAYERS) -> DepthArrays:
         """Return all layers (or one) in a box [deg] for kernels; longitudes count modulo 360.
 
         Raises
@@ -46,27 +48,27 @@ class Depths:
         if kept is not None and _covers(kept[0], box):
             return kept[1]
         cells = self._cells(box, only)
-        if cells > MOST_CELLS:
+        if cells > MAX_SOUNDINGS:
             raise InputError(
                 f"The depth of this box has {cells / 1e6:.0f} million soundings.",
-                f"At most {MOST_CELLS / 1e6:.0f} million are read at once.",
+                f"At most {MAX_SOUNDINGS / 1e6:.0f} million are read at once.",
                 "Use a smaller box, or a coarser depth file.",
             )
-        wider = _widened(box)
-        box = wider if self._cells(wider, only) <= MOST_CELLS else box
-        arrays = _packed([layer.window(*box) for layer in self._chosen(only)])
+        wider = _box_with_margin(box)
+        box = wider if self._cells(wider, only) <= MAX_SOUNDINGS else box
+        arrays = _pack_windows([layer.window(*box) for layer in self._chosen(only)])
         self._kept[only] = (box, arrays)
         return arrays
 
-    def _chosen(self, only: int) -> tuple[GridLayer | FunctionLayer, ...]:
-        return self.layers if only == ALL else self.layers[only : only + 1]
+    def _chosen(self, only: int) -> tuple[DepthGrid | DepthFunctionLayer, ...]:
+        return self.layers if only == ALL_LAYERS else self.layers[only : only + 1]
 
     def _cells(self, box: Box, only: int) -> float:
         """Return roughly how many soundings a box holds."""
         south, north, west, east = box
         total = 0.0
         for layer in self._chosen(only):
-            if isinstance(layer, GridLayer):
+            if isinstance(layer, DepthGrid):
                 tall = min(north, layer.lat[-1]) - max(south, layer.lat[0])
                 share = min((east - west) / (layer.lon[-1] - layer.lon[0]), 1.0)
                 rows = max(tall, 0.0) / (layer.lat[-1] - layer.lat[0]) * len(layer.lat)
@@ -90,7 +92,7 @@ class Depths:
             k = np.flatnonzero(todo)
             if not len(k):
                 break
-            if isinstance(layer, FunctionLayer):
+            if isinstance(layer, DepthFunctionLayer):
                 depth[k] = layer.at(y[k], x[k])
             else:
                 depth[k] = self._points(y[k], x[k], number, least)
@@ -100,13 +102,13 @@ class Depths:
     def _points(self, lat: FloatArray, lon: FloatArray, only: int, least: bool) -> FloatArray:
         """Return depth from one grid at flat positions, in parts if they spread far."""
         depth = np.empty(len(lat))
-        box = _box(lat, lon)
-        if len(lat) > 1 and self._cells(box, only) > MOST_CELLS:
-            left = _halves(lat, lon, box)
+        box = _enclosing_box(lat, lon)
+        if len(lat) > 1 and self._cells(box, only) > MAX_SOUNDINGS:
+            left = _half_mask(lat, lon, box)
             for part in (left, ~left):
                 depth[part] = self._points(lat[part], lon[part], only, least)
             return depth
-        depth_points(self.arrays(box, only), lat, lon, least, depth)
+        depths_at_points(self.arrays(box, only), lat, lon, least, depth)
         return depth
 
     def along(
@@ -126,35 +128,39 @@ class Depths:
         depth = np.full(len(lat1), np.nan, np.float32)
         width = np.maximum(np.abs(lon2 - lon1), np.abs(lat2 - lat1))
         known = np.isfinite(width)
-        long = known & (width > LONG)
+        long = known & (width > MAX_LEG_EXTENT)
         for k in np.flatnonzero(long):
-            depth[k] = self._long(lat1[k], lon1[k], lat2[k], lon2[k])
+            depth[k] = self._least_depth_of_long_leg(lat1[k], lon1[k], lat2[k], lon2[k])
         short = np.flatnonzero(known & ~long)
         if not len(short):
             return depth
         a, b, c, d = (x[short] for x in (lat1, lon1, lat2, lon2))
-        sampled = any(isinstance(layer, FunctionLayer) for layer in self.layers)
-        box = _box(np.append(a, c), np.append(b, d))
-        crowded = len(short) * 65 > MOST_CELLS / 10 if sampled else False
-        if len(short) > 1 and (crowded or self._cells(box, ALL) > MOST_CELLS):
-            left = _halves(a, b, box)
+        sampled = any(isinstance(layer, DepthFunctionLayer) for layer in self.layers)
+        box = _enclosing_box(np.append(a, c), np.append(b, d))
+        crowded = len(short) * 65 > MAX_SOUNDINGS / 10 if sampled else False
+        if len(short) > 1 and (crowded or self._cells(box, ALL_LAYERS) > MAX_SOUNDINGS):
+            left = _half_mask(a, b, box)
             for part in (left, ~left):
                 depth[short[part]] = self._legs(a[part], b[part], c[part], d[part])
         elif sampled:
-            depth[short] = self._sampled(a, b, c, d)
+            depth[short] = self._sampled_least_depth(a, b, c, d)
         else:
             found = np.empty(len(short), np.float32)
             least_depths(self.arrays(box), a, b, c, d, found)
             depth[short] = found
         return depth
 
-    def _sampled(
+    def _sampled_least_depth(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
     ) -> FloatArray:
         """Return the least depth at samples of legs, for layers that are functions."""
-        steps = [x.spacing_deg or DENSE for x in self.layers if isinstance(x, FunctionLayer)]
+        steps = [
+            x.spacing_deg or DEFAULT_SAMPLE_SPACING
+            for x in self.layers
+            if isinstance(x, DepthFunctionLayer)
+        ]
         for layer in self.layers:
-            if isinstance(layer, GridLayer):
+            if isinstance(layer, DepthGrid):
                 steps += [np.diff(layer.lat).min() / 2.0, np.diff(layer.lon).min() / 2.0]
         widest = float(np.maximum(np.abs(lon2 - lon1), np.abs(lat2 - lat1)).max())
         count = min(max(math.ceil(widest / min(steps)), 8), 2048)
@@ -162,26 +168,28 @@ class Depths:
         a, b = unit_vectors(lat1, lon1), unit_vectors(lat2, lon2)
         for share in np.arange(count + 1) / count:
             x, y, z = np.moveaxis(a + share * (b - a), -1, 0)
-            lat = np.degrees(np.arctan2(z, POLAR * np.hypot(x, y)))
+            lat = np.degrees(np.arctan2(z, AXIS_RATIO_SQUARED * np.hypot(x, y)))
             least = np.minimum(least, self.at(lat, np.degrees(np.arctan2(y, x)), least=True))
         return least
 
-    def _long(self, lat1: float, lon1: float, lat2: float, lon2: float) -> float:
+    def _least_depth_of_long_leg(self, lat1: float, lon1: float, lat2: float, lon2: float) -> float:
         """Return the least depth of a leg cut along its geodesic."""
         wide = max(abs(lon2 - lon1), abs(lat2 - lat1))
-        lat, lon = along(lat1, lon1, lat2, lon2, np.linspace(0.0, 1.0, int(wide / 2.0) + 2))
+        lat, lon = positions_along(
+            lat1, lon1, lat2, lon2, np.linspace(0.0, 1.0, int(wide / 2.0) + 2)
+        )
         lat[0], lat[-1] = lat1, lat2
         return float(np.min(self.along(lat[:-1], lon[:-1], lat[1:], lon[1:])))  # NaN wins
 
 
-def _widened(box: Box) -> Box:
+def _box_with_margin(box: Box) -> Box:
     """Return a box a quarter wider each way, so that the next legs near by are on it too."""
     south, north, west, east = box
     tall, wide = 0.25 * (north - south) + 0.1, 0.25 * (east - west) + 0.1
     return max(south - tall, -90.0), min(north + tall, 90.0), west - wide, east + wide
 
 
-def _packed(
+def _pack_windows(
     windows: list[tuple[tuple[float, float, float, float], Float32Array] | None],
 ) -> DepthArrays:
     found = [w for w in windows if w is not None and min(w[1].shape) > 1]
@@ -190,13 +198,13 @@ def _packed(
     sizes = shapes[:, 0] * shapes[:, 1]
     if not found and windows:  # layers that do not reach here: unknown, not unchecked
         nothing = np.full((2, 2), np.nan, np.float32)
-        return _packed([((0.0, 1.0, 0.0, 1.0), nothing)])
+        return _pack_windows([((0.0, 1.0, 0.0, 1.0), nothing)])
     flat = [np.ascontiguousarray(v, np.float32).ravel() for _, v in found]
     values = np.concatenate(flat) if flat else np.empty(0, np.float32)
     return DepthArrays(grids, shapes, (np.cumsum(sizes) - sizes).astype(np.int64), values)
 
 
-def _box(lat: FloatArray, lon: FloatArray) -> Box:
+def _enclosing_box(lat: FloatArray, lon: FloatArray) -> Box:
     return float(lat.min()), float(lat.max()), float(lon.min()), float(lon.max())
 
 
@@ -204,7 +212,7 @@ def _covers(kept: Box, box: Box) -> bool:
     return kept[0] <= box[0] and kept[1] >= box[1] and kept[2] <= box[2] and kept[3] >= box[3]
 
 
-def _halves(lat: FloatArray, lon: FloatArray, box: Box) -> NDArray[np.bool_]:
+def _half_mask(lat: FloatArray, lon: FloatArray, box: Box) -> NDArray[np.bool_]:
     """Return a mask that parts places in two non-empty halves, across the longer side."""
     line = lat if box[1] - box[0] > box[3] - box[2] else lon
     order = np.argsort(line, kind="stable")
@@ -214,16 +222,16 @@ def _halves(lat: FloatArray, lon: FloatArray, box: Box) -> NDArray[np.bool_]:
 
 
 @cache
-def _world() -> DepthArrays:
+def _global_depth() -> DepthArrays:
     place = resources.files("thalweg.chart").joinpath("data/etopo1_30min.npz")
     with place.open("rb") as file, np.load(file, allow_pickle=False) as data:
         depth = -data["elevation"].astype(np.float32)
         grid = (float(data["south"]), float(data["spacing"]), float(data["west"]))
     depth = np.concatenate([depth, depth[:, :1]], 1)
-    return _packed([((grid[0], grid[1], grid[2], grid[1]), depth)])
+    return _pack_windows([((grid[0], grid[1], grid[2], grid[1]), depth)])
 
 
-def warning_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+def coarse_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     """Return depth [m] from every 30th point of ETOPO1 (NOAA): a warning, never a proof.
 
     Amante and Eakins (2009), doi:10.7289/V5C8276M; points, not means, so shoals between them are
@@ -232,5 +240,5 @@ def warning_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
     depth = np.empty(a.size)
     flat = [np.ascontiguousarray(x).ravel() for x in (a, b)]
-    depth_points(_world(), flat[0], flat[1], False, depth)
+    depths_at_points(_global_depth(), flat[0], flat[1], False, depth)
     return depth.reshape(a.shape)

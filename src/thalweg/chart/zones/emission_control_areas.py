@@ -21,16 +21,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.coast.rings import Rings
-from thalweg.core.errors import InputError, ThalwegWarning, unknown_name
+from thalweg.core.errors import InputError, ThalwegWarning, unknown_name_error
 from thalweg.core.geodesy import densify
 from thalweg.core.time import TimeLike, parse_time
 
 DATA_DATE: Final = "2026-11-21"  #: up to when the dates of the areas were looked up
-PIECE: Final = 10_000.0  # edges said to be geodesics are cut into pieces no longer than this [m]
+MAX_EDGE_LENGTH: Final = (
+    10_000.0  # edges said to be geodesics are cut into pieces no longer than this [m]
+)
 
 
 @dataclass(frozen=True)
-class EmissionArea:
+class EmissionControlArea:
     """An emission control area of MARPOL Annex VI.
 
     Attributes
@@ -61,7 +63,7 @@ class EmissionArea:
     limits: str
     note: str
 
-    def counts_at(self, date: str) -> bool:
+    def sulphur_limit_applies_on(self, date: str) -> bool:
         """Return whether its limit on sulphur counts on an ISO date."""
         return self.sulphur_from <= date
 
@@ -130,11 +132,11 @@ def _features() -> dict[str, dict[str, Any]]:
 
 
 @cache
-def emission_areas() -> tuple[EmissionArea, ...]:
+def emission_control_areas() -> tuple[EmissionControlArea, ...]:
     """Return all emission control areas, those still to come and those without limits included."""
-    fields = EmissionArea.__dataclass_fields__
+    fields = EmissionControlArea.__dataclass_fields__
     return tuple(
-        EmissionArea(**{name: f["properties"][name] for name in fields})
+        EmissionControlArea(**{name: f["properties"][name] for name in fields})
         for f in _features().values()
     )
 
@@ -151,13 +153,13 @@ def _outline(name: str) -> Rings:
         )
     lon, lat = np.array(feature["geometry"]["coordinates"][0]).T
     if feature["properties"]["lines"] == "geodesic":
-        lat, lon, _ = densify(lat, lon, PIECE)
+        lat, lon, _ = densify(lat, lon, MAX_EDGE_LENGTH)
     return Rings.from_lists([(list(zip(lat, lon)), False)])
 
 
-def chosen_areas(
+def select_emission_control_areas(
     names: str | Iterable[str] | None = None, *, date: TimeLike | None = None
-) -> list[EmissionArea]:
+) -> list[EmissionControlArea]:
     """Return the areas asked for by name, or all whose sulphur limit counts on a date.
 
     Parameters
@@ -178,13 +180,13 @@ def chosen_areas(
         If an area counts on the date but its limits are unknown, or the date is later than what
         was looked up.
     """
-    day = DATA_DATE if date is None else _day(date)
-    known = {area.name: area for area in emission_areas()}
+    day = DATA_DATE if date is None else _iso_date(date)
+    known = {area.name: area for area in emission_control_areas()}
     if names is not None:
-        found = [area for name in _spread(names, known) for area in [known[name]]]
+        found = [area for name in _full_area_names(names, known) for area in [known[name]]]
         for area in found:
             _outline(area.name)  # refuses those without limits
-            if date is not None and not area.counts_at(day):
+            if date is not None and not area.sulphur_limit_applies_on(day):
                 raise InputError(
                     f"The emission control area {area.name!r} does not count on {day}.",
                     f"Its limit on sulphur counts from {area.sulphur_from}.",
@@ -192,7 +194,7 @@ def chosen_areas(
                     value=area.name,
                 )
         return found
-    counting = [area for area in known.values() if area.counts_at(day)]
+    counting = [area for area in known.values() if area.sulphur_limit_applies_on(day)]
     without = [area.name for area in counting if area.limits == "unknown"]
     if without:
         message = f"On {day} {', '.join(without)} count, too, but their limits are unknown here."
@@ -200,19 +202,21 @@ def chosen_areas(
     return [area for area in counting if area.limits != "unknown"]
 
 
-def _spread(names: str | Iterable[str], known: dict[str, EmissionArea]) -> list[str]:
+def _full_area_names(
+    names: str | Iterable[str], known: dict[str, EmissionControlArea]
+) -> list[str]:
     """Return full names, each once; a shortened one means all that begin with it."""
     found: list[str] = []
     for written in [names] if isinstance(names, str) else list(names):
         plain = str(written).strip().casefold().replace(" ", "-").replace("_", "-")
         fits = [plain] if plain in known else [n for n in known if n.startswith(plain + "-")]
         if not fits:
-            raise unknown_name("emission control area", str(written), known)
+            raise unknown_name_error("emission control area", str(written), known)
         found += [name for name in fits if name not in found]
     return found
 
 
-def _day(date: TimeLike) -> str:
+def _iso_date(date: TimeLike) -> str:
     """Return an ISO date (UTC)."""
     if isinstance(date, Date) and not isinstance(date, datetime):
         return date.isoformat()

@@ -22,10 +22,12 @@ from numpy.typing import NDArray
 from thalweg.chart.coast.rings import Rings
 from thalweg.core.errors import InputError, ThalwegWarning
 
-Source: TypeAlias = "str | PathLike[str] | Mapping[str, Any] | list[Any]"
+GeoJsonSource: TypeAlias = "str | PathLike[str] | Mapping[str, Any] | list[Any]"
 
 
-def read(source: Source, what: str) -> list[tuple[Mapping[str, Any], Mapping[str, Any]]]:
+def read_features(
+    source: GeoJsonSource, what: str
+) -> list[tuple[Mapping[str, Any], Mapping[str, Any]]]:
     """Return (geometry, properties) of every feature of a file or of plain data.
 
     Raises
@@ -56,7 +58,7 @@ def _features(
         return
     kind = data.get("type") if isinstance(data, Mapping) else None
     if kind == "FeatureCollection":
-        yield from _features(_list(data.get("features") or [], what), properties, what)
+        yield from _features(_checked_list(data.get("features") or [], what), properties, what)
     elif kind == "Feature":
         told = data.get("properties") or {}
         if not isinstance(told, Mapping):
@@ -67,7 +69,7 @@ def _features(
             )
         yield from _features(data.get("geometry"), told, what)
     elif kind == "GeometryCollection":
-        yield from _features(_list(data.get("geometries") or [], what), properties, what)
+        yield from _features(_checked_list(data.get("geometries") or [], what), properties, what)
     elif kind in ("Polygon", "MultiPolygon"):
         yield data, properties
     else:
@@ -79,7 +81,7 @@ def _features(
         )
 
 
-def polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> list[Any]:
+def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> list[Any]:
     """Return the shapely polygons of a geometry, repaired (with a warning) where invalid.
 
     Raises
@@ -92,10 +94,10 @@ def polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> 
 
     parts = geometry.get("coordinates") or []
     found: list[Any] = []
-    for part in _list(parts, what) if geometry["type"] == "MultiPolygon" else [parts]:
+    for part in _checked_list(parts, what) if geometry["type"] == "MultiPolygon" else [parts]:
         rings = [
-            _unwound(_ring(ring, what), what, hole=k > 0)
-            for k, ring in enumerate(_list(part, what))
+            _unwrapped_ring(_ring(ring, what), what, hole=k > 0)
+            for k, ring in enumerate(_checked_list(part, what))
         ]
         if not rings:
             continue
@@ -105,7 +107,7 @@ def polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> 
         if not shapely.is_valid(shape):
             reason = shapely.is_valid_reason(shape)
             if not repair:
-                raise _crooked(reason, what)
+                raise _invalid_polygon_error(reason, what)
             warnings.warn(
                 ThalwegWarning(f"A polygon of the {what} was repaired: {reason}."), stacklevel=3
             )
@@ -114,7 +116,7 @@ def polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> 
     return found
 
 
-def _crooked(reason: str, what: str) -> InputError:
+def _invalid_polygon_error(reason: str, what: str) -> InputError:
     """Build the error for a polygon that is none, with the place (lon, lat) of the fault."""
     fault, _, place = reason.partition("[")
     numbers = place.rstrip("]").split()
@@ -127,7 +129,7 @@ def _crooked(reason: str, what: str) -> InputError:
     )
 
 
-def _list(value: Any, what: str) -> list[Any]:
+def _checked_list(value: Any, what: str) -> list[Any]:
     """Return a list, or raise for anything else in its place."""
     if isinstance(value, (list, tuple, np.ndarray)):
         return list(value)
@@ -161,7 +163,7 @@ def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:
     return ring if np.array_equal(ring[0], ring[-1]) else np.vstack([ring, ring[:1]])
 
 
-def _unwound(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDArray[np.float64]:
+def _unwrapped_ring(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDArray[np.float64]:
     """Return a ring with longitudes that run on across the antimeridian, if it crosses that.
 
     Raises
@@ -175,7 +177,7 @@ def _unwound(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDArray[np.
         return ring
     short = ring.copy()
     short[1:, 0] -= 360.0 * np.cumsum(np.where(long, np.sign(step), 0.0))
-    is_area, turns = _is_area(ring), short[-1, 0] != short[0, 0]
+    is_area, turns = _has_area(ring), short[-1, 0] != short[0, 0]
     if is_area and (np.abs(step[long]) == 360.0).all():
         return ring
     if turns and not is_area:
@@ -184,12 +186,12 @@ def _unwound(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDArray[np.
             "As an area it must be closed along a meridian through the pole.",
             "Let it run from longitude -180 to 180 and back by latitude 90 (or -90) of both.",
         )
-    if not is_area or (not turns and _is_area(short) and _turns_left(short) != hole):
+    if not is_area or (not turns and _has_area(short) and _turns_left(short) != hole):
         return short
-    raise _either_way(ring, int(np.flatnonzero(long)[0]), what)
+    raise _ambiguous_edge_error(ring, int(np.flatnonzero(long)[0]), what)
 
 
-def _is_area(ring: NDArray[np.float64]) -> bool:
+def _has_area(ring: NDArray[np.float64]) -> bool:
     import shapely
 
     shape: Any = shapely.polygons(ring)
@@ -202,7 +204,7 @@ def _turns_left(ring: NDArray[np.float64]) -> bool:
     return bool(shapely.is_ccw(shapely.linearrings(ring)))
 
 
-def _either_way(ring: NDArray[np.float64], edge: int, what: str) -> InputError:
+def _ambiguous_edge_error(ring: NDArray[np.float64], edge: int, what: str) -> InputError:
     west, east = sorted(ring[edge : edge + 2, 0])
     wide = east - west
     return InputError(
@@ -216,7 +218,7 @@ def _either_way(ring: NDArray[np.float64], edge: int, what: str) -> InputError:
     )
 
 
-def rings_of(shapes: list[Any]) -> Rings:
+def rings_from_polygons(shapes: list[Any]) -> Rings:
     """Return the rings (outer and holes) of shapely polygons."""
     lists: list[tuple[Any, bool]] = []
     for shape in shapes:
@@ -225,9 +227,9 @@ def rings_of(shapes: list[Any]) -> Rings:
     return Rings.from_lists(lists)
 
 
-def read_land(source: Source) -> Rings:
+def read_land_areas(source: GeoJsonSource) -> Rings:
     """Return the rings of land areas; holes in them are water."""
     shapes: list[Any] = []
-    for geometry, _ in read(source, "land"):
-        shapes += polygons(geometry, "land")
-    return rings_of(shapes)
+    for geometry, _ in read_features(source, "land"):
+        shapes += parse_polygons(geometry, "land")
+    return rings_from_polygons(shapes)

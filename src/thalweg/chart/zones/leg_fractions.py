@@ -13,10 +13,10 @@ from thalweg.core.geodesy import FloatArray, direct, inverse
 from thalweg.kernels.codes import LAND
 from thalweg.kernels.geometry.coast_index import CoastArrays, outlines_touched, point_codes
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, RADIUS, IndexArrays
-from thalweg.kernels.geometry.polygon_fractions import middles_inside, shares_by_halves
+from thalweg.kernels.geometry.polygon_fractions import fractions_by_bisection, middles_inside
 
-FINEST: Final = 0.25  # pieces this short are taken whole [m]
-LONGEST: Final = 400_000.0  # longer legs are cut into such pieces first [m]
+CROSSING_TOLERANCE: Final = 0.25  # pieces this short are taken whole [m]
+MAX_PART_LENGTH: Final = 400_000.0  # longer legs are cut into such pieces first [m]
 IntArray = NDArray[np.int64]
 _WORLD: Final = np.array([-90.0, 90.0, -180.0, 360.0])
 
@@ -35,7 +35,7 @@ def points_inside(index: IndexArrays, lat: FloatArray, lon: FloatArray) -> NDArr
     return np.asarray(code == LAND)
 
 
-def _middles(
+def _midpoints_inside(
     index: IndexArrays, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
 ) -> NDArray[np.bool_]:
     within = np.empty(len(lat1), np.bool_)
@@ -44,7 +44,7 @@ def _middles(
     return within
 
 
-def shares_inside(
+def fractions_inside(
     index: IndexArrays,
     outlines: IndexArrays,
     lat1: FloatArray,
@@ -52,7 +52,7 @@ def shares_inside(
     lat2: FloatArray,
     lon2: FloatArray,
     *,
-    finest: float = FINEST,
+    finest: float = CROSSING_TOLERANCE,
 ) -> FloatArray:
     """Return the share of the length of each geodesic leg [deg] inside the polygons of an index.
 
@@ -68,20 +68,22 @@ def shares_inside(
     )
     if not known.all():
         share = np.full(len(known), np.nan)
-        share[known] = shares_inside(index, outlines, *(x[known] for x in legs), finest=finest)
+        share[known] = fractions_inside(index, outlines, *(x[known] for x in legs), finest=finest)
         return share
     touched = np.empty(len(known), np.bool_)
     outlines_touched(outlines, *legs, touched)
     share = np.zeros(len(known))
     whole = np.flatnonzero(~touched)
-    share[whole] = _middles(index, *(x[whole] for x in legs))
+    share[whole] = _midpoints_inside(index, *(x[whole] for x in legs))
     cut = np.flatnonzero(touched)
     if len(cut):
-        share[cut] = _refined(index, outlines, *(x[cut] for x in legs), finest=finest)
+        share[cut] = _fractions_by_bisection(
+            index, outlines, *(x[cut] for x in legs), finest=finest
+        )
     return share
 
 
-def _refined(
+def _fractions_by_bisection(
     index: IndexArrays,
     outlines: IndexArrays,
     lat1: FloatArray,
@@ -93,7 +95,7 @@ def _refined(
 ) -> FloatArray:
     """Return shares of legs that touch an outline."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
-    parts = np.maximum(np.ceil(length / LONGEST), 1.0).astype(np.int64)
+    parts = np.maximum(np.ceil(length / MAX_PART_LENGTH), 1.0).astype(np.int64)
     leg = np.repeat(np.arange(len(parts)), parts)
     number = np.arange(len(leg)) - np.repeat(np.cumsum(parts) - parts, parts)
 
@@ -105,11 +107,11 @@ def _refined(
 
     low, high = ends(number / parts[leg]), ends((number + 1) / parts[leg])
     share = np.empty(len(leg))
-    shares_by_halves(index, outlines, *low, *high, finest / RADIUS, share)
+    fractions_by_bisection(index, outlines, *low, *high, finest / RADIUS, share)
     return np.minimum(np.bincount(leg, share / parts[leg], minlength=len(parts)), 1.0)
 
 
-def box_touched(
+def boxes_touched(
     outlines: list[Rings], lat: FloatArray, lon: FloatArray, dlat: float, dlon: float
 ) -> NDArray[np.bool_]:
     """Return which equal boxes (south-west corners, sides [deg]) an outline may run through.

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.chart.zones.leg_fractions import box_touched, points_inside
+from thalweg.chart.zones.leg_fractions import boxes_touched, points_inside
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
@@ -16,7 +16,7 @@ from thalweg.core.geodesy import FloatArray
 OUTSIDE: Final = 0
 INSIDE: Final = 1
 MIXED: Final = 2
-MOST_CELLS: Final = 20_000_000
+MAX_CELLS: Final = 20_000_000
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,10 @@ def zone_raster(zones: Zones, box: FloatArray, spacing: float) -> ZoneRaster:
         )
     rows = max(1, int(np.ceil((north - south) / spacing - 1e-9)))
     columns = max(1, int(np.ceil(width / spacing - 1e-9)))
-    if rows * columns > MOST_CELLS:
+    if rows * columns > MAX_CELLS:
         raise InputError(
             f"The raster would have {rows * columns / 1e6:.0f} million cells.",
-            f"At most {MOST_CELLS / 1e6:.0f} million are made.",
+            f"At most {MAX_CELLS / 1e6:.0f} million are made.",
             "Give a smaller box or a wider spacing.",
             field="spacing",
         )
@@ -76,7 +76,7 @@ def zone_raster(zones: Zones, box: FloatArray, spacing: float) -> ZoneRaster:
     price = np.ones(len(y), np.float32)
     if zones.eca:
         cell[points_inside(zones.eca_index, y + 0.5 * dlat, x + 0.5 * dlon)] = INSIDE
-        cell[box_touched([zone.rings for zone in zones.eca], y, x, dlat, dlon)] = MIXED
+        cell[boxes_touched([zone.rings for zone in zones.eca], y, x, dlat, dlon)] = MIXED
     if zones.price:
         middle = (y + 0.5 * dlat, x + 0.5 * dlon)
         price = zones.factors(*middle, *middle)[1].astype(np.float32)

@@ -17,20 +17,25 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.chart.coast.coast_cache import stored
+from thalweg.chart.coast.coast_cache import load_or_build
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
 from thalweg.chart.zones import geojson_zones
 from thalweg.chart.zones.emission_control_areas import EcaZone
-from thalweg.chart.zones.leg_fractions import FINEST, outlines_only, points_inside, shares_inside
+from thalweg.chart.zones.leg_fractions import (
+    CROSSING_TOLERANCE,
+    fractions_inside,
+    outlines_only,
+    points_inside,
+)
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray, direct, inverse, wrap_longitude
 from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
-SIDE: Final = 128  # cells along a face of the index of no-go zones
-PIECE: Final = 50_000.0  # legs are cut into pieces of at most this for factors [m]
-KINDS: Final = {
+ZONE_INDEX_CELLS: Final = 128  # cells along a face of the index of no-go zones
+MAX_PART_LENGTH: Final = 50_000.0  # legs are cut into pieces of at most this for factors [m]
+ZONE_KINDS: Final = {
     "nogo": "no-go",
     "forbidden": "no-go",
     "avoid": "no-go",
@@ -44,11 +49,11 @@ KINDS: Final = {
     "nowaiting": "no-waiting",
     "noanchoring": "no-waiting",
 }
-PLAIN: Final = ("no-go", "anchorage", "no-waiting")  # kinds without a factor
+KINDS_WITHOUT_FACTOR: Final = ("no-go", "anchorage", "no-waiting")  # kinds without a factor
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
+class ZoneGroup:
     """Zones of one kind, each on three turns of longitude, their factors and their outlines."""
 
     tree: Any
@@ -56,7 +61,7 @@ class Group:
     outlines: IndexArrays
 
     @classmethod
-    def of(cls, zones: tuple[tuple[Any, float], ...]) -> Group:
+    def of(cls, zones: tuple[tuple[Any, float], ...]) -> ZoneGroup:
         """Prepare (polygon, factor) pairs."""
         import shapely.affinity
 
@@ -68,7 +73,7 @@ class Group:
         shapely.prepare(shapes)
         parts = [part for shape, _ in zones for part in shapely.get_parts(shape)]
         areas = [part for part in parts if part.geom_type == "Polygon"]
-        outlines = build_index(geojson_zones.rings_of(areas), SIDE)
+        outlines = build_index(geojson_zones.rings_from_polygons(areas), ZONE_INDEX_CELLS)
         factors = np.repeat([factor for _, factor in zones], 3)
         return cls(shapely.STRtree(shapes), factors, outlines)
 
@@ -118,7 +123,7 @@ class Zones:
     no_waiting: tuple[Any, ...] = ()
 
     @classmethod
-    def read(cls, source: geojson_zones.Source) -> Zones:
+    def read(cls, source: geojson_zones.GeoJsonSource) -> Zones:
         """Read zones from a GeoJSON file or plain data.
 
         Raises
@@ -128,29 +133,34 @@ class Zones:
             missing or makes no sense.
         """
         found: dict[str, list[tuple[Any, float]]] = {
-            kind: [] for kind in (*PLAIN, "penalty", "price")
+            kind: [] for kind in (*KINDS_WITHOUT_FACTOR, "penalty", "price")
         }
         eca: list[EcaZone] = []
-        for geometry, properties in geojson_zones.read(source, "zones"):
-            kind = _kind(properties)
-            shapes = geojson_zones.polygons(geometry, "zones", repair=False)
+        for geometry, properties in geojson_zones.read_features(source, "zones"):
+            kind = _zone_kind(properties)
+            shapes = geojson_zones.parse_polygons(geometry, "zones", repair=False)
             if kind == "eca":
                 eca.append(
-                    EcaZone(str(properties.get("name") or "eca"), geojson_zones.rings_of(shapes))
+                    EcaZone(
+                        str(properties.get("name") or "eca"),
+                        geojson_zones.rings_from_polygons(shapes),
+                    )
                 )
                 continue
-            factor = 1.0 if kind in PLAIN else _factor(kind, properties)
+            factor = 1.0 if kind in KINDS_WITHOUT_FACTOR else _zone_factor(kind, properties)
             found[kind] += [(shape, factor) for shape in shapes]
-        no_go, anchorages, barred = (tuple(shape for shape, _ in found[kind]) for kind in PLAIN)
-        factors = _apart(found["penalty"]), _apart(found["price"])
+        no_go, anchorages, barred = (
+            tuple(shape for shape, _ in found[kind]) for kind in KINDS_WITHOUT_FACTOR
+        )
+        factors = _without_overlaps(found["penalty"]), _without_overlaps(found["price"])
         return cls(no_go, *factors, tuple(eca), anchorages, barred)
 
     def joined(self, other: Zones) -> Zones:
         """Return these zones and another chart's."""
         return Zones(
             self.no_go + other.no_go,
-            _apart([*self.penalty, *other.penalty]),
-            _apart([*self.price, *other.price]),
+            _without_overlaps([*self.penalty, *other.penalty]),
+            _without_overlaps([*self.price, *other.price]),
             self.eca + tuple(zone for zone in other.eca if zone not in self.eca),
             self.anchorages + other.anchorages,
             self.no_waiting + other.no_waiting,
@@ -161,7 +171,7 @@ class Zones:
         """The grid of the edges of the no-go zones."""
         if not self.no_go:
             return empty_index()
-        return build_index(geojson_zones.rings_of(list(self.no_go)), SIDE)
+        return build_index(geojson_zones.rings_from_polygons(list(self.no_go)), ZONE_INDEX_CELLS)
 
     @cached_property
     def eca_index(self) -> IndexArrays:
@@ -174,21 +184,21 @@ class Zones:
         rings = self.eca[0].rings
         for zone in self.eca[1:]:
             rings = rings.joined(zone.rings)
-        path = cache_folder("coast") / f"eca-{rings.fingerprint()}-{SIDE}-v1.npz"
-        return stored(path, lambda: build_index(rings, SIDE))
+        path = cache_folder("coast") / f"eca-{rings.fingerprint()}-{ZONE_INDEX_CELLS}-v1.npz"
+        return load_or_build(path, lambda: build_index(rings, ZONE_INDEX_CELLS))
 
     @cached_property
     def _eca_outlines(self) -> IndexArrays:
         return outlines_only(self.eca_index)
 
-    def eca_share(
+    def eca_fraction(
         self,
         lat1: ArrayLike,
         lon1: ArrayLike,
         lat2: ArrayLike,
         lon2: ArrayLike,
         *,
-        finest: float = FINEST,
+        finest: float = CROSSING_TOLERANCE,
     ) -> FloatArray:
         """Return the share of the length of legs [deg] inside any emission control area.
 
@@ -199,7 +209,7 @@ class Zones:
             return np.where(np.isfinite(sum(ends)), 0.0, np.nan)
         legs = [x.flatten() for x in ends]
         lat1, lon1, lat2, lon2 = legs
-        found = shares_inside(
+        found = fractions_inside(
             self.eca_index, self._eca_outlines, lat1, lon1, lat2, lon2, finest=finest
         )
         return found.reshape(ends[0].shape)
@@ -212,9 +222,9 @@ class Zones:
         return points_inside(self.eca_index, a.flatten(), b.flatten()).reshape(a.shape)
 
     @cached_property
-    def _groups(self) -> tuple[Group, Group]:
+    def _groups(self) -> tuple[ZoneGroup, ZoneGroup]:
         """Penalty and price zones ready for legs."""
-        return Group.of(self.penalty), Group.of(self.price)
+        return ZoneGroup.of(self.penalty), ZoneGroup.of(self.price)
 
     def factors(
         self, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
@@ -235,7 +245,7 @@ class Zones:
         penalty[known], price[known] = (self._weighted(whole, group) for group in self._groups)
         return penalty.reshape(shape), price.reshape(shape)
 
-    def _weighted(self, legs: list[FloatArray], group: Group) -> FloatArray:
+    def _weighted(self, legs: list[FloatArray], group: ZoneGroup) -> FloatArray:
         """Return the factors of legs of one group: at once where no outline is touched."""
         excess = np.zeros(len(legs[0]))
         if not len(group.factors):
@@ -246,7 +256,7 @@ class Zones:
         excess[whole] = group.at(legs[0][whole], legs[1][whole])
         cut = np.flatnonzero(touched)
         if len(cut):
-            lines, leg, pieces = _lines(*(x[cut] for x in legs))
+            lines, leg, pieces = _geodesic_parts(*(x[cut] for x in legs))
             shares = np.bincount(leg, group.along(lines), minlength=len(cut))
             excess[cut] = shares / pieces
         return 1.0 + excess
@@ -263,14 +273,14 @@ class Zones:
         )
 
 
-def _kind(properties: Mapping[str, Any]) -> str:
+def _zone_kind(properties: Mapping[str, Any]) -> str:
     written = str(properties.get("kind") or properties.get("type") or "")
     plain = "".join(c for c in written.casefold() if c.isalnum())
     for ending in ("zone", "area", "factor"):
         plain = plain.removesuffix(ending)
     if plain == "eca" and {"factor", "eca_factor", "price_factor"} & properties.keys():
         return "price"
-    if plain not in KINDS:
+    if plain not in ZONE_KINDS:
         named = f" {str(properties['name'])[:60]!r}" if properties.get("name") else ""
         raise InputError(
             f"A zone{named} has " + (f"the kind {written!r}." if written else "no kind."),
@@ -278,10 +288,10 @@ def _kind(properties: Mapping[str, Any]) -> str:
             "Give every feature the property kind.",
             value=written,
         )
-    return KINDS[plain]
+    return ZONE_KINDS[plain]
 
 
-def _factor(kind: str, properties: Mapping[str, Any]) -> float:
+def _zone_factor(kind: str, properties: Mapping[str, Any]) -> float:
     written = properties.get("factor", properties.get(f"{kind}_factor"))
     if written is None and kind == "price":
         written = properties.get("eca_factor")
@@ -300,7 +310,7 @@ def _factor(kind: str, properties: Mapping[str, Any]) -> float:
     return factor
 
 
-def _apart(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float], ...]:
+def _without_overlaps(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float], ...]:
     """Return zones cut so that none overlap; the largest factor keeps the common part."""
     import shapely
 
@@ -315,14 +325,14 @@ def _apart(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float], ...]:
     return tuple(kept)
 
 
-def _lines(
+def _geodesic_parts(
     lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
 ) -> tuple[Any, NDArray[np.int64], FloatArray]:
     """Return pieces of the geodesics as lines, the leg of each, and each leg's count."""
     import shapely
 
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
-    pieces = np.maximum(np.ceil(length / PIECE), 1.0).astype(np.int64)
+    pieces = np.maximum(np.ceil(length / MAX_PART_LENGTH), 1.0).astype(np.int64)
     leg = np.repeat(np.arange(len(pieces)), pieces)
     number = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     sides = []

@@ -14,14 +14,14 @@ PACKAGE = Path(__file__).resolve().parents[1]
 _MAX_FOLDERS = 4  # folders of compiled code that are kept, the newest ones
 
 
-def _stamp() -> str:
+def _source_hash() -> str:
     """Return a hash that changes with any file of the package, its sub-packages included."""
     files = sorted(PACKAGE.rglob("*.py"))
     facts = [(str(file), file.stat().st_size, file.stat().st_mtime_ns) for file in files]
     return hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
 
 
-def _base() -> Path:
+def _cache_root() -> Path:
     override = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("THALWEG_CACHE")
     if override:
         return Path(override)
@@ -29,12 +29,12 @@ def _base() -> Path:
 
 
 def _make_folder() -> Path:
-    base = _base() / "kernels"
-    folder = base / _stamp()
+    base = _cache_root() / "kernels"
+    folder = base / _source_hash()
     try:
         if not folder.is_dir():
             folder.mkdir(parents=True, exist_ok=True)
-            _forget_old(base)
+            _remove_old_folders(base)
         if os.access(folder, os.W_OK):
             return folder
     except OSError:
@@ -42,11 +42,11 @@ def _make_folder() -> Path:
     return Path(tempfile.mkdtemp(prefix="thalweg-kernels-"))
 
 
-def _forget_old(base: Path) -> None:
+def _remove_old_folders(base: Path) -> None:
     folders = sorted(base.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
     for folder in folders[_MAX_FOLDERS:]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 #: Where the compiled code of these kernels is kept.
-COMPILED = _make_folder()
+COMPILED_FOLDER = _make_folder()

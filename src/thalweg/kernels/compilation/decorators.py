@@ -17,25 +17,28 @@ def _compile(function, **options):
         return jit(**options)(function)
 
 
-def bare(function):
+def allocation_free(function):
     """Compile a kernel without reference counting; it must not create or return arrays."""
     return _compile(function)
 
 
-def inner(function):
-    """Compile as `bare` does, for callers in kernels only: without the door to Python."""
+def kernel_only(function):
+    """Compile as `allocation_free` does, for callers in kernels only: without the door to
+    Python.
+    """
     return _compile(function, **_INNER)
 
 
 def inlined(function):
-    """Compile as `inner` does, into the caller: for small functions and those called in one place.
+    """Compile as `kernel_only` does, into the caller: for small functions and those called in one
+    place.
 
     Tuples of arrays are handed over by value, some hundred machine words at every call.
     """
     return _compile(function, forceinline=True, **_INNER)
 
 
-def woven(function):
+def inlined_by_numba(function):
     """Compile as part of the caller from the start: for thin layers over large inlined functions.
 
     Each layer of `inlined` functions is optimised anew; woven ones cost nothing. Do not weave large

@@ -2,7 +2,7 @@
 
 import numba
 
-from thalweg.kernels.compilation.compiled_code_cache import COMPILED
+from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 
 
 def jit(function=None, **options):
@@ -11,7 +11,7 @@ def jit(function=None, **options):
         return lambda given: jit(given, **options)
     options = {"cache": True, "error_model": "numpy", "nogil": True, **options}
     before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(COMPILED)
+    numba.config.CACHE_DIR = str(COMPILED_FOLDER)
     try:
         return numba.njit(**options)(function)
     finally:

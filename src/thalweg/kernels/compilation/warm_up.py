@@ -12,45 +12,47 @@ import importlib
 import subprocess
 import sys
 
-from thalweg.kernels.compilation.compiled_code_cache import COMPILED
+from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 
-_DONE, _BUSY = COMPILED / "warm", COMPILED / "warming"
-_PATIENCE = 120.0  # seconds the parent waits for the child at most
-_MANY = 200_000  # objects made before rubbish is looked for: compiling makes millions that stay
+_COMPILED_MARKER, _COMPILING_MARKER = COMPILED_FOLDER / "warm", COMPILED_FOLDER / "warming"
+_CHILD_TIMEOUT = 120.0  # seconds the parent waits for the child at most
+_GARBAGE_COLLECTION_THRESHOLD = (
+    200_000  # objects made before rubbish is looked for: compiling makes millions that stay
+)
 _children: list[subprocess.Popen[bytes]] = []
 
 
-def begin(module: str) -> None:
+def start_compiling(module: str) -> None:
     """Start a child that calls ``compile_search`` of a module, unless that has been done."""
-    if _DONE.exists():
+    if _COMPILED_MARKER.exists():
         return
-    gc.set_threshold(_MANY)
+    gc.set_threshold(_GARBAGE_COLLECTION_THRESHOLD)
     if not sys.executable or getattr(sys, "frozen", False):
         return
     try:
-        _BUSY.touch(exist_ok=False)
-        command = [sys.executable, "-c", f"from {__name__} import work; work({module!r})"]
+        _COMPILING_MARKER.touch(exist_ok=False)
+        command = [sys.executable, "-c", f"import {__name__} as w; w.compile_in_child({module!r})"]
         quiet = subprocess.DEVNULL
         _children.append(subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet))
     except OSError:
         return
 
 
-def finish() -> None:
+def wait_until_compiled() -> None:
     """Wait for the child, if there is one."""
     while _children:
         child = _children.pop()
         try:
-            child.wait(timeout=_PATIENCE)
+            child.wait(timeout=_CHILD_TIMEOUT)
         except subprocess.TimeoutExpired:
             child.kill()
 
 
-def work(module: str) -> None:
+def compile_in_child(module: str) -> None:
     """Do the child's work."""
-    gc.set_threshold(_MANY)
+    gc.set_threshold(_GARBAGE_COLLECTION_THRESHOLD)
     try:
         importlib.import_module(module).compile_search()
-        _DONE.touch()
+        _COMPILED_MARKER.touch()
     finally:
-        _BUSY.unlink(missing_ok=True)
+        _COMPILING_MARKER.unlink(missing_ok=True)

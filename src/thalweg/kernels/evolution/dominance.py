@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.compilation.jit import jit
 
 
-@bare
+@allocation_free
 def assign_fronts(order, second, tails, rank):
     """Assign every point to its non-dominated front.
 
@@ -52,7 +52,7 @@ def assign_fronts(order, second, tails, rank):
     return fronts
 
 
-@bare
+@allocation_free
 def assign_crowding(order, first, second, rank, ends, crowding):
     """Fill the crowding distance of every point within its front.
 

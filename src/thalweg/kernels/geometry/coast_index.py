@@ -25,19 +25,19 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import LAND, NO_DATA, NO_GO, OK
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.cube_sphere import (
+    AXIS_RATIO_SQUARED,
     BULGE,
     DEGREE,
     FIRST_ROW,
     FLATTENING,
-    POLAR,
     IndexArrays,
     column_of,
+    face_components,
     face_of,
     inside,
     latitude_longitude,
-    on_face,
     unit_vector,
 )
 
@@ -60,14 +60,14 @@ class CoastArrays(NamedTuple):
     area: np.ndarray
 
 
-@bare
+@allocation_free
 def _offset(k, mz, ez, half, tan_half, t):
     """Return how far the geodesic lies beside the plane at the angle t from its middle."""
     s, c = sin(t), cos(t)
     return k * (mz * (t * s - half * tan_half * c) + ez * (half * s / tan_half - t * c))
 
 
-@bare
+@allocation_free
 def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
     """Test an edge near the leg in fine pieces: 0 clear, 1 touched, 2 unsure."""
     plat, plon = latitude_longitude(p[0], p[1], p[2])
@@ -96,7 +96,7 @@ def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
     return answer
 
 
-@bare
+@allocation_free
 def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
     """Test one edge that lies near the leg's plane: 0 clear, 1 touched, 2 unsure."""
     half = atan(tan_half)
@@ -120,7 +120,7 @@ def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
     return _edge_cut(p, q, m, e, n, k, half, tan_half, unsure)
 
 
-@bare
+@allocation_free
 def edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure):
     """Test the edges of one cell: 0 clear, 1 touched, 2 unsure."""
     xyz, first = index.xyz, index.first
@@ -140,8 +140,8 @@ def edges_of_cell_touched(index, row, m, e, n, k, tan_half, near, unsure):
     return answer
 
 
-@bare
-def _way_out(direction, side, column, mu, eu, mw, ew, tau):
+@allocation_free
+def _column_exit(direction, side, column, mu, eu, mw, ew, tau):
     """Return where the leg leaves a column of cells, as the tangent of the angle; or infinity."""
     if direction == 0.0:
         return np.inf
@@ -153,24 +153,24 @@ def _way_out(direction, side, column, mu, eu, mw, ew, tau):
     return out if out > tau else np.inf  # not above tau: it lies behind the back of the cube
 
 
-@bare
+@allocation_free
 def cell_exit(m, e, face, i, j, side, tau):
     """Return where an arc leaves cell (i, j) of a face, as the tangent of the angle."""
-    mu, mv, mw = on_face(m[0], m[1], m[2], face)
-    eu, ev, ew = on_face(e[0], e[1], e[2], face)
-    out_u = _way_out(eu * mw - mu * ew, side, i, mu, eu, mw, ew, tau)
-    out_v = _way_out(ev * mw - mv * ew, side, j, mv, ev, mw, ew, tau)
+    mu, mv, mw = face_components(m[0], m[1], m[2], face)
+    eu, ev, ew = face_components(e[0], e[1], e[2], face)
+    out_u = _column_exit(eu * mw - mu * ew, side, i, mu, eu, mw, ew, tau)
+    out_v = _column_exit(ev * mw - mv * ew, side, j, mv, ev, mw, ew, tau)
     return min(out_u, out_v)
 
 
-@bare
+@allocation_free
 def arc_frame(m, n, tan_half):
     """Return the geodesic's curvature against the plane n, and how near the plane matters."""
     k = -FLATTENING * n[2]
     return k, abs(k) * tan_half * tan_half * (1.01 * abs(m[2]) + 0.4 * tan_half) + BULGE
 
 
-@bare
+@allocation_free
 def _arc_touched(index, m, e, tan_half, unsure):
     """Walk an arc of at most `LONGEST_ARC`: 0 clear, 1 touched, 2 unsure."""
     side, cell = index.side, index.cell
@@ -183,7 +183,7 @@ def _arc_touched(index, m, e, tan_half, unsure):
     while tau < tan_half:
         x, y, z = m[0] + tau * e[0], m[1] + tau * e[1], m[2] + tau * e[2]
         face = face_of(x, y, z)
-        u, v, w = on_face(x, y, z, face)
+        u, v, w = face_components(x, y, z, face)
         i, j = column_of(u / w, side), column_of(v / w, side)
         value = cell[(face * side + j) * side + i]
         if value > big:
@@ -201,19 +201,19 @@ def _arc_touched(index, m, e, tan_half, unsure):
     return answer
 
 
-@bare
-def _is_world(area):
+@allocation_free
+def _is_whole_globe(area):
     return area[0] <= -90.0 and area[1] >= 90.0 and area[3] >= 360.0
 
 
-@bare
+@allocation_free
 def _position_in_area(area, lat, lon):
     """Return whether a position [deg] lies in an area, borders included."""
     east = (lon - area[2]) % 360.0
     return area[0] <= lat <= area[1] and (east <= area[3] or east >= 360.0 - 1e-9)
 
 
-@bare
+@allocation_free
 def leg_in_area(area, lat1, lon1, lat2, lon2):
     """Return whether the geodesic between two positions [deg] stays in an area.
 
@@ -230,23 +230,23 @@ def leg_in_area(area, lat1, lon1, lat2, lon2):
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
     if (nx * ay - ny * ax) * (nx * by - ny * bx) >= 0.0:  # no highest point between a and b
         return True
-    top = atan2(hypot(nx, ny), POLAR * abs(nz)) / DEGREE
+    top = atan2(hypot(nx, ny), AXIS_RATIO_SQUARED * abs(nz)) / DEGREE
     return top <= area[1] if az + bz > 0.0 else -top >= area[0]
 
 
-@bare
+@allocation_free
 def _vector_code(coast, lat, lon, x, y, z):
     """Return OK, LAND or NO_GO for a position given both ways."""
     if inside(coast.land, x, y, z):
         return LAND
-    if not _is_world(coast.area) and not _position_in_area(coast.area, lat, lon):
+    if not _is_whole_globe(coast.area) and not _position_in_area(coast.area, lat, lon):
         return NO_GO
     if coast.zones.side > 1 and inside(coast.zones, x, y, z):
         return NO_GO
     return OK
 
 
-@bare
+@allocation_free
 def point_code(coast, lat, lon):
     """Return OK, LAND or NO_GO (a no-go zone or outside the area) for a position [deg]."""
     if not (abs(lat) <= 90.0 and abs(lon) < 1e6):
@@ -255,7 +255,7 @@ def point_code(coast, lat, lon):
     return _vector_code(coast, lat, lon, x, y, z)
 
 
-@bare
+@allocation_free
 def geodesic_point(a, b, share):
     """Return the unit vector at a share of the leg's angle, on the geodesic to first order."""
     mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]
@@ -272,8 +272,8 @@ def geodesic_point(a, b, share):
     return x / length, y / length, z / length
 
 
-@bare
-def _between(a, b):
+@allocation_free
+def _arc_between(a, b):
     """Return the middle direction, the direction along and the tangent of half the angle."""
     mx, my, mz = a[0] + b[0], a[1] + b[1], a[2] + b[2]
     ex, ey, ez = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -281,18 +281,18 @@ def _between(a, b):
     return (mx / lm, my / lm, mz / lm), (ex / le, ey / le, ez / le), le / lm
 
 
-@bare
+@allocation_free
 def _touched(index, a, b, chord, unsure):
     """Walk the leg from a to b in arcs: 0 clear, 1 touched, 2 unsure."""
     if chord < LONGEST_ARC:
-        m, e, tan_half = _between(a, b)
+        m, e, tan_half = _arc_between(a, b)
         return _arc_touched(index, m, e, tan_half, unsure)
     arcs = ceil(2.0 * asin(min(0.5 * chord, 1.0)) / LONGEST_ARC)
     answer = 0
     p = a
     for i in range(arcs):
         q = b if i == arcs - 1 else geodesic_point(a, b, (i + 1.0) / arcs)
-        m, e, tan_half = _between(p, q)
+        m, e, tan_half = _arc_between(p, q)
         touched = _arc_touched(index, m, e, tan_half, unsure)
         if touched == 1:
             return 1
@@ -301,7 +301,7 @@ def _touched(index, a, b, chord, unsure):
     return answer
 
 
-@bare
+@allocation_free
 def leg_code(coast, lat1, lon1, lat2, lon2):
     """Return why a geodesic leg may not be sailed, and whether that is unsure.
 
@@ -336,7 +336,7 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
     land = _touched(coast.land, a, b, chord, unsure)
     if land > 0:
         return LAND, far or land == 2
-    if not _is_world(coast.area) and not leg_in_area(coast.area, lat1, lon1, lat2, lon2):
+    if not _is_whole_globe(coast.area) and not leg_in_area(coast.area, lat1, lon1, lat2, lon2):
         return NO_GO, False
     if coast.zones.side > 1:
         zone = _touched(coast.zones, a, b, chord, unsure)
@@ -345,27 +345,27 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
     return OK, far
 
 
-@bare
+@allocation_free
 def leg_blocked(coast, lat1, lon1, lat2, lon2):
     """Return whether a geodesic leg [deg] touches land or a no-go zone or leaves the area."""
     return leg_code(coast, lat1, lon1, lat2, lon2)[0] != OK
 
 
-@bare
+@allocation_free
 def leg_codes(coast, lat1, lon1, lat2, lon2, code, unsure):
     """Fill ``code`` (int8) and ``unsure`` (bool) for many legs; see `leg_code`."""
     for i in range(len(code)):
         code[i], unsure[i] = leg_code(coast, lat1[i], lon1[i], lat2[i], lon2[i])
 
 
-@bare
+@allocation_free
 def point_codes(coast, lat, lon, code):
     """Fill ``code`` (int8) for many positions [deg]; see `point_code`."""
     for i in range(len(code)):
         code[i] = point_code(coast, lat[i], lon[i])
 
 
-@bare
+@allocation_free
 def outline_touched(index, a, b):
     """Return whether a leg between unit vectors may touch an outline; long ones may."""
     x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -375,7 +375,7 @@ def outline_touched(index, a, b):
     return not chord < LONGEST_ARC
 
 
-@bare
+@allocation_free
 def outlines_touched(index, lat1, lon1, lat2, lon2, touched):
     """Fill ``touched`` (bool) with whether legs [deg] may touch an outline; long ones may."""
     for i in range(len(touched)):

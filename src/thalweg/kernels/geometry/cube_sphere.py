@@ -11,10 +11,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 
 FLATTENING: Final = 1.0 / 298.257223563  # WGS 84
-POLAR: Final = (1.0 - FLATTENING) ** 2  # tan(geocentric latitude) / tan(latitude)
+AXIS_RATIO_SQUARED: Final = (1.0 - FLATTENING) ** 2  # tan(geocentric latitude) / tan(latitude)
 RADIUS: Final = 6371008.8  # [m]
 DEGREE: Final = pi / 180.0
 BULGE: Final = 1.3 / RADIUS  # most an edge's arc leaves the straight line in lon, lat [rad]
@@ -50,17 +50,17 @@ class IndexArrays(NamedTuple):
     first: np.ndarray
 
 
-@bare
+@allocation_free
 def unit_vector(lat, lon):
     """Return the unit vector of the geocentric direction of a position [deg]."""
-    c, s = cos(lat * DEGREE), POLAR * sin(lat * DEGREE)
+    c, s = cos(lat * DEGREE), AXIS_RATIO_SQUARED * sin(lat * DEGREE)
     scale = 1.0 / sqrt(c * c + s * s)
     c *= scale
     return c * cos(lon * DEGREE), c * sin(lon * DEGREE), s * scale
 
 
-@bare
-def on_face(x, y, z, face):
+@allocation_free
+def face_components(x, y, z, face):
     """Return a vector's components (u, v, w) on a face: w outward, u and v across."""
     if face == 0:
         return y, z, x
@@ -75,8 +75,8 @@ def on_face(x, y, z, face):
     return x, y, -z
 
 
-@bare
-def off_face(u, v, w, face):
+@allocation_free
+def vector_from_face(u, v, w, face):
     """Return the vector whose components on a face are (u, v, w)."""
     if face == 0:
         return w, u, v
@@ -91,7 +91,7 @@ def off_face(u, v, w, face):
     return u, v, -w
 
 
-@bare
+@allocation_free
 def face_of(x, y, z):
     """Return the face of the cube that a vector points through."""
     ax, ay, az = abs(x), abs(y), abs(z)
@@ -102,20 +102,20 @@ def face_of(x, y, z):
     return 4 if z > 0.0 else 5
 
 
-@bare
+@allocation_free
 def column_of(u, side):
     """Return which of a face's columns holds u in [-1, 1]."""
     return min(max(int((u + 1.0) * 0.5 * side), 0), side - 1)
 
 
-@bare
+@allocation_free
 def latitude_longitude(x, y, z):
     """Return the position [deg] of a geocentric direction."""
-    return atan2(z, POLAR * hypot(x, y)) / DEGREE, atan2(y, x) / DEGREE
+    return atan2(z, AXIS_RATIO_SQUARED * hypot(x, y)) / DEGREE, atan2(y, x) / DEGREE
 
 
-@bare
-def _lonlat_side(px, py, pz, qx, qy, qz, x, y, z):
+@allocation_free
+def _side_of_edge(px, py, pz, qx, qy, qz, x, y, z):
     """Return on which side of the edge p, q, straight in lon and lat, a near point lies."""
     plat, plon = latitude_longitude(px, py, pz)
     qlat, qlon = latitude_longitude(qx, qy, qz)
@@ -125,7 +125,7 @@ def _lonlat_side(px, py, pz, qx, qy, qz, x, y, z):
     return east * (lat - plat) - here * (qlat - plat)
 
 
-@bare
+@allocation_free
 def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
     """Return the winding number at a, given that at b; both lie in the row's cell."""
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
@@ -140,25 +140,25 @@ def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
             side_a = ex * ax + ey * ay + ez * az
             side_b = ex * bx + ey * by + ez * bz
             if exact and side_a * side_a < 4.0 * BULGE * BULGE * (ex * ex + ey * ey + ez * ez):
-                side_a = _lonlat_side(px, py, pz, qx, qy, qz, ax, ay, az)
+                side_a = _side_of_edge(px, py, pz, qx, qy, qz, ax, ay, az)
             if (side_a >= 0.0) != (side_b >= 0.0):
                 winding += 1 if side_a >= 0.0 else -1
         before = here
     return winding
 
 
-@bare
+@allocation_free
 def cell_middle(face, i, j, side):
     """Return the direction (not of unit length) of the middle of a cell; halves are allowed."""
-    return off_face((2.0 * i + 1.0) / side - 1.0, (2.0 * j + 1.0) / side - 1.0, 1.0, face)
+    return vector_from_face((2.0 * i + 1.0) / side - 1.0, (2.0 * j + 1.0) / side - 1.0, 1.0, face)
 
 
-@bare
+@allocation_free
 def inside(index, x, y, z):
     """Return whether a direction lies inside the polygons of an index."""
     side = index.side
     face = face_of(x, y, z)
-    u, v, w = on_face(x, y, z, face)
+    u, v, w = face_components(x, y, z, face)
     i, j = column_of(u / w, side), column_of(v / w, side)
     value = index.cell[(face * side + j) * side + i]
     if value > FIRST_ROW:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.cube_sphere import latitude_longitude, unit_vector
 
 
@@ -35,8 +35,8 @@ class DepthArrays(NamedTuple):
     values: np.ndarray
 
 
-@bare
-def _sounding(depths, layer, lat, lon, least):
+@allocation_free
+def _layer_depth(depths, layer, lat, lon, least):
     """Return one layer's depth at a position: bilinear, or the least of the soundings round it."""
     rows, columns = depths.shape[layer, 0], depths.shape[layer, 1]
     y = (lat - depths.grid[layer, 0]) / depths.grid[layer, 1]
@@ -64,18 +64,18 @@ def _sounding(depths, layer, lat, lon, least):
     return value
 
 
-@bare
-def depth_point(depths, lat, lon, least):
+@allocation_free
+def depth_at_point(depths, lat, lon, least):
     """Return the depth [m] at a position [deg] from the first layer that knows it, else NaN."""
     for layer in range(len(depths.offset)):
-        value = _sounding(depths, layer, lat, lon, least)
+        value = _layer_depth(depths, layer, lat, lon, least)
         if value == value:
             return value
     return np.nan
 
 
-@bare
-def _finest(depths, lat):
+@allocation_free
+def _finest_step(depths, lat):
     """Return the shortest grid step [rad] of all layers near a latitude."""
     finest = 1.0
     narrow = max(cos(lat * pi / 180.0), 0.05)
@@ -84,7 +84,7 @@ def _finest(depths, lat):
     return finest * pi / 180.0
 
 
-@bare
+@allocation_free
 def _across_a_corner(depths, lat1, lon1, lat2, lon2):
     """Return whether a step shorter than a cell changes row and column of any layer."""
     for layer in range(len(depths.offset)):
@@ -97,7 +97,7 @@ def _across_a_corner(depths, lat1, lon1, lat2, lon2):
     return False
 
 
-@bare
+@allocation_free
 def least_depth(depths, lat1, lon1, lat2, lon2):
     """Return the least charted depth [m] on a leg [deg] below 1,000 km.
 
@@ -108,8 +108,8 @@ def least_depth(depths, lat1, lon1, lat2, lon2):
     ax, ay, az = unit_vector(lat1, lon1)
     bx, by, bz = unit_vector(lat2, lon2)
     length = sqrt((bx - ax) ** 2 + (by - ay) ** 2 + (bz - az) ** 2)
-    steps = ceil(length / (0.5 * _finest(depths, max(abs(lat1), abs(lat2))))) + 1
-    least = depth_point(depths, lat1, lon1, True)
+    steps = ceil(length / (0.5 * _finest_step(depths, max(abs(lat1), abs(lat2))))) + 1
+    least = depth_at_point(depths, lat1, lon1, True)
     if least != least:
         return np.nan
     lat_before, lon_before = lat1, lon1
@@ -120,13 +120,13 @@ def least_depth(depths, lat1, lon1, lat2, lon2):
         )
         if k == steps:
             lat, lon = lat2, lon2
-        value = depth_point(depths, lat, lon, True)
+        value = depth_at_point(depths, lat, lon, True)
         if value != value:
             return np.nan
         least = min(least, value)
         if _across_a_corner(depths, lat_before, lon_before, lat, lon):
-            one = depth_point(depths, lat_before, lon, True)
-            other = depth_point(depths, lat, lon_before, True)
+            one = depth_at_point(depths, lat_before, lon, True)
+            other = depth_at_point(depths, lat, lon_before, True)
             if one != one or other != other:
                 return np.nan
             least = min(least, min(one, other))
@@ -134,15 +134,15 @@ def least_depth(depths, lat1, lon1, lat2, lon2):
     return least
 
 
-@bare
+@allocation_free
 def least_depths(depths, lat1, lon1, lat2, lon2, depth):
     """Fill ``depth`` (float32) with the least charted depth of many legs [deg]."""
     for k in range(len(depth)):
         depth[k] = least_depth(depths, lat1[k], lon1[k], lat2[k], lon2[k])
 
 
-@bare
-def depth_points(depths, lat, lon, least, depth):
-    """Fill ``depth`` with the depth at many positions [deg]; see `depth_point`."""
+@allocation_free
+def depths_at_points(depths, lat, lon, least, depth):
+    """Fill ``depth`` with the depth at many positions [deg]; see `depth_at_point`."""
     for k in range(len(depth)):
-        depth[k] = depth_point(depths, lat[k], lon[k], least)
+        depth[k] = depth_at_point(depths, lat[k], lon[k], least)

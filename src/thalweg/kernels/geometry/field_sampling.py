@@ -8,7 +8,7 @@ import numpy as np
 
 from thalweg.kernels.compilation.jit import jit
 
-INSIDE = -1e-9  # least barycentric weight that still counts as inside
+INSIDE_TOLERANCE = -1e-9  # least barycentric weight that still counts as inside
 
 
 @jit(inline="always")
@@ -122,7 +122,7 @@ def find_triangles(px, py, x, y, frame, shape, start, items, triangle, weight):
             w1 = (qx * cy - qy * cx) / area
             w2 = (bx * qy - by * qx) / area
             w0 = 1.0 - w1 - w2
-            if w0 >= INSIDE and w1 >= INSIDE and w2 >= INSIDE:
+            if w0 >= INSIDE_TOLERANCE and w1 >= INSIDE_TOLERANCE and w2 >= INSIDE_TOLERANCE:
                 w0, w1, w2 = max(w0, 0.0), max(w1, 0.0), max(w2, 0.0)
                 total = w0 + w1 + w2
                 weight[i, 0], weight[i, 1], weight[i, 2] = w0 / total, w1 / total, w2 / total

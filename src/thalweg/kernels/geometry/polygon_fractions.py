@@ -3,15 +3,15 @@
 from math import atan2, cos, sin, sqrt
 from typing import Final
 
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.coast_index import SHORTEST_ARC, geodesic_point, outline_touched
 from thalweg.kernels.geometry.cube_sphere import FLATTENING, inside, unit_vector
 
-MOST_TESTS: Final = 2048  # of one leg, before crossings are found less finely
-_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)  # eccentricity squared
+MAX_TESTS: Final = 2048  # of one leg, before crossings are found less finely
+_ECCENTRICITY_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)  # eccentricity squared
 
 
-@bare
+@allocation_free
 def middle_inside(index, lat1, lon1, lat2, lon2):
     """Return whether the middle of a leg [deg] lies inside the polygons of an index.
 
@@ -27,28 +27,28 @@ def middle_inside(index, lat1, lon1, lat2, lon2):
     return inside(index, x / length, y / length, z / length)
 
 
-@bare
+@allocation_free
 def middles_inside(index, lat1, lon1, lat2, lon2, within):
     """Fill ``within`` (bool) for many legs; see `middle_inside`."""
     for i in range(len(within)):
         within[i] = middle_inside(index, lat1[i], lon1[i], lat2[i], lon2[i])
 
 
-@bare
-def _scale(a, b, arc, share):
+@allocation_free
+def _metres_per_radian(a, b, arc, share):
     """Return metres per radian [in polar radii] on the great ellipse at a share of its angle."""
     t = arc * share
     p, q = sin(arc - t) / sin(arc), sin(t) / sin(arc)
     z = p * a[2] + q * b[2]
     rise = (cos(t) * b[2] - cos(arc - t) * a[2]) / sin(arc)  # dz / dt
-    w = 1.0 / (1.0 - _SQUARED * (1.0 - z * z))
-    slope = _SQUARED * z * rise * w  # of the radius, over the radius
+    w = 1.0 / (1.0 - _ECCENTRICITY_SQUARED * (1.0 - z * z))
+    slope = _ECCENTRICITY_SQUARED * z * rise * w  # of the radius, over the radius
     return sqrt(w * (1.0 + slope * slope))
 
 
-@bare
-def _inside_by_halves(index, outlines, a, b, finest):
-    """Return (share of the length of a leg inside, tests made); see `shares_by_halves`."""
+@allocation_free
+def _fraction_inside(index, outlines, a, b, finest):
+    """Return (share of the length of a leg inside, tests made); see `fractions_by_bisection`."""
     dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     chord = sqrt(x * x + y * y + z * z)
@@ -56,13 +56,17 @@ def _inside_by_halves(index, outlines, a, b, finest):
         return (1.0 if inside(index, a[0], a[1], a[2]) else 0.0), 0
     arc = 2.0 * atan2(0.5 * chord, sqrt(max(0.5 + 0.5 * dot, 0.0)))
     # the scale is a parabola through three places; its integral tells lengths
-    first, amid, last = _scale(a, b, arc, 0.0), _scale(a, b, arc, 0.5), _scale(a, b, arc, 1.0)
+    first, amid, last = (
+        _metres_per_radian(a, b, arc, 0.0),
+        _metres_per_radian(a, b, arc, 0.5),
+        _metres_per_radian(a, b, arc, 1.0),
+    )
     one, two = 0.5 * (4.0 * amid - 3.0 * first - last), 2.0 * (first - 2.0 * amid + last) / 3.0
     total, tests, k, depth = 0.0, 0, 0, 0
     while True:
         size = 1.0 / (1 << depth)
         low, high = k * size, (k + 1) * size
-        if size * arc > finest and tests < MOST_TESTS:
+        if size * arc > finest and tests < MAX_TESTS:
             p = a if k == 0 else geodesic_point(a, b, low)
             q = b if high == 1.0 else geodesic_point(a, b, high)
             tests += 1
@@ -80,8 +84,8 @@ def _inside_by_halves(index, outlines, a, b, finest):
             return total / (first + one + two), tests
 
 
-@bare
-def shares_by_halves(index, outlines, lat1, lon1, lat2, lon2, finest, share):
+@allocation_free
+def fractions_by_bisection(index, outlines, lat1, lon1, lat2, lon2, finest, share):
     """Fill the share of the length of short geodesic legs [deg] inside the polygons of an index.
 
     A leg that touches an outline is halved, and each half again, until the parts are shorter than
@@ -92,7 +96,7 @@ def shares_by_halves(index, outlines, lat1, lon1, lat2, lon2, finest, share):
     """
     for i in range(len(share)):
         a, b, step = unit_vector(lat1[i], lon1[i]), unit_vector(lat2[i], lon2[i]), finest
-        share[i], tests = _inside_by_halves(index, outlines, a, b, step)
-        while tests >= MOST_TESTS:
+        share[i], tests = _fraction_inside(index, outlines, a, b, step)
+        while tests >= MAX_TESTS:
             step *= 8.0
-            share[i], tests = _inside_by_halves(index, outlines, a, b, step)
+            share[i], tests = _fraction_inside(index, outlines, a, b, step)

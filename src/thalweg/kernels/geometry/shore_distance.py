@@ -4,19 +4,19 @@ from math import asin, sqrt
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.cube_sphere import (
     FIRST_ROW,
     RADIUS,
     column_of,
+    face_components,
     face_of,
     inside,
-    on_face,
     unit_vector,
 )
 
 
-@bare
+@allocation_free
 def _squared_distance(x, y, z, p, q):
     """Return the squared chord from a point to an edge between two vertices."""
     ex, ey, ez = q[0] - p[0], q[1] - p[1], q[2] - p[2]
@@ -28,7 +28,7 @@ def _squared_distance(x, y, z, p, q):
     return ax * ax + ay * ay + az * az
 
 
-@bare
+@allocation_free
 def _nearest_in_row(index, row, x, y, z, best):
     for k in range(index.start[row], index.start[row + 1]):
         if index.first[k] == 0:
@@ -36,13 +36,13 @@ def _nearest_in_row(index, row, x, y, z, best):
     return best
 
 
-@bare
+@allocation_free
 def _nearest_within(index, x, y, z, radius):
     """Return the squared chord to the nearest edge in cells touched by a disc [rad]."""
     best = np.inf
     side = index.side
     for face in range(6):
-        u, v, w = on_face(x, y, z, face)
+        u, v, w = face_components(x, y, z, face)
         if w < 0.5:
             continue
         u, v = u / w, v / w
@@ -57,7 +57,7 @@ def _nearest_within(index, x, y, z, radius):
     return best
 
 
-@bare
+@allocation_free
 def shore_distances(index, lat, lon, cap, distance):
     """Fill ``distance`` [m] with a lower bound of the way to the nearest edge of an index.
 
@@ -71,7 +71,7 @@ def shore_distances(index, lat, lon, cap, distance):
             distance[k] = 0.0
             continue
         face = face_of(x, y, z)
-        u, v, w = on_face(x, y, z, face)
+        u, v, w = face_components(x, y, z, face)
         value = index.cell[(face * side + column_of(v / w, side)) * side + column_of(u / w, side)]
         # 0.9943: the least length of a radian of geocentric direction, over the mean radius
         clear = value * RADIUS * 0.9943

@@ -4,8 +4,8 @@ import math
 
 from thalweg.kernels.compilation.jit import jit
 
-MOST_SIDES = 256  # crossed by one line
-_LEAST_GAP = 1e-5  # crossings closer than this share of the line are one
+MAX_SIDES = 256  # crossed by one line
+_MIN_GAP = 1e-5  # crossings closer than this share of the line are one
 
 
 @jit
@@ -37,19 +37,19 @@ def crossed_sides(x, y, triangles, neighbours, around_ptr, around, first, second
     for e in range(first.shape[0]):
         ptr[e] = count
         a, b = first[e], second[e]
-        triangle, left, right = _leave(x, y, triangles, around_ptr, around, a, b)
+        triangle, left, right = _exit_side(x, y, triangles, around_ptr, around, a, b)
         before = 0.0
-        for _ in range(MOST_SIDES):
+        for _ in range(MAX_SIDES):
             if triangle < 0:
                 break
             s, w = _crossing(x, y, a, b, left, right)
-            if s - before > _LEAST_GAP and s < 1.0 - _LEAST_GAP:
+            if s - before > _MIN_GAP and s < 1.0 - _MIN_GAP:
                 if fill:
                     out[0][count], out[1][count] = left, right
                     out[2][count], out[3][count] = w, s
                 count += 1
                 before = s
-            triangle, left, right = _across(
+            triangle, left, right = _next_side(
                 x, y, triangles, neighbours, triangle, left, right, a, b
             )
     ptr[first.shape[0]] = count
@@ -62,7 +62,7 @@ def _side_of(x, y, a, b, c):
 
 
 @jit
-def _leave(x, y, triangles, around_ptr, around, a, b):
+def _exit_side(x, y, triangles, around_ptr, around, a, b):
     """Return (triangle, left, right): the side of a triangle at a through which a line leaves.
 
     The triangle is -1 if b is joined to a.
@@ -99,7 +99,7 @@ def _crossing(x, y, a, b, left, right):
 
 
 @jit
-def _across(x, y, triangles, neighbours, triangle, left, right, a, b):
+def _next_side(x, y, triangles, neighbours, triangle, left, right, a, b):
     """Return the next (triangle, left, right) beyond a side; -1 when there is none."""
     far = -1
     for j in range(3):

@@ -4,7 +4,7 @@ from math import asin, ceil, sqrt
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.geometry.coast_index import (
     LONGEST_ARC,
@@ -13,12 +13,18 @@ from thalweg.kernels.geometry.coast_index import (
     edges_of_cell_touched,
     geodesic_point,
 )
-from thalweg.kernels.geometry.cube_sphere import FIRST_ROW, column_of, face_of, on_face, unit_vector
+from thalweg.kernels.geometry.cube_sphere import (
+    FIRST_ROW,
+    column_of,
+    face_components,
+    face_of,
+    unit_vector,
+)
 
-_DEEPEST = 64  # more halvings of an edge than any grid has
+_MAX_HALVINGS = 64  # more halvings of an edge than any grid has
 
 
-@bare
+@allocation_free
 def _arc_crosses(index, m, e, tan_half):
     """Return whether an arc of at most `LONGEST_ARC` touches an outline, inland or at sea."""
     side, cell = index.side, index.cell
@@ -29,7 +35,7 @@ def _arc_crosses(index, m, e, tan_half):
     while tau < tan_half:
         x, y, z = m[0] + tau * e[0], m[1] + tau * e[1], m[2] + tau * e[2]
         face = face_of(x, y, z)
-        u, v, w = on_face(x, y, z, face)
+        u, v, w = face_components(x, y, z, face)
         i, j = column_of(u / w, side), column_of(v / w, side)
         value = cell[(face * side + j) * side + i]
         if value > big:
@@ -43,8 +49,8 @@ def _arc_crosses(index, m, e, tan_half):
     return False
 
 
-@bare
-def coast_crossed(index, lat1, lon1, lat2, lon2, crossed):
+@allocation_free
+def outlines_crossed(index, lat1, lon1, lat2, lon2, crossed):
     """Fill ``crossed`` (bool): whether legs [deg] touch an outline of polygons.
 
     A leg that lies wholly inside a polygon, or outside, does not; legs may be as long as 160
@@ -70,7 +76,7 @@ def coast_crossed(index, lat1, lon1, lat2, lon2, crossed):
 
 
 @jit
-def find_middle(keys, middles, a, b):
+def find_midpoint(keys, middles, a, b):
     """Return the vertex in the middle of edge a-b, or -1 where it is not halved.
 
     ``keys`` (int64, ascending) are ``smaller * 2**31 + larger`` of the halved edges.
@@ -101,7 +107,7 @@ def _walk_boundary(keys, middles, faces, f, ring, sides, stack):
         stack[0] = end
         depth = 1
         while depth > 0:
-            middle = find_middle(keys, middles, here, stack[depth - 1])
+            middle = find_midpoint(keys, middles, here, stack[depth - 1])
             if middle >= 0:
                 stack[depth] = middle
                 depth += 1
@@ -117,13 +123,13 @@ def _walk_boundary(keys, middles, faces, f, ring, sides, stack):
 
 
 @jit
-def closed_pairs(keys, middles, faces, longest, first, second):
+def leaf_face_pairs(keys, middles, faces, longest, first, second):
     """List the pairs of vertices that join leaf faces without holes; empty outputs only count.
 
     Parameters
     ----------
     keys, middles : int64[H]
-        Halved edges as in `find_middle`.
+        Halved edges as in `find_midpoint`.
     faces : int64[F, 3]
         Leaf faces.
     longest : int
@@ -143,7 +149,7 @@ def closed_pairs(keys, middles, faces, longest, first, second):
     """
     room = max(longest, 1)
     ring, sides = np.empty(room, np.int64), np.empty(room, np.int64)
-    stack = np.empty(_DEEPEST, np.int64)
+    stack = np.empty(_MAX_HALVINGS, np.int64)
     count, most = 0, 0
     for f in range(faces.shape[0]):
         size = _walk_boundary(keys, middles, faces, f, ring, sides, stack)

@@ -1,12 +1,12 @@
 """Which cells of a coast index lie inside: winding numbers carried from cell to cell."""
 
-from thalweg.kernels.compilation.decorators import bare
+from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, FIRST_ROW, cell_middle, winding_from
 
 SEA = 1.0e-9  # a cell value: outside the polygons, distance to them not known yet
 
 
-@bare
+@allocation_free
 def _carry(index, face, i, j, from_i, from_j, to_i, to_j, winding):
     """Carry a winding number between two places of one cell (halves are its borders)."""
     value = index.cell[(face * index.side + j) * index.side + i]
@@ -18,7 +18,7 @@ def _carry(index, face, i, j, from_i, from_j, to_i, to_j, winding):
     return winding_from(index, row, ax, ay, az, bx, by, bz, winding, False)
 
 
-@bare
+@allocation_free
 def carry_windings(index, seeds):
     """Fill in the winding number of every row and whether empty cells are inside.
 

@@ -10,8 +10,8 @@ from thalweg.kernels.codes import (
     OK,
     OUTSIDE_PERIOD,
 )
-from thalweg.kernels.compilation.decorators import inlined, inner
-from thalweg.kernels.leg.point_speed import guided_point_speed
+from thalweg.kernels.compilation.decorators import inlined, kernel_only
+from thalweg.kernels.leg.point_speed import point_speed_from_guess
 from thalweg.kernels.leg.table_lookup import TableArrays
 
 
@@ -107,7 +107,7 @@ def course_vector(course):
     return -cosine, sine
 
 
-@inner
+@kernel_only
 def interval_of(times, t):
     """Return k with ``times[k] <= t <= times[k + 1]``, or -1 outside the period (or NaN)."""
     if not times[0] <= t <= times[-1]:
@@ -250,7 +250,7 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
                 a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
             sample_between(sea, a, b, weight, k, then, sample, spare)
             here = sample
-        speed, status, guess = guided_point_speed(
+        speed, status, guess = point_speed_from_guess(
             here, index, east, north, table, setting, depth, limits, needs, guess
         )
         if status != OK:

@@ -25,27 +25,27 @@ from thalweg.kernels.codes import (
     WATER_LEVEL,
     WAVE_EAST,
     WAVE_HEIGHT,
-    WAVE_HEIGHT_CH,
+    WAVE_HEIGHT_CHANNEL,
     WAVE_NORTH,
     WAVE_PERIOD,
     WIND_EAST,
     WIND_NORTH,
     WIND_SPEED,
 )
-from thalweg.kernels.compilation.decorators import bare, inlined
-from thalweg.kernels.leg.table_lookup import axes_needed, sum_of_parts, watches_waves
-from thalweg.kernels.leg.wave_limits import forbidden
+from thalweg.kernels.compilation.decorators import allocation_free, inlined
+from thalweg.kernels.leg.table_lookup import axes_needed, has_wave_limits, sum_of_parts
+from thalweg.kernels.leg.wave_limits import exceeds_wave_limits
 
 _WIND_AXES = (1 << AXIS_WIND_SPEED) | (1 << AXIS_WIND_ANGLE)
 _WAVE_AXES = (1 << AXIS_WAVE_HEIGHT) | (1 << AXIS_WAVE_ANGLE) | (1 << AXIS_WAVE_PERIOD)
 _ANGLE_AXES = (1 << AXIS_WIND_ANGLE) | (1 << AXIS_WAVE_ANGLE)
 _DEPTH_AXIS = 1 << AXIS_DEPTH
-_HEADING_TURNS = 6  # corrections of the heading at most
+_MAX_HEADING_CORRECTIONS = 6  # corrections of the heading at most
 _HEADING_TOLERANCE = 1e-3  # turn of the heading that no further correction is made for [rad]
 
 
 @inlined
-def bow_angle(head_east, head_north, to_east, to_north):
+def angle_from_bow(head_east, head_north, to_east, to_north):
     """Return the angle [rad] from the bow of where something travelling along a vector comes from.
 
     0 is from ahead, pi from astern; 0 for a vector of no length. The arctangent is a polynomial
@@ -81,7 +81,7 @@ def water_depth(sample, channel_index, static_depth):
 
 
 @inlined
-def _wind(sample, channel_index, current_east, current_north):
+def _wind_over_water(sample, channel_index, current_east, current_north):
     """Return the wind relative to the moving water (east, north) [m/s]; NaN if unknown."""
     if channel_index[WIND_EAST] < 0 or channel_index[WIND_NORTH] < 0:
         return math.nan, math.nan
@@ -89,9 +89,9 @@ def _wind(sample, channel_index, current_east, current_north):
 
 
 @inlined
-def _waves(sample, channel_index, needs):
+def _known_waves(sample, channel_index, needs):
     """Return (height, east, north, period, known) of the waves, as far as they are needed."""
-    height = sample[WAVE_HEIGHT_CH] if channel_index[WAVE_HEIGHT_CH] >= 0 else math.nan
+    height = sample[WAVE_HEIGHT_CHANNEL] if channel_index[WAVE_HEIGHT_CHANNEL] >= 0 else math.nan
     east, north, period, known = 0.0, 0.0, 0.0, height == height
     if needs & (1 << AXIS_WAVE_ANGLE):
         if channel_index[WAVE_EAST] >= 0 and channel_index[WAVE_NORTH] >= 0:
@@ -108,7 +108,7 @@ def _waves(sample, channel_index, needs):
 
 
 @inlined
-def _through_water(needs, table, setting, course, across, wind, waves, depth, guess):
+def _speed_through_water(needs, table, setting, course, across, wind, waves, depth, guess):
     """Return (speed through water, ok), the heading corrected for the drift across the course."""
     east, north = course
     wind_speed = 0.0
@@ -116,16 +116,16 @@ def _through_water(needs, table, setting, course, across, wind, waves, depth, gu
         wind_speed = math.sqrt(wind[0] * wind[0] + wind[1] * wind[1])
     turns = across != 0.0 and needs & _ANGLE_AXES
     speed = guess if guess > abs(across) else math.inf
-    for _ in range(_HEADING_TURNS):
+    for _ in range(_MAX_HEADING_CORRECTIONS):
         sine = -across / speed
         cosine = math.sqrt(1.0 - sine * sine)
         head_east = east * cosine - north * sine
         head_north = north * cosine + east * sine
         wind_angle, wave_angle = 0.0, 0.0
         if needs & (1 << AXIS_WIND_ANGLE):
-            wind_angle = bow_angle(head_east, head_north, wind[0], wind[1])
+            wind_angle = angle_from_bow(head_east, head_north, wind[0], wind[1])
         if needs & (1 << AXIS_WAVE_ANGLE):
-            wave_angle = bow_angle(head_east, head_north, waves[1], waves[2])
+            wave_angle = angle_from_bow(head_east, head_north, waves[1], waves[2])
         axis_values = (wind_speed, wind_angle, waves[0], wave_angle, waves[3], depth)
         before = speed
         speed, ok = sum_of_parts(table, axis_values, setting)
@@ -153,14 +153,14 @@ def _conditions(sample, channel_index, current, needs, static_depth, limits):
         if depth < required:
             return depth, waves, wind, DEPTH
     if needs & _WAVE_AXES or limits[LIMIT_WAVE_HEIGHT] < math.inf:
-        height, wave_east, wave_north, period, known = _waves(sample, channel_index, needs)
+        height, wave_east, wave_north, period, known = _known_waves(sample, channel_index, needs)
         waves = (height, wave_east, wave_north, period)
         if not known:
             return depth, waves, wind, NO_DATA
         if height > limits[LIMIT_WAVE_HEIGHT]:
             return depth, waves, wind, WAVE_HEIGHT
     if needs & _WIND_AXES or limits[LIMIT_WIND_SPEED] < math.inf:
-        wind = _wind(sample, channel_index, current[0], current[1])
+        wind = _wind_over_water(sample, channel_index, current[0], current[1])
         squared = wind[0] * wind[0] + wind[1] * wind[1]
         if squared != squared:
             return depth, waves, wind, NO_DATA
@@ -170,10 +170,10 @@ def _conditions(sample, channel_index, current, needs, static_depth, limits):
 
 
 @inlined
-def guided_point_speed(
+def point_speed_from_guess(
     sample, channel_index, east, north, table, setting, static_depth, limits, needs, guess
 ):
-    """Do as `point_speed_known`, with a guess of the speed through water for the first heading.
+    """Do as `point_speed_with_axes`, with a guess of the speed through water for the first heading.
 
     Returns (speed over ground, status, speed through water); a guess of inf is none.
     """
@@ -197,7 +197,7 @@ def guided_point_speed(
         if speed != speed:
             return 0.0, NO_DATA, 0.0
     else:
-        speed, ok = _through_water(
+        speed, ok = _speed_through_water(
             needs, table, setting, (east, north), across, wind, waves, depth, guess
         )
     if not ok:
@@ -206,18 +206,18 @@ def guided_point_speed(
     over_ground = along + math.sqrt(max(spare, 0.0))
     if speed <= 0.0 or spare <= 0.0 or over_ground <= 0.0:
         return 0.0, CURRENT, 0.0
-    if not field and watches_waves(table):
+    if not field and has_wave_limits(table):
         sine = -across / speed
         cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
         head_east, head_north = east * cosine - north * sine, north * cosine + east * sine
-        angle = bow_angle(head_east, head_north, waves[1], waves[2])
-        if forbidden(table, speed, angle, waves[0], waves[3]):
+        angle = angle_from_bow(head_east, head_north, waves[1], waves[2])
+        if exceeds_wave_limits(table, speed, angle, waves[0], waves[3]):
             return 0.0, SAFETY, 0.0
     return over_ground, OK, speed
 
 
 @inlined
-def fuel_rate_known(sample, index, course, fuel, setting, static_depth, limits, needs, speed):
+def fuel_rate_at_speed(sample, index, course, fuel, setting, static_depth, limits, needs, speed):
     """Return (fuel rate [kg/s], ok) of a ship whose speed through water is known.
 
     The heading follows from the course, the current across it and the speed, as in
@@ -241,26 +241,26 @@ def fuel_rate_known(sample, index, course, fuel, setting, static_depth, limits, 
         head_east = east * cosine - north * sine
         head_north = north * cosine + east * sine
         if needs & (1 << AXIS_WIND_ANGLE):
-            wind_angle = bow_angle(head_east, head_north, wind[0], wind[1])
+            wind_angle = angle_from_bow(head_east, head_north, wind[0], wind[1])
         if needs & (1 << AXIS_WAVE_ANGLE):
-            wave_angle = bow_angle(head_east, head_north, waves[1], waves[2])
+            wave_angle = angle_from_bow(head_east, head_north, waves[1], waves[2])
     values = (wind_speed, wind_angle, waves[0], wave_angle, waves[3], depth)
     return sum_of_parts(fuel, values, setting)
 
 
 @inlined
-def point_speed_known(
+def point_speed_with_axes(
     sample, channel_index, east, north, table, setting, static_depth, limits, needs
 ):
     """Do as `point_speed` with ``needs = axes_needed(table)`` found beforehand."""
     none = math.inf
-    speed, status, _ = guided_point_speed(
+    speed, status, _ = point_speed_from_guess(
         sample, channel_index, east, north, table, setting, static_depth, limits, needs, none
     )
     return speed, status
 
 
-@bare
+@allocation_free
 def point_speed(sample, channel_index, east, north, table, setting, static_depth, limits):
     """Return the speed over ground of a ship that holds a course at one point, or why it cannot.
 
@@ -299,6 +299,6 @@ def point_speed(sample, channel_index, east, north, table, setting, static_depth
     the moving water; wind and wave angles are from the heading, which is first taken as the course
     and then corrected by the current triangle until it would turn by less than 0.001 rad.
     """
-    return point_speed_known(
+    return point_speed_with_axes(
         sample, channel_index, east, north, table, setting, static_depth, limits, axes_needed(table)
     )

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import (
-    CHANNELS,
+    CHANNEL_COUNT,
     CURRENT,
     DEPTH,
     NO_DATA,
@@ -15,8 +15,8 @@ from thalweg.kernels.codes import (
     WAVE_HEIGHT,
     WIND_SPEED,
 )
-from thalweg.kernels.compilation.decorators import bare, inlined
-from thalweg.kernels.leg.point_speed import point_speed_known
+from thalweg.kernels.compilation.decorators import allocation_free, inlined
+from thalweg.kernels.leg.point_speed import point_speed_with_axes
 from thalweg.kernels.leg.table_lookup import axes_needed
 
 _MAJOR = 6378137.0  # WGS 84
@@ -45,7 +45,7 @@ class RasterArrays(NamedTuple):
     channel_index: np.ndarray
 
 
-class Lines(NamedTuple):
+class PolylineArrays(NamedTuple):
     """Polylines to sail, one after another in flat arrays.
 
     Attributes
@@ -75,8 +75,8 @@ class Lines(NamedTuple):
     depart: np.ndarray
 
 
-class Passages(NamedTuple):
-    """What comes of sailing `Lines`.
+class PolylineResults(NamedTuple):
+    """What comes of sailing `PolylineArrays`.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class Passages(NamedTuple):
 
 
 @inlined
-def _read(raster, t, lat, lon, step, sample):
+def _interpolate_raster(raster, t, lat, lon, step, sample):
     """Fill ``sample`` by channel, linear in time and place; return (status, time step found)."""
     times = raster.times
     last = times.shape[0] - 2
@@ -123,7 +123,7 @@ def _read(raster, t, lat, lon, step, sample):
         weight *= ft if later else 1.0 - ft
         if weight == 0.0:
             continue
-        for channel in range(CHANNELS):
+        for channel in range(CHANNEL_COUNT):
             k = raster.channel_index[channel]
             if k >= 0:
                 value = values[step + later, row + up, column + right_side, k]
@@ -166,11 +166,11 @@ def _sail_leg(lines, point, stop, t, raster, table, limits, needs, sample, state
         length = scale * step
         at = t + 0.5 * length * state[1]
         lat, lon = math.atan2(pz, level) / _RADIANS, math.atan2(py, px) / _RADIANS
-        status, found = _read(raster, at, lat, lon, int(state[0]), sample)
+        status, found = _interpolate_raster(raster, at, lat, lon, int(state[0]), sample)
         state[0] = found
         if status != OK:
             return math.inf, status
-        speed, status = point_speed_known(
+        speed, status = point_speed_with_axes(
             sample,
             raster.channel_index,
             east / scale,
@@ -190,13 +190,13 @@ def _sail_leg(lines, point, stop, t, raster, table, limits, needs, sample, state
 
 
 @inlined
-def _may_pass(status):
+def _waiting_may_help(status):
     """Return whether waiting could help."""
     return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT)
 
 
-@bare
-def sail_lines(lines, raster, table, limits, patience, out, sample, state):
+@allocation_free
+def sail_polylines(lines, raster, table, limits, waiting_parameters, out, sample, state):
     """Sail many polylines through a frozen sea.
 
     Parameters
@@ -207,7 +207,7 @@ def sail_lines(lines, raster, table, limits, patience, out, sample, state):
         Speed through water.
     limits : float64[LIMITS]
         See `thalweg.kernels.leg.point_speed.point_speed`.
-    patience : float64[3]
+    waiting_parameters : float64[3]
         How long the ship waits at most at a point for the next leg to open, how long between two
         looks, and how exactly the opening is found [s]; zero: it does not wait of itself.
     out : Passages
@@ -246,13 +246,17 @@ def sail_lines(lines, raster, table, limits, patience, out, sample, state):
                     high, after, length = tried, reached, state[2]
                 else:
                     low = tried
-                if high - low <= patience[2] and high >= t:
+                if high - low <= waiting_parameters[2] and high >= t:
                     break
                 if high >= t:
                     tried = 0.5 * (low + high)
                     continue
-                tried = low + patience[1]
-                if tried - t > patience[0] or not _may_pass(status) or patience[0] == 0.0:
+                tried = low + waiting_parameters[1]
+                if (
+                    tried - t > waiting_parameters[0]
+                    or not _waiting_may_help(status)
+                    or waiting_parameters[0] == 0.0
+                ):
                     break
             t, sailed = after, length
             out.leave[point], out.arrive[point + 1] = high, after

@@ -10,58 +10,58 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.codes import CHANNELS, NO_DATA, OK, OUTSIDE_PERIOD
-from thalweg.kernels.compilation.decorators import bare, inlined
-from thalweg.kernels.leg.point_speed import fuel_rate_known, guided_point_speed
+from thalweg.kernels.codes import CHANNEL_COUNT, NO_DATA, OK, OUTSIDE_PERIOD
+from thalweg.kernels.compilation.decorators import allocation_free, inlined
+from thalweg.kernels.leg.point_speed import fuel_rate_at_speed, point_speed_from_guess
 from thalweg.kernels.leg.polyline_sailing import RasterArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed
 
 # Columns of genes: of a point ...
 LAT: Final = 0  # [deg]
 LON: Final = 1  # [deg]
-WAIT: Final = 2  # time lain still there [s]
-HELD: Final = 3  # 1: must stay in every track (ends and via points); 0: free
+WAITING_TIME: Final = 2  # time lain still there [s]
+IS_REQUIRED: Final = 3  # 1: must stay in every track (ends and via points); 0: free
 # ... and of the leg that starts there; the last point's are not read.
 SETTING: Final = 4
-KNOWN: Final = 5  # 0: the following are to be looked up
-BLOCKED: Final = 6  # 1: touches land or a no-go zone
-WEIGHT: Final = 7  # cost of a kilogram of fuel
-CHARTED: Final = 8  # least charted depth [m below datum]; +inf not checked
-PENALTY: Final = 9  # factor >= 1 on time and cost in comparisons
+IS_LOOKED_UP: Final = 5  # 0: the following are to be looked up
+IS_BLOCKED: Final = 6  # 1: touches land or a no-go zone
+FUEL_PRICE: Final = 7  # cost of a kilogram of fuel
+CHARTED_DEPTH: Final = 8  # least charted depth [m below datum]; +inf not checked
+PENALTY_FACTOR: Final = 9  # factor >= 1 on time and cost in comparisons
 FIXED_TIME: Final = 10  # NaN where sailed; else the leg takes this long [s] (a canal)
 FIXED_COST: Final = 11  # cost of the leg beside fuel (a canal's fee and fuel)
 PIECES: Final = 12  # number of pieces; 0: by length
-COLUMNS: Final = 13
+GENE_COLUMNS: Final = 13
 
 # Terms of the cost and of the way of sailing.
 TIME_PRICE: Final = 0  # cost of a second
 WAITING_PRICE: Final = 1  # cost of the fuel of a second lain still
-LATEST: Final = 2  # latest arrival [s]; +inf
-SPACING: Final = 3  # longest piece [m]
-TERMS: Final = 4
+LATEST_ARRIVAL: Final = 2  # latest arrival [s]; +inf
+PIECE_SPACING: Final = 3  # longest piece [m]
+TERM_COUNT: Final = 4
 
 TIME: Final = 0
 COST: Final = 1
 VIOLATION: Final = 2
-SCORES: Final = 3
+SCORE_COUNT: Final = 3
 
 # Room to work in, after the sample of the sea.
-_STEP: Final = CHANNELS  # time step of the raster found last
-_SLOWNESS: Final = CHANNELS + 1  # met last [s/m]
-_BAD: Final = CHANNELS + 2  # length that cannot be sailed [m]
-_LENGTH: Final = CHANNELS + 3  # [m]
-_SPENT: Final = CHANNELS + 4  # cost
-_PENAL_TIME: Final = CHANNELS + 5  # what penalties add to the time [s]
-SCRATCH: Final = CHANNELS + 6
+_TIME_STEP: Final = CHANNEL_COUNT  # time step of the raster found last
+_SLOWNESS: Final = CHANNEL_COUNT + 1  # met last [s/m]
+_INFEASIBLE_LENGTH: Final = CHANNEL_COUNT + 2  # length that cannot be sailed [m]
+_LENGTH: Final = CHANNEL_COUNT + 3  # [m]
+_COST_SO_FAR: Final = CHANNEL_COUNT + 4  # cost
+_PENALTY_TIME: Final = CHANNEL_COUNT + 5  # what penalties add to the time [s]
+SCRATCH_SIZE: Final = CHANNEL_COUNT + 6
 
-LEAST_PIECES: Final = 2
+MIN_PIECES: Final = 2
 _MAJOR = 6378137.0  # WGS 84
 _ECCENTRICITY2 = 6.69437999014e-3
 _RADIANS = math.pi / 180.0
-_SLOW = 0.2  # slowness assumed before any is met, where nothing can be sailed [s/m]
+_DEFAULT_SLOWNESS = 0.2  # slowness assumed before any is met, where nothing can be sailed [s/m]
 
 
-class FitnessWorld(NamedTuple):
+class FitnessArrays(NamedTuple):
     """What tracks are sailed through, and at what price.
 
     Attributes
@@ -84,18 +84,18 @@ class FitnessWorld(NamedTuple):
 
 
 @inlined
-def _read(raster, channels, t, lat, lon, scratch):
+def _interpolate_sea(raster, channels, t, lat, lon, scratch):
     """Fill the sample, linear in time and place; return the status."""
     times = raster.times
     last = times.shape[0] - 2
     if not (t >= times[0] and t <= times[last + 1]):
         return OUTSIDE_PERIOD
-    step = int(scratch[_STEP])
+    step = int(scratch[_TIME_STEP])
     while step < last and t >= times[step + 1]:
         step += 1
     while step > 0 and t < times[step]:
         step -= 1
-    scratch[_STEP] = step
+    scratch[_TIME_STEP] = step
     ft = (t - times[step]) / (times[step + 1] - times[step])
     corner, values = raster.corner, raster.values
     y = (lat - corner[0]) / corner[1]
@@ -124,13 +124,13 @@ def _read(raster, channels, t, lat, lon, scratch):
 
 
 @inlined
-def _piece(world, needs, gene, t, place, course, scratch):
+def _piece_performance(world, needs, gene, t, place, course, scratch):
     """Return (slowness [s/m], fuel rate [kg/s], status) at the middle of a piece."""
-    status = _read(world.raster, world.channels, t, place[0], place[1], scratch)
+    status = _interpolate_sea(world.raster, world.channels, t, place[0], place[1], scratch)
     if status != OK:
         return 0.0, 0.0, status
-    index, setting, charted = world.raster.channel_index, int(gene[SETTING]), gene[CHARTED]
-    over_ground, status, through = guided_point_speed(
+    index, setting, charted = world.raster.channel_index, int(gene[SETTING]), gene[CHARTED_DEPTH]
+    over_ground, status, through = point_speed_from_guess(
         scratch,
         index,
         course[0],
@@ -144,14 +144,14 @@ def _piece(world, needs, gene, t, place, course, scratch):
     )
     if status != OK:
         return 0.0, 0.0, status
-    rate, ok = fuel_rate_known(
+    rate, ok = fuel_rate_at_speed(
         scratch, index, course, world.fuel, setting, charted, world.limits, needs[1], through
     )
     return 1.0 / over_ground, rate, OK if ok else NO_DATA
 
 
 @inlined
-def _leg(world, needs, gene, after, t, scratch):
+def _sail_gene_leg(world, needs, gene, after, t, scratch):
     """Sail the leg of a gene to the next point; return the arrival."""
     lat1, lat2 = gene[LAT] * _RADIANS, after[LAT] * _RADIANS
     lon1, lon2 = gene[LON] * _RADIANS, after[LON] * _RADIANS
@@ -166,7 +166,7 @@ def _leg(world, needs, gene, after, t, scratch):
     fx, fy, fz = (cy * az - cz * ay) / sine, (cz * ax - cx * az) / sine, (cx * ay - cy * ax) / sine
     count = int(gene[PIECES])
     if count == 0:
-        count = max(LEAST_PIECES, math.ceil(_MAJOR * arc / world.terms[SPACING]))
+        count = max(MIN_PIECES, math.ceil(_MAJOR * arc / world.terms[PIECE_SPACING]))
     step = arc / count
     turn_sine, turn_cosine = math.sin(step), math.cos(step)
     s, c = math.sin(0.5 * step), math.cos(0.5 * step)
@@ -185,58 +185,60 @@ def _leg(world, needs, gene, after, t, scratch):
         place = (math.atan2(pz, level) / _RADIANS, math.atan2(py, px) / _RADIANS)
         course = (east / scale, north / scale)
         if scratch[_SLOWNESS] == 0.0:  # a first slowness, at the start
-            slowness, _, status = _piece(world, needs, gene, t, place, course, scratch)
+            slowness, _, status = _piece_performance(world, needs, gene, t, place, course, scratch)
             scratch[_SLOWNESS] = slowness
         at = t + 0.5 * length * scratch[_SLOWNESS]
-        slowness, rate, status = _piece(world, needs, gene, at, place, course, scratch)
+        slowness, rate, status = _piece_performance(world, needs, gene, at, place, course, scratch)
         scratch[_LENGTH] += length
         if status != OK:
-            scratch[_BAD] += length
-            slowness = scratch[_SLOWNESS] if scratch[_SLOWNESS] > 0.0 else _SLOW
+            scratch[_INFEASIBLE_LENGTH] += length
+            slowness = scratch[_SLOWNESS] if scratch[_SLOWNESS] > 0.0 else _DEFAULT_SLOWNESS
         else:
             scratch[_SLOWNESS] = slowness
-            if gene[BLOCKED] != 0.0:
-                scratch[_BAD] += length
+            if gene[IS_BLOCKED] != 0.0:
+                scratch[_INFEASIBLE_LENGTH] += length
         spent = length * slowness
         t += spent
-        scratch[_SPENT] += spent * (rate * gene[WEIGHT] + world.terms[TIME_PRICE]) * gene[PENALTY]
-        scratch[_PENAL_TIME] += spent * (gene[PENALTY] - 1.0)
+        scratch[_COST_SO_FAR] += (
+            spent * (rate * gene[FUEL_PRICE] + world.terms[TIME_PRICE]) * gene[PENALTY_FACTOR]
+        )
+        scratch[_PENALTY_TIME] += spent * (gene[PENALTY_FACTOR] - 1.0)
     return t
 
 
 @inlined
-def _route(world, needs, count, genes, depart, score, arrive, scratch):
+def _sail_track(world, needs, count, genes, depart, score, arrive, scratch):
     """Sail one track; fill its score and the arrival at each point."""
-    for k in range(SCRATCH):
+    for k in range(SCRATCH_SIZE):
         scratch[k] = 0.0
     terms = world.terms
     t = depart
     arrive[0] = t
     for p in range(count - 1):
-        wait = genes[p, WAIT]
+        wait = genes[p, WAITING_TIME]
         if wait > 0.0:
             t += wait
-            scratch[_SPENT] += wait * (terms[WAITING_PRICE] + terms[TIME_PRICE])
+            scratch[_COST_SO_FAR] += wait * (terms[WAITING_PRICE] + terms[TIME_PRICE])
             scratch[_SLOWNESS] = 0.0
         fixed = genes[p, FIXED_TIME]
         if fixed == fixed:
             t += fixed
-            scratch[_SPENT] += genes[p, FIXED_COST] + fixed * terms[TIME_PRICE]
+            scratch[_COST_SO_FAR] += genes[p, FIXED_COST] + fixed * terms[TIME_PRICE]
             scratch[_SLOWNESS] = 0.0
         else:
-            t = _leg(world, needs, genes[p], genes[p + 1], t, scratch)
+            t = _sail_gene_leg(world, needs, genes[p], genes[p + 1], t, scratch)
         arrive[p + 1] = t
-    score[TIME] = t - depart + scratch[_PENAL_TIME]
-    score[COST] = scratch[_SPENT]
+    score[TIME] = t - depart + scratch[_PENALTY_TIME]
+    score[COST] = scratch[_COST_SO_FAR]
     broken = 0.0
-    if scratch[_BAD] > 0.0:
-        broken = scratch[_BAD] / scratch[_LENGTH]
-    if not t <= terms[LATEST]:
-        broken += (t - terms[LATEST]) / max(terms[LATEST] - depart, 1.0)
+    if scratch[_INFEASIBLE_LENGTH] > 0.0:
+        broken = scratch[_INFEASIBLE_LENGTH] / scratch[_LENGTH]
+    if not t <= terms[LATEST_ARRIVAL]:
+        broken += (t - terms[LATEST_ARRIVAL]) / max(terms[LATEST_ARRIVAL] - depart, 1.0)
     score[VIOLATION] = broken
 
 
-@bare
+@allocation_free
 def sail_population(count, genes, depart, world, score, arrive, scratch):
     """Sail many tracks; parts of a population may be sailed in several threads at once.
 
@@ -267,4 +269,4 @@ def sail_population(count, genes, depart, world, score, arrive, scratch):
     """
     needs = (axes_needed(world.table), axes_needed(world.fuel))
     for i in range(count.shape[0]):
-        _route(world, needs, count[i], genes[i], depart[i], score[i], arrive[i], scratch[i])
+        _sail_track(world, needs, count[i], genes[i], depart[i], score[i], arrive[i], scratch[i])

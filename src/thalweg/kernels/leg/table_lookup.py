@@ -6,26 +6,26 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import (
-    AXES,
+    AXIS_COUNT,
     AXIS_DEPTH,
     AXIS_WAVE_ANGLE,
     AXIS_WAVE_HEIGHT,
     AXIS_WAVE_PERIOD,
 )
-from thalweg.kernels.compilation.decorators import bare, inlined
+from thalweg.kernels.compilation.decorators import allocation_free, inlined
 
-MOST_AXES = 6  # of one part
-CURVE, CROSSING = 1, 2  # what may follow the sum
-FINER = 8  # points of a curve for each column of a crossing
-MOST_PLANES = 3  # parts of a table with a crossing, each of at most two axes
-_EDGE = 1e-6  # rounding allowed beyond the first and last grid point [grid steps]
+MAX_AXES = 6  # of one part
+OUTPUT_CURVE, CURVE_INTERSECTION = 1, 2  # what may follow the sum
+CURVE_REFINEMENT = 8  # points of a curve for each column of a crossing
+MAX_PLANES = 3  # parts of a table with a crossing, each of at most two axes
+_EDGE_TOLERANCE = 1e-6  # rounding allowed beyond the first and last grid point [grid steps]
 
 
 class TableArrays(NamedTuple):
     """A performance table as kernels see it: a sum over parts of multilinear look-ups.
 
     The sum is the value (speed through water, fuel rate), or leads to it: by a curve, or by the
-    speed at which a curve crosses it (see `thalweg.ship.tables.output_curve.Finish`).
+    speed at which a curve crosses it (see `thalweg.ship.tables.output_curve.OutputCurve`).
 
     Attributes
     ----------
@@ -47,15 +47,15 @@ class TableArrays(NamedTuple):
         innermost axis of every part is the setting, or the column of a crossing.
     n_columns : int
         Length of the innermost axis; 0 when it is that of the settings.
-    square_stop : float64[P]
+    squared_height_limit : float64[P]
         Parts are multiplied by the square of the wave height, up to this height [m]; NaN: not
         multiplied. Empty when none is.
     finish : int
-        0 when the sum is the value, else `CURVE` or `CROSSING`.
+        0 when the sum is the value, else `OUTPUT_CURVE` or `CURVE_INTERSECTION`.
     curve_start, curve_inv_step, curve_top : float64[settings]
         Where each curve begins and one over the step of its points; greatest value.
     curve : float64[settings, points]
-        Points of the curves; before a crossing `FINER` steps to a column.
+        Points of the curves; before a crossing `CURVE_REFINEMENT` steps to a column.
     curve_guess : int64[settings]
         Column at which a search for the crossing begins.
     safety : float64[7]
@@ -74,7 +74,7 @@ class TableArrays(NamedTuple):
     n_settings: int
     values: np.ndarray
     n_columns: int = 0
-    square_stop: np.ndarray = np.empty(0)
+    squared_height_limit: np.ndarray = np.empty(0)
     finish: int = 0
     curve_start: np.ndarray = np.empty(0)
     curve_inv_step: np.ndarray = np.empty(0)
@@ -107,31 +107,31 @@ ARRAY_TYPES = {
 
 
 @inlined
-def watches_waves(table):
+def has_wave_limits(table):
     """Return whether there is something a ship must not do in waves."""
     return table.safety.shape[0] > 0 or table.motions.shape[0] > 0
 
 
-@bare
+@allocation_free
 def axes_needed(table):
     """Return a bit mask of the axes that any part of a table has (bit i: axis id i)."""
     mask = 0
     for part in range(table.part_axes.shape[0]):
-        for k in range(AXES):
+        for k in range(AXIS_COUNT):
             axis = table.part_axes[part, k]
             if axis < 0:
                 break
             mask |= 1 << axis
-    for part in range(table.square_stop.shape[0]):
-        if table.square_stop[part] == table.square_stop[part]:
+    for part in range(table.squared_height_limit.shape[0]):
+        if table.squared_height_limit[part] == table.squared_height_limit[part]:
             mask |= 1 << AXIS_WAVE_HEIGHT
-    if watches_waves(table):
+    if has_wave_limits(table):
         mask |= (1 << AXIS_WAVE_HEIGHT) | (1 << AXIS_WAVE_ANGLE) | (1 << AXIS_WAVE_PERIOD)
     return mask
 
 
 @inlined
-def _columns(table):
+def _innermost_size(table):
     """Return the length of the innermost axis."""
     return table.n_columns if table.n_columns > 0 else table.n_settings
 
@@ -139,17 +139,17 @@ def _columns(table):
 @inlined
 def _square_of_height(table, part, axis_values):
     """Return (factor, ok): what a part is multiplied by."""
-    if table.square_stop.shape[0] == 0:
+    if table.squared_height_limit.shape[0] == 0:
         return 1.0, True
-    stop = table.square_stop[part]
+    stop = table.squared_height_limit[part]
     if stop != stop:
         return 1.0, True
     height = axis_values[AXIS_WAVE_HEIGHT]
-    return height * height, height >= 0.0 and height <= stop * (1.0 + _EDGE)
+    return height * height, height >= 0.0 and height <= stop * (1.0 + _EDGE_TOLERANCE)
 
 
 @inlined
-def _line(values, base, stride, f):
+def _linear(values, base, stride, f):
     """Interpolate between two values ``stride`` apart; a corner of weight 0 is not read."""
     if f == 0.0:
         return float(values[base])
@@ -159,12 +159,12 @@ def _line(values, base, stride, f):
 
 
 @inlined
-def _square(values, base, stride0, f0, stride1, f1):
+def _bilinear(values, base, stride0, f0, stride1, f1):
     """Interpolate on a cell of two axes."""
-    low = _line(values, base, stride1, f1)
+    low = _linear(values, base, stride1, f1)
     if f0 == 0.0:
         return low
-    high = _line(values, base + stride0, stride1, f1)
+    high = _linear(values, base + stride0, stride1, f1)
     return high if f0 == 1.0 else low + f0 * (high - low)
 
 
@@ -174,11 +174,11 @@ def part_value(table, part, axis_values, setting):
     f0, f1, f2, f3, f4, f5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # fractions, the last axis first
     s0, s1, s2, s3, s4, s5 = 0, 0, 0, 0, 0, 0  # strides
     corners = 1  # of the axes before the last two
-    base, stride = table.value_offset[part] + setting, _columns(table)
+    base, stride = table.value_offset[part] + setting, _innermost_size(table)
     factor, inside = _square_of_height(table, part, axis_values)
     if not inside:
         return 0.0, False
-    for k in range(AXES - 1, -1, -1):
+    for k in range(AXIS_COUNT - 1, -1, -1):
         axis = table.part_axes[part, k]
         if axis < 0:
             continue
@@ -186,7 +186,7 @@ def part_value(table, part, axis_values, setting):
         x = (axis_values[axis] - table.axis_start[part, k]) * table.axis_inv_step[part, k]
         if axis == AXIS_DEPTH and x > last:
             x = float(last)
-        if not (x >= -_EDGE and x <= last + _EDGE) or k >= MOST_AXES:
+        if not (x >= -_EDGE_TOLERANCE and x <= last + _EDGE_TOLERANCE) or k >= MAX_AXES:
             return 0.0, False
         x = min(max(x, 0.0), float(last))
         cell = min(int(x), last - 1)
@@ -203,12 +203,12 @@ def part_value(table, part, axis_values, setting):
             weight *= (f4 if up4 else 1.0 - f4) * (f5 if up5 else 1.0 - f5)
         if weight > 0.0:
             at = base + up2 * s2 + up3 * s3 + up4 * s4 + up5 * s5
-            total += weight * _square(table.values, at, s1, f1, s0, f0)
+            total += weight * _bilinear(table.values, at, s1, f1, s0, f0)
     return factor * total, True
 
 
 @inlined
-def _plane(table, part, axis_values):
+def _bilinear_corners(table, part, axis_values):
     """Return (ok, four places in the values, their four weights) of a part of at most two axes.
 
     Corners of weight 0 are replaced by others, so that unknown values there do not count.
@@ -225,7 +225,7 @@ def _plane(table, part, axis_values):
         x = (axis_values[axis] - table.axis_start[part, k]) * table.axis_inv_step[part, k]
         if axis == AXIS_DEPTH and x > last:
             x = float(last)
-        if not (x >= -_EDGE and x <= last + _EDGE):
+        if not (x >= -_EDGE_TOLERANCE and x <= last + _EDGE_TOLERANCE):
             return False, 0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0
         x = min(max(x, 0.0), float(last))
         cell = int(x)
@@ -250,31 +250,31 @@ def _plane(table, part, axis_values):
 
 
 @inlined
-def _column_of(values, plane, column):
+def _column_value(values, plane, column):
     """Return one column of a part at its place."""
     total = values[plane[1] + column] * plane[5] + values[plane[2] + column] * plane[6]
     return total + values[plane[3] + column] * plane[7] + values[plane[4] + column] * plane[8]
 
 
 @inlined
-def _asked(table, planes, column):
+def _sum_at_column(table, planes, column):
     """Return the sum over the parts at one column."""
     count = table.part_axes.shape[0]
-    total = _column_of(table.values, planes[0], column)
+    total = _column_value(table.values, planes[0], column)
     if count > 1:
-        total += _column_of(table.values, planes[1], column)
+        total += _column_value(table.values, planes[1], column)
     if count > 2:
-        total += _column_of(table.values, planes[2], column)
+        total += _column_value(table.values, planes[2], column)
     return total
 
 
 @inlined
-def _crossing(table, axis_values, setting):
+def _speed_at_intersection(table, axis_values, setting):
     """Return (speed, ok) at which the sum rises through the curve; 0 where it is above it all."""
     part = np.int64(0)  # not a literal: each would be compiled by itself
-    first = _plane(table, part, axis_values)
-    second = _plane(table, part + 1, axis_values)
-    third = _plane(table, part + 2, axis_values)
+    first = _bilinear_corners(table, part, axis_values)
+    second = _bilinear_corners(table, part + 1, axis_values)
+    third = _bilinear_corners(table, part + 2, axis_values)
     if not (first[0] and second[0] and third[0]):
         return 0.0, False
     planes = (first, second, third)
@@ -283,10 +283,10 @@ def _crossing(table, axis_values, setting):
     guess = table.curve_guess[setting]
     column = guess
     while high - low > 1:
-        asked = _asked(table, planes, column)
+        asked = _sum_at_column(table, planes, column)
         if asked != asked:
             return 0.0, False
-        if asked < table.curve[setting, column * FINER]:
+        if asked < table.curve[setting, column * CURVE_REFINEMENT]:
             low, under = column, asked
         else:
             high, over = column, asked
@@ -299,15 +299,17 @@ def _crossing(table, axis_values, setting):
         return 0.0, True
     if high == table.n_columns:
         return top, True
-    place = low * FINER + _within(table, setting, low * FINER, under, over)
+    place = low * CURVE_REFINEMENT + _curve_intersection(
+        table, setting, low * CURVE_REFINEMENT, under, over
+    )
     return min(table.curve_start[setting] + place / table.curve_inv_step[setting], top), True
 
 
 @inlined
-def _within(table, setting, base, under, over):
+def _curve_intersection(table, setting, base, under, over):
     """Return where a line from ``under`` to ``over`` meets the curve of a setting [points]."""
-    low, high = 0, FINER
-    slope = (over - under) / FINER
+    low, high = 0, CURVE_REFINEMENT
+    slope = (over - under) / CURVE_REFINEMENT
     while high - low > 1:
         middle = (low + high) >> 1
         if under + middle * slope < table.curve[setting, base + middle]:
@@ -320,7 +322,7 @@ def _within(table, setting, base, under, over):
 
 
 @inlined
-def _on_curve(table, total, setting):
+def _curve_position(table, total, setting):
     """Return the point of the curve of a setting at a sum; the ends hold beyond them."""
     last = table.curve.shape[1] - 1
     x = (total - table.curve_start[setting]) * table.curve_inv_step[setting]
@@ -333,8 +335,8 @@ def _on_curve(table, total, setting):
 @inlined
 def sum_of_parts(table, axis_values, setting):
     """Do as `table_value`, inside kernels."""
-    if table.finish == CROSSING:
-        return _crossing(table, axis_values, setting)
+    if table.finish == CURVE_INTERSECTION:
+        return _speed_at_intersection(table, axis_values, setting)
     total = 0.0
     for part in range(table.part_axes.shape[0]):
         value, ok = part_value(table, part, axis_values, setting)
@@ -343,12 +345,12 @@ def sum_of_parts(table, axis_values, setting):
         total += value
     if total != total:
         return math.nan, False
-    if table.finish == CURVE:
-        total = _on_curve(table, total, setting)
+    if table.finish == OUTPUT_CURVE:
+        total = _curve_position(table, total, setting)
     return total, True
 
 
-@bare
+@allocation_free
 def table_value(table, axis_values, setting):
     """Return the value of a table: the sum over its parts of multilinear look-ups, or what follows.
 

@@ -5,16 +5,16 @@ import math
 from thalweg.kernels.compilation.decorators import inlined
 
 # entries of the numbers of a ship (`thalweg.ship.models.seaway_limits.SafetyLimits.numbers`)
-SURF_SPEED = 0  # 1.8 sqrt(L) in m/s; inf when surf-riding is not looked at
+SURF_RIDING_SPEED = 0  # 1.8 sqrt(L) in m/s; inf when surf-riding is not looked at
 HIGH_WAVE_LENGTH = 1  # length of the ship for successive high waves [m]; 0 when not looked at
 ROLL_PERIOD = 2  # [s]; 0 when roll is not looked at
-ROLL_HALF = 3  # 1 when half of the roll period counts as well
+CHECK_HALF_ROLL_PERIOD = 3  # 1 when half of the roll period counts as well
 ROLL_TOLERANCE = 4
-LEAST_HEIGHT = 5  # waves up to this are no danger [m]
-MEAN_PERIOD = 6  # mean over peak period
-NUMBERS = 7
+MIN_WAVE_HEIGHT = 5  # waves up to this are no danger [m]
+MEAN_TO_PEAK_PERIOD = 6  # mean over peak period
+SAFETY_NUMBER_COUNT = 7
 _KNOT = 1852.0 / 3600.0
-_SECTOR = math.cos(math.radians(45.0))
+_COS_45_DEGREES = math.cos(math.radians(45.0))
 
 
 @inlined
@@ -25,19 +25,22 @@ def _resonant(table, encounter):
         return False
     if abs(encounter / period - 1.0) < tolerance:
         return True
-    return table.safety[ROLL_HALF] > 0.0 and abs(2.0 * encounter / period - 1.0) < tolerance
+    return (
+        table.safety[CHECK_HALF_ROLL_PERIOD] > 0.0
+        and abs(2.0 * encounter / period - 1.0) < tolerance
+    )
 
 
 @inlined
 def _dangerous(table, speed, angle, height, peak_period):
     """Return whether MSC.1/Circ.1228 warns of something (see `stability_checks`)."""
     numbers = table.safety
-    if not height > numbers[LEAST_HEIGHT]:
+    if not height > numbers[MIN_WAVE_HEIGHT]:
         return False
     cosine = math.cos(angle)
-    if -cosine > _SECTOR and speed * -cosine > numbers[SURF_SPEED]:
+    if -cosine > _COS_45_DEGREES and speed * -cosine > numbers[SURF_RIDING_SPEED]:
         return True
-    period = numbers[MEAN_PERIOD] * peak_period
+    period = numbers[MEAN_TO_PEAK_PERIOD] * peak_period
     met = abs(3.0 * period + speed / _KNOT * cosine)
     if met == 0.0 or period <= 0.0:
         return False
@@ -71,7 +74,7 @@ def _uncomfortable(table, speed, angle, height, period):
 
 
 @inlined
-def forbidden(table, speed, angle, height, peak_period):
+def exceeds_wave_limits(table, speed, angle, height, peak_period):
     """Return whether a ship must not sail so.
 
     Parameters

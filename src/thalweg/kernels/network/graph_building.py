@@ -76,7 +76,7 @@ def lattice_pairs(i0, row_ptr, col, wrap, di, dj, first, second, offset):
 
 
 @jit
-def lattice_vias(i0, row_ptr, col, wrap, node, di, dj, row, point, offset, via_ptr, a, b, w, s):
+def lattice_samples(i0, row_ptr, col, wrap, node, di, dj, row, point, offset, via_ptr, a, b, w, s):
     """Fill the samples of pairs where they cross lattice lines (``a = -1``: a point is missing).
 
     A pair with offset (x, y) crosses ``max(|x|, |y|) - 1`` lattice lines between its ends, each
@@ -114,7 +114,7 @@ def lattice_vias(i0, row_ptr, col, wrap, node, di, dj, row, point, offset, via_p
 
 
 @jit
-def measure(lat, lon, first, second, length, course):
+def fill_lengths_and_courses(lat, lon, first, second, length, course):
     """Fill geodesic length [m] and course at mid-edge [rad] of pairs of positions [deg].
 
     Vincenty (1975), "Direct and inverse solutions of geodesics on the ellipsoid", Survey Review
@@ -191,7 +191,7 @@ def _mid_course(su1, cu1, su2, cu2, lam):
 
 
 @jit
-def mirror_pairs(n, first, second):
+def directed_edges_of_pairs(n, first, second):
     """Return the CSR of a symmetric graph given one pair per edge and its opposite.
 
     Returns
@@ -229,7 +229,7 @@ def mirror_pairs(n, first, second):
 
 
 @jit
-def mirror_vias(pair, back, ptr, a, b, w, s):
+def mirror_samples(pair, back, ptr, a, b, w, s):
     """Return the samples of directed edges from those of pairs, reversed where edges run back."""
     count = pair.shape[0]
     out_ptr = np.empty(count + 1, np.int64)
@@ -256,7 +256,7 @@ def mirror_vias(pair, back, ptr, a, b, w, s):
 
 
 @jit
-def static_distances(indptr, target, weight, start, goal, distance, parent):
+def static_dijkstra(indptr, target, weight, start, goal, distance, parent):
     """Fill least sums of weights from ``start`` (Dijkstra); stops at ``goal`` unless it is -1.
 
     ``weight`` holds one entry per edge; ``distance`` is inf and ``parent`` -1 where unreached.
@@ -324,7 +324,7 @@ def _sift_down(heap, place, distance, size, node):
 
 
 @jit
-def thin_points(x, y, spacing, keep):
+def keep_spaced_points(x, y, spacing, keep):
     """Keep points in order when they lie farther than their spacing from every point kept before.
 
     Parameters

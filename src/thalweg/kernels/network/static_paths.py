@@ -23,7 +23,7 @@ def static_astar(indptr, target, weight, potential, start, goal, distance, paren
         no more than the edge's weight.
     start, goal : int
     distance, parent : float64[N], int64[N]
-        Filled as by `thalweg.kernels.network.graph_building.static_distances`; final for settled
+        Filled as by `thalweg.kernels.network.graph_building.static_dijkstra`; final for settled
         nodes only.
 
     Returns
@@ -38,10 +38,10 @@ def static_astar(indptr, target, weight, potential, start, goal, distance, paren
     distance[:] = math.inf
     parent[:] = -1
     distance[start] = 0.0
-    size = heap.put(nodes, keys, place, 0, start, potential[start])
+    size = heap.push_or_lower(nodes, keys, place, 0, start, potential[start])
     count = 0
     while size > 0:
-        node, _, size = heap.take(nodes, keys, place, size)
+        node, _, size = heap.pop_least(nodes, keys, place, size)
         settled[node] = True
         count += 1
         if node == goal:
@@ -52,7 +52,7 @@ def static_astar(indptr, target, weight, potential, start, goal, distance, paren
             if not settled[other] and reach < distance[other]:
                 distance[other] = reach
                 parent[other] = node
-                size = heap.put(nodes, keys, place, size, other, reach + potential[other])
+                size = heap.push_or_lower(nodes, keys, place, size, other, reach + potential[other])
     return count
 
 

@@ -15,7 +15,7 @@ from thalweg.kernels.codes import (
     WAVE_HEIGHT,
     WIND_SPEED,
 )
-from thalweg.kernels.compilation.decorators import bare, inlined, inner
+from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import (
     NetworkArrays,
     SeaArrays,
@@ -25,12 +25,12 @@ from thalweg.kernels.leg.edge_sailing import (
     sample_between,
     sample_station,
 )
-from thalweg.kernels.leg.point_speed import fuel_rate_known, guided_point_speed
+from thalweg.kernels.leg.point_speed import fuel_rate_at_speed, point_speed_from_guess
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
 
-class PricedShip(NamedTuple):
+class MultiSettingShip(NamedTuple):
     """A ship with a choice of settings.
 
     Attributes
@@ -52,7 +52,7 @@ class PricedShip(NamedTuple):
     fuel_needs: int
 
 
-class Prices(NamedTuple):
+class EdgePrices(NamedTuple):
     """What edges and time cost.
 
     Attributes
@@ -69,7 +69,7 @@ class Prices(NamedTuple):
         Which of the chosen settings such an edge is passed with; the others are not offered.
     time_price : float
         Cost of a second, under way or not.
-    wait_rate : float
+    waiting_cost_rate : float
         Cost of a second of waiting, ``time_price`` included.
     """
 
@@ -79,10 +79,10 @@ class Prices(NamedTuple):
     fixed_fuel: np.ndarray
     fixed_choice: np.ndarray
     time_price: float
-    wait_rate: float
+    waiting_cost_rate: float
 
 
-class Blocks(NamedTuple):
+class EdgeTables(NamedTuple):
     """Durations and costs of all edges that leave a node, by time of departure.
 
     The block of node n and its i-th slice holds, for every edge in order, the durations [s] at
@@ -119,18 +119,18 @@ class Blocks(NamedTuple):
     sailed: np.ndarray
 
 
-class World(NamedTuple):
+class FrontArrays(NamedTuple):
     """All that edges are sailed with: network, sea, ship, prices, and the departure [s]."""
 
     network: NetworkArrays
     sea: SeaArrays
-    ship: PricedShip
-    prices: Prices
+    ship: MultiSettingShip
+    prices: EdgePrices
     depart: float
 
 
 @inlined
-def _pass_fixed(world, edge, choice, t):
+def _pass_fixed_time_edge(world, edge, choice, t):
     """Pass an edge whose duration does not depend on the sea."""
     network, prices = world.network, world.prices
     if choice != prices.fixed_choice[edge]:
@@ -145,7 +145,7 @@ def _pass_fixed(world, edge, choice, t):
 
 
 @inlined
-def _sail(world, edge, choice, k, t, work):
+def _sail_sea_edge(world, edge, choice, k, t, work):
     """Sail an edge by Heun's method over its samples, as
     `thalweg.kernels.leg.edge_sailing.sail_edge` does.
     """
@@ -171,12 +171,12 @@ def _sail(world, edge, choice, k, t, work):
                 a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
             sample_between(sea, a, b, weight, k, then, work[2], work[3])
             here = work[2]
-        speed, status, guess = guided_point_speed(
+        speed, status, guess = point_speed_from_guess(
             here, index, course[0], course[1], ship.table, setting, depth, limits, ship.needs, guess
         )
         if status != OK:
             return then, 0.0, status
-        used, ok = fuel_rate_known(
+        used, ok = fuel_rate_at_speed(
             here, index, course, ship.fuel, setting, depth, limits, ship.fuel_needs, guess
         )
         if not ok:
@@ -193,8 +193,8 @@ def _sail(world, edge, choice, k, t, work):
     return t, burnt, OK
 
 
-@inner
-def sail_priced(world, edge, choice, k, t, work):
+@kernel_only
+def sail_edge_priced(world, edge, choice, k, t, work):
     """Sail an edge at one of the settings.
 
     Parameters
@@ -216,9 +216,9 @@ def sail_priced(world, edge, choice, k, t, work):
     """
     fixed = world.prices.fixed_time[edge]
     if fixed == fixed:
-        arrival, fuel, status = _pass_fixed(world, edge, choice, t)
+        arrival, fuel, status = _pass_fixed_time_edge(world, edge, choice, t)
     else:
-        arrival, fuel, status = _sail(world, edge, choice, k, t, work)
+        arrival, fuel, status = _sail_sea_edge(world, edge, choice, k, t, work)
     prices = world.prices
     cost = fuel * prices.weight[edge] + prices.fee[edge] + prices.time_price * (arrival - t)
     return arrival, cost, status
@@ -229,8 +229,8 @@ def _may_open(status):
     return status in (DEPTH, WAVE_HEIGHT, WIND_SPEED, CURRENT, OUTSIDE_PERIOD)
 
 
-@inner
-def fill_block(world, blocks, node, i, work):
+@kernel_only
+def fill_edge_table(world, blocks, node, i, work):
     """Sail every edge that leaves a node at its i-th slice, at all settings."""
     network, sea, ship = world.network, world.sea, world.ship
     count = ship.settings.shape[0]
@@ -251,7 +251,7 @@ def fill_block(world, blocks, node, i, work):
         for s in range(count):
             duration, cost, status = math.inf, math.inf, never
             if status == OK:
-                then, price, status = sail_priced(world, edge, s, k, t, work)
+                then, price, status = sail_edge_priced(world, edge, s, k, t, work)
                 blocks.sailed[0] += 1
                 if status == OK:
                     duration, cost = then - t, price
@@ -266,7 +266,7 @@ def fill_block(world, blocks, node, i, work):
     blocks.state[blocks.place[node] + i] = found
 
 
-@bare
+@allocation_free
 def sail_departures(world, edges, tails, choices, departures, out, work):
     """Sail edges at given departures.
 
@@ -287,12 +287,12 @@ def sail_departures(world, edges, tails, choices, departures, out, work):
         if k < 0:
             continue
         sample_station(world.sea, world.network.station[tails[i]], k, t, work[1])
-        then, cost, status = sail_priced(world, edges[i], choices[i], k, t, work)
+        then, cost, status = sail_edge_priced(world, edges[i], choices[i], k, t, work)
         if status == OK:
             out[i, 0], out[i, 1] = then - t, cost
 
 
-@bare
+@allocation_free
 def sail_path(world, nodes, edges, choices, leave, arrive, depart, work):
     """Sail a path edge by edge; return (cost, status).
 
@@ -314,14 +314,14 @@ def sail_path(world, nodes, edges, choices, leave, arrive, depart, work):
     for i in range(edges.shape[0]):
         out = max(t, leave[i])
         depart[i] = out
-        total += prices.wait_rate * (out - t)
+        total += prices.waiting_cost_rate * (out - t)
         k = interval_of(sea.times, out)
         if k < 0:
             return total, OUTSIDE_PERIOD
         if out > t and out > network.until[nodes[i]]:
             return total, DEPTH
         sample_station(sea, network.station[nodes[i]], k, out, work[1])
-        t, cost, status = sail_priced(world, edges[i], choices[i], k, out, work)
+        t, cost, status = sail_edge_priced(world, edges[i], choices[i], k, out, work)
         if status != OK:
             return total, status
         total += cost
@@ -330,8 +330,8 @@ def sail_path(world, nodes, edges, choices, leave, arrive, depart, work):
     return total, OK
 
 
-@bare
-def fastest_flow(network, sea, along):
+@allocation_free
+def largest_edge_currents(network, sea, along):
     """Fill the largest current along every edge in the fields [m/s]; 0 where there is none.
 
     Parameters

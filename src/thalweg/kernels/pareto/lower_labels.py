@@ -6,28 +6,29 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import OK
-from thalweg.kernels.compilation.decorators import bare, inlined, inner
+from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import interval_of, sample_station
-from thalweg.kernels.pareto.edge_tables import fill_block, sail_priced
+from thalweg.kernels.pareto.edge_tables import fill_edge_table, sail_edge_priced
 from thalweg.kernels.pareto.time_expanded_labels import (
     ACTIVE,
     PRUNED,
     RELAXED,
     STARTED,
     VISITED,
-    interval_at,
-    promising,
+    clamped_interval,
+    may_be_non_dominated,
 )
 
-_SAFETY = 2.0  # of the difference met amid two slices
+_SAFETY_FACTOR = 2.0  # of the difference met amid two slices
 _ROUNDING = 1e-6  # of tables in single precision
-_LOST = 0.25  # off by more: what holds whatever the sea is may be the larger bound
+_LARGEST_USEFUL_ERROR = 0.25  # off by more: what holds whatever the sea is may be the larger bound
 _HALVINGS = 4  # to find when an edge shuts
-_UNSEEN = 0.01  # what an edge may be off by after the last moment it was met open
+_CLOSING_ERROR = 0.01  # what an edge may be off by after the last moment it was met open
 
 
 class LowerLabels(NamedTuple):
-    """The least reduced cost (less ``wait_rate`` times time) at every node in every bin of time.
+    """The least reduced cost (less ``waiting_cost_rate`` times time) at every node in every bin of
+    time.
 
     Attributes
     ----------
@@ -50,7 +51,7 @@ class LowerLabels(NamedTuple):
     dead: np.ndarray
 
 
-class Slack(NamedTuple):
+class InterpolationBounds(NamedTuple):
     """How far tables may be off between a slice and the next, by block and edge of the node.
 
     Attributes
@@ -80,7 +81,7 @@ class Slack(NamedTuple):
 
 
 @inlined
-def _off_from(off, took, spent, time, cost, price):
+def _widened_errors(off, took, spent, time, cost, price):
     """Return shares widened by a passage that takes and costs more or less than thought."""
     own = spent - price * took
     dear = (cost - price * time) / own - 1.0 if own > 0.0 else 0.0
@@ -89,7 +90,7 @@ def _off_from(off, took, spent, time, cost, price):
 
 
 @inlined
-def _off_amid(world, blocks, edge, at, span, k, t, count, work):
+def _midpoint_errors(world, blocks, edge, at, span, k, t, count, work):
     """Return how far passages amid two slices are from the mean of the two."""
     values, off = blocks.values, (0.0, 0.0, 0.0)
     for s in range(0, count, max(count - 1, 1)):
@@ -97,16 +98,16 @@ def _off_amid(world, blocks, edge, at, span, k, t, count, work):
         c0, c1 = np.float64(values[at + count + s]), np.float64(values[at + span + count + s])
         if not (d0 + d1 < math.inf):
             continue
-        then, cost, status = sail_priced(world, edge, s, k, t, work)
+        then, cost, status = sail_edge_priced(world, edge, s, k, t, work)
         blocks.sailed[0] += 1
         if status == OK:
             took, spent = 0.5 * (d0 + d1), 0.5 * (c0 + c1)
-            off = _off_from(off, took, spent, then - t, cost, world.prices.time_price)
+            off = _widened_errors(off, took, spent, then - t, cost, world.prices.time_price)
     return off
 
 
 @inlined
-def _off_open(world, blocks, node, edge, s, open_at, shut_at, took, spent, work):
+def _errors_until_shut(world, blocks, node, edge, s, open_at, shut_at, took, spent, work):
     """Return how far passages of an edge that is open at one slice are off until it shuts."""
     sea, off = world.sea, (0.0, 0.0, 0.0)
     for _ in range(_HALVINGS):
@@ -114,23 +115,27 @@ def _off_open(world, blocks, node, edge, s, open_at, shut_at, took, spent, work)
         k, status, then, cost = interval_of(sea.times, t), -1, t, 0.0
         if k >= 0:
             sample_station(sea, world.network.station[node], k, t, work[1])
-            then, cost, status = sail_priced(world, edge, s, k, t, work)
+            then, cost, status = sail_edge_priced(world, edge, s, k, t, work)
             blocks.sailed[0] += 1
         if status == OK:
             open_at = t - world.depart
-            off = _off_from(off, took, spent, then - t, cost, world.prices.time_price)
+            off = _widened_errors(off, took, spent, then - t, cost, world.prices.time_price)
         else:
             shut_at = t - world.depart
     return off
 
 
-@inner
-def look_between(world, blocks, slack, node, i, work):
+@kernel_only
+def bound_interpolation_errors(world, blocks, slack, node, i, work):
     """Find how far the tables may be off between a slice and the next."""
     for j in (i, i + 1):
         if blocks.state[blocks.place[node] + j] == 0:
-            fill_block(world, blocks, node, j, work)
-    network, count, rate = world.network, world.ship.settings.shape[0], world.prices.wait_rate
+            fill_edge_table(world, blocks, node, j, work)
+    network, count, rate = (
+        world.network,
+        world.ship.settings.shape[0],
+        world.prices.waiting_cost_rate,
+    )
     e0, e1 = network.indptr[node], network.indptr[node + 1]
     span = (e1 - e0) * 2 * count
     at, here = blocks.offset[node] + i * span, slack.start[node] + i * (e1 - e0)
@@ -145,7 +150,7 @@ def look_between(world, blocks, slack, node, i, work):
     for edge in range(e0, e1):
         off, gains = (0.0, 0.0, 0.0), 0
         if k >= 0:
-            off = _off_amid(world, blocks, edge, at, span, k, t, count, work)
+            off = _midpoint_errors(world, blocks, edge, at, span, k, t, count, work)
         for s in range(count):
             d0, d1 = values[at + s], values[at + span + s]
             if d0 < math.inf and d1 < math.inf:
@@ -161,11 +166,13 @@ def look_between(world, blocks, slack, node, i, work):
                     (at, sooner, later) if d0 < math.inf else (at + span, later, sooner)
                 )
                 took, spent = np.float64(values[row + s]), np.float64(values[row + count + s])
-                more = _off_open(world, blocks, node, edge, s, begin, end, took, spent, work)
+                more = _errors_until_shut(
+                    world, blocks, node, edge, s, begin, end, took, spent, work
+                )
                 off = max(off[0], more[0]), max(off[1], more[1]), max(off[2], more[2])
-        least = _UNSEEN if gains == 2 else _ROUNDING
+        least = _CLOSING_ERROR if gains == 2 else _ROUNDING
         for j in range(3):
-            slack.off[here, j] = _SAFETY * off[j] + least
+            slack.off[here, j] = _SAFETY_FACTOR * off[j] + least
         slack.gains[here] = gains
         here += 1
         at += 2 * count
@@ -173,7 +180,7 @@ def look_between(world, blocks, slack, node, i, work):
 
 
 @inlined
-def _keep(labels, clock, waits, head, sooner, later, cost, b):
+def _lower_bin_costs(labels, clock, waits, head, sooner, later, cost, b):
     """Lower the least cost of the bins an arrival may fall into; return whether bin b was."""
     first, last = labels.first[head], labels.last[head]
     low = max(int(sooner / clock.width), b, first)
@@ -190,7 +197,7 @@ def _keep(labels, clock, waits, head, sooner, later, cost, b):
 
 
 @inlined
-def least_amid(world, slack, edge, s, rate, longest):
+def least_in_any_sea(world, slack, edge, s, rate, longest):
     """Return the least duration and reduced cost of an edge, whatever the sea is."""
     prices = world.prices
     took = prices.fixed_time[edge]
@@ -204,14 +211,14 @@ def least_amid(world, slack, edge, s, rate, longest):
 
 
 @inlined
-def shares_off(slack, here):
+def interpolation_errors(slack, here):
     """Return a row of ``slack.off`` in double precision."""
     off = slack.off
     return np.float64(off[here, 0]), np.float64(off[here, 1]), np.float64(off[here, 2])
 
 
 @inlined
-def between(d0, d1, c0, c1, f, g):
+def interpolate_slices(d0, d1, c0, c1, f, g):
     """Return durations and costs at two shares of the time between two slices.
 
     An edge that is shut at one of the slices is as at the other.
@@ -224,7 +231,7 @@ def between(d0, d1, c0, c1, f, g):
 
 
 @inlined
-def least_between(world, slack, edge, s, rate, longest, begin, end, pair, off):
+def least_between_slices(world, slack, edge, s, rate, longest, begin, end, pair, off):
     """Return the earliest and latest arrival, and the least reduced cost, between two slices.
 
     ``pair`` holds durations and costs at begin and end by the tables, ``off`` how far these may
@@ -239,13 +246,17 @@ def least_between(world, slack, edge, s, rate, longest, begin, end, pair, off):
     least = min(dear * (ca - price * da) + slow * da, dear * (cb - price * db) + slow * db)
     least = max(least - _ROUNDING * max(ca, cb), 0.0)
     sooner = min(begin + da * left, end + db * left)
-    if early > _LOST or cheap > _LOST or (late > _LOST and net < 0.0):
-        took, amid = least_amid(world, slack, edge, s, rate, longest)
+    if (
+        early > _LARGEST_USEFUL_ERROR
+        or cheap > _LARGEST_USEFUL_ERROR
+        or (late > _LARGEST_USEFUL_ERROR and net < 0.0)
+    ):
+        took, amid = least_in_any_sea(world, slack, edge, s, rate, longest)
         sooner, least = max(sooner, begin + took), max(least, amid)
     return sooner, max(begin + da * (1.0 + late), end + db * (1.0 + late)), least
 
 
-@inner
+@kernel_only
 def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_edges, counts, work):
     """Sail on from a node at any moment of a piece of a bin that lies between two slices."""
     begin, end, cost, k, b = piece
@@ -253,8 +264,12 @@ def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_ed
     if i < 0 or i + 1 >= blocks.count[node]:
         return False
     if slack.state[blocks.place[node] + i] == 0:
-        look_between(world, blocks, slack, node, i, work)
-    network, count, rate = world.network, world.ship.settings.shape[0], world.prices.wait_rate
+        bound_interpolation_errors(world, blocks, slack, node, i, work)
+    network, count, rate = (
+        world.network,
+        world.ship.settings.shape[0],
+        world.prices.waiting_cost_rate,
+    )
     e0, e1 = network.indptr[node], network.indptr[node + 1]
     span = (e1 - e0) * 2 * count
     at, here = blocks.offset[node] + i * span, slack.start[node] + i * (e1 - e0)
@@ -263,9 +278,9 @@ def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_ed
     values, again = blocks.values, False
     for edge in range(e0, e1):
         head, gains = network.target[edge], slack.gains[here]
-        off = shares_off(slack, here)
+        off = interpolation_errors(slack, here)
         here += 1
-        ample = clock.latest - target.togo[head]
+        ample = clock.latest - target.time_to_go[head]
         waits = clock.wait and network.can_wait[head]
         if ample > begin and (all_edges or gains > 0):
             room = labels.best[head] - cost if waits else math.inf
@@ -278,23 +293,25 @@ def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_ed
                 )
                 if not (d0 < math.inf or d1 < math.inf):
                     continue
-                pair = between(d0, d1, c0, c1, f, g)
-                sooner, later, least = least_between(
+                pair = interpolate_slices(d0, d1, c0, c1, f, g)
+                sooner, later, least = least_between_slices(
                     world, slack, edge, s, rate, ample - begin, begin, end, pair, off
                 )
                 if sooner <= ample and least < room:
-                    again |= _keep(labels, clock, waits, head, sooner, later, cost + least, b)
+                    again |= _lower_bin_costs(
+                        labels, clock, waits, head, sooner, later, cost + least, b
+                    )
         at += 2 * count
     return again
 
 
-@inner
+@kernel_only
 def _sail_bin(world, labels, target, clock, blocks, slack, node, b, cost, fresh, counts, work):
     """Sail on from a node at any moment of a bin; return whether this bin was improved."""
     times, again = blocks.times, False
     begin = b * clock.width
     end = min(begin + clock.width, clock.latest)
-    k = interval_at(times, begin)
+    k = clamped_interval(times, begin)
     new = fresh or times[k] > begin - clock.width  # the first bin of an interval
     while begin < end:
         until = min(end, times[k + 1])
@@ -309,8 +326,8 @@ def _sail_bin(world, labels, target, clock, blocks, slack, node, b, cost, fresh,
     return again
 
 
-@inner
-def _visit(world, labels, target, clock, blocks, slack, node, b, first, counts, work):
+@kernel_only
+def _expand_bin_lower(world, labels, target, clock, blocks, slack, node, b, first, counts, work):
     """Sail on from a node in a bin, with its least cost so far; return whether the bin improved."""
     cost = labels.cost[labels.place[node] + b - labels.first[node]]
     waits = clock.wait and world.network.can_wait[node]
@@ -323,7 +340,9 @@ def _visit(world, labels, target, clock, blocks, slack, node, b, first, counts, 
     time = b * clock.width
     if cost >= labels.dead[node]:
         return False
-    if not promising(target, clock, node, time, cost + world.prices.wait_rate * time):
+    if not may_be_non_dominated(
+        target, clock, node, time, cost + world.prices.waiting_cost_rate * time
+    ):
         counts[PRUNED] += 1
         if waits:
             labels.dead[node] = cost
@@ -334,8 +353,8 @@ def _visit(world, labels, target, clock, blocks, slack, node, b, first, counts, 
     )
 
 
-@bare
-def advance_lower(world, labels, target, clock, blocks, slack, agenda, begin, end, work):
+@allocation_free
+def process_bins_lower(world, labels, target, clock, blocks, slack, agenda, begin, end, work):
     """Process the bins from ``begin`` to before ``end``, in order.
 
     Parameters
@@ -378,7 +397,7 @@ def advance_lower(world, labels, target, clock, blocks, slack, agenda, begin, en
                 if first and not (clock.wait and world.network.can_wait[node]):
                     labels.best[node] = math.inf
                 if node != target.goal:
-                    again |= _visit(
+                    again |= _expand_bin_lower(
                         world, labels, target, clock, blocks, slack, node, b, first, counts, work
                     )
                 n += 1

@@ -5,18 +5,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.compilation.decorators import bare, inlined, inner
-from thalweg.kernels.pareto.lower_labels import between, least_between, look_between, shares_off
+from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
+from thalweg.kernels.pareto.lower_labels import (
+    bound_interpolation_errors,
+    interpolate_slices,
+    interpolation_errors,
+    least_between_slices,
+)
 from thalweg.kernels.pareto.time_expanded_labels import (
     ACTIVE,
     RELAXED,
     STARTED,
     VISITED,
-    interval_at,
+    clamped_interval,
 )
 
 
-class TimePriced(NamedTuple):
+class ScalarisedLabelTarget(NamedTuple):
     """A search of the least cost plus a price of time.
 
     Attributes
@@ -26,7 +31,7 @@ class TimePriced(NamedTuple):
         Price of a second.
     known : float
         Cost plus priced time of a real way: what is not below leads nowhere.
-    togo : float64[N]
+    time_to_go : float64[N]
         Lower bound of the time to the goal [s].
     floor : float64[N]
         Lower bound of cost plus priced time to the goal.
@@ -35,12 +40,12 @@ class TimePriced(NamedTuple):
     goal: int
     rate: float
     known: float
-    togo: np.ndarray
+    time_to_go: np.ndarray
     floor: np.ndarray
 
 
 @inlined
-def _spread(labels, clock, target, head, sooner, later, value, b):
+def _lower_bin_values(labels, clock, target, head, sooner, later, value, b):
     """Lower the value of every bin an arrival may fall into; return whether bin b was."""
     if not value + target.floor[head] < target.known:
         return False
@@ -56,15 +61,15 @@ def _spread(labels, clock, target, head, sooner, later, value, b):
     return found
 
 
-@inner
-def _price_piece(world, labels, target, clock, blocks, slack, node, piece, counts, work):
+@kernel_only
+def _sail_piece_scalarised(world, labels, target, clock, blocks, slack, node, piece, counts, work):
     """Sail on from a node at any moment of a piece of a bin that lies between two slices."""
     begin, end, value, k, b = piece
     i = k - blocks.first[node]
     if i < 0 or i + 1 >= blocks.count[node]:
         return False
     if slack.state[blocks.place[node] + i] == 0:
-        look_between(world, blocks, slack, node, i, work)
+        bound_interpolation_errors(world, blocks, slack, node, i, work)
     network, count, rate = world.network, world.ship.settings.shape[0], target.rate
     e0, e1 = network.indptr[node], network.indptr[node + 1]
     span = (e1 - e0) * 2 * count
@@ -74,10 +79,10 @@ def _price_piece(world, labels, target, clock, blocks, slack, node, piece, count
     values, again = blocks.values, False
     for edge in range(e0, e1):
         head = network.target[edge]
-        off = shares_off(slack, here)
+        off = interpolation_errors(slack, here)
         here += 1
         room = target.known - target.floor[head] - value
-        ample = clock.latest - target.togo[head]
+        ample = clock.latest - target.time_to_go[head]
         if room > 0.0 and ample > begin:
             counts[RELAXED] += count
             for s in range(count):
@@ -88,27 +93,29 @@ def _price_piece(world, labels, target, clock, blocks, slack, node, piece, count
                 )
                 if not (d0 < math.inf or d1 < math.inf):
                     continue
-                pair = between(d0, d1, c0, c1, f, g)
-                sooner, later, least = least_between(
+                pair = interpolate_slices(d0, d1, c0, c1, f, g)
+                sooner, later, least = least_between_slices(
                     world, slack, edge, s, -rate, ample - begin, begin, end, pair, off
                 )
                 if least < room and sooner <= ample:
-                    again |= _spread(labels, clock, target, head, sooner, later, value + least, b)
+                    again |= _lower_bin_values(
+                        labels, clock, target, head, sooner, later, value + least, b
+                    )
         at += 2 * count
     return again
 
 
-@inner
-def _price_bin(world, labels, target, clock, blocks, slack, node, b, value, counts, work):
+@kernel_only
+def _sail_bin_scalarised(world, labels, target, clock, blocks, slack, node, b, value, counts, work):
     """Sail on from a node at any moment of a bin; return whether this bin was improved."""
     times, again = blocks.times, False
     begin = b * clock.width
     end = min(begin + clock.width, clock.latest)
-    k = interval_at(times, begin)
+    k = clamped_interval(times, begin)
     while begin < end:
         until = min(end, times[k + 1])
         piece = (begin, until, value, k, b)
-        again |= _price_piece(
+        again |= _sail_piece_scalarised(
             world, labels, target, clock, blocks, slack, node, piece, counts, work
         )
         begin = until
@@ -118,8 +125,8 @@ def _price_bin(world, labels, target, clock, blocks, slack, node, b, value, coun
     return again
 
 
-@bare
-def advance_priced(world, labels, target, clock, blocks, slack, agenda, work):
+@allocation_free
+def process_bins_scalarised(world, labels, target, clock, blocks, slack, agenda, work):
     """Find the least cost plus priced time of reaching every node in every bin.
 
     Parameters
@@ -141,7 +148,7 @@ def advance_priced(world, labels, target, clock, blocks, slack, agenda, work):
     only the sea is taken at the most favourable moment of the bin.
     """
     active, counts = agenda.active, agenda.counts
-    held = (target.rate + world.prices.wait_rate) * clock.width
+    held = (target.rate + world.prices.waiting_cost_rate) * clock.width
     for b in range(clock.count):
         while counts[STARTED] < agenda.order.shape[0]:
             node = agenda.order[counts[STARTED]]
@@ -171,7 +178,7 @@ def advance_priced(world, labels, target, clock, blocks, slack, agenda, work):
                 if value < labels.dead[node] and value + target.floor[node] < target.known:
                     labels.dead[node] = value
                     counts[VISITED] += 1
-                    again |= _price_bin(
+                    again |= _sail_bin_scalarised(
                         world, labels, target, clock, blocks, slack, node, b, value, counts, work
                     )
             first = False

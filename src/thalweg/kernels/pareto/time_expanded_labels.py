@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import OK
-from thalweg.kernels.compilation.decorators import bare, inlined, inner
+from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import interval_of, sample_station
-from thalweg.kernels.pareto.edge_tables import fill_block, sail_priced
+from thalweg.kernels.pareto.edge_tables import fill_edge_table, sail_edge_priced
 
 VISITED, RELAXED, PRUNED, WAITED, STARTED, ACTIVE, SLICE = 0, 1, 2, 3, 4, 5, 6
-COUNTS = 7  # entries of `Agenda.counts`
+COUNTER_COUNT = 7  # entries of `ActiveNodes.counts`
 
 
 class BinLabels(NamedTuple):
@@ -30,7 +30,7 @@ class BinLabels(NamedTuple):
     source : int32[L, 2]
         Label it comes from, -1 at the start; edge times number of settings plus setting.
     best : float64[N]
-        Least cost so far minus ``wait_rate`` times time.
+        Least cost so far minus ``waiting_cost_rate`` times time.
     best_at : float64[N, 2]
         Time [s after departure] and label of it.
     done : float64[N, 2]
@@ -48,7 +48,7 @@ class BinLabels(NamedTuple):
     done: np.ndarray
 
 
-class Target(NamedTuple):
+class LabelTarget(NamedTuple):
     """Where labels are to lead, and bounds of what is still to come.
 
     Attributes
@@ -56,7 +56,7 @@ class Target(NamedTuple):
     goal : int
     upper : float64[B + 1]
         Least cost known of arriving at the goal by the start of each bin; inf for none.
-    togo : float64[N]
+    time_to_go : float64[N]
         Lower bound of the time to the goal [s].
     rates : float64[R]
         Prices of a second, 0 first.
@@ -66,12 +66,12 @@ class Target(NamedTuple):
 
     goal: int
     upper: np.ndarray
-    togo: np.ndarray
+    time_to_go: np.ndarray
     rates: np.ndarray
     floor: np.ndarray
 
 
-class Clock(NamedTuple):
+class TimeBins(NamedTuple):
     """How time is divided: width of the bins [s], latest arrival [s], bins; whether one waits."""
 
     width: float
@@ -81,7 +81,7 @@ class Clock(NamedTuple):
     wait: bool
 
 
-class Agenda(NamedTuple):
+class ActiveNodes(NamedTuple):
     """Nodes by first bin, those whose bins have begun and not ended, and counts."""
 
     order: np.ndarray
@@ -90,13 +90,13 @@ class Agenda(NamedTuple):
 
 
 @inlined
-def promising(target, clock, node, time, cost):
+def may_be_non_dominated(target, clock, node, time, cost):
     """Return whether a label may still lead to an arrival that nothing known dominates.
 
     It may if for some bin of arrival the largest of the lower bounds of the cost at the end of
     the bin is below what is known for its start.
     """
-    soonest = time + target.togo[node]
+    soonest = time + target.time_to_go[node]
     if not soonest <= clock.latest:
         return False
     b, count = int(soonest / clock.width), clock.count
@@ -119,7 +119,7 @@ def promising(target, clock, node, time, cost):
 
 
 @inlined
-def _offer(labels, target, clock, head, time, cost, slot, left, code):
+def _insert_label(labels, target, clock, head, time, cost, slot, left, code):
     """Keep an arrival if it is the cheapest in its bin; return the bin, or -1."""
     b = int(time / clock.width)
     if b < labels.first[head] or b > labels.last[head]:
@@ -139,7 +139,7 @@ def _offer(labels, target, clock, head, time, cost, slot, left, code):
 
 
 @inlined
-def interval_at(times, t):
+def clamped_interval(times, t):
     """Return k with ``times[k] <= t < times[k + 1]``, the last interval at the end."""
     low, high = 0, times.shape[0] - 1
     while high - low > 1:
@@ -152,10 +152,10 @@ def interval_at(times, t):
 
 
 @inlined
-def room_for(labels, clock, network, prices, head, time, cost):
+def cost_margin(labels, clock, network, prices, head, time, cost):
     """Return what an edge may cost less waiting: more is dominated by an earlier arrival."""
     if clock.wait and network.can_wait[head]:
-        return labels.best[head] - (cost - prices.wait_rate * time)
+        return labels.best[head] - (cost - prices.waiting_cost_rate * time)
     return math.inf
 
 
@@ -168,7 +168,7 @@ def _any_shut(values, at, span, count):
     return False
 
 
-@inner
+@kernel_only
 def _sail_shut(world, labels, target, clock, blocks, node, edge, e0, i, start, work):
     """Sail an edge now at the settings that are shut at one of the slices around."""
     time, cost, slot, left, b = start
@@ -180,36 +180,38 @@ def _sail_shut(world, labels, target, clock, blocks, node, edge, e0, i, start, w
     if k < 0:
         return False
     sample_station(world.sea, network.station[node], k, world.depart + time, work[1])
-    room = room_for(labels, clock, network, world.prices, head, time, cost)
+    room = cost_margin(labels, clock, network, world.prices, head, time, cost)
     for s in range(count):
         d0, d1 = blocks.values[at + s], blocks.values[at + span + s]
         if d0 == d0 and d1 == d1:
             continue
-        then, price, status = sail_priced(world, edge, s, k, world.depart + time, work)
+        then, price, status = sail_edge_priced(world, edge, s, k, world.depart + time, work)
         took = then - world.depart - time
-        if status != OK or time + took + target.togo[head] > clock.latest:
+        if status != OK or time + took + target.time_to_go[head] > clock.latest:
             continue
-        if price - world.prices.wait_rate * took < room:
+        if price - world.prices.waiting_cost_rate * took < room:
             code = edge * count + s
-            found = _offer(labels, target, clock, head, time + took, cost + price, slot, left, code)
+            found = _insert_label(
+                labels, target, clock, head, time + took, cost + price, slot, left, code
+            )
             again |= found == b
     return again
 
 
-@inner
+@kernel_only
 def _expand(world, labels, target, clock, blocks, node, start, only_shut, counts, work, spare):
     """Sail all edges that leave a node now; return whether a label of this bin was improved."""
     time, cost, slot, left, b = start
     network, prices, times = world.network, world.prices, blocks.times
-    k = interval_at(times, time)
+    k = clamped_interval(times, time)
     i = k - blocks.first[node]
     if i < 0 or i + 1 >= blocks.count[node]:
         return False
     state = blocks.place[node] + i
     if blocks.state[state] == 0:
-        fill_block(world, blocks, node, i, work)
+        fill_edge_table(world, blocks, node, i, work)
     if blocks.state[state + 1] == 0:
-        fill_block(world, blocks, node, i + 1, work)
+        fill_edge_table(world, blocks, node, i + 1, work)
     shut = blocks.state[state] > 1 or blocks.state[state + 1] > 1
     count = world.ship.settings.shape[0]
     e0, e1 = network.indptr[node], network.indptr[node + 1]
@@ -218,18 +220,18 @@ def _expand(world, labels, target, clock, blocks, node, start, only_shut, counts
     values, again = blocks.values, False
     for edge in range(e0, e1):
         head = network.target[edge]
-        ample = clock.latest - target.togo[head] - time
+        ample = clock.latest - target.time_to_go[head] - time
         if ample > 0.0 and not only_shut:
-            room = room_for(labels, clock, network, prices, head, time, cost)
+            room = cost_margin(labels, clock, network, prices, head, time, cost)
             counts[RELAXED] += count
             for s in range(2 * count):
                 low = values[at + s]
                 spare[s] = low + f * (values[at + span + s] - low)
             for s in range(count):
                 took, price = np.float64(spare[s]), np.float64(spare[count + s])
-                if took <= ample and price - prices.wait_rate * took < room:
+                if took <= ample and price - prices.waiting_cost_rate * took < room:
                     code = edge * count + s
-                    found = _offer(
+                    found = _insert_label(
                         labels, target, clock, head, time + took, cost + price, slot, left, code
                     )
                     again |= found == b
@@ -241,7 +243,7 @@ def _expand(world, labels, target, clock, blocks, node, start, only_shut, counts
     return again
 
 
-@inner
+@kernel_only
 def _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work):
     """Let the best label so far leave at slice k by edges that are cheaper then than before."""
     network, prices, times = world.network, world.prices, blocks.times
@@ -250,15 +252,15 @@ def _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work):
         return False
     if world.depart + time > network.until[node]:
         return False
-    cost = labels.best[node] + prices.wait_rate * time
-    if not promising(target, clock, node, time, cost):
+    cost = labels.best[node] + prices.waiting_cost_rate * time
+    if not may_be_non_dominated(target, clock, node, time, cost):
         return False
     state = blocks.place[node] + i
     if blocks.state[state] == 0:
-        fill_block(world, blocks, node, i, work)
+        fill_edge_table(world, blocks, node, i, work)
     known = i > 0
     if known and blocks.state[state - 1] == 0:
-        fill_block(world, blocks, node, i - 1, work)
+        fill_edge_table(world, blocks, node, i - 1, work)
     f = 0.0
     if known:
         f = max(0.0, (labels.best_at[node, 0] - times[k - 1]) / (time - times[k - 1]))
@@ -266,11 +268,16 @@ def _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work):
     e0, e1 = network.indptr[node], network.indptr[node + 1]
     span = (e1 - e0) * 2 * count
     at = blocks.offset[node] + i * span
-    slot, values, again, rate = int(labels.best_at[node, 1]), blocks.values, False, prices.wait_rate
+    slot, values, again, rate = (
+        int(labels.best_at[node, 1]),
+        blocks.values,
+        False,
+        prices.waiting_cost_rate,
+    )
     for edge in range(e0, e1):
         head = network.target[edge]
-        ample = clock.latest - target.togo[head] - time
-        room = room_for(labels, clock, network, prices, head, time, cost)
+        ample = clock.latest - target.time_to_go[head] - time
+        room = cost_margin(labels, clock, network, prices, head, time, cost)
         counts[WAITED] += count
         for s in range(count):
             took, price = np.float64(values[at + s]), np.float64(values[at + count + s])
@@ -283,14 +290,16 @@ def _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work):
                 if net >= before - 1e-6 * abs(before) and low + f * (took - low) <= took + 1.0:
                     continue
             code = edge * count + s
-            found = _offer(labels, target, clock, head, time + took, cost + price, slot, time, code)
+            found = _insert_label(
+                labels, target, clock, head, time + took, cost + price, slot, time, code
+            )
             again |= found == b
         at += 2 * count
     return again
 
 
-@inner
-def _wait(world, labels, target, clock, blocks, node, b, counts, work, spare):
+@kernel_only
+def _wait_in_bin(world, labels, target, clock, blocks, node, b, counts, work, spare):
     """Let the best label so far of a node leave in this bin, where waiting may be of use."""
     again = False
     if labels.best[node] == math.inf or not world.network.can_wait[node]:
@@ -301,14 +310,14 @@ def _wait(world, labels, target, clock, blocks, node, b, counts, work, spare):
         again |= _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work)
         k += 1
     time = b * clock.width
-    i = interval_at(times, time) - blocks.first[node]
+    i = clamped_interval(times, time) - blocks.first[node]
     if i < 0 or i + 1 >= blocks.count[node] or labels.best_at[node, 0] > time:
         return again
     state = blocks.place[node] + i
     if blocks.state[state] != 3 and blocks.state[state + 1] != 3:
         return again
-    cost = labels.best[node] + world.prices.wait_rate * time
-    if world.depart + time <= world.network.until[node] and promising(
+    cost = labels.best[node] + world.prices.waiting_cost_rate * time
+    if world.depart + time <= world.network.until[node] and may_be_non_dominated(
         target, clock, node, time, cost
     ):
         start, only_shut = (time, cost, int(labels.best_at[node, 1]), time, b), time == time
@@ -318,8 +327,8 @@ def _wait(world, labels, target, clock, blocks, node, b, counts, work, spare):
     return again
 
 
-@inner
-def _visit(world, labels, target, clock, blocks, node, b, counts, work, spare):
+@kernel_only
+def _expand_bin(world, labels, target, clock, blocks, node, b, counts, work, spare):
     """Sail on from the label of a node in this bin; return whether this bin was improved."""
     slot = labels.place[node] + b - labels.first[node]
     cost = np.float64(labels.cost[slot])
@@ -328,14 +337,14 @@ def _visit(world, labels, target, clock, blocks, node, b, counts, work, spare):
     labels.done[node, 0], labels.done[node, 1] = b, cost
     time = np.float64(labels.when[slot, 0])
     if clock.wait and world.network.can_wait[node]:
-        reduced = cost - world.prices.wait_rate * time
+        reduced = cost - world.prices.waiting_cost_rate * time
         if reduced >= labels.best[node]:
             return False
         labels.best[node] = reduced
         labels.best_at[node, 0], labels.best_at[node, 1] = time, slot
     if node == target.goal:
         return False
-    if not promising(target, clock, node, time, cost):
+    if not may_be_non_dominated(target, clock, node, time, cost):
         counts[PRUNED] += 1
         return False
     counts[VISITED] += 1
@@ -346,8 +355,8 @@ def _visit(world, labels, target, clock, blocks, node, b, counts, work, spare):
     )
 
 
-@bare
-def advance(world, labels, target, clock, blocks, agenda, begin, end, work, spare):
+@allocation_free
+def process_bins(world, labels, target, clock, blocks, agenda, begin, end, work, spare):
     """Process the bins from ``begin`` to before ``end``, in order.
 
     Parameters
@@ -387,10 +396,12 @@ def advance(world, labels, target, clock, blocks, agenda, begin, end, work, spar
                     active[n] = active[counts[ACTIVE]]
                     continue
                 if first and clock.wait and node != target.goal:
-                    again |= _wait(
+                    again |= _wait_in_bin(
                         world, labels, target, clock, blocks, node, b, counts, work, spare
                     )
-                again |= _visit(world, labels, target, clock, blocks, node, b, counts, work, spare)
+                again |= _expand_bin(
+                    world, labels, target, clock, blocks, node, b, counts, work, spare
+                )
                 n += 1
             first = False
         times = blocks.times
@@ -398,8 +409,8 @@ def advance(world, labels, target, clock, blocks, agenda, begin, end, work, spar
             counts[SLICE] += 1
 
 
-@bare
-def trace(labels, slot, slots):
+@allocation_free
+def trace_labels(labels, slot, slots):
     """Follow a label back to the start; fill ``slots`` from the end, return how many.
 
     Returns -1 if there are more than fit.

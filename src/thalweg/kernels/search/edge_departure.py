@@ -3,22 +3,22 @@
 import math
 
 from thalweg.kernels.codes import DEPTH, LIMIT_REQUIRED_DEPTH, NO_DATA, OK, OUTSIDE_PERIOD
-from thalweg.kernels.compilation.decorators import bare, inner
+from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.leg.edge_sailing import interval_of, sail_edge, sample_station
 from thalweg.kernels.leg.point_speed import water_depth
 
 OPENING_TOLERANCE = 0.1  # an opening is found to this [s]
 
 
-@inner
-def _sail_at(network, sea, ship, edge, tail_node, k, t, work):
+@kernel_only
+def _sail_edge_at(network, sea, ship, edge, tail_node, k, t, work):
     """Sail an edge at any departure of interval k, sampling the tail too."""
     sample_station(sea, tail_node, k, t, work[1])
     return sail_edge(network, sea, ship, edge, k, t, work[1], work[2], work[3], math.inf, 0.0)
 
 
-@inner
-def _opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, useless, work):
+@kernel_only
+def _find_opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, useless, work):
     """Return the earliest (departure, arrival) of an edge that opens in (shut, opened].
 
     Where depth is what lacks, which is linear between the times of the data, two departures tell
@@ -32,7 +32,7 @@ def _opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, usel
             return opened, math.inf
         guessed = shut < guess < opened
         probe = guess if guessed else shut + share * (opened - shut)
-        then, status = _sail_at(network, sea, ship, edge, tail_node, k, probe, work)
+        then, status = _sail_edge_at(network, sea, ship, edge, tail_node, k, probe, work)
         if status == OK:
             opened, arrival = probe, then
             if guessed:  # once just before it, to see that it is shut there
@@ -52,7 +52,7 @@ def _opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, usel
     return opened, arrival
 
 
-@inner
+@kernel_only
 def wait_for_edge(
     network, sea, ship, edge, tail, k, t, until, arrival, status, factor, quickest, enough, work
 ):
@@ -113,20 +113,20 @@ def wait_for_edge(
         earliest = s if before_status == OK else before
         if earliest - t + factor * quickest >= min(best, enough):
             break
-        then, now = _sail_at(network, sea, ship, edge, tail, interval, s, work)
+        then, now = _sail_edge_at(network, sea, ship, edge, tail, interval, s, work)
         if now == OUTSIDE_PERIOD:
             break
         start, found = s, now
         if now != OK and s - (then - s) > before:  # pass the sample that blocks at a time of data
             start = s - (then - s)
-            then, found = _sail_at(network, sea, ship, edge, tail, j - 1, start, work)
+            then, found = _sail_edge_at(network, sea, ship, edge, tail, j - 1, start, work)
         if found == OK:
             value = start - t + factor * (then - start)
             if value < best:
                 departure, arrival, best, status = start, then, value, OK
             if before_status != OK:
                 useless = t + min(best, enough) - factor * quickest
-                start, then = _opening(
+                start, then = _find_opening(
                     network, sea, ship, edge, tail, j - 1, before, start, then, useless, work
                 )
                 value = start - t + factor * (then - start)
@@ -136,7 +136,7 @@ def wait_for_edge(
     return departure, arrival, status
 
 
-@bare
+@allocation_free
 def edge_arrivals(network, sea, ship, edges, tails, departures, arrivals, statuses, work):
     """Sail edges at many departures, without waiting.
 
@@ -161,7 +161,7 @@ def edge_arrivals(network, sea, ship, edges, tails, departures, arrivals, status
                 arrivals[i, j] = math.inf
                 statuses[i, j] = OUTSIDE_PERIOD if departures[j] == departures[j] else NO_DATA
                 continue
-            arrivals[i, j], statuses[i, j] = _sail_at(
+            arrivals[i, j], statuses[i, j] = _sail_edge_at(
                 network, sea, ship, edges[i], tails[i], k, departures[j], work
             )
             if statuses[i, j] != OK:

@@ -12,7 +12,7 @@ from thalweg.kernels.codes import (
     SPEED_FIELD,
     WATER_LEVEL,
 )
-from thalweg.kernels.compilation.decorators import bare, inlined
+from thalweg.kernels.compilation.decorators import allocation_free, inlined
 
 
 @inlined
@@ -29,7 +29,7 @@ def never_deep_enough(network, sea, edge, required):
     return OK
 
 
-@bare
+@allocation_free
 def tidal_extremes(sea):
     """Fill ``sea.highest`` and ``sea.deepest``; NaN in the fields is passed over.
 
@@ -48,7 +48,7 @@ def tidal_extremes(sea):
         sea.deepest[s] = deepest if deepest > -math.inf else math.inf
 
 
-@bare
+@allocation_free
 def largest_current(sea):
     """Return the largest strength of current in the fields [m/s]; 0 when they have none."""
     i, j = sea.channel_index[CURRENT_EAST], sea.channel_index[CURRENT_NORTH]
@@ -65,7 +65,7 @@ def largest_current(sea):
     return math.sqrt(largest)
 
 
-@bare
+@allocation_free
 def largest_speed_field(sea):
     """Return the largest value of the speed field [m/s]; -1 when there is none."""
     k = sea.channel_index[SPEED_FIELD]

@@ -4,7 +4,7 @@ from thalweg.kernels.compilation.decorators import inlined
 
 
 @inlined
-def _rise(nodes, keys, place, slot, node, key):
+def _move_up(nodes, keys, place, slot, node, key):
     while slot > 0:
         parent = (slot - 1) >> 2
         if keys[parent] <= key:
@@ -19,7 +19,7 @@ def _rise(nodes, keys, place, slot, node, key):
 
 
 @inlined
-def put(nodes, keys, place, size, node, key):
+def push_or_lower(nodes, keys, place, size, node, key):
     """Insert a node, or lower its key; return the new size.
 
     Parameters
@@ -37,12 +37,12 @@ def put(nodes, keys, place, size, node, key):
     if slot < 0:
         slot = size
         size += 1
-    _rise(nodes, keys, place, slot, node, key)
+    _move_up(nodes, keys, place, slot, node, key)
     return size
 
 
 @inlined
-def take(nodes, keys, place, size):
+def pop_least(nodes, keys, place, size):
     """Remove the node of least key; return (node, key, new size). The heap must not be empty."""
     top, top_key = nodes[0], keys[0]
     place[top] = -1

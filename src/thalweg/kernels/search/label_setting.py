@@ -7,13 +7,13 @@ import numpy as np
 
 from thalweg.kernels.codes import (
     ARRIVE_BY,
-    CHANNELS,
-    COUNT,
+    CHANNEL_COUNT,
     LIMIT_REQUIRED_DEPTH,
     OK,
     OUTSIDE_PERIOD,
+    STATUS_COUNT,
 )
-from thalweg.kernels.compilation.decorators import bare, woven
+from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
 from thalweg.kernels.leg.edge_sailing import (
     interval_of,
     least_time,
@@ -25,7 +25,7 @@ from thalweg.kernels.search.edge_departure import wait_for_edge
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
 
-class Query(NamedTuple):
+class SearchQuery(NamedTuple):
     """One question to a network.
 
     Attributes
@@ -56,7 +56,7 @@ class Query(NamedTuple):
     per_metre: float
 
 
-class Labels(NamedTuple):
+class NodeLabels(NamedTuple):
     """What a search found for every node; the unsettled ones hold upper bounds."""
 
     cost: np.ndarray
@@ -66,7 +66,7 @@ class Labels(NamedTuple):
     settled: np.ndarray
 
 
-class Workspace(NamedTuple):
+class SearchWorkspace(NamedTuple):
     """Memory of one search: the heap, samples of the sea, and counts (`SETTLED`, ...)."""
 
     nodes: np.ndarray
@@ -77,12 +77,12 @@ class Workspace(NamedTuple):
     refused: np.ndarray
 
 
-SETTLED, RELAXED, SAILED = 0, 1, 2  # entries of `Workspace.counts`
+SETTLED, RELAXED, SAILED = 0, 1, 2  # entries of `SearchWorkspace.counts`
 
 
 def new_labels(n_nodes):
     """Return labels of nodes none of which is reached."""
-    return Labels(
+    return NodeLabels(
         np.full(n_nodes, math.inf),
         np.full(n_nodes, math.inf),
         np.full(n_nodes, -1, np.int32),
@@ -91,20 +91,20 @@ def new_labels(n_nodes):
     )
 
 
-def new_workspace(n_nodes):
+def new_search_workspace(n_nodes):
     """Return the memory of one search."""
-    return Workspace(
+    return SearchWorkspace(
         np.empty(n_nodes, np.int32),
         np.empty(n_nodes),
         np.full(n_nodes, -1, np.int32),
-        np.full((4, CHANNELS), math.nan),
+        np.full((4, CHANNEL_COUNT), math.nan),
         np.zeros(3, np.int64),
-        np.zeros(COUNT, np.int64),
+        np.zeros(STATUS_COUNT, np.int64),
     )
 
 
-@woven
-def _worth(query, cost, time, length, quickest, factor, goal_distance, labels, node):
+@inlined_by_numba
+def _longest_useful_time(query, cost, time, length, quickest, factor, goal_distance, labels, node):
     """Return how much waiting plus weighted sailing [s] may at most be; not positive: no use."""
     if query.by_distance:
         here = cost + length * factor
@@ -122,8 +122,8 @@ def _worth(query, cost, time, length, quickest, factor, goal_distance, labels, n
     return enough if quickest * factor < enough else -1.0
 
 
-@woven
-def _sail(network, sea, ship, query, node, edge, k, time, enough, work):
+@inlined_by_numba
+def _best_departure(network, sea, ship, query, node, edge, k, time, enough, work):
     """Return (departure, arrival, status) of the best use of an edge from a node since a time."""
     factor = 1.0 if query.by_distance else float(network.factor[edge])
     latest = math.inf if query.by_distance else time + enough / factor
@@ -144,8 +144,8 @@ def _sail(network, sea, ship, query, node, edge, k, time, enough, work):
     )  # fmt: skip
 
 
-@woven
-def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, size):
+@inlined_by_numba
+def _relax_edge(network, sea, ship, query, distances, labels, memory, node, edge, k, size):
     """Improve the label of an edge's head if the edge can; return the size of the heap."""
     to = network.target[edge]
     if labels.settled[to]:
@@ -153,7 +153,7 @@ def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, 
     cost, time = labels.cost[node], labels.time[node]
     length, factor, left = network.length[edge], float(network.factor[edge]), distances[to]
     quickest = least_time(network, edge, query.slowness)
-    enough = _worth(query, cost, time, length, quickest, factor, left, labels, to)
+    enough = _longest_useful_time(query, cost, time, length, quickest, factor, left, labels, to)
     if enough <= 0.0:
         return size
     memory.counts[SAILED] += 1
@@ -163,7 +163,7 @@ def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, 
     if required > -math.inf:
         status = never_deep_enough(network, sea, edge, required)
     if status == OK:
-        departure, arrival, status = _sail(
+        departure, arrival, status = _best_departure(
             network, sea, ship, query, node, edge, k, time, enough, memory.samples
         )
     if status != OK:
@@ -182,11 +182,11 @@ def _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, 
         labels.cost[to], labels.time[to] = new, arrival
         labels.before[to], labels.departed[to] = node, departure
         key = new + left * query.per_metre
-        size = heap.put(memory.nodes, memory.keys, memory.place, size, to, key)
+        size = heap.push_or_lower(memory.nodes, memory.keys, memory.place, size, to, key)
     return size
 
 
-@bare
+@allocation_free
 def label_setting(network, sea, ship, query, distances, labels, memory):
     """Settle nodes in order of cost, from one start, until the goal is settled.
 
@@ -216,9 +216,9 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     """
     nodes, keys, place, counts = memory.nodes, memory.keys, memory.place, memory.counts
     labels.cost[query.start], labels.time[query.start] = 0.0, query.depart
-    size = heap.put(nodes, keys, place, 0, query.start, 0.0)
+    size = heap.push_or_lower(nodes, keys, place, 0, query.start, 0.0)
     while size > 0:
-        node, _, size = heap.take(nodes, keys, place, size)
+        node, _, size = heap.pop_least(nodes, keys, place, size)
         labels.settled[node] = True
         counts[SETTLED] += 1
         if node == query.goal:
@@ -232,4 +232,6 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
             continue
         sample_station(sea, network.station[node], k, time, memory.samples[0])
         for edge in range(first, last):
-            size = _relax(network, sea, ship, query, distances, labels, memory, node, edge, k, size)
+            size = _relax_edge(
+                network, sea, ship, query, distances, labels, memory, node, edge, k, size
+            )

@@ -12,29 +12,29 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import (
-    CHANNELS,
+    CHANNEL_COUNT,
     CURRENT_EAST,
     CURRENT_NORTH,
     OK,
 )
-from thalweg.kernels.compilation.decorators import bare, woven
+from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
 from thalweg.kernels.leg.edge_sailing import interval_of, sail_edge, sample_station
 from thalweg.kernels.search import heap
 from thalweg.kernels.search.edge_departure import wait_for_edge
 
-SECTORS = 16  # directions for which the strongest current is kept
+CURRENT_DIRECTIONS = 16  # directions for which the strongest current is kept
 _SHRINK = 1.0 - 1e-7  # keeps bounds below the truth in single precision
-_SPARE = 1e-3  # depth that rounding may hide [m]
+_DEPTH_ROUNDING = 1e-3  # depth that rounding may hide [m]
 
 
-class Ahead(NamedTuple):
+class TravelTimeBounds(NamedTuple):
     """Lower bounds: time to the goal from every node, and of every edge [s]; inf: no way."""
 
     node: np.ndarray
     edge: np.ndarray
 
 
-class Trip(NamedTuple):
+class DepartureQuery(NamedTuple):
     """One departure.
 
     Attributes
@@ -51,7 +51,7 @@ class Trip(NamedTuple):
         Lower bound of the time per metre anywhere [s/m].
     wait : bool
         Whether waiting is allowed at all.
-    eager : float
+    heuristic_weight : float
         Weight of the bounds of the time to go: 1 finds the best way; more finds some way, sooner.
     most : int
         The search gives up after settling so many nodes.
@@ -64,11 +64,11 @@ class Trip(NamedTuple):
     latest: float
     slowness: float
     wait: bool
-    eager: float
+    heuristic_weight: float
     most: int
 
 
-class Marks(NamedTuple):
+class ProfileWorkspace(NamedTuple):
     """Labels by state, and the memory of searches; `touched` lists what must be reset."""
 
     cost: np.ndarray
@@ -84,12 +84,12 @@ class Marks(NamedTuple):
     samples: np.ndarray
 
 
-TOUCHED, SETTLED, SAILED = 0, 1, 2  # entries of `Marks.counts`
+TOUCHED, SETTLED, SAILED = 0, 1, 2  # entries of `ProfileWorkspace.counts`
 
 
-def new_marks(count):
+def new_profile_workspace(count):
     """Return the memory of searches over a number of states."""
-    return Marks(
+    return ProfileWorkspace(
         np.full(count, math.inf),
         np.full(count, math.inf),
         np.full(count, -1, np.int32),
@@ -100,25 +100,26 @@ def new_marks(count):
         np.full(count, -1, np.int32),
         np.empty(count, np.int32),
         np.zeros(3, np.int64),
-        np.full((4, CHANNELS), math.nan),
+        np.full((4, CHANNEL_COUNT), math.nan),
     )
 
 
-@bare
+@allocation_free
 def strongest_currents(sea, strongest):
-    """Fill the strongest current [m/s] of every station towards each of `SECTORS` directions.
+    """Fill the strongest current [m/s] of every station towards each of `CURRENT_DIRECTIONS`
+    directions.
 
     NaN is passed over; without a current they are 0.
     """
     i, j = sea.channel_index[CURRENT_EAST], sea.channel_index[CURRENT_NORTH]
     values = sea.values
     for s in range(strongest.shape[0]):
-        for d in range(SECTORS):
+        for d in range(CURRENT_DIRECTIONS):
             strongest[s, d] = -math.inf if i >= 0 and j >= 0 else 0.0
         if i < 0 or j < 0:
             continue
-        for d in range(SECTORS // 2):
-            angle = 2.0 * math.pi * d / SECTORS
+        for d in range(CURRENT_DIRECTIONS // 2):
+            angle = 2.0 * math.pi * d / CURRENT_DIRECTIONS
             east, north = np.float32(math.sin(angle)), np.float32(math.cos(angle))
             high, low = np.float32(-math.inf), np.float32(math.inf)
             for t in range(values.shape[1]):
@@ -126,50 +127,55 @@ def strongest_currents(sea, strongest):
                 high = max(high, along) if along == along else high
                 low = min(low, along) if along == along else low
             strongest[s, d] = high + 1e-5
-            strongest[s, d + SECTORS // 2] = -low + 1e-5
+            strongest[s, d + CURRENT_DIRECTIONS // 2] = -low + 1e-5
 
 
-@woven
-def _most_at(network, sea, strongest, station, edge, course, required):
+@inlined_by_numba
+def _station_maxima(network, sea, strongest, station, edge, course, required):
     """Return (greatest depth, strongest current along the course) ever at a station on an edge."""
     depth = math.inf
     if required > -math.inf:
         depth = min(float(network.depth[edge]) + sea.highest[station], float(sea.deepest[station]))
-    sector = course * (SECTORS / (2.0 * math.pi))
+    sector = course * (CURRENT_DIRECTIONS / (2.0 * math.pi))
     low = math.floor(sector)
-    share, gap = (sector - low) * (2.0 * math.pi / SECTORS), 2.0 * math.pi / SECTORS
-    k = int(low) % SECTORS
+    share, gap = (
+        (sector - low) * (2.0 * math.pi / CURRENT_DIRECTIONS),
+        2.0 * math.pi / CURRENT_DIRECTIONS,
+    )
+    k = int(low) % CURRENT_DIRECTIONS
     along = math.sin(gap - share) * strongest[station, k]
-    along = (along + math.sin(share) * strongest[station, (k + 1) % SECTORS]) / math.sin(gap)
+    along = (along + math.sin(share) * strongest[station, (k + 1) % CURRENT_DIRECTIONS]) / math.sin(
+        gap
+    )
     return depth, along if along == along else -math.inf
 
 
-@woven
+@inlined_by_numba
 def _least_slowness(caps, most, required):
     """Return the least time per metre with that depth and current [s/m]; inf if too shallow."""
     depth, along = most
     last = caps.shape[0] - 1
     speed = caps[last]
     if required > -math.inf:
-        if not depth >= required - _SPARE:
+        if not depth >= required - _DEPTH_ROUNDING:
             return math.inf
-        if depth + _SPARE < last * CAP_STEP:
-            speed = caps[int(max(depth + _SPARE, 0.0) / CAP_STEP)]
+        if depth + _DEPTH_ROUNDING < last * SPEED_CAP_DEPTH_STEP:
+            speed = caps[int(max(depth + _DEPTH_ROUNDING, 0.0) / SPEED_CAP_DEPTH_STEP)]
     speed = (speed + along) * (1.0 + 1e-6)
     return 1.0 / speed if speed > 0.0 else math.inf
 
 
-@woven
-def _larger(first, second):
+@inlined_by_numba
+def _larger_of_each(first, second):
     """Return the larger of each: what bounds every mixture of the two."""
     return max(first[0], second[0]), max(first[1], second[1])
 
 
-CAP_STEP = 0.25  # of the depths for which the greatest speed is kept [m]
+SPEED_CAP_DEPTH_STEP = 0.25  # of the depths for which the greatest speed is kept [m]
 
 
-@bare
-def least_times(network, tails, sea, strongest, caps, required, times):
+@allocation_free
+def least_edge_times(network, tails, sea, strongest, caps, required, times):
     """Fill lower bounds of the weighted time of every edge at any time [s]; inf if none opens it.
 
     Parameters
@@ -190,7 +196,7 @@ def least_times(network, tails, sea, strongest, caps, required, times):
             times[e] = network.fixed_time[e] * float(network.factor[e]) * _SHRINK
             continue
         course, length = float(network.course[e]), network.length[e]
-        most = _most_at(network, sea, strongest, tails[e], e, course, required)
+        most = _station_maxima(network, sea, strongest, tails[e], e, course, required)
         before = _least_slowness(caps, most, required)
         at, total = 0.0, 0.0
         for p in range(network.via_ptr[e], network.via_ptr[e + 1] + 1):
@@ -198,18 +204,18 @@ def least_times(network, tails, sea, strongest, caps, required, times):
             to = 1.0
             if p < network.via_ptr[e + 1]:
                 a, b, to = network.via_a[p], network.via_b[p], float(network.via_s[p])
-            most = _most_at(network, sea, strongest, a, e, course, required)
+            most = _station_maxima(network, sea, strongest, a, e, course, required)
             if b != a:  # a mixture may have the depth of the one and the current of the other
-                other = _most_at(network, sea, strongest, b, e, course, required)
-                most = _larger(most, other)
+                other = _station_maxima(network, sea, strongest, b, e, course, required)
+                most = _larger_of_each(most, other)
             now = _least_slowness(caps, most, required)
             total += 0.5 * (to - at) * length * (before + now)
             before, at = now, to
         times[e] = total * float(network.factor[e]) * _SHRINK
 
 
-@bare
-def backward_bounds(reverse_ptr, reverse_edge, tails, times, goal, ahead, memory):
+@allocation_free
+def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, ahead, memory):
     """Fill the least sums of edge times to the goal from every node (Dijkstra backwards).
 
     Parameters
@@ -228,20 +234,20 @@ def backward_bounds(reverse_ptr, reverse_edge, tails, times, goal, ahead, memory
     for n in range(ahead.shape[0]):
         ahead[n] = math.inf
     ahead[goal] = 0.0
-    size = heap.put(nodes, keys, place, 0, goal, 0.0)
+    size = heap.push_or_lower(nodes, keys, place, 0, goal, 0.0)
     while size > 0:
-        node, reached, size = heap.take(nodes, keys, place, size)
+        node, reached, size = heap.pop_least(nodes, keys, place, size)
         for k in range(reverse_ptr[node], reverse_ptr[node + 1]):
             edge = reverse_edge[k]
             away = reached + times[edge]
             tail = tails[edge]
             if away < ahead[tail]:
                 ahead[tail] = away
-                size = heap.put(nodes, keys, place, size, tail, away)
+                size = heap.push_or_lower(nodes, keys, place, size, tail, away)
 
 
-@woven
-def _best_use(network, sea, ship, trip, node, edge, k, time, until, enough, quickest, work):
+@inlined_by_numba
+def _best_passage(network, sea, ship, trip, node, edge, k, time, until, enough, quickest, work):
     """Return (departure, arrival, status) of the best use of an edge since a time."""
     factor = float(network.factor[edge])
     arrival, status = sail_edge(
@@ -260,8 +266,8 @@ def _best_use(network, sea, ship, trip, node, edge, k, time, until, enough, quic
     )  # fmt: skip
 
 
-@woven
-def _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, size):
+@inlined_by_numba
+def _relax_edge_from_state(network, states, sea, ship, trip, ahead, marks, state, edge, k, size):
     """Improve the labels of an edge's head if the edge can; return the size of the heap."""
     head, node = network.target[edge], states.node[state]
     cost, time = marks.cost[state], marks.time[state]
@@ -275,7 +281,7 @@ def _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, siz
             continue
         marks.counts[SAILED] += 1
         network.opens[head], network.closes[head] = states.opens[s], states.closes[s]
-        departure, arrival, status = _best_use(
+        departure, arrival, status = _best_passage(
             network, sea, ship, trip, node, edge, k, time, states.until[state],
             enough, quickest, marks.samples,
         )  # fmt: skip
@@ -289,13 +295,13 @@ def _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, siz
                 marks.counts[TOUCHED] += 1
             marks.cost[s], marks.time[s] = new, arrival
             marks.before[s], marks.departed[s] = state, departure
-            key = new + trip.eager * left
-            size = heap.put(marks.nodes, marks.keys, marks.place, size, s, key)
+            key = new + trip.heuristic_weight * left
+            size = heap.push_or_lower(marks.nodes, marks.keys, marks.place, size, s, key)
     return size
 
 
-@bare
-def forget(marks):
+@allocation_free
+def reset_workspace(marks):
     """Reset what the last search touched."""
     for i in range(marks.counts[TOUCHED]):
         s = marks.touched[i]
@@ -305,8 +311,8 @@ def forget(marks):
     marks.counts[TOUCHED] = 0
 
 
-@bare
-def sail_once(network, states, sea, ship, trip, ahead, marks):
+@allocation_free
+def search_departure(network, states, sea, ship, trip, ahead, marks):
     """Search one departure; return its cost [s], inf if the goal is not reached within the limit.
 
     Parameters
@@ -319,7 +325,7 @@ def sail_once(network, states, sea, ship, trip, ahead, marks):
     ahead : Ahead
         Bounds that obey the triangle inequality with the times of edges.
     marks : Marks
-        Holds the labels until the next `forget`, which must have been called before.
+        Holds the labels until the next `reset_workspace`, which must have been called before.
     """
     nodes, keys, place, counts = marks.nodes, marks.keys, marks.place, marks.counts
     counts[SETTLED] = counts[SAILED] = 0
@@ -327,9 +333,11 @@ def sail_once(network, states, sea, ship, trip, ahead, marks):
         return math.inf
     marks.touched[0], counts[TOUCHED] = trip.start, 1
     marks.cost[trip.start], marks.time[trip.start] = 0.0, trip.depart
-    size = heap.put(nodes, keys, place, 0, trip.start, ahead.node[states.node[trip.start]])
+    size = heap.push_or_lower(
+        nodes, keys, place, 0, trip.start, ahead.node[states.node[trip.start]]
+    )
     while size > 0 and counts[SETTLED] < trip.most:
-        state, _, size = heap.take(nodes, keys, place, size)
+        state, _, size = heap.pop_least(nodes, keys, place, size)
         marks.settled[state] = True
         counts[SETTLED] += 1
         if state == trip.goal:
@@ -340,12 +348,14 @@ def sail_once(network, states, sea, ship, trip, ahead, marks):
             continue
         sample_station(sea, node, k, time, marks.samples[0])
         for edge in range(network.indptr[node], network.indptr[node + 1]):
-            size = _improve(network, states, sea, ship, trip, ahead, marks, state, edge, k, size)
+            size = _relax_edge_from_state(
+                network, states, sea, ship, trip, ahead, marks, state, edge, k, size
+            )
     return math.inf
 
 
-@bare
-def trace(states, marks, trip, nodes, arrive, leave):
+@allocation_free
+def trace_departure(states, marks, trip, nodes, arrive, leave):
     """Fill the path of the last search from its end; return how many nodes it has.
 
     The last ``count`` entries of the outputs are filled; 0 if they are too short.

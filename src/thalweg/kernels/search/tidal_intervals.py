@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
-from thalweg.kernels.compilation.decorators import bare, woven
+from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
 
 _ROUNDING = 1e-3  # depths are in single precision [m]
 
 
-class States(NamedTuple):
+class TidalStates(NamedTuple):
     """Times afloat of every node: those of node n are ``ptr[n]:ptr[n + 1]``, in order.
 
     Attributes
@@ -34,8 +34,8 @@ class States(NamedTuple):
     until: np.ndarray
 
 
-@bare
-def count_afloat(sea, charted, can_wait, required, counts):
+@allocation_free
+def count_tidal_states(sea, charted, can_wait, required, counts):
     """Fill how many times afloat each node has; 1 for those that never change or cannot wait."""
     least = np.float32(required - _ROUNDING)
     for n in range(counts.shape[0]):
@@ -53,7 +53,7 @@ def count_afloat(sea, charted, can_wait, required, counts):
             counts[n] = max(found, 1)
 
 
-@woven
+@inlined_by_numba
 def _depth(sea, charted, n, t):
     i, j = sea.channel_index[WATER_LEVEL], sea.channel_index[BED_DEPTH]
     depth = charted[n]
@@ -66,8 +66,8 @@ def _depth(sea, charted, n, t):
     return depth
 
 
-@bare
-def fill_afloat(sea, charted, can_wait, required, states):
+@allocation_free
+def fill_tidal_states(sea, charted, can_wait, required, states):
     """Fill the times afloat of every node; depth is linear between the times of the data."""
     least = np.float32(required - _ROUNDING)
     last = sea.times.shape[0] - 1
@@ -82,7 +82,7 @@ def fill_afloat(sea, charted, can_wait, required, states):
             afloat = _depth(sea, charted, n, t) >= least
             if afloat and not before:
                 if open_now:  # a later time afloat: it begins amid the dry
-                    begin = _crossing(sea, charted, n, t - 1, t, required)
+                    begin = _threshold_time(sea, charted, n, t - 1, t, required)
                     middle = 0.5 * (states.until[s] + begin)
                     states.closes[s] = middle
                     s += 1
@@ -90,15 +90,15 @@ def fill_afloat(sea, charted, can_wait, required, states):
                     states.opens[s], states.closes[s], states.until[s] = middle, math.inf, math.inf
                 open_now = True
             if before and not afloat:
-                states.until[s] = _crossing(sea, charted, n, t, t - 1, required)
+                states.until[s] = _threshold_time(sea, charted, n, t, t - 1, required)
             any_dry |= not afloat
             before = afloat
         if any_dry and not open_now:
             states.until[s] = -math.inf
 
 
-@woven
-def _crossing(sea, charted, n, dry, wet, required):
+@inlined_by_numba
+def _threshold_time(sea, charted, n, dry, wet, required):
     """Return when a node falls dry or floats between two times of the data [s]."""
     bound = np.float32(required)
     low, high = (

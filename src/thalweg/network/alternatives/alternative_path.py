@@ -13,9 +13,9 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.network.alternatives.path_shortening import (
     LegCost,
-    Sides,
+    PassingSides,
     leg_lengths,
-    pulled,
+    pull_taut,
     total_cost,
 )
 from thalweg.network.network import IntArray, Network
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 
-_FINEST = 25.0  # [m] to which edges are cut at borders of control areas
+_BORDER_TOLERANCE = 25.0  # [m] to which edges are cut at borders of control areas
 
 
 @dataclass(frozen=True)
-class Weighing:
+class EdgeWeights:
     """What a way costs.
 
     Attributes
@@ -44,7 +44,7 @@ class Weighing:
     leg_cost: LegCost | None = None
 
     @classmethod
-    def priced(cls, network: Network, chart: Chart, factor: float = 1.0) -> Weighing:
+    def priced(cls, network: Network, chart: Chart, factor: float = 1.0) -> EdgeWeights:
         """Return lengths times the factors of zones, and another inside emission control areas.
 
         Parameters
@@ -69,15 +69,15 @@ class Weighing:
 
         def leg_cost(*ends: FloatArray) -> FloatArray:
             penalty, price = chart.zone_factor(*ends)
-            share = chart.eca_share(*ends, finest=_FINEST)
+            share = chart.eca_fraction(*ends, finest=_BORDER_TOLERANCE)
             return np.asarray(leg_lengths(*ends) * penalty * price * (1.0 + (factor - 1.0) * share))
 
         weight = network.length * network.factor * network.price
-        return cls(weight * (1.0 + (factor - 1.0) * eca_shares(network, chart)), leg_cost)
+        return cls(weight * (1.0 + (factor - 1.0) * eca_fractions(network, chart)), leg_cost)
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
+class AlternativePath:
     """One of several ways between the ends of a network.
 
     Attributes
@@ -111,7 +111,7 @@ class Way:
         return list(zip(self.lat.tolist(), self.lon.tolist()))
 
 
-def eca_shares(network: Network, chart: Chart) -> FloatArray:
+def eca_fractions(network: Network, chart: Chart) -> FloatArray:
     """Return the share (0 to 1) of every edge inside emission control areas; 0 of canals."""
     share = np.zeros(network.n_edges)
     if not chart.zones.eca:
@@ -122,16 +122,16 @@ def eca_shares(network: Network, chart: Chart) -> FloatArray:
     keys, back = np.unique(key, return_inverse=True)
     a, b = keys // network.n_nodes, keys % network.n_nodes
     lat, lon = network.lat, network.lon
-    found = chart.eca_share(lat[a], lon[a], lat[b], lon[b], finest=_FINEST)
+    found = chart.eca_fraction(lat[a], lon[a], lat[b], lon[b], finest=_BORDER_TOLERANCE)
     share[sailed] = np.asarray(found)[back]
     return share
 
 
-def weights_of(network: Network, weighing: Weighing) -> FloatArray:
+def checked_edge_weights(network: Network, edge_weights: EdgeWeights) -> FloatArray:
     """Return the weight of every edge; `InputError` if they make no sense."""
-    if weighing.weight is None:
+    if edge_weights.weight is None:
         return network.length
-    weight = np.ascontiguousarray(weighing.weight, float)
+    weight = np.ascontiguousarray(edge_weights.weight, float)
     if weight.shape != (network.n_edges,) or not np.all(weight >= 0.0):
         raise InputError(
             f"Weights of shape {weight.shape} do not weigh {network.n_edges} edges.",
@@ -141,27 +141,27 @@ def weights_of(network: Network, weighing: Weighing) -> FloatArray:
     return weight
 
 
-def drawn_way(
-    network: Network, chart: Chart, path: IntArray, ratio: float, weighing: Weighing,
-    sides: Sides | None = None,
-) -> Way:  # fmt: skip
-    """Return the way along nodes of a network, pulled taut; ``ratio`` as in `Way`."""
+def taut_path(
+    network: Network, chart: Chart, path: IntArray, ratio: float, edge_weights: EdgeWeights,
+    sides: PassingSides | None = None,
+) -> AlternativePath:  # fmt: skip
+    """Return the way along nodes of a network, pulled taut; ``ratio`` as in `AlternativePath`."""
     lat, lon = network.lat[path], network.lon[path]
-    lat, lon = pulled(chart, lat, lon, leg_cost=weighing.leg_cost, sides=sides)
-    weight = weights_of(network, weighing)
-    length, cost = total_cost((lat, lon)), total_cost((lat, lon), weighing.leg_cost)
+    lat, lon = pull_taut(chart, lat, lon, leg_cost=edge_weights.leg_cost, sides=sides)
+    weight = checked_edge_weights(network, edge_weights)
+    length, cost = total_cost((lat, lon)), total_cost((lat, lon), edge_weights.leg_cost)
     names: list[str] = []
     if chart.canals:
         through = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
-        edges = {int(c): e for e, c in _canal_steps(network, chart, path)}
+        edges = {int(c): e for e, c in _canal_passages(network, chart, path)}
         for k in np.flatnonzero(through >= 0):
             canal, leg = chart.canals[through[k]], (lat[k : k + 2], lon[k : k + 2])
             names.append(canal.name)
             length += canal.length - total_cost(leg)
-            cost += float(weight[edges[int(through[k])]]) - total_cost(leg, weighing.leg_cost)
-    if weighing.weight is not None and weighing.leg_cost is None:
-        cost = float(weight[edges_of(network, path)].sum())
-    return Way(lat, lon, length, cost, ratio, tuple(names), path)
+            cost += float(weight[edges[int(through[k])]]) - total_cost(leg, edge_weights.leg_cost)
+    if edge_weights.weight is not None and edge_weights.leg_cost is None:
+        cost = float(weight[path_edges(network, path)].sum())
+    return AlternativePath(lat, lon, length, cost, ratio, tuple(names), path)
 
 
 def canal_edges(network: Network, chart: Chart) -> IntArray:
@@ -174,12 +174,12 @@ def canal_edges(network: Network, chart: Chart) -> IntArray:
     return answer
 
 
-def _canal_steps(network: Network, chart: Chart, path: IntArray) -> list[tuple[int, int]]:
+def _canal_passages(network: Network, chart: Chart, path: IntArray) -> list[tuple[int, int]]:
     canal = canal_edges(network, chart)
-    return [(e, int(canal[e])) for e in edges_of(network, path) if canal[e] >= 0]
+    return [(e, int(canal[e])) for e in path_edges(network, path) if canal[e] >= 0]
 
 
-def edges_of(network: Network, path: Sequence[int] | IntArray) -> IntArray:
+def path_edges(network: Network, path: Sequence[int] | IntArray) -> IntArray:
     """Return the edges along a path of nodes."""
     edges = []
     for a, b in pairwise(path):

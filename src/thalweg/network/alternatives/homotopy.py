@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.chart.coast.rings import Rings
 
-Counts: TypeAlias = NDArray[np.int8]
-_MOST = 120  # islands that count, the largest ones
+CrossingCounts: TypeAlias = NDArray[np.int8]
+_MAX_ISLANDS = 120  # islands that count, the largest ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +35,11 @@ class Obstacles:
     """
 
     points: FloatArray
-    crossings: Counts
+    crossings: CrossingCounts
 
     def sides(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
-    ) -> Counts:
+    ) -> CrossingCounts:
         """Return the crossings (n, K) of legs [deg]."""
         count = np.arange(len(lat1))
         crossings = np.empty((len(count), len(self.points)), np.int8)
@@ -50,7 +50,11 @@ class Obstacles:
     def along(self, chart: Chart, lat: FloatArray, lon: FloatArray) -> bytes:
         """Return the counts of a way given by its waypoints [deg], as a key."""
         nodes = np.arange(len(lat))
-        return _counts(chart, lat, lon, nodes[:-1], nodes[1:], self.points).sum(axis=0).tobytes()
+        return (
+            _meridian_crossing_counts(chart, lat, lon, nodes[:-1], nodes[1:], self.points)
+            .sum(axis=0)
+            .tobytes()
+        )
 
 
 def obstacles(network: Network, chart: Chart, island: float) -> Obstacles:
@@ -64,16 +68,18 @@ def obstacles(network: Network, chart: Chart, island: float) -> Obstacles:
         Land narrower than this [m] (square root of its area) does not count.
     """
     points = np.concatenate(
-        [[[-90.0, 0.5 * (network.lon[0] + 180.0)]], _land(network, chart, island)]
+        [[[-90.0, 0.5 * (network.lon[0] + 180.0)]], _large_land(network, chart, island)]
     )
     tail, head = network.tails().astype(np.int64), network.target.astype(np.int64)
-    return Obstacles(points, _counts(chart, network.lat, network.lon, tail, head, points))
+    return Obstacles(
+        points, _meridian_crossing_counts(chart, network.lat, network.lon, tail, head, points)
+    )
 
 
-def _counts(
+def _meridian_crossing_counts(
     chart: Chart, lat: FloatArray, lon: FloatArray, first: IntArray, second: IntArray,
     points: FloatArray,
-) -> Counts:  # fmt: skip
+) -> CrossingCounts:  # fmt: skip
     crossings = np.empty((len(first), len(points)), np.int8)
     meridian_crossings(
         np.ascontiguousarray(lat), np.ascontiguousarray(lon), first, second, points, crossings
@@ -83,7 +89,7 @@ def _counts(
     return np.concatenate([crossings, canals.astype(np.int8)], axis=1)
 
 
-def _land(network: Network, chart: Chart, island: float) -> FloatArray:
+def _large_land(network: Network, chart: Chart, island: float) -> FloatArray:
     """Return a position on each piece of land that is large enough and near the network."""
     rings = chart.land.rings
     if not len(rings):
@@ -98,7 +104,7 @@ def _land(network: Network, chart: Chart, island: float) -> FloatArray:
     near = (low <= network.lat.max()) & (high >= network.lat.min())
     near &= (west <= mine.max()) & (east >= mine.min())
     chosen = np.flatnonzero(near & (area >= island**2))
-    chosen = chosen[np.argsort(-area[chosen])][:_MOST]
+    chosen = chosen[np.argsort(-area[chosen])][:_MAX_ISLANDS]
     return np.stack([rings.lat[begin[chosen]], rings.lon[begin[chosen]]], axis=1)
 
 

@@ -11,15 +11,15 @@ import numpy as np
 
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import FloatArray, distance, format_position
-from thalweg.kernels.network.graph_building import static_distances
+from thalweg.kernels.network.graph_building import static_dijkstra
 from thalweg.kernels.network.static_paths import tree_sums
 from thalweg.network.alternatives.alternative_path import (
-    Way,
-    Weighing,
+    AlternativePath,
+    EdgeWeights,
     canal_edges,
-    drawn_way,
-    edges_of,
-    weights_of,
+    checked_edge_weights,
+    path_edges,
+    taut_path,
 )
 from thalweg.network.alternatives.homotopy import Obstacles, obstacles
 from thalweg.network.alternatives.path_shortening import total_cost
@@ -28,20 +28,22 @@ from thalweg.network.network import IntArray, Network
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-_SMALLEST: Final = 0.02  # islands narrower than this share of the distance do not count
-_TRIED: Final = 3  # kinds of way looked at for each that is asked for
-_ALIKE: Final = 0.005  # ways round the same islands differ when one costs more than this more
+_SMALLEST_ISLAND: Final = 0.02  # islands narrower than this share of the distance do not count
+_CANDIDATES_PER_PATH: Final = 3  # kinds of way looked at for each that is asked for
+_MIN_COST_DIFFERENCE: Final = (
+    0.005  # ways round the same islands differ when one costs more than this more
+)
 
 
-def ways_round(
+def alternative_paths(
     network: Network,
     chart: Chart,
     *,
-    weighings: Sequence[Weighing] = (Weighing(),),
+    edge_weight_sets: Sequence[EdgeWeights] = (EdgeWeights(),),
     most: int = 4,
     stretch: float = 0.3,
     island: float | None = None,
-) -> tuple[Way, ...]:
+) -> tuple[AlternativePath, ...]:
     """Return ways that pass land on different sides, or other canals, best first.
 
     Parameters
@@ -50,7 +52,7 @@ def ways_round(
         With start and goal, as the builders make it. It needs slack for what is to be found.
     chart : Chart
         The chart it was built for.
-    weighings : sequence of Weighing, optional
+    edge_weight_sets : sequence of Weighing, optional
         What ways cost: lengths by default; several when prices differ from place to place, such as
         lengths times factors of 1, 1.2 and 1.56 inside emission control areas.
     most : int, optional
@@ -88,22 +90,24 @@ def ways_round(
     start, goal = network.meta.start, network.meta.goal
     ends = [(float(network.lat[k]), float(network.lon[k])) for k in (start, goal)]
     if island is None:
-        island = _SMALLEST * float(distance(*ends[0], *ends[1]))
+        island = _SMALLEST_ISLAND * float(distance(*ends[0], *ends[1]))
     seen = obstacles(network, chart, island)
-    found: list[_Kind] = []
-    for order, weighing in enumerate(weighings):
-        found += _kinds(network, seen, weighing, order, stretch)[: _TRIED * most]
+    found: list[_PathClass] = []
+    for order, edge_weights in enumerate(edge_weight_sets):
+        found += _best_of_each_class(network, seen, edge_weights, order, stretch)[
+            : _CANDIDATES_PER_PATH * most
+        ]
     found.sort(key=lambda kind: (kind.ratio, kind.order))
-    return _drawn(network, chart, seen, found, weighings, most)
+    return _taut_paths(network, chart, seen, found, edge_weight_sets, most)
 
 
-def alternatives(
+def paths_without_canals(
     network: Network,
     chart: Chart,
     *,
-    weighing: Weighing | None = None,
+    edge_weights: EdgeWeights | None = None,
     threshold: float = 0.5,
-) -> tuple[Way, ...]:
+) -> tuple[AlternativePath, ...]:
     """Return the best way, and the best ones without some of the canals that it passes.
 
     Parameters
@@ -112,7 +116,7 @@ def alternatives(
         With start and goal, and a ``slack`` of at least the threshold.
     chart : Chart
         The chart it was built for.
-    weighing : Weighing, optional
+    edge_weights : Weighing, optional
         What ways cost; by default their length.
     threshold : float, optional
         Ways more than ``1 + threshold`` times as costly as the best are left out.
@@ -131,28 +135,29 @@ def alternatives(
         If the network has no ends, or a value makes no sense.
     """
     _check(network, 1, threshold)
-    weighing = weighing or Weighing()
-    weight = weights_of(network, weighing)
+    edge_weights = edge_weights or EdgeWeights()
+    weight = checked_edge_weights(network, edge_weights)
     canal = canal_edges(network, chart)
-    first = _least(network, weight)
+    first = _cheapest_path(network, weight)
     if first is None:
-        raise _no_way(network)
-    passed = sorted({int(canal[e]) for e in edges_of(network, first[1]) if canal[e] >= 0})
+        raise _no_path(network)
+    passed = sorted({int(canal[e]) for e in path_edges(network, first[1]) if canal[e] >= 0})
     found = {tuple(first[1]): first}
     for count in range(1, len(passed) + 1):
         for closed in combinations(passed, count):
             shut = np.where(np.isin(canal, closed), np.inf, weight)
-            other = _least(network, shut)
+            other = _cheapest_path(network, shut)
             if other is not None and other[0] <= (1.0 + threshold) * first[0]:
                 found.setdefault(tuple(other[1]), other)
     ways = sorted(found.values(), key=lambda pair: pair[0])
     return tuple(
-        drawn_way(network, chart, np.array(path), cost / first[0], weighing) for cost, path in ways
+        taut_path(network, chart, np.array(path), cost / first[0], edge_weights)
+        for cost, path in ways
     )
 
 
 @dataclass(frozen=True, eq=False)
-class _Kind:
+class _PathClass:
     """The best way of a kind by one weighing: its cost over the best, and its nodes."""
 
     signature: bytes
@@ -176,7 +181,7 @@ def _check(network: Network, most: int, stretch: float) -> None:
         )
 
 
-def _no_way(network: Network) -> NoRouteError:
+def _no_path(network: Network) -> NoRouteError:
     ends = [
         format_position(float(network.lat[k]), float(network.lon[k]))
         for k in (network.meta.start, network.meta.goal)
@@ -188,7 +193,7 @@ def _no_way(network: Network) -> NoRouteError:
     )
 
 
-def _tree(
+def _shortest_path_tree(
     network: Network, weight: FloatArray, root: int, backward: bool
 ) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray]:
     """Return least costs and parents, and the graph (indptr, target, edge) they were found on."""
@@ -200,18 +205,18 @@ def _tree(
         indptr = np.searchsorted(target[edge], np.arange(n + 1)).astype(np.int64)
         target = network.tails()[edge]
     cost, parent = np.empty(n), np.empty(n, np.int64)
-    static_distances(indptr, target, weight[edge], root, -1, cost, parent)
+    static_dijkstra(indptr, target, weight[edge], root, -1, cost, parent)
     return cost, parent, indptr, target.astype(np.int32), edge
 
 
-def _kinds(
-    network: Network, seen: Obstacles, weighing: Weighing, order: int, stretch: float
-) -> list[_Kind]:
+def _best_of_each_class(
+    network: Network, seen: Obstacles, edge_weights: EdgeWeights, order: int, stretch: float
+) -> list[_PathClass]:
     """Return the best way of every kind, by way of any node, up to the stretch."""
-    weight = weights_of(network, weighing)
+    weight = checked_edge_weights(network, edge_weights)
     sides = []
     for root, backward in ((network.meta.start, False), (network.meta.goal, True)):
-        cost, parent, indptr, target, edge = _tree(network, weight, root, backward)
+        cost, parent, indptr, target, edge = _shortest_path_tree(network, weight, root, backward)
         sums = np.zeros((network.n_nodes, seen.crossings.shape[1]), np.int16)
         ranks = np.argsort(cost, kind="stable")
         ranks = ranks[: int(np.isfinite(cost).sum())]
@@ -221,7 +226,7 @@ def _kinds(
     total = there + back
     best = float(total[network.meta.start])
     if not np.isfinite(best):
-        raise _no_way(network)
+        raise _no_path(network)
     best = float(total.min())  # the same but for rounding
     nodes = np.flatnonzero(total <= (1.0 + stretch) * best)
     nodes = nodes[np.argsort(total[nodes], kind="stable")]
@@ -229,14 +234,14 @@ def _kinds(
     _, first = np.unique(signature, axis=0, return_index=True)
     kinds = []
     for k in np.sort(first):
-        path = _joined(came, goes, int(nodes[k]))
+        path = _path_through_node(came, goes, int(nodes[k]))
         if len(set(path)) == len(path):  # ways that turn back on themselves are no kind
             ratio = float(total[nodes[k]] / best)
-            kinds.append(_Kind(signature[k].tobytes(), ratio, order, np.array(path)))
+            kinds.append(_PathClass(signature[k].tobytes(), ratio, order, np.array(path)))
     return kinds
 
 
-def _joined(came: IntArray, goes: IntArray, node: int) -> list[int]:
+def _path_through_node(came: IntArray, goes: IntArray, node: int) -> list[int]:
     """Return the nodes from start to goal by way of one, given both trees."""
     path = [node]
     while came[path[-1]] >= 0:
@@ -247,12 +252,12 @@ def _joined(came: IntArray, goes: IntArray, node: int) -> list[int]:
     return path
 
 
-def _drawn(
-    network: Network, chart: Chart, seen: Obstacles, kinds: list[_Kind],
-    weighings: Sequence[Weighing], most: int,
-) -> tuple[Way, ...]:  # fmt: skip
+def _taut_paths(
+    network: Network, chart: Chart, seen: Obstacles, kinds: list[_PathClass],
+    edge_weight_sets: Sequence[EdgeWeights], most: int,
+) -> tuple[AlternativePath, ...]:  # fmt: skip
     """Return ways pulled taut, each kind once."""
-    ways: list[tuple[bytes, Way]] = []
+    ways: list[tuple[bytes, AlternativePath]] = []
     known: set[bytes] = set()
     for kind in kinds:
         if len(ways) == most:
@@ -260,21 +265,21 @@ def _drawn(
         if kind.ratio > 1.0 and kind.signature in known:
             continue
         known.add(kind.signature)
-        weighing = weighings[kind.order]
-        way = drawn_way(network, chart, kind.path, kind.ratio, weighing, seen.sides)
+        edge_weights = edge_weight_sets[kind.order]
+        way = taut_path(network, chart, kind.path, kind.ratio, edge_weights, seen.sides)
         signature = seen.along(chart, way.lat, way.lon)
         alike = [other for mark, other in ways if mark == signature]
         if kind.ratio > 1.0 and alike:
             continue
-        limit = (1.0 + _ALIKE) * total_cost((way.lat, way.lon), weighing.leg_cost)
-        if all(total_cost((o.lat, o.lon), weighing.leg_cost) > limit for o in alike):
+        limit = (1.0 + _MIN_COST_DIFFERENCE) * total_cost((way.lat, way.lon), edge_weights.leg_cost)
+        if all(total_cost((o.lat, o.lon), edge_weights.leg_cost) > limit for o in alike):
             ways.append((signature, way))
     return tuple(way for _, way in ways)
 
 
-def _least(network: Network, weight: FloatArray) -> tuple[float, list[int]] | None:
+def _cheapest_path(network: Network, weight: FloatArray) -> tuple[float, list[int]] | None:
     """Return the cost and nodes of the best way, or None."""
-    cost, parent, *_ = _tree(network, weight, network.meta.start, False)
+    cost, parent, *_ = _shortest_path_tree(network, weight, network.meta.start, False)
     goal = network.meta.goal
     if not np.isfinite(cost[goal]):
         return None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from thalweg.core import geodesy
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.assembly import measure
+from thalweg.network.assembly import measured_pairs
 from thalweg.network.network import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -20,31 +20,35 @@ if TYPE_CHECKING:
 #: Cost of legs (lat1, lon1, lat2, lon2) [deg]; by default their length [m].
 LegCost: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
 #: Counts (n, K) that tell on which side of islands legs [deg] pass; equal sums are equal sides.
-Sides: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], NDArray[np.int8]]
-Line: TypeAlias = tuple[FloatArray, FloatArray]
+PassingSides: TypeAlias = Callable[
+    [FloatArray, FloatArray, FloatArray, FloatArray], NDArray[np.int8]
+]
+PolylineCoordinates: TypeAlias = tuple[FloatArray, FloatArray]
 
-_WINDOW: Final = 48  # waypoints a leg may skip at once
+_MAX_SKIPPED_WAYPOINTS: Final = 48  # waypoints a leg may skip at once
 _BISECTIONS: Final = 7
-_LONGEST: Final = 60.0 * NAUTICAL_MILE  # legs are cut to this while waypoints are moved
-_STEPS: Final = tuple(NAUTICAL_MILE * s for s in (24.0, 12.0, 6.0, 3.0, 1.5, 0.75, 0.3))
-_SWEEPS: Final = 6
-_COURSES: Final = np.radians(np.arange(0.0, 360.0, 45.0))
-_GAIN: Final = 1e-5  # a round that gains a smaller share is the last
+_LONGEST_LEG: Final = 60.0 * NAUTICAL_MILE  # legs are cut to this while waypoints are moved
+_STEP_LENGTHS: Final = tuple(NAUTICAL_MILE * s for s in (24.0, 12.0, 6.0, 3.0, 1.5, 0.75, 0.3))
+_MAX_SWEEPS: Final = 6
+_MOVE_DIRECTIONS: Final = np.radians(np.arange(0.0, 360.0, 45.0))
+_MIN_GAIN: Final = 1e-5  # a round that gains a smaller share is the last
 
 
 @dataclass(frozen=True)
-class _Rules:
+class _LegRules:
     """What legs are allowed and cost."""
 
     chart: Chart
     cost: LegCost
-    sides: Sides | None
+    sides: PassingSides | None
 
-    def allowed(self, start: Line, end: Line) -> BoolArray:
+    def allowed(self, start: PolylineCoordinates, end: PolylineCoordinates) -> BoolArray:
         """Return which legs touch nothing."""
         return ~np.asarray(self.chart.legs_blocked(*start, *end))
 
-    def same_side(self, start: Line, by: Line, end: Line) -> BoolArray:
+    def same_side(
+        self, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
+    ) -> BoolArray:
         """Return which legs pass islands on the side that the way by a third position does."""
         if self.sides is None:
             return np.ones(len(start[0]), bool)
@@ -52,15 +56,15 @@ class _Rules:
         return np.asarray((self.sides(*start, *end) == round_it).all(axis=1))
 
 
-def pulled(
+def pull_taut(
     chart: Chart,
     lat: FloatArray,
     lon: FloatArray,
     *,
     leg_cost: LegCost | None = None,
-    sides: Sides | None = None,
+    sides: PassingSides | None = None,
     rounds: int = 12,
-) -> Line:
+) -> PolylineCoordinates:
     """Return a way pulled taut: waypoints left out and corners cut while all legs stay allowed.
 
     Parameters
@@ -74,7 +78,7 @@ def pulled(
         in the ways that cost changes from place to place.
     sides : callable, optional
         Tells the sides on which islands are passed, to keep them (see
-        `thalweg.network.alternatives.homotopy`).
+        `thalweg.network.paths_without_canals.homotopy`).
     rounds : int
         How often corners are cut at most; 0 only leaves waypoints out.
 
@@ -88,7 +92,7 @@ def pulled(
     Local. Without ``sides`` a leg between two waypoints may pass a small island the other way
     round where that is cheaper.
     """
-    rules = _Rules(chart, leg_cost or leg_lengths, sides)
+    rules = _LegRules(chart, leg_cost or leg_lengths, sides)
     move = leg_cost is not None
     line = np.asarray(lat, float), geodesy.wrap_longitude(lon)
     if chart.canals:
@@ -96,29 +100,31 @@ def pulled(
         k = np.flatnonzero(canal >= 0)
         if len(k):
             parts = np.split(np.arange(len(line[0])), k + 1)
-            drawn = [_taut(rules, (line[0][p], line[1][p]), move, rounds) for p in parts]
+            drawn = [_pull_until_taut(rules, (line[0][p], line[1][p]), move, rounds) for p in parts]
             return np.concatenate([d[0] for d in drawn]), np.concatenate([d[1] for d in drawn])
-    return _taut(rules, line, move, rounds)
+    return _pull_until_taut(rules, line, move, rounds)
 
 
-def total_cost(line: Line, leg_cost: LegCost | None = None) -> float:
+def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> float:
     """Return what a way costs; by default its length [m]."""
     lat, lon = line
     return float(np.sum((leg_cost or leg_lengths)(lat[:-1], lon[:-1], lat[1:], lon[1:])))
 
 
-def _taut(rules: _Rules, line: Line, move: bool, rounds: int) -> Line:
-    line = _fewest(rules, line)
+def _pull_until_taut(
+    rules: _LegRules, line: PolylineCoordinates, move: bool, rounds: int
+) -> PolylineCoordinates:
+    line = _drop_waypoints(rules, line)
     before = total_cost(line, rules.cost)
     for _ in range(rounds):
-        line = _fewest(rules, _cut(rules, line))
+        line = _drop_waypoints(rules, _cut_corners(rules, line))
         now = total_cost(line, rules.cost)
-        if before - now <= _GAIN * before:
+        if before - now <= _MIN_GAIN * before:
             break
         before = now
     if move and rounds:
-        line = _fewest(rules, _moved(rules, line))
-        line = _fewest(rules, _cut(rules, line))
+        line = _drop_waypoints(rules, _move_waypoints(rules, line))
+        line = _drop_waypoints(rules, _cut_corners(rules, line))
     return line
 
 
@@ -129,24 +135,24 @@ def leg_lengths(
     count = len(lat1)
     ends = np.arange(2 * count, dtype=np.int32)
     lat, lon = np.concatenate([lat1, lat2]), np.concatenate([lon1, lon2])
-    return measure(lat, lon, ends[:count], ends[count:]).length
+    return measured_pairs(lat, lon, ends[:count], ends[count:]).length
 
 
-def _fewest(rules: _Rules, line: Line) -> Line:
+def _drop_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
     """Return the cheapest way over some of the waypoints, in their order."""
     while True:
-        keep = _subset(rules, line)
+        keep = _cheapest_subset(rules, line)
         count = len(line[0])
         line = line[0][keep], line[1][keep]
-        if len(keep) == count or count <= _WINDOW:
+        if len(keep) == count or count <= _MAX_SKIPPED_WAYPOINTS:
             return line
 
 
-def _subset(rules: _Rules, line: Line) -> IntArray:
+def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
     lat, lon = line
     count = len(lat)
     first, second = np.triu_indices(count, 1)
-    near = second - first <= _WINDOW
+    near = second - first <= _MAX_SKIPPED_WAYPOINTS
     first, second = first[near], second[near]
     price = rules.cost(lat[first], lon[first], lat[second], lon[second])
     hop = np.flatnonzero(second - first > 1)  # neighbours are known to be joined
@@ -178,7 +184,7 @@ def _cheapest_chain(count: int, first: IntArray, second: IntArray, price: FloatA
     return np.array(chain[::-1], np.int64)
 
 
-def _cut(rules: _Rules, line: Line) -> Line:
+def _cut_corners(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
     """Cut every corner as far as legs allow and cost falls: two waypoints in the place of one."""
     count = len(line[0])
     if count < 3:
@@ -203,7 +209,9 @@ def _cut(rules: _Rules, line: Line) -> Line:
     return mixed[0], mixed[1]
 
 
-def _cut_points(line: Line, corner: IntArray, share: FloatArray) -> tuple[Line, Line]:
+def _cut_points(
+    line: PolylineCoordinates, corner: IntArray, share: FloatArray
+) -> tuple[PolylineCoordinates, PolylineCoordinates]:
     """Return positions on the legs before and after corners, at a share of the leg from it."""
     lat, lon = line
     points = []
@@ -213,7 +221,9 @@ def _cut_points(line: Line, corner: IntArray, share: FloatArray) -> tuple[Line, 
     return points[0], points[1]
 
 
-def _cut_is_better(rules: _Rules, line: Line, corner: IntArray, share: FloatArray) -> BoolArray:
+def _cut_is_better(
+    rules: _LegRules, line: PolylineCoordinates, corner: IntArray, share: FloatArray
+) -> BoolArray:
     lat, lon = line
     before, after = _cut_points(line, corner, share)
     here = lat[corner], lon[corner]
@@ -224,32 +234,38 @@ def _cut_is_better(rules: _Rules, line: Line, corner: IntArray, share: FloatArra
     return fine & rules.allowed(ends[0], before) & rules.allowed(after, ends[1])
 
 
-def _moved(rules: _Rules, line: Line) -> Line:
+def _move_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
     """Move the waypoints of a line cut into short legs to where it costs less."""
-    lat, lon, _ = geodesy.densify(*line, _LONGEST)
-    for step in _STEPS:
-        for _ in range(_SWEEPS):
+    lat, lon, _ = geodesy.densify(*line, _LONGEST_LEG)
+    for step in _STEP_LENGTHS:
+        for _ in range(_MAX_SWEEPS):
             gained = sum(_move_some(rules, lat, lon, step, odd) for odd in (1, 2))
-            if gained <= _GAIN * total_cost((lat, lon), rules.cost):
+            if gained <= _MIN_GAIN * total_cost((lat, lon), rules.cost):
                 break
     return lat, lon
 
 
-def _move_some(rules: _Rules, lat: FloatArray, lon: FloatArray, step: float, first: int) -> float:
+def _move_some(
+    rules: _LegRules, lat: FloatArray, lon: FloatArray, step: float, first: int
+) -> float:
     """Move every other waypoint one step in its best direction, in place; return the gain."""
     k = np.arange(first, len(lat) - 1, 2)
     if not len(k):
         return 0.0
-    cost, size = rules.cost, len(_COURSES)
+    cost, size = rules.cost, len(_MOVE_DIRECTIONS)
     back, here, on = ((lat[k + i], lon[k + i]) for i in (-1, 0, 1))
     old = cost(*back, *here) + cost(*here, *on)
     many = np.repeat(np.arange(len(k)), size)
-    new = geodesy.direct(here[0][many], here[1][many], np.tile(_COURSES, len(k)), step)
-    price = cost(*_take(back, many), *new) + cost(*new, *_take(on, many))
+    new = geodesy.direct(here[0][many], here[1][many], np.tile(_MOVE_DIRECTIONS, len(k)), step)
+    price = cost(*_select_points(back, many), *new) + cost(*new, *_select_points(on, many))
     better = np.flatnonzero(price < old[many] * (1.0 - 1e-9))
-    ends = _take(back, many[better]), _take(new, better), _take(on, many[better])
+    ends = (
+        _select_points(back, many[better]),
+        _select_points(new, better),
+        _select_points(on, many[better]),
+    )
     free = rules.allowed(ends[0], ends[1]) & rules.allowed(ends[1], ends[2])
-    beside = _take(here, many[better])
+    beside = _select_points(here, many[better])
     free &= rules.same_side(ends[0], beside, ends[1]) & rules.same_side(ends[1], beside, ends[2])
     price[np.setdiff1d(np.arange(len(many)), better[free])] = np.inf
     price = price.reshape(len(k), size)
@@ -260,5 +276,5 @@ def _move_some(rules: _Rules, lat: FloatArray, lon: FloatArray, step: float, fir
     return float(np.sum(old[moved] - price[moved, best[moved]]))
 
 
-def _take(line: Line, index: IntArray) -> Line:
+def _select_points(line: PolylineCoordinates, index: IntArray) -> PolylineCoordinates:
     return line[0][index], line[1][index]

@@ -12,27 +12,27 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import MEAN_RADIUS, Position, distance, format_position
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
-from thalweg.network.alternatives.path_shortening import pulled
-from thalweg.network.network import BoolArray, FloatArray, IntArray, shortest
-from thalweg.network.regional_lattice.conformal_projection import unit_vectors
+from thalweg.network.alternatives.path_shortening import pull_taut
+from thalweg.network.network import BoolArray, FloatArray, IntArray, shortest_path
+from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
 from thalweg.network.regional_lattice.lattice_builder import lattice
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _SECTORS: Final = 48
-_PER_CELL: Final = 3  # nodes tested in every sector and ring
-_NEAREST: Final = 32  # and the nearest ones anyway
-_MOST_LINKS: Final = 200
-_SHORTEST: Final = 1.0  # [m]
-_BASIN: Final = 200  # a water of so many nodes is a basin of its own
+_LINKS_PER_SECTOR_AND_RING: Final = 3  # nodes tested in every sector and ring
+_NEAREST_LINKS: Final = 32  # and the nearest ones anyway
+_MAX_LINKS: Final = 200
+_SHORTEST_LINK: Final = 1.0  # [m]
+_MIN_BASIN_NODES: Final = 200  # a water of so many nodes is a basin of its own
 _FARTHEST_APPROACH: Final = 150.0 * NAUTICAL_MILE
-_APPROACHES: Final = 3
+_MAX_APPROACHES: Final = 3
 _CHAIN_REACH: Final = 20.0 * NAUTICAL_MILE
 
 
 @dataclass(frozen=True)
-class Waters:
+class ConnectedWaters:
     """Nodes of a grid and the waters they belong to.
 
     Attributes
@@ -61,11 +61,11 @@ class Waters:
     @cached_property
     def vectors(self) -> FloatArray:
         """Unit vectors (N, 3) of the nodes."""
-        return unit_vectors(self.lat, self.lon)
+        return conformal_unit_vectors(self.lat, self.lon)
 
 
 @dataclass(frozen=True)
-class Joint:
+class Attachment:
     """How a position is joined to a grid.
 
     Attributes
@@ -78,13 +78,13 @@ class Joint:
 
     lat: FloatArray
     lon: FloatArray
-    link_from: IntArray
-    link_to: IntArray
+    link_waypoint: IntArray
+    link_node: IntArray
 
 
-def join(
-    chart: Chart, waters: Waters, place: Position, *, what: str, approach: bool = True
-) -> Joint:
+def attach(
+    chart: Chart, waters: ConnectedWaters, place: Position, *, what: str, approach: bool = True
+) -> Attachment:
     """Join a position to the nodes it can reach by tested legs.
 
     Parameters
@@ -111,17 +111,21 @@ def join(
         If nothing can be reached.
     """
     near = _candidates(waters, place, np.ones(len(waters.lat), bool), waters.reach)
-    seen = _free(chart, place, waters, near)
+    seen = _reachable_nodes(chart, place, waters, near)
     best = int(waters.water[seen[np.argmax(waters.size[seen])]]) if len(seen) else -1
-    if best >= 0 and (best == waters.largest or waters.size[seen].max() >= _BASIN):
+    if best >= 0 and (best == waters.largest or waters.size[seen].max() >= _MIN_BASIN_NODES):
         inside = waters.water == best
-        links = _free(chart, place, waters, _candidates(waters, place, inside, waters.reach))
-        return _direct(place, _thinned(waters, place, links))
+        links = _reachable_nodes(
+            chart, place, waters, _candidates(waters, place, inside, waters.reach)
+        )
+        return _direct_attachment(place, _nearest_by_sector(waters, place, links))
     found = _approach(chart, waters, place) if approach else None
     if found is not None:
         return found
     if best >= 0 and approach:
-        return _direct(place, _thinned(waters, place, seen[waters.water[seen] == best]))
+        return _direct_attachment(
+            place, _nearest_by_sector(waters, place, seen[waters.water[seen] == best])
+        )
     raise NoRouteError(
         f"The {what} {format_position(*place)} cannot be joined to the network.",
         f"No node of it can be reached within {_FARTHEST_APPROACH / NAUTICAL_MILE:.0f} nm.",
@@ -130,17 +134,22 @@ def join(
     )
 
 
-def _direct(place: Position, nodes: IntArray) -> Joint:
+def _direct_attachment(place: Position, nodes: IntArray) -> Attachment:
     lat, lon = np.array([place[0]]), np.array([place[1]])
-    return Joint(lat, lon, np.zeros(len(nodes), np.int64), nodes)
+    return Attachment(lat, lon, np.zeros(len(nodes), np.int64), nodes)
 
 
-def _candidates(waters: Waters, place: Position, allowed: BoolArray, reach: float) -> IntArray:
+def _candidates(
+    waters: ConnectedWaters, place: Position, allowed: BoolArray, reach: float
+) -> IntArray:
     """Return the nearest allowed nodes, and the nearest of every sector and ring within reach."""
-    within = waters.vectors @ unit_vectors(*place) >= np.cos(min(reach / MEAN_RADIUS, np.pi)) - 1e-9
+    within = (
+        waters.vectors @ conformal_unit_vectors(*place)
+        >= np.cos(min(reach / MEAN_RADIUS, np.pi)) - 1e-9
+    )
     nodes = np.flatnonzero(allowed & within)
-    away, course = _seen_from(waters, place, nodes)
-    near = (away <= reach) & (away > _SHORTEST)
+    away, course = _distance_and_course(waters, place, nodes)
+    near = (away <= reach) & (away > _SHORTEST_LINK)
     nodes, away, course = nodes[near], away[near], course[near]
     order = np.argsort(away, kind="stable")
     nodes, away, course = nodes[order], away[order], course[order]
@@ -150,14 +159,16 @@ def _candidates(waters: Waters, place: Position, allowed: BoolArray, reach: floa
     begins = np.append(True, np.diff(cell[by_cell]) != 0) if len(cell) else np.empty(0, bool)
     rank = np.arange(len(cell)) - np.maximum.accumulate(np.where(begins, np.arange(len(cell)), 0))
     chosen = np.zeros(len(nodes), bool)
-    chosen[by_cell[rank < _PER_CELL]] = True
-    chosen[:_NEAREST] = True
+    chosen[by_cell[rank < _LINKS_PER_SECTOR_AND_RING]] = True
+    chosen[:_NEAREST_LINKS] = True
     return nodes[chosen]
 
 
-def _seen_from(waters: Waters, place: Position, nodes: IntArray) -> tuple[FloatArray, FloatArray]:
+def _distance_and_course(
+    waters: ConnectedWaters, place: Position, nodes: IntArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the distance [m] and course [rad] of nodes from a position, on a sphere."""
-    here, there = unit_vectors(*place), waters.vectors[nodes]
+    here, there = conformal_unit_vectors(*place), waters.vectors[nodes]
     away = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(there - here, axis=1), 1.0))
     lam = np.radians(place[1])
     east = np.array([-np.sin(lam), np.cos(lam), 0.0])
@@ -165,42 +176,44 @@ def _seen_from(waters: Waters, place: Position, nodes: IntArray) -> tuple[FloatA
     return away * MEAN_RADIUS, course
 
 
-def _free(chart: Chart, place: Position, waters: Waters, nodes: IntArray) -> IntArray:
+def _reachable_nodes(
+    chart: Chart, place: Position, waters: ConnectedWaters, nodes: IntArray
+) -> IntArray:
     """Return the nodes a position can be joined to by one leg."""
     lat, lon = np.full(len(nodes), place[0]), np.full(len(nodes), place[1])
     status = chart.leg_status(lat, lon, waters.lat[nodes], waters.lon[nodes])
     return nodes[np.asarray(status) == codes.OK]
 
 
-def _thinned(waters: Waters, place: Position, nodes: IntArray) -> IntArray:
-    if len(nodes) <= _MOST_LINKS:
+def _nearest_by_sector(waters: ConnectedWaters, place: Position, nodes: IntArray) -> IntArray:
+    if len(nodes) <= _MAX_LINKS:
         return nodes
-    away, _ = _seen_from(waters, place, nodes)
+    away, _ = _distance_and_course(waters, place, nodes)
     order = np.argsort(away, kind="stable")
-    most = np.linspace(0, len(order) - 1, _MOST_LINKS).astype(np.int64)
-    return nodes[np.union1d(order[:_NEAREST], order[most])]
+    most = np.linspace(0, len(order) - 1, _MAX_LINKS).astype(np.int64)
+    return nodes[np.union1d(order[:_NEAREST_LINKS], order[most])]
 
 
-def _approach(chart: Chart, waters: Waters, place: Position) -> Joint | None:
+def _approach(chart: Chart, waters: ConnectedWaters, place: Position) -> Attachment | None:
     """Return a position joined to the largest water by a fine way, or None if there is none."""
     nodes = np.flatnonzero(waters.water == waters.largest)
-    away, _ = _seen_from(waters, place, nodes)
+    away, _ = _distance_and_course(waters, place, nodes)
     order = np.argsort(away, kind="stable")
     tried: list[Position] = []
     for k in order:
         goal = float(waters.lat[nodes[k]]), float(waters.lon[nodes[k]])
-        if away[k] > _FARTHEST_APPROACH or len(tried) >= _APPROACHES:
+        if away[k] > _FARTHEST_APPROACH or len(tried) >= _MAX_APPROACHES:
             return None
         if any(float(distance(*goal, *other)) < 0.3 * away[k] for other in tried):
             continue
         tried.append(goal)
-        way = _fine_way(chart, place, goal)
+        way = _fine_path(chart, place, goal)
         if way is not None:
-            return _along(chart, waters, way, nodes[k])
+            return _attach_along(chart, waters, way, nodes[k])
     return None
 
 
-def _fine_way(
+def _fine_path(
     chart: Chart, start: Position, goal: Position
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return the shortest way on a fine lattice between near positions."""
@@ -215,19 +228,21 @@ def _fine_way(
         fine = lattice(chart.without_canals("all"), start, goal, area=area, directions=16)
     except NoRouteError:
         return None
-    _, path = shortest(fine, fine.meta.start, fine.meta.goal)
-    return pulled(chart, fine.lat[path], fine.lon[path], rounds=0)
+    _, path = shortest_path(fine, fine.meta.start, fine.meta.goal)
+    return pull_taut(chart, fine.lat[path], fine.lon[path], rounds=0)
 
 
-def _along(chart: Chart, waters: Waters, way: tuple[FloatArray, FloatArray], last: int) -> Joint:
+def _attach_along(
+    chart: Chart, waters: ConnectedWaters, way: tuple[FloatArray, FloatArray], last: int
+) -> Attachment:
     """Return an approach that ends at a node, each of its waypoints joined to what it sees."""
     lat, lon = way[0][:-1], way[1][:-1]
-    link_from, link_to = [np.array([len(lat) - 1])], [np.array([last])]
+    link_waypoint, link_node = [np.array([len(lat) - 1])], [np.array([last])]
     inside = waters.water == waters.largest
     for k, place in enumerate(zip(lat.tolist(), lon.tolist())):
         near = _candidates(waters, place, inside, _CHAIN_REACH)
-        nodes = _thinned(waters, place, _free(chart, place, waters, near))
-        link_from.append(np.full(len(nodes), k))
-        link_to.append(nodes)
-    pairs = np.unique(np.stack([np.concatenate(link_from), np.concatenate(link_to)]), axis=1)
-    return Joint(lat, lon, pairs[0].astype(np.int64), pairs[1].astype(np.int64))
+        nodes = _nearest_by_sector(waters, place, _reachable_nodes(chart, place, waters, near))
+        link_waypoint.append(np.full(len(nodes), k))
+        link_node.append(nodes)
+    pairs = np.unique(np.stack([np.concatenate(link_waypoint), np.concatenate(link_node)]), axis=1)
+    return Attachment(lat, lon, pairs[0].astype(np.int64), pairs[1].astype(np.int64))

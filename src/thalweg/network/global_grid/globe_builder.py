@@ -18,37 +18,37 @@ from thalweg.kernels.network.static_paths import connected_waters
 from thalweg.network.assembly import (
     Pairs,
     Stations,
+    allowed_legs,
     assemble,
-    even_samples,
-    free_legs,
-    measure,
-    mirrored,
+    directed_edges,
+    evenly_spaced_samples,
+    measured_pairs,
 )
-from thalweg.network.endpoints import check_ends, direct_pairs, join_pairs
-from thalweg.network.global_grid.endpoint_attachment import Joint, Waters, join
-from thalweg.network.global_grid.grid import Fineness, GlobeGrid, globe_grid
+from thalweg.network.endpoints import check_endpoints, concatenate_pairs, direct_pairs
+from thalweg.network.global_grid.endpoint_attachment import Attachment, ConnectedWaters, attach
+from thalweg.network.global_grid.grid import GlobeGrid, GridResolution, globe_grid
 from thalweg.network.network import BoolArray, FloatArray, Network, NetworkMeta
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-NORTH: Final = 72.0
-SOUTH: Final = -70.0
-_BEYOND: Final = 1.0  # limits are moved this far beyond start and goal [deg]
-_REACH: Final = 2.2  # positions are joined to nodes within this many legs of the uniform grid
+NORTH_LIMIT: Final = 72.0
+SOUTH_LIMIT: Final = -70.0
+_LIMIT_MARGIN: Final = 1.0  # limits are moved this far beyond start and goal [deg]
+_LINK_REACH: Final = 2.2  # positions are joined to nodes within this many legs of the uniform grid
 _LARGEST_LEVEL: Final = 8
 _FINEST_LEVEL: Final = 14
 
 
 @dataclass(frozen=True)
 class _Options:
-    fineness: Fineness
+    fineness: GridResolution
     south: float
     north: float
 
 
 @dataclass(frozen=True)
-class _Sheet:
+class _UnassembledGlobe:
     """All nodes (those of the grid, start, goal, canal ends, approaches), legs and canals."""
 
     stations: Stations
@@ -61,11 +61,11 @@ class _Sheet:
     def distances(self, node: int) -> FloatArray:
         """Return the static distance [m] of every node from one; inf where unreached."""
         n = self.stations.n_nodes
-        every = join_pairs([self.pairs, self.through])
-        edges = mirrored(n, every)
+        every = concatenate_pairs([self.pairs, self.through])
+        edges = directed_edges(n, every)
         distance, parent = np.empty(n), np.empty(n, np.int64)
         weight = every.length[edges.pair]
-        graph_building.static_distances(
+        graph_building.static_dijkstra(
             edges.indptr, edges.target, weight, node, -1, distance, parent
         )
         return distance
@@ -80,8 +80,8 @@ def globe(
     coast_levels: int = 6,
     border_levels: int = 4,
     directions: int = 12,
-    north: float = NORTH,
-    south: float = SOUTH,
+    north: float = NORTH_LIMIT,
+    south: float = SOUTH_LIMIT,
     slack: float | None = None,
     sample_spacing: float = 60.0 * NAUTICAL_MILE,
 ) -> Network:
@@ -137,11 +137,11 @@ def globe(
     tested against the coast along the geodesic. The grid of a coastline is made once and kept on
     disk (`thalweg.network.global_grid.grid`).
     """
-    start, goal = check_ends(chart, start, goal)
-    fineness = Fineness(level, coast_levels, border_levels, directions)
+    start, goal = check_endpoints(chart, start, goal)
+    fineness = GridResolution(level, coast_levels, border_levels, directions)
     options = _checked(fineness, south, north, slack, sample_spacing)
-    options = _stretched(options, start, goal)
-    sheet = _sheet(chart, options, start, goal)
+    options = _limits_including_ends(options, start, goal)
+    sheet = _draw_and_attach(chart, options, start, goal)
     to_start = sheet.distances(sheet.start)
     length = float(to_start[sheet.start + 1])
     if not math.isfinite(length):
@@ -149,7 +149,7 @@ def globe(
     slack = _default_slack(length) if slack is None else slack
     if math.isfinite(slack):
         total = to_start + sheet.distances(sheet.start + 1)
-        sheet = _where(sheet, total <= (1.0 + slack) * length + sheet.grid.spacing)
+        sheet = _sheet_subset(sheet, total <= (1.0 + slack) * length + sheet.grid.spacing)
     return _network(chart, sheet, options, sample_spacing)
 
 
@@ -160,7 +160,7 @@ def _default_slack(distance: float) -> float:
 
 
 def _checked(
-    fineness: Fineness, south: float, north: float, slack: float | None, spacing: float
+    fineness: GridResolution, south: float, north: float, slack: float | None, spacing: float
 ) -> _Options:
     level, coast, border = fineness.level, fineness.coast_levels, fineness.border_levels
     directions = fineness.directions
@@ -192,37 +192,46 @@ def _checked(
     return _Options(fineness, float(south), float(north))
 
 
-def _stretched(options: _Options, start: Position, goal: Position) -> _Options:
+def _limits_including_ends(options: _Options, start: Position, goal: Position) -> _Options:
     """Return options whose limits lie beyond start and goal."""
     lowest, highest = min(start[0], goal[0]), max(start[0], goal[0])
     return replace(
         options,
-        south=min(options.south, lowest - _BEYOND) if lowest < options.south else options.south,
-        north=max(options.north, highest + _BEYOND) if highest > options.north else options.north,
+        south=min(options.south, lowest - _LIMIT_MARGIN)
+        if lowest < options.south
+        else options.south,
+        north=max(options.north, highest + _LIMIT_MARGIN)
+        if highest > options.north
+        else options.north,
     )
 
 
-def _sheet(chart: Chart, options: _Options, start: Position, goal: Position) -> _Sheet:
+def _draw_and_attach(
+    chart: Chart, options: _Options, start: Position, goal: Position
+) -> _UnassembledGlobe:
     """Draw the grid's open sea, and join start, goal and the ends of the canals to it."""
     grid = globe_grid(chart, options.fineness)
     closed = chart.without_canals("all")
     pairs, usable = _open_sea(closed, grid, options)
-    waters = _waters(grid, pairs, usable, _REACH * grid.spacing)
+    waters = _connected_waters(grid, pairs, usable, _LINK_REACH * grid.spacing)
     joints = [
-        join(closed, waters, place, what=what) for place, what in ((start, "start"), (goal, "goal"))
+        attach(closed, waters, place, what=what)
+        for place, what in ((start, "start"), (goal, "goal"))
     ]
     canals: list[Canal] = []
     for canal in chart.canals:
-        ends = _joined_canal(closed, waters, canal, options)
+        ends = _attach_canal(closed, waters, canal, options)
         if ends:
             canals.append(canal)
             joints += ends
-    stations, more = _attached(closed, grid, joints)
+    stations, more = _add_attachments(closed, grid, joints)
     ends_at = np.arange(len(grid.lat) + 2, len(grid.lat) + len(joints), 2, dtype=np.int32)
-    through = measure(stations.lat, stations.lon, ends_at, ends_at + np.int32(1))
+    through = measured_pairs(stations.lat, stations.lon, ends_at, ends_at + np.int32(1))
     through = replace(through, length=np.array([canal.length for canal in canals], float))
     start_node = len(grid.lat)
-    return _Sheet(stations, join_pairs([pairs, more]), through, tuple(canals), start_node, grid)
+    return _UnassembledGlobe(
+        stations, concatenate_pairs([pairs, more]), through, tuple(canals), start_node, grid
+    )
 
 
 def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, BoolArray]:
@@ -234,20 +243,22 @@ def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, 
         usable &= no_land.is_navigable(grid.lat, grid.lon)
     pairs = grid.pairs.where(usable[grid.pairs.first] & usable[grid.pairs.second])
     if bounded:
-        pairs = pairs.where(free_legs(no_land, grid.lat, grid.lon, pairs.first, pairs.second)[0])
+        pairs = pairs.where(allowed_legs(no_land, grid.lat, grid.lon, pairs.first, pairs.second)[0])
     return pairs, usable
 
 
-def _waters(grid: GlobeGrid, pairs: Pairs, usable: BoolArray, reach: float) -> Waters:
+def _connected_waters(
+    grid: GlobeGrid, pairs: Pairs, usable: BoolArray, reach: float
+) -> ConnectedWaters:
     root = connected_waters(len(grid.lat), pairs.first, pairs.second)
     size = np.bincount(root, minlength=len(root))[root]
     size[~usable] = 0
-    return Waters(grid.lat, grid.lon, root, size, reach)
+    return ConnectedWaters(grid.lat, grid.lon, root, size, reach)
 
 
-def _joined_canal(
-    chart: Chart, waters: Waters, canal: Canal, options: _Options
-) -> list[Joint] | None:
+def _attach_canal(
+    chart: Chart, waters: ConnectedWaters, canal: Canal, options: _Options
+) -> list[Attachment] | None:
     """Return both ends of a canal joined to the grid; None where the grid is too coarse for it."""
     lat, lon = np.array(canal.ends).T
     inside = (lat >= options.south).all() and (lat <= options.north).all()
@@ -255,12 +266,14 @@ def _joined_canal(
         return None
     try:
         what = f"end of the {canal.title}"
-        return [join(chart, waters, end, what=what, approach=False) for end in canal.ends]
+        return [attach(chart, waters, end, what=what, approach=False) for end in canal.ends]
     except NoRouteError:
         return None
 
 
-def _attached(chart: Chart, grid: GlobeGrid, joints: list[Joint]) -> tuple[Stations, Pairs]:
+def _add_attachments(
+    chart: Chart, grid: GlobeGrid, joints: list[Attachment]
+) -> tuple[Stations, Pairs]:
     """Return the grid's nodes, the positions and their approaches; and the legs that join them."""
     n, places = len(grid.lat), len(joints)
     lat = np.concatenate([grid.lat, [j.lat[0] for j in joints], *(j.lat[1:] for j in joints)])
@@ -270,17 +283,17 @@ def _attached(chart: Chart, grid: GlobeGrid, joints: list[Joint]) -> tuple[Stati
     for k, joint in enumerate(joints):
         own = np.append(n + k, at + np.arange(len(joint.lat) - 1))
         at += len(joint.lat) - 1
-        first.append(own[joint.link_from])
-        second.append(joint.link_to)
+        first.append(own[joint.link_waypoint])
+        second.append(joint.link_node)
     stations = Stations(lat, lon, len(lat))
-    links = measure(
+    links = measured_pairs(
         lat, lon, np.concatenate(first).astype(np.int32), np.concatenate(second).astype(np.int32)
     )
-    between = direct_pairs(chart, stations, n, reach=_REACH * grid.spacing)
-    return stations, join_pairs([links, between])
+    between = direct_pairs(chart, stations, n, reach=_LINK_REACH * grid.spacing)
+    return stations, concatenate_pairs([links, between])
 
 
-def _where(sheet: _Sheet, keep: BoolArray) -> _Sheet:
+def _sheet_subset(sheet: _UnassembledGlobe, keep: BoolArray) -> _UnassembledGlobe:
     """Return the sheet with only the nodes that are kept; start and goal always are."""
     keep = keep.copy()
     keep[sheet.start : sheet.start + 2] = True
@@ -302,12 +315,12 @@ def _renumbered(pairs: Pairs, keep: BoolArray, new: np.ndarray) -> Pairs:
     return replace(kept, first=new[kept.first], second=new[kept.second])
 
 
-def _network(chart: Chart, sheet: _Sheet, options: _Options, spacing: float) -> Network:
+def _network(chart: Chart, sheet: _UnassembledGlobe, options: _Options, spacing: float) -> Network:
     """Sample the legs along their length, assemble the network and set what canals take."""
-    pairs = join_pairs([sheet.pairs, sheet.through])
+    pairs = concatenate_pairs([sheet.pairs, sheet.through])
     apart = np.full(len(pairs.first), spacing)
     apart[len(sheet.pairs.first) :] = np.inf  # canals need no weather
-    stations, samples = even_samples(sheet.stations, pairs, apart)
+    stations, samples = evenly_spaced_samples(sheet.stations, pairs, apart)
     meta = NetworkMeta(
         kind=f"globe/{options.fineness.level}+{options.fineness.coast_levels}",
         spacing_m=sheet.grid.spacing,
@@ -318,7 +331,7 @@ def _network(chart: Chart, sheet: _Sheet, options: _Options, spacing: float) -> 
         goal=sheet.start + 1,
         notes=tuple(f"may pass the {canal.title}" for canal in sheet.canals),
     )
-    edges = mirrored(stations.n_nodes, pairs)
+    edges = directed_edges(stations.n_nodes, pairs)
     network = assemble(chart, stations, pairs, samples, meta=meta, edges=edges)
     edge = np.flatnonzero(edges.pair >= len(sheet.pairs.first))
     which = edges.pair[edge] - len(sheet.pairs.first)
@@ -330,7 +343,7 @@ def _network(chart: Chart, sheet: _Sheet, options: _Options, spacing: float) -> 
 
 
 def _no_route(
-    chart: Chart, options: _Options, ends: tuple[Position, Position], sheet: _Sheet,
+    chart: Chart, options: _Options, ends: tuple[Position, Position], sheet: _UnassembledGlobe,
     to_start: FloatArray,
 ) -> NoRouteError:  # fmt: skip
     reached = np.flatnonzero(np.isfinite(to_start))
@@ -341,7 +354,7 @@ def _no_route(
     names = [geodesy.format_position(*place) for place in (*ends, nearest)]
     remedy = "Choose another start or goal, a finer chart, or more coast levels."
     missing = [canal for canal in CANALS if canal not in chart.canals]
-    if missing and math.isfinite(_length(replace(chart, canals=CANALS), options, ends)):
+    if missing and math.isfinite(_shortest_length(replace(chart, canals=CANALS), options, ends)):
         titles = " and the ".join(canal.title for canal in missing)
         remedy = f"Allow the {titles}: with all canals there is a way."
     return NoRouteError(
@@ -353,7 +366,7 @@ def _no_route(
     )
 
 
-def _length(chart: Chart, options: _Options, ends: tuple[Position, Position]) -> float:
+def _shortest_length(chart: Chart, options: _Options, ends: tuple[Position, Position]) -> float:
     """Return the length of the shortest way between two ends [m]; inf where there is none."""
-    sheet = _sheet(chart, options, *ends)
+    sheet = _draw_and_attach(chart, options, *ends)
     return float(sheet.distances(sheet.start)[sheet.start + 1])

@@ -15,30 +15,30 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.coast.coast_index_builder import build_index
-from thalweg.chart.zones.geojson_zones import rings_of
+from thalweg.chart.zones.geojson_zones import rings_from_polygons
 from thalweg.core.cache_folder import cache_folder
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
-from thalweg.kernels.geometry.triangle_subdivision import coast_crossed
-from thalweg.kernels.network.graph_building import mirror_pairs
-from thalweg.network.assembly import Pairs, free_legs, measure
+from thalweg.kernels.geometry.triangle_subdivision import outlines_crossed
+from thalweg.kernels.network.graph_building import directed_edges_of_pairs
+from thalweg.network.assembly import Pairs, allowed_legs, measured_pairs
 from thalweg.network.global_grid.icosphere import (
-    Crossed,
+    CrossingTest,
     Icosphere,
-    Rule,
-    distinct,
+    RefinementRule,
+    edge_keys,
+    edge_vertices,
     icosphere,
-    keyed,
-    unkeyed,
+    sorted_unique,
 )
-from thalweg.network.global_grid.straits import FINEST, STRAITS, deeper
+from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, STRAITS, strait_levels
 from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 FORMAT: Final = 2  # raise when the arrays or the way they are made change
-_BORDER_SIDE: Final = 128
-_KEPT: Final = 8  # grids kept on disk, the newest ones
+_BORDER_INDEX_SIDE: Final = 128
+_MAX_FILES: Final = 8  # grids kept on disk, the newest ones
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class GlobeGrid:
 
 
 @dataclass(frozen=True)
-class Fineness:
+class GridResolution:
     """How fine a grid is.
 
     Attributes
@@ -86,7 +86,7 @@ class Fineness:
     directions: int = 12
 
 
-def globe_grid(chart: Chart, fineness: Fineness) -> GlobeGrid:
+def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
     """Return the grid of a chart's coastline, from memory or disk if it was made before.
 
     Parameters
@@ -99,53 +99,53 @@ def globe_grid(chart: Chart, fineness: Fineness) -> GlobeGrid:
         penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca
     )
     bare = type(chart)(chart.land, zones=zones)
-    facts = (FORMAT, bare.fingerprint(), fineness, FINEST, STRAITS)
+    facts = (FORMAT, bare.fingerprint(), fineness, FINEST_STRAIT_LEVEL, STRAITS)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
     path = cache_folder("globe") / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
-    return _kept_or_made(_Order(bare, fineness, path))
+    return _load_or_make(_GridRequest(bare, fineness, path))
 
 
 @dataclass(frozen=True)
-class _Order:
+class _GridRequest:
     """What to make, and where it is kept; two orders for one file are the same."""
 
     chart: Chart
-    fineness: Fineness
+    fineness: GridResolution
     path: Path
 
     def __hash__(self) -> int:
         return hash(self.path)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Order) and other.path == self.path
+        return isinstance(other, _GridRequest) and other.path == self.path
 
 
 @lru_cache(maxsize=2)
-def _kept_or_made(order: _Order) -> GlobeGrid:
+def _load_or_make(order: _GridRequest) -> GlobeGrid:
     try:
         return _load(order.path)
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         grid = make_grid(order.chart, order.fineness)
     with contextlib.suppress(OSError):
         _save(order.path, grid)
-        _forget_old(order.path.parent)
+        _remove_old_files(order.path.parent)
     return grid
 
 
-def make_grid(chart: Chart, fineness: Fineness) -> GlobeGrid:
+def make_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
     """Make the grid of a chart's coastline (see `globe_grid`)."""
-    sphere = _sphere(chart, fineness)
+    sphere = _geodesic_grid(chart, fineness)
     first, second = sphere.pairs()
     if fineness.directions > 6:
-        first, second = _joined((first, second), sphere.across())
-    lat, lon = positions(sphere.vertices)
-    free, _ = free_legs(chart, lat, lon, first, second)
+        first, second = _merge_pairs((first, second), sphere.across())
+    lat, lon = spherical_positions(sphere.vertices)
+    free, _ = allowed_legs(chart, lat, lon, first, second)
     gap = _largest_open_gap(sphere.vertices, first, second, free)
     first, second = first[free], second[free]
     used = np.zeros(len(lat), bool)
     used[first] = used[second] = True
     number = (np.cumsum(used) - 1).astype(np.int32)
-    pairs = measure(lat[used], lon[used], number[first], number[second])
+    pairs = measured_pairs(lat[used], lon[used], number[first], number[second])
     spacing = _longest_leg(fineness.level)
     return GlobeGrid(lat[used], lon[used], pairs, int((~free).sum()), spacing, gap)
 
@@ -155,16 +155,21 @@ def _longest_leg(level: int) -> float:
     known = min(level, 5)
     sphere = icosphere(known)
     first, second = sphere.pairs()
-    length = measure(*positions(sphere.vertices), first, second).length
+    length = measured_pairs(*spherical_positions(sphere.vertices), first, second).length
     return float(length.max()) / 2 ** (level - known)
 
 
-def _sphere(chart: Chart, fineness: Fineness) -> Icosphere:
+def _geodesic_grid(chart: Chart, fineness: GridResolution) -> Icosphere:
     """Return the geodesic grid of a coastline, land and all."""
     level, coast = fineness.level, fineness.coast_levels
-    narrow = max(FINEST - level - coast, 0) if coast else 0
-    rules = [Rule(_crossing(chart.land.index), coast, lambda m: deeper(m, narrow))]
-    rules += [Rule(_crossing(outlines), fineness.border_levels) for outlines in _borders(chart)]
+    narrow = max(FINEST_STRAIT_LEVEL - level - coast, 0) if coast else 0
+    rules = [
+        RefinementRule(_crossing_test(chart.land.index), coast, lambda m: strait_levels(m, narrow))
+    ]
+    rules += [
+        RefinementRule(_crossing_test(outlines), fineness.border_levels)
+        for outlines in _borders(chart)
+    ]
     return icosphere(level, *rules)
 
 
@@ -174,22 +179,22 @@ def _borders(chart: Chart) -> list[IndexArrays]:
     found = [zones.eca_index] if zones.eca else []
     priced = [shape for shape, _ in (*zones.penalty, *zones.price)]
     if priced:
-        found.append(build_index(rings_of(priced), _BORDER_SIDE))
+        found.append(build_index(rings_from_polygons(priced), _BORDER_INDEX_SIDE))
     return found
 
 
-def _crossing(index: IndexArrays) -> Crossed:
+def _crossing_test(index: IndexArrays) -> CrossingTest:
     """Return the test of edges against outlines."""
 
     def crossed(first: FloatArray, second: FloatArray) -> BoolArray:
         answer = np.empty(len(first), np.bool_)
-        coast_crossed(index, *positions(first), *positions(second), answer)
+        outlines_crossed(index, *spherical_positions(first), *spherical_positions(second), answer)
         return answer
 
     return crossed
 
 
-def positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+def spherical_positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return latitude and longitude [deg] of unit vectors (n, 3), taken for a sphere's.
 
     The grid's shape is that of the sphere; its lengths are those of the ellipsoid.
@@ -198,11 +203,11 @@ def positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.degrees(np.arctan2(z, np.hypot(x, y))), np.degrees(np.arctan2(y, x))
 
 
-def _joined(
+def _merge_pairs(
     some: tuple[Int32Array, Int32Array], more: tuple[Int32Array, Int32Array]
 ) -> tuple[Int32Array, Int32Array]:
     """Return two lots of pairs as one without repeats."""
-    return unkeyed(distinct(np.concatenate([keyed(*some), keyed(*more)])))
+    return edge_vertices(sorted_unique(np.concatenate([edge_keys(*some), edge_keys(*more)])))
 
 
 def _largest_open_gap(
@@ -211,7 +216,7 @@ def _largest_open_gap(
     """Return the largest angle [rad] between directions of nodes none of whose legs is refused."""
     open_ = np.ones(len(vectors), bool)
     open_[first[~free]] = open_[second[~free]] = False
-    indptr, head, _, _ = mirror_pairs(len(vectors), first, second)
+    indptr, head, _, _ = directed_edges_of_pairs(len(vectors), first, second)
     tail = np.repeat(np.arange(len(vectors)), np.diff(indptr))
     inside = open_[tail]
     tail, head = tail[inside], head[inside]
@@ -262,7 +267,7 @@ def _save(path: Path, grid: GlobeGrid) -> None:
         raise
 
 
-def _forget_old(folder: Path) -> None:
+def _remove_old_files(folder: Path) -> None:
     grids = sorted(folder.glob("grid-*.npz"), key=lambda p: p.stat().st_mtime, reverse=True)
-    for path in grids[_KEPT:]:
+    for path in grids[_MAX_FILES:]:
         path.unlink(missing_ok=True)

@@ -32,11 +32,11 @@ _FACES = [
 ]  # fmt: skip
 
 #: Which of some edges, given by the unit vectors of their ends, call for halving.
-Crossed: TypeAlias = Callable[[FloatArray, FloatArray], BoolArray]
+CrossingTest: TypeAlias = Callable[[FloatArray, FloatArray], BoolArray]
 
 
 @dataclass(frozen=True)
-class Rule:
+class RefinementRule:
     """Where a grid is halved beyond its level: faces with an edge that is crossed.
 
     Attributes
@@ -49,7 +49,7 @@ class Rule:
         How many more they get, by the unit vectors (F, 3) of their middles.
     """
 
-    crossed: Crossed
+    crossed: CrossingTest
     levels: int
     deeper: Callable[[FloatArray], IntArray] | None = None
 
@@ -89,11 +89,11 @@ class Icosphere:
         """
         none = np.empty(0, np.int32)
         table = (self.keys, self.middles, self.faces)
-        _, longest = kernels.closed_pairs(*table, 0, none, none)
-        count, _ = kernels.closed_pairs(*table, longest, none, none)
+        _, longest = kernels.leaf_face_pairs(*table, 0, none, none)
+        count, _ = kernels.leaf_face_pairs(*table, longest, none, none)
         first, second = np.empty(count, np.int32), np.empty(count, np.int32)
-        kernels.closed_pairs(*table, longest, first, second)
-        return unkeyed(distinct(keyed(first, second)))
+        kernels.leaf_face_pairs(*table, longest, first, second)
+        return edge_vertices(sorted_unique(edge_keys(first, second)))
 
     def across(self) -> tuple[Int32Array, Int32Array]:
         """Return the pairs of vertices that face each other across the common side of two leaves.
@@ -101,15 +101,15 @@ class Icosphere:
         They double the directions of a grid: twelve instead of six.
         """
         faces = self.faces
-        sides = np.concatenate([keyed(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
+        sides = np.concatenate([edge_keys(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
         opposite = np.concatenate([faces[:, (s + 2) % 3] for s in range(3)])
         order = np.argsort(sides, kind="stable")
         sides, opposite = sides[order], opposite[order]
         twice = np.flatnonzero(sides[1:] == sides[:-1])
-        return unkeyed(distinct(keyed(opposite[twice], opposite[twice + 1])))
+        return edge_vertices(sorted_unique(edge_keys(opposite[twice], opposite[twice + 1])))
 
 
-def icosphere(level: int, *rules: Rule) -> Icosphere:
+def icosphere(level: int, *rules: RefinementRule) -> Icosphere:
     """Return the geodesic grid of a level, with extra levels where edges cross a coast.
 
     Parameters
@@ -119,7 +119,7 @@ def icosphere(level: int, *rules: Rule) -> Icosphere:
     *rules : Rule
         Where it is halved further.
     """
-    grid = _Growing(np.array(_VERTICES) / np.hypot(1.0, _PHI))
+    grid = _Subdivision(np.array(_VERTICES) / np.hypot(1.0, _PHI))
     faces = np.array(_FACES, np.int64) - 1
     for _ in range(level):
         faces = grid.halved(faces)
@@ -138,7 +138,7 @@ def icosphere(level: int, *rules: Rule) -> Icosphere:
     return Icosphere(grid.vertices, np.concatenate(leaves), *grid.table())
 
 
-class _Growing:
+class _Subdivision:
     """A grid while it is halved: vertices, and edges halved so far."""
 
     def __init__(self, vertices: FloatArray) -> None:
@@ -155,7 +155,7 @@ class _Growing:
         if not len(faces):
             return faces
         a, b, c = faces.T
-        ab, bc, ca = self._middle(np.stack([keyed(a, b), keyed(b, c), keyed(c, a)]))
+        ab, bc, ca = self._middle(np.stack([edge_keys(a, b), edge_keys(b, c), edge_keys(c, a)]))
         children = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         return np.concatenate([np.stack(child, axis=-1) for child in children])
 
@@ -166,7 +166,7 @@ class _Growing:
         known = np.zeros(len(wanted), bool)
         known[inside] = self._keys[place[inside]] == wanted[inside]
         fresh = wanted[~known]
-        first, second = unkeyed(fresh)
+        first, second = edge_vertices(fresh)
         sums = self.vertices[first] + self.vertices[second]
         numbers = len(self.vertices) + np.arange(len(fresh))
         self.vertices = np.concatenate(
@@ -179,26 +179,26 @@ class _Growing:
         middles = self._middles[np.searchsorted(self._keys, wanted)]
         return np.asarray(middles[which.ravel()].reshape(keys.shape))
 
-    def crossed_faces(self, faces: IntArray, crossed: Crossed) -> BoolArray:
+    def crossed_faces(self, faces: IntArray, crossed: CrossingTest) -> BoolArray:
         """Return which faces have an edge that is crossed; every edge is asked once."""
-        keys = np.concatenate([keyed(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
+        keys = np.concatenate([edge_keys(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
         edges, which = np.unique(keys, return_inverse=True)
-        first, second = unkeyed(edges)
+        first, second = edge_vertices(edges)
         answer = crossed(self.vertices[first], self.vertices[second])
         return np.asarray(answer[which.ravel()].reshape(3, -1).any(axis=0))
 
 
-def keyed(a: NDArray[np.integer], b: NDArray[np.integer]) -> IntArray:
+def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer]) -> IntArray:
     """Return one number for each edge, whichever way it runs."""
     return (np.minimum(a, b).astype(np.int64) << 31) + np.maximum(a, b)
 
 
-def distinct(keys: IntArray) -> IntArray:
+def sorted_unique(keys: IntArray) -> IntArray:
     """Return ascending numbers, each once (`numpy.unique` hashes, ten times slower on these)."""
     ordered = np.sort(keys)
     return ordered[np.append(True, ordered[1:] != ordered[:-1])] if len(keys) else ordered
 
 
-def unkeyed(keys: IntArray) -> tuple[Int32Array, Int32Array]:
+def edge_vertices(keys: IntArray) -> tuple[Int32Array, Int32Array]:
     """Return the two vertices of edges given by number, the smaller first."""
     return (keys >> 31).astype(np.int32), (keys & (2**31 - 1)).astype(np.int32)

@@ -9,7 +9,7 @@ import numpy as np
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.network.network import FloatArray, IntArray
 
-FINEST: Final = 14  # level of the grid there: nodes 430 to 515 m apart
+FINEST_STRAIT_LEVEL: Final = 14  # level of the grid there: nodes 430 to 515 m apart
 
 #: Positions (lat, lon) [deg] along each strait, and how far round them is finer [km].
 STRAITS: Final[dict[str, tuple[tuple[tuple[float, float], ...], float]]] = {
@@ -41,7 +41,7 @@ STRAITS: Final[dict[str, tuple[tuple[tuple[float, float], ...], float]]] = {
 }  # fmt: skip
 
 
-def deeper(middles: FloatArray, levels: int) -> IntArray:
+def strait_levels(middles: FloatArray, levels: int) -> IntArray:
     """Return ``levels`` for unit vectors (n, 3) that lie in a strait, 0 for others."""
     answer = np.zeros(len(middles), np.int64)
     x, y, z = (middles / np.linalg.norm(middles, axis=1, keepdims=True)).T.copy()

@@ -31,7 +31,7 @@ _TO_GEODETIC = (
 )
 
 
-def unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+def conformal_unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     """Return unit vectors (..., 3) on the conformal sphere of positions [deg]."""
     phi, lam = np.radians(np.asarray(lat, float)), np.radians(np.asarray(lon, float))
     sine = np.clip(np.sin(phi), -1.0 + 1e-15, 1.0 - 1e-15)
@@ -40,7 +40,7 @@ def unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     return np.stack([cos_chi * np.cos(lam), cos_chi * np.sin(lam), tan_chi * cos_chi], axis=-1)
 
 
-def positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+def conformal_positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return latitude and longitude [deg] of unit vectors (..., 3) on the conformal sphere."""
     x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
     chi = np.arctan2(z, np.hypot(x, y))
@@ -48,7 +48,7 @@ def positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.degrees(phi), wrap_longitude(np.degrees(np.arctan2(y, x)))
 
 
-def arc(vectors: FloatArray, point: FloatArray) -> FloatArray:
+def angle_to_point(vectors: FloatArray, point: FloatArray) -> FloatArray:
     """Return the angle [rad] between unit vectors (..., 3) and one point (3,)."""
     difference = vectors - point
     chord = np.sqrt(np.einsum("...k,...k->...", difference, difference))
@@ -56,7 +56,7 @@ def arc(vectors: FloatArray, point: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Frame:
+class ConformalProjection:
     """A conformal frame with a unit of length; coordinates (x, y) are in that unit.
 
     Parameters
@@ -82,11 +82,11 @@ class Frame:
         return MEAN_RADIUS * self.unit
 
     @property
-    def upright(self) -> bool:
+    def is_mercator(self) -> bool:
         """Whether rows and columns are meridians and parallels."""
         return bool(self.turn[2, 2] == 1.0)
 
-    def refined(self, halvings: int) -> Frame:
+    def refined(self, halvings: int) -> ConformalProjection:
         """Return the same frame with its unit halved a number of times."""
         parts = 2**halvings
         return replace(self, unit=self.unit / parts, around=self.around * parts)
@@ -101,7 +101,7 @@ class Frame:
 
     def from_positions(self, lat: ArrayLike, lon: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the coordinates of positions [deg]."""
-        return self.from_vectors(unit_vectors(lat, lon))
+        return self.from_vectors(conformal_unit_vectors(lat, lon))
 
     def to_vectors(self, x: ArrayLike, y: ArrayLike) -> FloatArray:
         """Return unit vectors (..., 3) of coordinates."""
@@ -113,14 +113,14 @@ class Frame:
 
     def to_positions(self, x: ArrayLike, y: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return latitude and longitude [deg] of coordinates."""
-        return positions(self.to_vectors(x, y))
+        return conformal_positions(self.to_vectors(x, y))
 
     def metres(self, y: ArrayLike) -> FloatArray:
         """Return the length [m] of one unit at ordinate y, on a sphere of mean radius."""
         return MEAN_RADIUS * self.unit / np.cosh(np.asarray(y, float) * self.unit + self.y0)
 
 
-def great_circle_frame(start: Position, goal: Position, spacing: float) -> Frame:
+def great_circle_projection(start: Position, goal: Position, spacing: float) -> ConformalProjection:
     """Return the frame whose equator runs from start (0, 0) to goal, a whole number of units on.
 
     Parameters
@@ -130,20 +130,20 @@ def great_circle_frame(start: Position, goal: Position, spacing: float) -> Frame
     spacing : float
         Wanted unit [m]; it is adjusted so that it divides the distance.
     """
-    first, last = unit_vectors(*start), unit_vectors(*goal)
-    distance = float(arc(first, last))
+    first, last = conformal_unit_vectors(*start), conformal_unit_vectors(*goal)
+    distance = float(angle_to_point(first, last))
     pole = np.cross(first, last)
     if np.linalg.norm(pole) < 1e-9:  # antipodes: any great circle is as short; take the meridian
         pole = np.cross(first, [0.0, 0.0, 1.0] if abs(first[2]) < 0.9 else [1.0, 0.0, 0.0])
     pole = pole / np.linalg.norm(pole)
     turn = np.stack([first, np.cross(pole, first), pole])
     pieces = max(1, math.ceil(distance * MEAN_RADIUS / spacing - 1e-3))
-    return Frame(turn=turn, unit=distance / pieces)
+    return ConformalProjection(turn=turn, unit=distance / pieces)
 
 
-def mercator_frame(
+def mercator_projection(
     start: Position, spacing: float, *, latitude: float, closed: bool = False
-) -> Frame:
+) -> ConformalProjection:
     """Return the frame of meridians and parallels with (0, 0) at the start.
 
     Parameters
@@ -157,12 +157,12 @@ def mercator_frame(
     closed : bool, optional
         Close the frame round the globe (the unit is adjusted to divide the parallel).
     """
-    east = unit_vectors(0.0, start[1])
+    east = conformal_unit_vectors(0.0, start[1])
     turn = np.stack([east, np.cross([0.0, 0.0, 1.0], east), [0.0, 0.0, 1.0]])
-    vector = unit_vectors(*start)
+    vector = conformal_unit_vectors(*start)
     y0 = float(np.arcsinh(vector[2] / np.hypot(vector[0], vector[1])))
     unit = spacing / (MEAN_RADIUS * float(np.cos(np.radians(latitude))))
     if not closed:
-        return Frame(turn=turn, unit=unit, y0=y0)
+        return ConformalProjection(turn=turn, unit=unit, y0=y0)
     pieces = max(8, round(2.0 * np.pi / unit))
-    return Frame(turn=turn, unit=2.0 * np.pi / pieces, y0=y0, around=pieces)
+    return ConformalProjection(turn=turn, unit=2.0 * np.pi / pieces, y0=y0, around=pieces)

@@ -9,10 +9,17 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.network.network import IntArray
 
-SIZES = {8: 1, 16: 2, 32: 3, 48: 4, 80: 5, 96: 6}  #: largest offset by number of directions
+LARGEST_OFFSETS = {
+    8: 1,
+    16: 2,
+    32: 3,
+    48: 4,
+    80: 5,
+    96: 6,
+}  #: largest offset by number of directions
 
 
-def half_offsets(directions: int) -> tuple[IntArray, IntArray]:
+def unique_offsets(directions: int) -> tuple[IntArray, IntArray]:
     """Return offsets (di, dj), one of each opposite pair, for a number of directions.
 
     Raises
@@ -20,14 +27,14 @@ def half_offsets(directions: int) -> tuple[IntArray, IntArray]:
     InputError
         For a number that is not 8, 16, 32, 48, 80 or 96.
     """
-    if directions not in SIZES:
+    if directions not in LARGEST_OFFSETS:
         raise InputError(
             f"A lattice cannot have {directions!r} directions.",
-            f"Possible: {', '.join(map(str, SIZES))}.",
+            f"Possible: {', '.join(map(str, LARGEST_OFFSETS))}.",
             "Choose one of these.",
             value=directions,
         )
-    size = SIZES[directions]
+    size = LARGEST_OFFSETS[directions]
     offsets = [
         (i, j)
         for i in range(0, size + 1)
@@ -38,7 +45,7 @@ def half_offsets(directions: int) -> tuple[IntArray, IntArray]:
     return di, dj
 
 
-def largest_gap(di: IntArray, dj: IntArray) -> float:
+def largest_angle_gap(di: IntArray, dj: IntArray) -> float:
     """Return the largest angle [rad] between neighbouring directions of offsets and opposites."""
     angles = np.sort(np.concatenate([np.arctan2(dj, di), np.arctan2(-dj, -di)]))
     return float(np.diff(np.append(angles, angles[0] + 2.0 * np.pi)).max())

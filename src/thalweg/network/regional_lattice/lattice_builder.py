@@ -13,20 +13,20 @@ from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.endpoints import check_ends
+from thalweg.network.endpoints import check_endpoints
 from thalweg.network.network import FloatArray, IntArray, Network, NetworkMeta
 from thalweg.network.regional_lattice.conformal_projection import (
-    Frame,
-    great_circle_frame,
-    mercator_frame,
-    unit_vectors,
+    ConformalProjection,
+    conformal_unit_vectors,
+    great_circle_projection,
+    mercator_projection,
 )
-from thalweg.network.regional_lattice.directions import half_offsets, largest_gap
-from thalweg.network.regional_lattice.refinement_levels import Ground, TooManyPoints
+from thalweg.network.regional_lattice.directions import largest_angle_gap, unique_offsets
+from thalweg.network.regional_lattice.refinement_levels import LatticeSpecification, TooManyPoints
 from thalweg.network.regional_lattice.region import Box, Corridor, Region
 from thalweg.network.regional_lattice.unassembled_lattice import (
-    Draft,
-    make_draft,
+    UnassembledLattice,
+    grow_lattice,
     nearest_reached,
     reached_sides,
 )
@@ -34,28 +34,28 @@ from thalweg.network.regional_lattice.unassembled_lattice import (
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-_FINEST_COAST = 1.5 * NAUTICAL_MILE
-_BUDGET = 60_000  # nodes of the open sea, and as many of the coasts, unless more are asked for
-_HARD_BUDGET = 6_000_000
-_GROWTH = 1.8
-_MOST_EXTRA = 2
+_FINEST_COAST_SPACING = 1.5 * NAUTICAL_MILE
+_NODE_BUDGET = 60_000  # nodes of the open sea, and as many of the coasts, unless more are asked for
+_MAX_NODE_BUDGET = 6_000_000
+_SLACK_GROWTH = 1.8
+_MAX_EXTRA_LEVELS = 2
 _GLOBAL_SPACING = 80.0 * NAUTICAL_MILE
 
 _Offsets: TypeAlias = tuple[IntArray, IntArray]
 
 
 @dataclass(frozen=True)
-class _Drawing:
+class _LatticeAttempt:
     """A lattice drawn, what was coarsened in words, and the count of points that was too many."""
 
-    ground: Ground
-    draft: Draft
+    ground: LatticeSpecification
+    draft: UnassembledLattice
     notes: tuple[str, ...]
     refused: int
 
 
 @dataclass(frozen=True)
-class _Wish:
+class _LatticeRequest:
     """What the caller asked for; spacing and coast levels may be coarsened when not given."""
 
     chart: Chart
@@ -131,26 +131,26 @@ def lattice(
         If start and goal do not connect however large and fine the lattice is made, or not by a
         way within ``detour``.
     """
-    start, goal = check_ends(chart, start, goal)
-    di, dj = half_offsets(directions)
+    start, goal = check_endpoints(chart, start, goal)
+    di, dj = unique_offsets(directions)
     distance = float(geodesy.distance(*start, *goal))
     _check(spacing, coast_levels, orientation, slack)
     if along is None:
-        wish = _wish(chart, start, goal, distance, spacing, coast_levels, orientation, area)
+        wish = _make_request(chart, start, goal, distance, spacing, coast_levels, orientation, area)
         slack = _default_slack(distance) if slack is None else slack
-        drawing = _connected(wish, (di, dj), distance, slack, detour)
+        drawing = _grow_until_connected(wish, (di, dj), distance, slack, detour)
     else:
-        lat, lon, length = _densely(along)
-        wish = _wish(chart, start, goal, length, spacing, coast_levels, orientation, area)
+        lat, lon, length = _densified(along)
+        wish = _make_request(chart, start, goal, length, spacing, coast_levels, orientation, area)
         side = min(max(length / 8.0, 20.0 * NAUTICAL_MILE), 300.0 * NAUTICAL_MILE)
-        wish = replace(wish, corridor=_corridor(lat, lon, side if width is None else width))
-        drawing = _followed(wish, (di, dj), lat, lon)
+        wish = replace(wish, corridor=_corridor_around(lat, lon, side if width is None else width))
+        drawing = _lattice_in_corridor(wish, (di, dj), lat, lon)
     ground = drawing.ground
     meta = NetworkMeta(
-        kind="lattice/latlon" if ground.frame.upright else "lattice/great_circle",
+        kind="lattice/latlon" if ground.frame.is_mercator else "lattice/great_circle",
         spacing_m=ground.frame.largest_unit * ground.step(0),
         directions=directions,
-        gap_rad=largest_gap(di, dj),
+        gap_rad=largest_angle_gap(di, dj),
         notes=drawing.notes,
     )
     return drawing.draft.network(chart, ground.frame, di, dj, meta)
@@ -187,30 +187,32 @@ def _check(
         raise InputError(f"A slack of {slack!r} makes no sense.", "0 or more.", "Give 0.35, say.")
 
 
-def _wish(
+def _make_request(
     chart: Chart, start: Position, goal: Position, distance: float, spacing: float | None,
     coast_levels: int | None, orientation: str, area: Box | None,
-) -> _Wish:  # fmt: skip
-    budget = _BUDGET if spacing is None else _HARD_BUDGET
-    coast_budget = _BUDGET if coast_levels is None else _HARD_BUDGET
+) -> _LatticeRequest:  # fmt: skip
+    budget = _NODE_BUDGET if spacing is None else _MAX_NODE_BUDGET
+    coast_budget = _NODE_BUDGET if coast_levels is None else _MAX_NODE_BUDGET
     own = default_spacing(distance) if spacing is None else min(spacing, distance)
     if coast_levels is None:
-        finest = min(max(own / 8.0, 250.0), _FINEST_COAST)
+        finest = min(max(own / 8.0, 250.0), _FINEST_COAST_SPACING)
         coast_levels = min(max(round(math.log2(own / finest)), 0), 6)
-    return _Wish(chart, start, goal, own, coast_levels, orientation, area, budget, coast_budget)
+    return _LatticeRequest(
+        chart, start, goal, own, coast_levels, orientation, area, budget, coast_budget
+    )
 
 
-def _connected(
-    wish: _Wish, offsets: _Offsets, distance: float, slack: float, detour: float
-) -> _Drawing:
+def _grow_until_connected(
+    wish: _LatticeRequest, offsets: _Offsets, distance: float, slack: float, detour: float
+) -> _LatticeAttempt:
     """Grow and refine until start and goal connect and the slack fits; return the last lattice."""
     factor, extra = 1.01 * (1.0 + slack), 0
     while True:
-        drawing = _drawn(wish, offsets, factor * distance, extra)
+        drawing = _grow_within_budget(wish, offsets, factor * distance, extra)
         ground, draft = drawing.ground, drawing.draft
         to_start = draft.distances(draft.start)
         length = to_start[draft.goal]
-        whole = ground.region.global_
+        whole = ground.region.covers_globe
         if float(length) > detour * distance and (
             math.isfinite(length) or factor > detour * (1.0 + slack)
         ):
@@ -218,55 +220,59 @@ def _connected(
         if math.isfinite(length):
             needed = (1.0 + slack) * float(length) / distance
             if whole or needed <= 1.005 * factor:
-                return _refined(wish, offsets, _pruned(drawing, slack, to_start), slack, extra)
+                return _refine_along_paths(
+                    wish, offsets, _pruned(drawing, slack, to_start), slack, extra
+                )
             factor = 1.01 * needed
             continue
         to_goal = draft.distances(draft.goal)
         start_side, goal_side = reached_sides(ground, draft, to_start, to_goal)
         if start_side and goal_side and not whole:
-            factor *= _GROWTH
-        elif extra < _MOST_EXTRA:
+            factor *= _SLACK_GROWTH
+        elif extra < _MAX_EXTRA_LEVELS:
             extra += 1
         else:
             raise _no_route(wish, draft, to_start)
 
 
-def _densely(way: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
+def _densified(way: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
     """Return positions [deg] close together along a way, and its length [m]."""
     lat, lon = np.asarray(way, float).T
     legs = geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     part = max(float(legs.sum()) / 2000.0, 500.0)
     pieces = np.maximum(1, np.ceil(legs / part)).astype(int)
     places = [
-        geodesy.along(lat[i], lon[i], lat[i + 1], lon[i + 1], np.linspace(0, 1, n + 1))
+        geodesy.positions_along(lat[i], lon[i], lat[i + 1], lon[i + 1], np.linspace(0, 1, n + 1))
         for i, n in enumerate(pieces)
     ]
     every = np.concatenate([np.asarray(place) for place in places], axis=1)
     return every[0], every[1], float(legs.sum())
 
 
-def _corridor(lat: FloatArray, lon: FloatArray, width: float) -> Corridor:
+def _corridor_around(lat: FloatArray, lon: FloatArray, width: float) -> Corridor:
     """Return the cells about a way; they reach two cells and a half to each side."""
     highest = float(np.abs(lat).max())
-    frame = mercator_frame((lat[0], lon[0]), 0.4 * width, latitude=highest, closed=False)
-    return Corridor.around(frame, 1.0, unit_vectors(lat, lon))
+    frame = mercator_projection((lat[0], lon[0]), 0.4 * width, latitude=highest, closed=False)
+    return Corridor.around(frame, 1.0, conformal_unit_vectors(lat, lon))
 
 
-def _followed(wish: _Wish, offsets: _Offsets, lat: FloatArray, lon: FloatArray) -> _Drawing:
+def _lattice_in_corridor(
+    wish: _LatticeRequest, offsets: _Offsets, lat: FloatArray, lon: FloatArray
+) -> _LatticeAttempt:
     """Draw the lattice of a corridor, finer at coasts until it connects."""
     out = geodesy.distance(*wish.start, lat, lon) + geodesy.distance(lat, lon, *wish.goal)
     limit = 1.1 * float(out.max()) + 10.0 * wish.spacing
-    for extra in range(_MOST_EXTRA + 1):
-        drawing = _drawn(wish, offsets, limit, extra, wish.corridor)
+    for extra in range(_MAX_EXTRA_LEVELS + 1):
+        drawing = _grow_within_budget(wish, offsets, limit, extra, wish.corridor)
         to_start = drawing.draft.distances(drawing.draft.start)
         if math.isfinite(to_start[drawing.draft.goal]):
             return _pruned(drawing, math.inf, to_start)
     raise _no_route(wish, drawing.draft, to_start)
 
 
-def _refined(
-    wish: _Wish, offsets: _Offsets, coarse: _Drawing, slack: float, extra: int
-) -> _Drawing:
+def _refine_along_paths(
+    wish: _LatticeRequest, offsets: _Offsets, coarse: _LatticeAttempt, slack: float, extra: int
+) -> _LatticeAttempt:
     """Draw a lattice that had to be coarse again, finer, along the ways it found."""
     ground, stations = coarse.ground, coarse.draft.stations
     spacing = ground.frame.largest_unit * ground.step(0)
@@ -274,49 +280,55 @@ def _refined(
     if not coarse.notes or beyond:
         return coarse
     corridor = Corridor.around(
-        ground.frame, ground.step(0), unit_vectors(stations.lat, stations.lon)
+        ground.frame, ground.step(0), conformal_unit_vectors(stations.lat, stations.lon)
     )
-    finer = _drawn(wish, offsets, ground.region.limit, extra, corridor)
+    finer = _grow_within_budget(wish, offsets, ground.region.limit, extra, corridor)
     to_start = finer.draft.distances(finer.draft.start)
     if not math.isfinite(to_start[finer.draft.goal]):
         return coarse
     return _pruned(finer, slack, to_start)
 
 
-def _drawn(
-    wish: _Wish, offsets: _Offsets, limit: float, extra: int, corridor: Corridor | None = None
-) -> _Drawing:
+def _grow_within_budget(
+    wish: _LatticeRequest,
+    offsets: _Offsets,
+    limit: float,
+    extra: int,
+    corridor: Corridor | None = None,
+) -> _LatticeAttempt:
     """Draw the lattice for a region, coarsening it while it is over its budget."""
-    region = Region(wish.start, wish.goal, limit, wish.area, _box(wish.chart), corridor)
+    region = Region(wish.start, wish.goal, limit, wish.area, _chart_box(wish.chart), corridor)
     spacing, coast, ends = wish.spacing, wish.coast_levels + max(extra - 1, 0), 2 * extra
     notes: tuple[str, ...] = ()
     refused = 0
     if region.unbounded and corridor is None:  # only to find the ways worth a finer look
         spacing, coast = max(spacing, _GLOBAL_SPACING), min(max(coast, 2), 3)
-        wish = replace(wish, budget=_BUDGET, coast_budget=_BUDGET)
-        notes = _note(spacing, coast)
-    most = min(wish.coast_budget * (1 + 2 * extra), _HARD_BUDGET)
-    may_stop = wish.coast_budget < _HARD_BUDGET
+        wish = replace(wish, budget=_NODE_BUDGET, coast_budget=_NODE_BUDGET)
+        notes = _coarsening_note(spacing, coast)
+    most = min(wish.coast_budget * (1 + 2 * extra), _MAX_NODE_BUDGET)
+    may_stop = wish.coast_budget < _MAX_NODE_BUDGET
     while True:
-        frame = _frame(wish, region, spacing).refined(coast + ends)
-        ground = Ground(wish.chart, frame, region, coast, ends, wish.budget, most, may_stop)
+        frame = _projection(wish, region, spacing).refined(coast + ends)
+        ground = LatticeSpecification(
+            wish.chart, frame, region, coast, ends, wish.budget, most, may_stop
+        )
         try:
-            draft = make_draft(ground, *offsets, wish.start, wish.goal)
+            draft = grow_lattice(ground, *offsets, wish.start, wish.goal)
             if draft.refused:
-                notes, refused = _note(spacing, len(draft.parts) - 1), draft.refused
-            return _Drawing(ground, draft, notes, refused)
+                notes, refused = _coarsening_note(spacing, len(draft.parts) - 1), draft.refused
+            return _LatticeAttempt(ground, draft, notes, refused)
         except TooManyPoints as refusal:
             spacing, coast, ends = _coarser(wish, region, refusal, (spacing, coast, ends))
-            notes, refused = _note(spacing, coast), refusal.count
+            notes, refused = _coarsening_note(spacing, coast), refusal.count
 
 
-def _note(spacing: float, coast: int) -> tuple[str, ...]:
+def _coarsening_note(spacing: float, coast: int) -> tuple[str, ...]:
     sizes = f"{spacing / NAUTICAL_MILE:.3g} nm and {coast} coast levels"
     return (f"coarsened to {sizes} to keep the number of nodes in bounds",)
 
 
 def _coarser(
-    wish: _Wish, region: Region, refusal: TooManyPoints, sizes: tuple[float, int, int]
+    wish: _LatticeRequest, region: Region, refusal: TooManyPoints, sizes: tuple[float, int, int]
 ) -> tuple[float, int, int]:
     """Return a larger spacing or fewer levels than those (spacing, coast, ends) refused.
 
@@ -327,22 +339,22 @@ def _coarser(
     """
     spacing, coast, ends = sizes
     level = refusal.level
-    if wish.coast_budget < _HARD_BUDGET and 1 < level <= coast:
+    if wish.coast_budget < _MAX_NODE_BUDGET and 1 < level <= coast:
         return spacing, level - 1, ends
     if level > coast and ends > 0:
         return spacing, coast, ends - 1
-    if wish.budget < _HARD_BUDGET:
+    if wish.budget < _MAX_NODE_BUDGET:
         return spacing * (2.0 if level == 0 and region.unbounded else 1.4), max(coast, 1), ends
-    if wish.coast_budget < _HARD_BUDGET and level > 0:
+    if wish.coast_budget < _MAX_NODE_BUDGET and level > 0:
         return spacing, level - 1, ends
     raise InputError(
         f"A lattice {wish.spacing:.0f} m apart would have over {refusal.count} nodes.",
-        f"At most {_HARD_BUDGET} nodes are built.",
+        f"At most {_MAX_NODE_BUDGET} nodes are built.",
         "Give a larger spacing, fewer coast levels or a smaller area.",
     )
 
 
-def _box(chart: Chart) -> Box | None:
+def _chart_box(chart: Chart) -> Box | None:
     """Return the chart's area as a box, None when it goes right round the world."""
     area = chart.area
     if area.width >= 360.0:
@@ -350,15 +362,17 @@ def _box(chart: Chart) -> Box | None:
     return area.south, area.north, area.west, area.west + area.width
 
 
-def _frame(wish: _Wish, region: Region, spacing: float) -> Frame:
-    if wish.orientation == "great_circle" and not region.global_:
-        return great_circle_frame(wish.start, wish.goal, spacing)
+def _projection(wish: _LatticeRequest, region: Region, spacing: float) -> ConformalProjection:
+    if wish.orientation == "great_circle" and not region.covers_globe:
+        return great_circle_projection(wish.start, wish.goal, spacing)
     middle = 0.5 * (wish.start[0] + wish.goal[0])
     closed = region.unbounded
-    return mercator_frame(wish.start, spacing, latitude=0.0 if closed else middle, closed=closed)
+    return mercator_projection(
+        wish.start, spacing, latitude=0.0 if closed else middle, closed=closed
+    )
 
 
-def _pruned(drawing: _Drawing, slack: float, to_start: FloatArray) -> _Drawing:
+def _pruned(drawing: _LatticeAttempt, slack: float, to_start: FloatArray) -> _LatticeAttempt:
     """Drop the nodes that no reasonable way passes; count how many a finer level would have."""
     ground, draft = drawing.ground, drawing.draft
     total, limit = to_start, math.inf
@@ -371,7 +385,9 @@ def _pruned(drawing: _Drawing, slack: float, to_start: FloatArray) -> _Drawing:
     return replace(drawing, draft=kept, refused=int(drawing.refused * share))
 
 
-def _no_route(wish: _Wish, draft: Draft, to_start: FloatArray) -> NoRouteError:
+def _no_route(
+    wish: _LatticeRequest, draft: UnassembledLattice, to_start: FloatArray
+) -> NoRouteError:
     nearest = nearest_reached(draft, to_start)
     away = float(geodesy.distance(*nearest, *wish.goal)) / NAUTICAL_MILE
     names = [geodesy.format_position(*place) for place in (wish.start, wish.goal, nearest)]

@@ -8,30 +8,33 @@ import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.network.alternatives.homotopy import ring_areas
-from thalweg.network.assembly import Pairs, Stations, free_legs, measure
-from thalweg.network.endpoints import join_pairs
+from thalweg.network.assembly import Pairs, Stations, allowed_legs, measured_pairs
+from thalweg.network.endpoints import concatenate_pairs
 from thalweg.network.network import FloatArray, IntArray
-from thalweg.network.regional_lattice.conformal_projection import positions, unit_vectors
+from thalweg.network.regional_lattice.conformal_projection import (
+    conformal_positions,
+    conformal_unit_vectors,
+)
 
 Edges: TypeAlias = tuple[FloatArray, FloatArray]
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
-    from thalweg.network.regional_lattice.refinement_levels import Ground
+    from thalweg.network.regional_lattice.refinement_levels import LatticeSpecification
 
-_WIDEST: Final = 2.0  # spacings: wider channels hold points of the lattice itself
-_NARROWEST: Final = 50.0  # [m] channels are told apart by their width down to this
-_ISLAND: Final = 0.5  # open-sea spacings: smaller land is passed on its other side
-_MOST_NODES: Final = 2000
-_APART: Final = 0.25  # widths: between places along a shore
-_CELL: Final = 0.5  # widths: of which one place each is kept
-_FELLOWS: Final = 16  # places looked at round each for one on another shore
+_MAX_WIDTH: Final = 2.0  # spacings: wider channels hold points of the lattice itself
+_MIN_WIDTH: Final = 50.0  # [m] channels are told apart by their width down to this
+_MIN_LAND_SIZE: Final = 0.5  # open-sea spacings: smaller land is passed on its other side
+_MAX_NODES: Final = 2000
+_SHORE_SPACING: Final = 0.25  # widths: between places along a shore
+_THINNING_CELL: Final = 0.5  # widths: of which one place each is kept
+_NEAREST_SHORE_PLACES: Final = 16  # places looked at round each for one on another shore
 _NEIGHBOURS: Final = 24
 _REACH: Final = 3.0  # spacings
-_MOST_PARTS: Final = 2000  # of one edge of a coastline
+_MAX_PARTS: Final = 2000  # of one edge of a coastline
 
 
-def channel_nodes(ground: Ground) -> tuple[FloatArray, FloatArray]:
+def channel_nodes(ground: LatticeSpecification) -> tuple[FloatArray, FloatArray]:
     """Return positions [deg] midway between different pieces of land that lie close together.
 
     Parameters
@@ -45,16 +48,16 @@ def channel_nodes(ground: Ground) -> tuple[FloatArray, FloatArray]:
     lat, lon : ndarray
         On navigable water in the region, about as far apart as the channel is wide.
     """
-    widest = _WIDEST * ground.frame.largest_unit * ground.step(ground.coast_levels)
-    island = _ISLAND * ground.frame.largest_unit * ground.step(0)
+    widest = _MAX_WIDTH * ground.frame.largest_unit * ground.step(ground.coast_levels)
+    island = _MIN_LAND_SIZE * ground.frame.largest_unit * ground.step(0)
     while True:
-        middles = _middles(*_shores(ground, island, _APART * widest), widest)
-        lat, lon = positions(middles)
+        middles = _channel_midpoints(*_shores(ground, island, _SHORE_SPACING * widest), widest)
+        lat, lon = conformal_positions(middles)
         keep = ground.region.contains(middles) & ground.region.in_box(lat, lon)
         keep &= np.asarray(ground.chart.is_navigable(lat, lon), bool)
-        if keep.sum() <= _MOST_NODES:
+        if keep.sum() <= _MAX_NODES:
             return lat[keep], lon[keep]
-        island *= 1.4 if keep.sum() < 2 * _MOST_NODES else 2.0
+        island *= 1.4 if keep.sum() < 2 * _MAX_NODES else 2.0
 
 
 def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near: float) -> Pairs:
@@ -74,7 +77,7 @@ def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near:
 
     own = np.arange(first, last)
     lat, lon = stations.lat[:last], stations.lon[:last]
-    vectors = unit_vectors(lat, lon)
+    vectors = conformal_unit_vectors(lat, lon)
     reach = _REACH * near / MEAN_RADIUS
     parts = []
     for others in (np.arange(first), own):
@@ -87,38 +90,40 @@ def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near:
         row, column = np.nonzero(np.isfinite(away))
         a, b = own[row], others[found[row, column]]
         once = (b < first) | (a < b)
-        parts.append(measure(lat, lon, a[once].astype(np.int32), b[once].astype(np.int32)))
-    pairs = join_pairs(parts) if parts else measure(lat, lon, *np.empty((2, 0), np.int32))
+        parts.append(measured_pairs(lat, lon, a[once].astype(np.int32), b[once].astype(np.int32)))
+    pairs = (
+        concatenate_pairs(parts) if parts else measured_pairs(lat, lon, *np.empty((2, 0), np.int32))
+    )
     pairs = pairs.where(pairs.length > 1.0)
-    return pairs.where(free_legs(chart, lat, lon, pairs.first, pairs.second)[0])
+    return pairs.where(allowed_legs(chart, lat, lon, pairs.first, pairs.second)[0])
 
 
-def _shores(ground: Ground, island: float, apart: float) -> tuple[Edges, IntArray]:
+def _shores(ground: LatticeSpecification, island: float, apart: float) -> tuple[Edges, IntArray]:
     """Return the shores of large land in the region, in short edges, and of which land."""
     none = np.empty((0, 3))
     rings = ground.chart.land.rings
     if not len(rings):
         return (none, none), np.empty(0, np.int64)
-    vectors = unit_vectors(rings.lat, rings.lon)
+    vectors = conformal_unit_vectors(rings.lat, rings.lon)
     land = np.repeat(np.arange(len(rings)), np.diff(rings.start))
     inside = ground.region.contains(vectors) & (ring_areas(rings) >= island**2)[land]
     first = np.flatnonzero((inside[:-1] | inside[1:]) & (land[:-1] == land[1:]))
-    edges, edge = _cut((vectors[first], vectors[first + 1]), apart)
+    edges, edge = _split_edges((vectors[first], vectors[first + 1]), apart)
     return edges, land[first][edge]
 
 
-def _cut(edges: Edges, apart: float) -> tuple[Edges, IntArray]:
+def _split_edges(edges: Edges, apart: float) -> tuple[Edges, IntArray]:
     """Cut edges into parts at most ``apart`` [m] long; return also of which edge each part is."""
     a, b = edges
     parts = np.ceil(np.linalg.norm(b - a, axis=1) * MEAN_RADIUS / apart).astype(np.int64)
-    parts = np.clip(parts, 1, _MOST_PARTS)
+    parts = np.clip(parts, 1, _MAX_PARTS)
     edge = np.repeat(np.arange(len(a)), parts)
     number = np.arange(len(edge)) - np.repeat(np.cumsum(parts) - parts, parts)
     along = (b - a)[edge] / parts[edge, None]
     return (a[edge] + number[:, None] * along, a[edge] + (number[:, None] + 1) * along), edge
 
 
-def _middles(shores: Edges, land: IntArray, widest: float) -> FloatArray:
+def _channel_midpoints(shores: Edges, land: IntArray, widest: float) -> FloatArray:
     """Return the middles between facing shores, from wide channels to narrow ones.
 
     Shores are looked at ever closer where others are near, so that places along them stay closer
@@ -126,25 +131,27 @@ def _middles(shores: Edges, land: IntArray, widest: float) -> FloatArray:
     """
     found, width = [np.empty((0, 3))], widest
     while len(land):
-        places = _unit(shores[0])
-        away, middle = _opposite(places, land, width)
-        last = width <= _NARROWEST
+        places = _unit_vectors(shores[0])
+        away, middle = _facing_shore(places, land, width)
+        last = width <= _MIN_WIDTH
         here = (away <= width) & (last | (away > 0.5 * width))
-        found.append(_thinned(middle[here], _CELL * width))
+        found.append(_one_per_cell(middle[here], _THINNING_CELL * width))
         if last:
             break
         width *= 0.5
-        near = away <= (1.0 + 2.0 * _APART) * width
-        shores, edge = _cut((shores[0][near], shores[1][near]), _APART * width)
+        near = away <= (1.0 + 2.0 * _SHORE_SPACING) * width
+        shores, edge = _split_edges((shores[0][near], shores[1][near]), _SHORE_SPACING * width)
         land = land[near][edge]
     return np.concatenate(found)
 
 
-def _opposite(places: FloatArray, land: IntArray, within: float) -> tuple[FloatArray, FloatArray]:
+def _facing_shore(
+    places: FloatArray, land: IntArray, within: float
+) -> tuple[FloatArray, FloatArray]:
     """Return how far other land is from places [m], inf if not near, and the middles."""
     from scipy.spatial import cKDTree
 
-    count = min(_FELLOWS, len(places))
+    count = min(_NEAREST_SHORE_PLACES, len(places))
     away, found = cKDTree(places).query(
         places, k=np.arange(1, count + 1), distance_upper_bound=within / MEAN_RADIUS
     )
@@ -153,15 +160,15 @@ def _opposite(places: FloatArray, land: IntArray, within: float) -> tuple[FloatA
     row = np.arange(len(places))
     nearest = np.where(other[row, first], found[row, first], row)
     apart = np.where(nearest != row, away[row, first] * MEAN_RADIUS, np.inf)
-    return apart, _unit(places + places[nearest])
+    return apart, _unit_vectors(places + places[nearest])
 
 
-def _thinned(places: FloatArray, apart: float) -> FloatArray:
+def _one_per_cell(places: FloatArray, apart: float) -> FloatArray:
     """Return one of all places in each cell of a size [m]."""
     cells = np.floor(places * (MEAN_RADIUS / apart)).astype(np.int64)
     _, first = np.unique(cells, axis=0, return_index=True)
     return np.asarray(places[np.sort(first)])
 
 
-def _unit(places: FloatArray) -> FloatArray:
+def _unit_vectors(places: FloatArray) -> FloatArray:
     return np.asarray(places / np.linalg.norm(places, axis=1, keepdims=True))

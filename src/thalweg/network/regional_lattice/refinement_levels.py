@@ -15,10 +15,10 @@ import numpy as np
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.network.regional_lattice.conformal_projection import (
-    Frame,
-    arc,
-    positions,
-    unit_vectors,
+    ConformalProjection,
+    angle_to_point,
+    conformal_positions,
+    conformal_unit_vectors,
 )
 from thalweg.network.regional_lattice.region import Region
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 COAST_WIDTH = 3.0  #: a level reaches this many of its spacings off the coast
 _END_REACH = 24.0  # levels finer than the coast's reach this many spacings round start and goal
-_BLOCK = 2_000_000
+_POINTS_PER_BLOCK = 2_000_000
 _CELLS_PER_POINT = 12  # cells looked at per point of the budget
 _FLOOD_STEPS = 48
-_LARGEST_CAP = 250_000.0  # [m] the chart's own limit on shore distances
-_LARGEST_MAP = 300_000_000
+_MAX_SHORE_DISTANCE = 250_000.0  # [m] the chart's own limit on shore distances
+_MAX_MAP_CELLS = 300_000_000
 Points: TypeAlias = tuple[IntArray, IntArray]
 
 
@@ -72,7 +72,7 @@ class Level:
 
 
 @dataclass(frozen=True)
-class Ground:
+class LatticeSpecification:
     """Where a lattice is to grow and how fine.
 
     Parameters
@@ -92,7 +92,7 @@ class Ground:
     """
 
     chart: Chart
-    frame: Frame
+    frame: ConformalProjection
     region: Region
     coast_levels: int
     end_levels: int
@@ -117,7 +117,7 @@ class TooManyPoints(Exception):
         super().__init__(f"{count} points at level {level}")
 
 
-def grow_levels(ground: Ground) -> tuple[list[Level], FloatArray, FloatArray, int]:
+def grow_levels(ground: LatticeSpecification) -> tuple[list[Level], FloatArray, FloatArray, int]:
     """Return all levels and the positions [deg] of their nodes, numbered along rows.
 
     When the ground says so the growth stops before the level that goes beyond the budget; the
@@ -142,7 +142,7 @@ def grow_levels(ground: Ground) -> tuple[list[Level], FloatArray, FloatArray, in
     return *_number(ground, points), 0
 
 
-def _open_sea(ground: Ground) -> tuple[IntArray, IntArray, FloatArray]:
+def _open_sea(ground: LatticeSpecification) -> tuple[IntArray, IntArray, FloatArray]:
     """Return the points of level 0 on navigable water in the region, and their shore distance."""
     step = ground.step(0)
     x0, x1, y0, y1 = (value / step for value in ground.region.bounds(ground.frame))
@@ -150,11 +150,11 @@ def _open_sea(ground: Ground) -> tuple[IntArray, IntArray, FloatArray]:
     first, last = int(np.ceil(x0 - 1e-9)), int(np.floor(x1 + 1e-9))
     around = ground.around(0)
     cells = len(columns) * max(0, last - first + 1)
-    if cells > _CELLS_PER_POINT * ground.budget + _BLOCK:
+    if cells > _CELLS_PER_POINT * ground.budget + _POINTS_PER_BLOCK:
         raise TooManyPoints(0, cells)
     if around and last - first + 1 > around:
         first, last = -(around // 2), -(around // 2) + around - 1
-    block = max(1, _BLOCK // max(1, len(columns)))
+    block = max(1, _POINTS_PER_BLOCK // max(1, len(columns)))
     found = []
     count = 0
     for begin in range(first, last + 1, block):
@@ -171,23 +171,25 @@ def _open_sea(ground: Ground) -> tuple[IntArray, IntArray, FloatArray]:
     return i, j, shore
 
 
-def _at_sea(ground: Ground, level: int, i: IntArray, j: IntArray) -> tuple[BoolArray, FloatArray]:
+def _at_sea(
+    ground: LatticeSpecification, level: int, i: IntArray, j: IntArray
+) -> tuple[BoolArray, FloatArray]:
     """Return which points are on navigable water in the region; shore distance of those."""
     step = ground.step(level)
     vectors = ground.frame.to_vectors(i * step, j * step)
     ok = ground.region.contains(vectors)
-    lat, lon = positions(vectors[ok])
+    lat, lon = conformal_positions(vectors[ok])
     free = np.asarray(ground.chart.is_navigable(lat, lon)) & ground.region.in_box(lat, lon)
     ok[ok] = free
     if ground.coast_levels + ground.end_levels == 0:
         return ok, np.full(int(ok.sum()), np.inf)
-    cap = min(COAST_WIDTH * step * float(ground.frame.largest_unit), _LARGEST_CAP)
+    cap = min(COAST_WIDTH * step * float(ground.frame.largest_unit), _MAX_SHORE_DISTANCE)
     shore = np.asarray(ground.chart.shore_distance(lat[free], lon[free], cap=cap), float)
     return ok, np.where(shore < 0.999 * cap, shore, np.inf)
 
 
 def _next_level(
-    ground: Ground, level: int, i: IntArray, j: IntArray, shore: FloatArray
+    ground: LatticeSpecification, level: int, i: IntArray, j: IntArray, shore: FloatArray
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Grow a level from the points of the coarser one that are near the coast, and the ends."""
     step = ground.step(level)
@@ -215,7 +217,7 @@ _AROUND_J = np.array([-1, 0, 1, -1, 0, 1, -1, 0, 1])
 
 
 def _near_coast(
-    ground: Ground, level: int, i: IntArray, j: IntArray
+    ground: LatticeSpecification, level: int, i: IntArray, j: IntArray
 ) -> tuple[BoolArray, FloatArray]:
     """Return which points of a level are at sea and near enough to the coast."""
     step = ground.step(level)
@@ -225,8 +227,11 @@ def _near_coast(
     near = shore < COAST_WIDTH * spacing
     if level > ground.coast_levels:
         vectors = ground.frame.to_vectors(x[ok], y[ok])
-        ends = [unit_vectors(*p) for p in (ground.region.start, ground.region.goal)]
-        nearest = np.minimum(arc(vectors, ends[0]), arc(vectors, ends[1])) * MEAN_RADIUS
+        ends = [conformal_unit_vectors(*p) for p in (ground.region.start, ground.region.goal)]
+        nearest = (
+            np.minimum(angle_to_point(vectors, ends[0]), angle_to_point(vectors, ends[1]))
+            * MEAN_RADIUS
+        )
         near &= nearest < _END_REACH * spacing
     ok[ok] = near
     return ok, shore[near]
@@ -240,7 +245,7 @@ def _flood(
     i0, j0 = int(i.min()) - _FLOOD_STEPS, int(j.min()) - _FLOOD_STEPS
     width = int(j.max()) + _FLOOD_STEPS - j0 + 1
     height = around or int(i.max()) + _FLOOD_STEPS - i0 + 1
-    if width * height > _LARGEST_MAP:
+    if width * height > _MAX_MAP_CELLS:
         raise TooManyPoints(level, width * height)
     seen = np.zeros(width * height, bool)
     flat = np.unique(((i - i0) % height) * width + j - j0)
@@ -268,7 +273,9 @@ def _row(i: IntArray, around: int) -> IntArray:
     return (i + around // 2) % around - around // 2 if around else i
 
 
-def _number(ground: Ground, points: list[Points]) -> tuple[list[Level], FloatArray, FloatArray]:
+def _number(
+    ground: LatticeSpecification, points: list[Points]
+) -> tuple[list[Level], FloatArray, FloatArray]:
     """Give every distinct point a node, in order of rows, and find its position."""
     steps = [ground.step(level) for level in range(len(points))]
     x = np.concatenate([i * step for (i, _), step in zip(points, steps)])

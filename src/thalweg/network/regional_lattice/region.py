@@ -10,10 +10,10 @@ import numpy as np
 from thalweg.core.geodesy import MEAN_RADIUS, Position
 from thalweg.network.network import BoolArray, FloatArray, IntArray
 from thalweg.network.regional_lattice.conformal_projection import (
-    Frame,
-    arc,
-    great_circle_frame,
-    unit_vectors,
+    ConformalProjection,
+    angle_to_point,
+    conformal_unit_vectors,
+    great_circle_projection,
 )
 
 Box: TypeAlias = tuple[float, float, float, float]
@@ -38,13 +38,13 @@ class Corridor:
         Coordinates in steps of the first cell.
     """
 
-    frame: Frame
+    frame: ConformalProjection
     step: float
     cells: BoolArray
     corner: tuple[int, int]
 
     @classmethod
-    def around(cls, frame: Frame, step: float, vectors: FloatArray) -> Corridor:
+    def around(cls, frame: ConformalProjection, step: float, vectors: FloatArray) -> Corridor:
         """Return the cells of places, and two cells on every side of them."""
         i, j = _cells(frame, step, vectors)
         corner = (int(i.min()) - 2, int(j.min()) - 2)
@@ -65,7 +65,9 @@ class Corridor:
         return inside
 
 
-def _cells(frame: Frame, step: float, vectors: FloatArray) -> tuple[IntArray, IntArray]:
+def _cells(
+    frame: ConformalProjection, step: float, vectors: FloatArray
+) -> tuple[IntArray, IntArray]:
     x, y = frame.from_vectors(vectors)
     return np.rint(x / step).astype(np.int64), np.rint(y / step).astype(np.int64)
 
@@ -96,14 +98,14 @@ class Region:
     corridor: Corridor | None = None
 
     @property
-    def global_(self) -> bool:
+    def covers_globe(self) -> bool:
         """Whether the ellipse is so large that the whole globe is taken."""
         return self.limit / MEAN_RADIUS > _LARGEST_ELLIPSE
 
     @property
     def unbounded(self) -> bool:
         """Whether neither an ellipse nor a box bounds the region."""
-        return self.global_ and self.area is None and self.chart_area is None
+        return self.covers_globe and self.area is None and self.chart_area is None
 
     @property
     def bounded(self) -> bool:
@@ -112,13 +114,15 @@ class Region:
 
     def slack(self, vectors: FloatArray) -> FloatArray:
         """Return how much shorter than the limit the way start-place-goal is [m]."""
-        total = arc(vectors, unit_vectors(*self.start)) + arc(vectors, unit_vectors(*self.goal))
+        total = angle_to_point(vectors, conformal_unit_vectors(*self.start)) + angle_to_point(
+            vectors, conformal_unit_vectors(*self.goal)
+        )
         return np.asarray(self.limit - total * MEAN_RADIUS)
 
     def contains(self, vectors: FloatArray) -> BoolArray:
         """Return which unit vectors (n, 3) lie inside the ellipse and the corridor."""
         inside = np.ones(len(vectors), bool)
-        if not self.global_:
+        if not self.covers_globe:
             inside = np.asarray(self.slack(vectors) >= 0.0)
         if self.corridor is not None:
             inside[inside] = self.corridor.contains(vectors[inside])
@@ -132,11 +136,11 @@ class Region:
         width = east - west if east > west else east - west + 360.0
         return (lat >= south) & (lat <= north) & ((lon - west) % 360.0 <= width)
 
-    def bounds(self, frame: Frame) -> tuple[float, float, float, float]:
+    def bounds(self, frame: ConformalProjection) -> tuple[float, float, float, float]:
         """Return (least x, largest x, least y, largest y) of the region in a frame's units."""
         top = float(np.arcsinh(np.tan(_LARGEST_LATITUDE)))
         box = (-np.pi, np.pi, -top, top)
-        if not self.global_:
+        if not self.covers_globe:
             box = _overlap(box, self._ellipse_bounds(frame))
         for area in (self.area, self.chart_area):
             if area is not None and ((area[3] - area[2]) % 360.0 or 360.0) <= _WIDEST_OUTLINE:
@@ -147,8 +151,8 @@ class Region:
             (y0 - frame.y0) / frame.unit, (y1 - frame.y0) / frame.unit,
         )  # fmt: skip
 
-    def _ellipse_bounds(self, frame: Frame) -> Box:
-        axis = great_circle_frame(self.start, self.goal, 1e9)  # its unit is the whole distance
+    def _ellipse_bounds(self, frame: ConformalProjection) -> Box:
+        axis = great_circle_projection(self.start, self.goal, 1e9)  # its unit is the whole distance
         half = self.limit / MEAN_RADIUS / 2.0
         cos_b = np.cos(half) / max(np.cos(axis.unit / 2.0), 1e-9)
         y = float(np.arcsinh(np.tan(np.arccos(np.clip(cos_b, 0.02, 1.0)))))
@@ -164,7 +168,7 @@ class Region:
 _WIDEST_OUTLINE = 180.0
 
 
-def _outline_bounds(frame: Frame, vectors: FloatArray) -> Box:
+def _outline_bounds(frame: ConformalProjection, vectors: FloatArray) -> Box:
     """Return bounds [rad] in a frame of a closed outline; open to the poles it goes round."""
     x, y = frame.from_vectors(vectors)
     x, y = np.unwrap(x * frame.unit), y * frame.unit + frame.y0
@@ -188,7 +192,7 @@ def _box_outline(area: Box) -> FloatArray:
                           np.full(200, north), north - (north - south) * part])  # fmt: skip
     lon = np.concatenate([west + (east - west) * part, np.full(200, east),
                           east - (east - west) * part, np.full(200, west)])  # fmt: skip
-    return unit_vectors(lat, lon)
+    return conformal_unit_vectors(lat, lon)
 
 
 def _overlap(first: Box, second: Box) -> Box:

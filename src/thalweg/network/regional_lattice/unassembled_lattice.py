@@ -11,24 +11,38 @@ import numpy as np
 from thalweg.core.geodesy import MEAN_RADIUS, Position
 from thalweg.kernels.network import graph_building
 from thalweg.network.assembly import (
-    MirroredPairs,
+    DirectedEdges,
     Pairs,
-    Rejected,
+    RejectionCounts,
     Samples,
     Stations,
     add_counts,
+    allowed_legs,
     assemble,
-    even_samples,
-    free_legs,
-    join_samples,
-    measure,
-    mirrored,
+    concatenate_samples,
+    directed_edges,
+    evenly_spaced_samples,
+    measured_pairs,
 )
-from thalweg.network.endpoints import REACH, canal_pairs, direct_pairs, join_pairs, links
+from thalweg.network.endpoints import (
+    LINK_REACH,
+    canal_pairs,
+    concatenate_pairs,
+    direct_pairs,
+    links_to_nodes,
+)
 from thalweg.network.network import BoolArray, FloatArray, IntArray, Network, NetworkMeta
-from thalweg.network.regional_lattice.conformal_projection import Frame, arc, unit_vectors
+from thalweg.network.regional_lattice.conformal_projection import (
+    ConformalProjection,
+    angle_to_point,
+    conformal_unit_vectors,
+)
 from thalweg.network.regional_lattice.narrow_channels import channel_nodes, channel_pairs
-from thalweg.network.regional_lattice.refinement_levels import Ground, Level, grow_levels
+from thalweg.network.regional_lattice.refinement_levels import (
+    LatticeSpecification,
+    Level,
+    grow_levels,
+)
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -46,7 +60,7 @@ class LevelPairs:
 
 
 @dataclass(frozen=True)
-class Draft:
+class UnassembledLattice:
     """A lattice before assembly; start and goal are its last two nodes, before them ends of canals.
 
     ``refused`` is the number of points that the level left out would have brought, or 0.
@@ -55,7 +69,7 @@ class Draft:
     stations: Stations
     parts: list[LevelPairs]
     ends: Pairs
-    rejected: Rejected
+    rejected: RejectionCounts
     refused: int
 
     @property
@@ -71,25 +85,25 @@ class Draft:
     @cached_property
     def pairs(self) -> Pairs:
         """All pairs: those of the levels, then those of start and goal."""
-        return join_pairs([part.pairs for part in self.parts] + [self.ends])
+        return concatenate_pairs([part.pairs for part in self.parts] + [self.ends])
 
     @cached_property
-    def edges(self) -> MirroredPairs:
+    def edges(self) -> DirectedEdges:
         """The directed edges of all pairs by tail."""
         pairs = self.pairs
-        return mirrored(self.stations.n_nodes, pairs)
+        return directed_edges(self.stations.n_nodes, pairs)
 
     def distances(self, node: int) -> FloatArray:
         """Return the static distance [m] of every node from one; inf where unreached."""
         n = self.stations.n_nodes
         distance, parent = np.empty(n), np.empty(n, np.int64)
         weight = self.pairs.length[self.edges.pair]
-        graph_building.static_distances(
+        graph_building.static_dijkstra(
             self.edges.indptr, self.edges.target, weight, node, -1, distance, parent
         )
         return distance
 
-    def where(self, keep: BoolArray) -> Draft:
+    def where(self, keep: BoolArray) -> UnassembledLattice:
         """Return the draft with only the nodes that are kept (start and goal always are)."""
         keep = keep.copy()
         keep[-2:] = True
@@ -97,35 +111,42 @@ class Draft:
             return self
         new = np.cumsum(keep) - 1
         stations = Stations(self.stations.lat[keep], self.stations.lon[keep], int(keep.sum()))
-        parts = [_level_where(part, keep, new) for part in self.parts]
+        parts = [_level_subset(part, keep, new) for part in self.parts]
         return replace(
-            self, stations=stations, parts=parts, ends=_pairs_where(self.ends, keep, new)
+            self, stations=stations, parts=parts, ends=_pairs_subset(self.ends, keep, new)
         )
 
     def network(
-        self, chart: Chart, frame: Frame, di: IntArray, dj: IntArray, meta: NetworkMeta
+        self,
+        chart: Chart,
+        frame: ConformalProjection,
+        di: IntArray,
+        dj: IntArray,
+        meta: NetworkMeta,
     ) -> Network:
         """Sample all pairs along their length and assemble the network."""
         stations, samples = self.stations, []
         for part in self.parts:
             stations, new = _level_samples(frame, stations, part, di, dj)
             samples.append(new)
-        spacing = _spacing_of_ends(self, meta.spacing_m)
-        stations, new = even_samples(stations, self.ends, spacing)
+        spacing = _end_link_spacing(self, meta.spacing_m)
+        stations, new = evenly_spaced_samples(stations, self.ends, spacing)
         samples.append(new)
         meta = replace(meta, start=self.start, goal=self.goal, rejected=self.rejected)
-        samples_of_all = join_samples(samples)
+        samples_of_all = concatenate_samples(samples)
         return assemble(chart, stations, self.pairs, samples_of_all, meta=meta, edges=self.edges)
 
 
-def make_draft(
-    ground: Ground, di: IntArray, dj: IntArray, start: Position, goal: Position
-) -> Draft:
+def grow_lattice(
+    ground: LatticeSpecification, di: IntArray, dj: IntArray, start: Position, goal: Position
+) -> UnassembledLattice:
     """Grow the levels, join their points in all directions and link start and goal."""
     levels, lat, lon, refused = grow_levels(ground)
     n = len(lat)
-    rejected: Rejected = {}
-    parts = [_join(ground.chart, level, lat, lon, di, dj, rejected) for level in levels]
+    rejected: RejectionCounts = {}
+    parts = [
+        _join_level_points(ground.chart, level, lat, lon, di, dj, rejected) for level in levels
+    ]
     canals = canals_in(ground)
     amid = channel_nodes(ground) if ground.region.bounded else np.empty((2, 0))
     places = [*(end for canal in canals for end in canal.ends), start, goal]
@@ -133,40 +154,42 @@ def make_draft(
     grid, n = n, len(lat)
     lat, lon = (np.append(old, new) for old, new in zip((lat, lon), np.array(places, float).T))
     stations = Stations(lat, lon, n + len(places))
-    reach = max(REACH, 1.02 * float(np.hypot(di, dj).max()))  # in spacings
+    reach = max(LINK_REACH, 1.02 * float(np.hypot(di, dj).max()))  # in spacings
     spacing = ground.frame.largest_unit * ground.step(0)
     ends = []
     for point in range(n, n + len(places)):
         own = spacing / np.cosh(_ordinate(ground.frame, lat[point], lon[point]))
-        pairs, counts = links(ground.chart, lat, lon, point, n_nodes=n, reach=reach * own)
+        pairs, counts = links_to_nodes(ground.chart, lat, lon, point, n_nodes=n, reach=reach * own)
         ends.append(pairs)
         add_counts(rejected, counts)
     ends.append(direct_pairs(ground.chart, stations, n, reach=reach * spacing))
     ends.append(canal_pairs(canals, n))
     near = ground.frame.largest_unit * ground.step(ground.coast_levels)
     ends.append(channel_pairs(ground.chart, stations, grid, n, near))
-    return Draft(stations, parts, join_pairs(ends), rejected, refused)
+    return UnassembledLattice(stations, parts, concatenate_pairs(ends), rejected, refused)
 
 
-def canals_in(ground: Ground) -> list[Canal]:
+def canals_in(ground: LatticeSpecification) -> list[Canal]:
     """Return the canals of the chart with both ends in the region of a lattice."""
     found = []
     for canal in ground.chart.canals:
         lat, lon = np.array(canal.ends, float).T
-        inside = ground.region.contains(unit_vectors(lat, lon)) & ground.region.in_box(lat, lon)
+        inside = ground.region.contains(conformal_unit_vectors(lat, lon)) & ground.region.in_box(
+            lat, lon
+        )
         if bool(np.all(inside & ground.chart.is_navigable(lat, lon))):
             found.append(canal)
     return found
 
 
-def _ordinate(frame: Frame, lat: float, lon: float) -> float:
+def _ordinate(frame: ConformalProjection, lat: float, lon: float) -> float:
     """Return the Mercator ordinate [rad] of a position in a frame."""
     return float(frame.from_positions(lat, lon)[1] * frame.unit + frame.y0)
 
 
-def _join(
+def _join_level_points(
     chart: Chart, level: Level, lat: FloatArray, lon: FloatArray, di: IntArray, dj: IntArray,
-    rejected: Rejected,
+    rejected: RejectionCounts,
 ) -> LevelPairs:  # fmt: skip
     """Return the allowed pairs of a level; refusals are added to the counts."""
     rows = level.rows
@@ -175,32 +198,32 @@ def _join(
     a, b, k = np.empty(count, np.int32), np.empty(count, np.int32), np.empty(count, np.int8)
     graph_building.lattice_pairs(*rows, di, dj, a, b, k)
     first, second = level.node[a], level.node[b]
-    free, refused = free_legs(chart, lat, lon, first, second)
+    free, refused = allowed_legs(chart, lat, lon, first, second)
     add_counts(rejected, refused)
     if not free.all():
         a, k, first, second = a[free], k[free], first[free], second[free]
-    return LevelPairs(level, a, k, measure(lat, lon, first, second))
+    return LevelPairs(level, a, k, measured_pairs(lat, lon, first, second))
 
 
-def _pairs_where(pairs: Pairs, keep: BoolArray, new: IntArray) -> Pairs:
+def _pairs_subset(pairs: Pairs, keep: BoolArray, new: IntArray) -> Pairs:
     kept = pairs.where(keep[pairs.first] & keep[pairs.second])
     first, second = new[kept.first].astype(np.int32), new[kept.second].astype(np.int32)
     return Pairs(first, second, kept.length, kept.course)
 
 
-def _level_where(part: LevelPairs, keep: BoolArray, new: IntArray) -> LevelPairs:
+def _level_subset(part: LevelPairs, keep: BoolArray, new: IntArray) -> LevelPairs:
     kept = keep[part.pairs.first] & keep[part.pairs.second]
     place = np.cumsum(keep[part.level.node]) - 1
     return LevelPairs(
         part.level.where(keep, new),
         place[part.point[kept]].astype(np.int32),
         part.offset[kept],
-        _pairs_where(part.pairs, keep, new),
+        _pairs_subset(part.pairs, keep, new),
     )
 
 
 def _level_samples(
-    frame: Frame, stations: Stations, part: LevelPairs, di: IntArray, dj: IntArray
+    frame: ConformalProjection, stations: Stations, part: LevelPairs, di: IntArray, dj: IntArray
 ) -> tuple[Stations, Samples]:
     """Sample pairs where they cross lattice lines: blends of two nodes, or extra stations."""
     level, point, offset = part.level, part.point, part.offset
@@ -210,7 +233,7 @@ def _level_samples(
     a, b = np.empty(total, np.int32), np.empty(total, np.int32)
     w, s = np.empty(total, np.float32), np.empty(total, np.float32)
     first, row_ptr, col, wrap = level.rows
-    graph_building.lattice_vias(
+    graph_building.lattice_samples(
         first, row_ptr, col, wrap, level.node, di, dj, level.i, point, offset, ptr, a, b, w, s
     )
     missing = np.flatnonzero(a < 0)
@@ -223,7 +246,7 @@ def _level_samples(
     return grown, Samples(ptr, a, b, w, s)
 
 
-def _spacing_of_ends(draft: Draft, spacing: float) -> FloatArray:
+def _end_link_spacing(draft: UnassembledLattice, spacing: float) -> FloatArray:
     """Return the sample spacing of links to single places: half their length, or the lattice's.
 
     Canals, which join two such places, are not sampled.
@@ -233,18 +256,21 @@ def _spacing_of_ends(draft: Draft, spacing: float) -> FloatArray:
 
 
 def reached_sides(
-    ground: Ground, draft: Draft, start: FloatArray, goal: FloatArray
+    ground: LatticeSpecification, draft: UnassembledLattice, start: FloatArray, goal: FloatArray
 ) -> tuple[bool, bool]:
     """Return whether what start and goal reach comes near the edge of the region."""
-    vectors = unit_vectors(draft.stations.lat, draft.stations.lon)
+    vectors = conformal_unit_vectors(draft.stations.lat, draft.stations.lon)
     margin = 4.0 * ground.frame.largest_unit * ground.step(0)
     edge = ground.region.slack(vectors) < margin
     return bool(np.any(edge & np.isfinite(start))), bool(np.any(edge & np.isfinite(goal)))
 
 
-def nearest_reached(draft: Draft, start: FloatArray) -> Position:
+def nearest_reached(draft: UnassembledLattice, start: FloatArray) -> Position:
     """Return the position reached from the start that is nearest to the goal."""
     lat, lon = draft.stations.lat, draft.stations.lon
-    away = arc(unit_vectors(lat, lon), unit_vectors(lat[-1], lon[-1])) * MEAN_RADIUS
+    away = (
+        angle_to_point(conformal_unit_vectors(lat, lon), conformal_unit_vectors(lat[-1], lon[-1]))
+        * MEAN_RADIUS
+    )
     best = int(np.argmin(np.where(np.isfinite(start), away, np.inf)))
     return float(lat[best]), float(lon[best])

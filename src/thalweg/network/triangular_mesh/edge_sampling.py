@@ -12,10 +12,10 @@ import numpy as np
 
 from thalweg.kernels.geometry.triangle_crossings import crossed_sides
 from thalweg.network.network import FloatArray, IntArray, Network
-from thalweg.network.regional_lattice.conformal_projection import mercator_frame
+from thalweg.network.regional_lattice.conformal_projection import mercator_projection
 
 
-def sampled_on_sides(network: Network) -> Network:
+def sampled_on_triangle_sides(network: Network) -> Network:
     """Return the network with its samples on the sides of the Delaunay triangles of its nodes.
 
     Parameters
@@ -33,27 +33,27 @@ def sampled_on_sides(network: Network) -> Network:
 
     lat, lon = network.lat, network.lon
     middle = (float(lat.mean()), float(lon[0]))
-    x, y = mercator_frame(middle, 1.0, latitude=middle[0]).from_positions(lat, lon)
+    x, y = mercator_projection(middle, 1.0, latitude=middle[0]).from_positions(lat, lon)
     mesh = Delaunay(np.column_stack([x, y]))
     triangles = np.ascontiguousarray(mesh.simplices, np.int32)
     neighbours = np.ascontiguousarray(mesh.neighbors, np.int32)
-    around_ptr, around = _around(triangles, len(lat))
+    around_ptr, around = _triangles_around_nodes(triangles, len(lat))
     lines = network.tails(), np.ascontiguousarray(network.target, np.int32)
     mesh_arrays = (x, y, triangles, neighbours, around_ptr, around)
     ptr = np.zeros(len(network.target) + 1, np.int64)
-    out = _room(0)
+    out = _output_size(0)
     for _ in range(2):
         crossed_sides(*mesh_arrays, *lines, out, ptr)
         if out[0].size or ptr[-1] == 0:
             break
-        out = _room(int(ptr[-1]))
+        out = _output_size(int(ptr[-1]))
     a, b, w, s = out
     return replace(
         network, station_lat=lat, station_lon=lon, via_ptr=ptr, via_a=a, via_b=b, via_w=w, via_s=s
     )
 
 
-def _room(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _output_size(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     whole, real = np.int32, np.float32
     return (
         np.empty(count, whole),
@@ -63,7 +63,7 @@ def _room(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
-def _around(triangles: np.ndarray, count: int) -> tuple[IntArray, np.ndarray]:
+def _triangles_around_nodes(triangles: np.ndarray, count: int) -> tuple[IntArray, np.ndarray]:
     """Return the triangles around each node."""
     node = triangles.ravel()
     order = np.argsort(node, kind="stable")
@@ -71,7 +71,7 @@ def _around(triangles: np.ndarray, count: int) -> tuple[IntArray, np.ndarray]:
     return ptr.astype(np.int64), (order // 3).astype(np.int32)
 
 
-def least_over(network: Network, values: FloatArray) -> FloatArray:
+def least_along_edges(network: Network, values: FloatArray) -> FloatArray:
     """Return the least of a field given at the nodes along every edge, as its samples tell it."""
     least = np.minimum(values[network.tails()], values[network.target])
     w = network.via_w.astype(float)

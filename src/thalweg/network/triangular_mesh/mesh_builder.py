@@ -16,24 +16,31 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import wrap_longitude
-from thalweg.network.assembly import Pairs, Stations, add_counts, assemble, even_samples, free_legs
-from thalweg.network.assembly import measure as measure_pairs
+from thalweg.network.assembly import (
+    Pairs,
+    Stations,
+    add_counts,
+    allowed_legs,
+    assemble,
+    evenly_spaced_samples,
+)
+from thalweg.network.assembly import measured_pairs as measure_pairs
 from thalweg.network.network import BoolArray, FloatArray, IntArray, Network, NetworkMeta
-from thalweg.network.regional_lattice.conformal_projection import mercator_frame
+from thalweg.network.regional_lattice.conformal_projection import mercator_projection
 from thalweg.network.triangular_mesh.node_neighbours import pairs_by_ring
-from thalweg.network.triangular_mesh.thinning import spacing_fraction, thinned
+from thalweg.network.triangular_mesh.thinning import spacing_fraction, thin_by_spacing
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _DIRECTIONS = {1: 6, 2: 12, 3: 24}
 #: largest angle between directions on a regular triangular mesh [deg], by rings
-_GAP_DEG = {1: 60.0, 2: 30.0, 3: math.degrees(math.atan(math.sqrt(3.0) / 5.0))}
-_STRAIGHT = 1e-7
+_LARGEST_ANGLE_GAP_DEG = {1: 60.0, 2: 30.0, 3: math.degrees(math.atan(math.sqrt(3.0) / 5.0))}
+_COLLINEARITY_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True)
-class _Plane:
+class _MercatorPlane:
     """The model's mesh in a conformal plane [m at its middle latitude]."""
 
     x: FloatArray
@@ -92,7 +99,7 @@ def mesh(
         For broken meshes, rings other than 1 to 3, or when fewer than three nodes remain.
     """
     lat, lon, faces = _checked(lat, lon, triangles, rings, sampling)
-    plane = _plane(lat, lon)
+    plane = _mercator_plane(lat, lon)
     keep = np.asarray(chart.is_navigable(lat, lon))
     if largest_spacing is not None:
         fraction = spacing_fraction(
@@ -101,7 +108,7 @@ def mesh(
         )  # fmt: skip
         gap = np.broadcast_to(fraction * largest_spacing, lat.shape) / plane.metres
         water = np.flatnonzero(keep)
-        keep[water] = thinned(plane.x[water], plane.y[water], gap[water])
+        keep[water] = thin_by_spacing(plane.x[water], plane.y[water], gap[water])
     nodes = np.flatnonzero(keep)
     if len(nodes) < 3:
         raise InputError(
@@ -138,18 +145,18 @@ def _checked(
     return lat, lon, faces
 
 
-def _plane(lat: FloatArray, lon: FloatArray) -> _Plane:
+def _mercator_plane(lat: FloatArray, lon: FloatArray) -> _MercatorPlane:
     """Lay the mesh in a Mercator plane whose seam lies opposite its middle."""
     radians = np.radians(lon)
     middle = float(np.degrees(np.arctan2(np.sin(radians).mean(), np.cos(radians).mean())))
     latitude = float(lat.mean())
-    frame = mercator_frame((latitude, middle), 1.0, latitude=latitude)
+    frame = mercator_projection((latitude, middle), 1.0, latitude=latitude)
     x, y = frame.from_positions(lat, lon)
-    return _Plane(x, y, frame.metres(y))
+    return _MercatorPlane(x, y, frame.metres(y))
 
 
 def _joined(
-    chart: Chart, lat: FloatArray, lon: FloatArray, plane: _Plane, nodes: IntArray,
+    chart: Chart, lat: FloatArray, lon: FloatArray, plane: _MercatorPlane, nodes: IntArray,
     faces: IntArray | None, rings: int, sampling: float,
 ) -> Network:  # fmt: skip
     from scipy.spatial import Delaunay
@@ -160,7 +167,7 @@ def _joined(
     first = np.concatenate([a for a, _ in by_ring])
     second = np.concatenate([b for _, b in by_ring])
     stations = Stations(lat[nodes], lon[nodes], n)
-    free, rejected = free_legs(chart, stations.lat, stations.lon, first, second)
+    free, rejected = allowed_legs(chart, stations.lat, stations.lon, first, second)
     if faces is not None:
         inside = np.ones(len(first), bool)
         inside[free] = _inside_mesh(plane, faces, nodes[first[free]], nodes[second[free]])
@@ -169,36 +176,36 @@ def _joined(
         free &= inside
     pairs = measure_pairs(stations.lat, stations.lon, first[free], second[free])
     ring = np.repeat(np.arange(1, rings + 1), [len(a) for a, _ in by_ring])[free]
-    straight = ~_through_nodes(pairs, n)
+    straight = ~_pass_through_nodes(pairs, n)
     pairs, ring = pairs.where(straight), ring[straight]
     near = pairs.length[ring == 1]
-    stations, samples = even_samples(stations, pairs, sampling * pairs.length / ring)
+    stations, samples = evenly_spaced_samples(stations, pairs, sampling * pairs.length / ring)
     meta = NetworkMeta(
         kind="mesh",
         spacing_m=float(np.percentile(near, 95)) if len(near) else 1.0,
         directions=_DIRECTIONS[rings],
-        gap_rad=math.radians(_GAP_DEG[rings]),
+        gap_rad=math.radians(_LARGEST_ANGLE_GAP_DEG[rings]),
         rejected=rejected,
     )
     return assemble(chart, stations, pairs, samples, meta=meta)
 
 
-def _inside_mesh(plane: _Plane, faces: IntArray, a: IntArray, b: IntArray) -> BoolArray:
+def _inside_mesh(plane: _MercatorPlane, faces: IntArray, a: IntArray, b: IntArray) -> BoolArray:
     """Return which straight lines between nodes stay inside the triangles."""
     shapely: Any = import_module("shapely")
     xy = np.column_stack([plane.x, plane.y])
-    border = shapely.linestrings(xy[_border(faces)])
+    border = shapely.linestrings(xy[_boundary_sides(faces)])
     lines = shapely.linestrings(np.stack([xy[a], xy[b]], axis=1))
     inside = np.ones(len(lines), bool)
     tree = shapely.STRtree(border)
     inside[tree.query(lines, predicate="crosses")[0]] = False
     # Lines that meet the border at nodes may run outside between them: test each stretch.
     line, piece = tree.query(lines, predicate="touches")
-    ends = _border(faces)[piece].ravel()
+    ends = _boundary_sides(faces)[piece].ravel()
     line = np.repeat(line, 2)
     direction = xy[b[line]] - xy[a[line]]
     along = ((xy[ends] - xy[a[line]]) * direction).sum(1) / (direction**2).sum(1)
-    aside = np.abs(np.cross(_with_z(direction), _with_z(xy[ends] - xy[a[line]]))[:, 2])
+    aside = np.abs(np.cross(_with_zero_z(direction), _with_zero_z(xy[ends] - xy[a[line]]))[:, 2])
     on_line = (aside <= 1e-9 * (direction**2).sum(1)) & (along > 0.0) & (along < 1.0)
     every = np.arange(len(lines))
     of = np.concatenate([every, every, line[on_line]])
@@ -209,11 +216,11 @@ def _inside_mesh(plane: _Plane, faces: IntArray, a: IntArray, b: IntArray) -> Bo
     stretch = (of[1:] == of[:-1]) & (share[1:] > share[:-1])
     who, at = of[1:][stretch], middle[stretch, None]
     points = shapely.points(xy[a[who]] * (1.0 - at) + xy[b[who]] * at)
-    inside[who[~_covered(shapely, xy, faces, points)]] = False
+    inside[who[~_covered_by_triangles(shapely, xy, faces, points)]] = False
     return inside
 
 
-def _covered(shapely: Any, xy: FloatArray, faces: IntArray, points: Any) -> BoolArray:
+def _covered_by_triangles(shapely: Any, xy: FloatArray, faces: IntArray, points: Any) -> BoolArray:
     """Return which points lie in or on a triangle, rounding aside."""
     triangles = shapely.polygons(np.concatenate([xy[faces], xy[faces[:, :1]]], axis=1))
     covered: BoolArray = np.zeros(len(points), np.bool_)
@@ -224,18 +231,18 @@ def _covered(shapely: Any, xy: FloatArray, faces: IntArray, points: Any) -> Bool
     return covered
 
 
-def _with_z(vectors: FloatArray) -> FloatArray:
+def _with_zero_z(vectors: FloatArray) -> FloatArray:
     return np.column_stack([vectors, np.zeros(len(vectors))])
 
 
-def _border(faces: IntArray) -> IntArray:
+def _boundary_sides(faces: IntArray) -> IntArray:
     """Return the sides (K, 2) that belong to one triangle only."""
     sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     unique, count = np.unique(sides, axis=0, return_counts=True)
     return np.asarray(unique[count == 1])
 
 
-def _through_nodes(pairs: Pairs, n: int) -> BoolArray:
+def _pass_through_nodes(pairs: Pairs, n: int) -> BoolArray:
     """Return which pairs run straight through a node that is joined to both ends."""
     from scipy.sparse import coo_array
 
@@ -258,7 +265,7 @@ def _through_nodes(pairs: Pairs, n: int) -> BoolArray:
     found = order[place]
     joined = keys[found] == low * n + high
     detour = pairs.length[to_middle] + pairs.length[found] - pairs.length[pair]
-    straight = joined & (detour <= _STRAIGHT * pairs.length[pair])
+    straight = joined & (detour <= _COLLINEARITY_TOLERANCE * pairs.length[pair])
     through = np.zeros(count, bool)
     through[pair[straight]] = True
     return through

@@ -44,7 +44,7 @@ def spacing_fraction(
     return np.asarray(alpha * turning + (1.0 - alpha) * running)
 
 
-def thinned(x: ArrayLike, y: ArrayLike, spacing: ArrayLike) -> BoolArray:
+def thin_by_spacing(x: ArrayLike, y: ArrayLike, spacing: ArrayLike) -> BoolArray:
     """Return which points of a plane are kept, in their order, no nearer than their spacing.
 
     The first point is kept; every next one if and only if its distance to the nearest point kept
@@ -65,7 +65,7 @@ def thinned(x: ArrayLike, y: ArrayLike, spacing: ArrayLike) -> BoolArray:
             "Leave out nodes without data, or fill them.",
         )
     keep = np.zeros(len(x), bool)
-    graph_building.thin_points(
+    graph_building.keep_spaced_points(
         np.ascontiguousarray(x), np.ascontiguousarray(y), np.ascontiguousarray(gap), keep
     )
     return keep
@@ -95,7 +95,7 @@ def dimensionless_curl(
     """
     a, b, c = np.asarray(triangles).T
     scale = MEAN_RADIUS * np.radians(1.0)
-    x = np.stack([_turn(lon[k] - lon[a]) for k in (b, c)]) * scale * np.cos(np.radians(lat[a]))
+    x = np.stack([_rotation(lon[k] - lon[a]) for k in (b, c)]) * scale * np.cos(np.radians(lat[a]))
     y = np.stack([lat[k] - lat[a] for k in (b, c)]) * scale
     double_area = x[0] * y[1] - x[1] * y[0]
     u, v = np.atleast_2d(east), np.atleast_2d(north)
@@ -108,5 +108,5 @@ def dimensionless_curl(
     return result
 
 
-def _turn(degrees: FloatArray) -> FloatArray:
+def _rotation(degrees: FloatArray) -> FloatArray:
     return (degrees + 180.0) % 360.0 - 180.0

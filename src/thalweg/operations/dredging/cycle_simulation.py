@@ -11,51 +11,55 @@ from typing import NamedTuple
 
 from thalweg.core.errors import OutsidePeriodError
 from thalweg.core.time import format_time
-from thalweg.operations.dredging.cycles import Cycle
+from thalweg.operations.dredging.cycles import DredgingCycle
 from thalweg.operations.dredging.project import Project
-from thalweg.operations.dredging.project_environment import Tell, Ways, World
-from thalweg.operations.dredging.verified_legs import LegSailor
+from thalweg.operations.dredging.project_environment import (
+    MessageCallback,
+    ProjectEnvironment,
+    SiteNetwork,
+)
+from thalweg.operations.dredging.verified_legs import SiteLegPlanner
 from thalweg.sea import standard_names as nm
-from thalweg.sea.inspection import gaps_of
-from thalweg.search import Passage, Passages
+from thalweg.sea.inspection import data_gaps
+from thalweg.search import NetworkPassage, ProfileSearch
 
-_LEAST = 1e-6  # share of a hopper that is still worth a cycle
+_MIN_VOLUME_SHARE = 1e-6  # share of a hopper that is still worth a cycle
 
 
 @dataclass(frozen=True, eq=False)
-class Both:
+class RoundTrip:
     """The passages of one load: from the loading site with it, and back empty."""
 
     load_factor: float
-    full: Passages
-    empty: Passages
-    lasted: dict[str, float] = field(default_factory=dict)
+    full: ProfileSearch
+    empty: ProfileSearch
+    last_duration: dict[str, float] = field(default_factory=dict)
 
-    def sail(self, which: str, depart: float, arrive_by: float) -> Passage:
+    def sail(self, which: str, depart: float, arrive_by: float) -> NetworkPassage:
         """Search a passage, "full" or "empty"; the last one's time is the first guess."""
-        passages: Passages = getattr(self, which)
-        guess = self.lasted.get(which, math.inf)
+        passages: ProfileSearch = getattr(self, which)
+        guess = self.last_duration.get(which, math.inf)
         found = passages.sail(depart, known=depart + 1.15 * guess + 300.0, arrive_by=arrive_by)
         if found.found:
-            self.lasted[which] = found.arrive - depart
+            self.last_duration[which] = found.arrive - depart
         return found
 
 
-class Option(NamedTuple):
+class LoadOption(NamedTuple):
     """One load for the next cycle, and the most it could produce [m3/s]."""
 
     bound: float
     volume: float
     share: float
-    both: Both
+    both: RoundTrip
 
 
-class Choice(NamedTuple):
+class LoadChoice(NamedTuple):
     """A load that was looked at: production [m3/s], its option, the passage with it."""
 
     production: float
-    option: Option
-    full: Passage
+    option: LoadOption
+    full: NetworkPassage
 
 
 class Simulator:
@@ -77,19 +81,19 @@ class Simulator:
     def __init__(
         self,
         project: Project,
-        world: World,
-        ways: Ways,
+        world: ProjectEnvironment,
+        ways: SiteNetwork,
         *,
         factors: Sequence[float] | None = None,
-        tell: Tell = lambda text: None,
+        tell: MessageCallback = lambda text: None,
         name: str = "",
     ) -> None:
         self.project, self.tell, self.name = project, tell, name
-        self.sailor = LegSailor(world, ways)
+        self.sailor = SiteLegPlanner(world, ways)
         back = self.sailor.passages(0.0, outward=False)
         chosen = project.work.load_factors if factors is None else factors
         self.both = [
-            Both(x, self.sailor.passages(x, outward=True), replace(back))
+            RoundTrip(x, self.sailor.passages(x, outward=True), replace(back))
             for x in sorted(set(chosen))
             if x > 0.0
         ]
@@ -102,7 +106,7 @@ class Simulator:
             b.load_factor for b in self.both if max(b.full.shortest, b.empty.shortest) < math.inf
         ]
 
-    def run(self) -> list[Cycle]:
+    def run(self) -> list[DredgingCycle]:
         """Sail until the volume is moved.
 
         Raises
@@ -111,10 +115,10 @@ class Simulator:
             If it is not moved by the end of the period looked at.
         """
         project, work = self.project, self.project.work
-        cycles: list[Cycle] = []
+        cycles: list[DredgingCycle] = []
         time, left = project.start, work.volume
         with ThreadPoolExecutor(self.workers) as pool:
-            while left > _LEAST * work.hopper:
+            while left > _MIN_VOLUME_SHARE * work.hopper:
                 choice = self._choose(pool, time, left)
                 cycle = None if choice is None else self._sail(len(cycles) + 1, time, choice)
                 if cycle is None:
@@ -125,7 +129,7 @@ class Simulator:
                     self.tell(f"{len(cycles)} cycles, {work.volume - left:,.0f} m3 moved")
         return cycles
 
-    def _options(self, left: float) -> list[Option]:
+    def _options(self, left: float) -> list[LoadOption]:
         """Return the loads for the next cycle, the most promising first."""
         work = self.project.work
         found = []
@@ -135,25 +139,25 @@ class Simulator:
             fastest = both.full.shortest + both.empty.shortest
             fastest += work.loading.time(share) + work.unloading.time(share)
             if fastest < math.inf:
-                found.append(Option(volume / fastest, volume, share, both))
+                found.append(LoadOption(volume / fastest, volume, share, both))
         # of loads that all hold what is left, the lightest
         enough = [o for o in found if o.volume >= left]
         found = [o for o in found if o.volume < left] + enough[:1]
         return sorted(found, key=lambda o: -o.bound)
 
-    def _choose(self, pool: ThreadPoolExecutor, time: float, left: float) -> Choice | None:
+    def _choose(self, pool: ThreadPoolExecutor, time: float, left: float) -> LoadChoice | None:
         """Return the load with the highest production of its whole cycle."""
-        best: Choice | None = None
-        for lot in _lots(self._options(left), self.workers):
+        best: LoadChoice | None = None
+        for lot in _batches(self._options(left), self.workers):
             least = 0.0 if best is None else best.production
             live = [option for option in lot if option.bound > least]
             count = len(live)
-            for choice in pool.map(self._look, [time] * count, live, [least] * count):
+            for choice in pool.map(self._evaluate_option, [time] * count, live, [least] * count):
                 if choice is not None and (best is None or choice.production > best.production):
                     best = choice
         return best
 
-    def _look(self, time: float, option: Option, least: float) -> Choice | None:
+    def _evaluate_option(self, time: float, option: LoadOption, least: float) -> LoadChoice | None:
         """Search a cycle; None if it does not produce more than ``least`` [m3/s]."""
         work, both = self.project.work, option.both
         longest = option.volume / least if least > 0.0 else math.inf
@@ -166,9 +170,9 @@ class Simulator:
         empty = both.sail("empty", full.arrive + unloading, time + longest)
         if not empty.found:
             return None
-        return Choice(option.volume / (empty.arrive - time), option, full)
+        return LoadChoice(option.volume / (empty.arrive - time), option, full)
 
-    def _sail(self, number: int, time: float, choice: Choice) -> Cycle | None:
+    def _sail(self, number: int, time: float, choice: LoadChoice) -> DredgingCycle | None:
         """Let the referee sail both legs of a cycle; None if the data end before."""
         work, option = self.project.work, choice.option
         loading, unloading = work.loading.time(option.share), work.unloading.time(option.share)
@@ -180,7 +184,7 @@ class Simulator:
         back = sailor.sail(0.0, out.arrive + unloading, outward=False)
         if back is None:
             return None
-        return Cycle(
+        return DredgingCycle(
             number=number,
             start=time,
             load_factor=load_factor,
@@ -197,13 +201,13 @@ class Simulator:
             f"By {format_time(project.end)} only {moved:,.0f} of {project.work.volume:,.0f} m3 "
             f"can be moved{which}.",
             f"The last cycle that is sailed out ends {format_time(time)}."
-            + lacking_data(self.sailor.world, (project.start, project.end)),
+            + data_gap_text(self.sailor.world, (project.start, project.end)),
             "Give more days (and data for them), or a smaller volume.",
             moved_m3=moved,
         )
 
 
-def lacking_data(world: World, period: tuple[float, float]) -> str:
+def data_gap_text(world: ProjectEnvironment, period: tuple[float, float]) -> str:
     """Return sentences on what a period lacks: the end of the data, gaps in them; maybe none."""
     sea = world.sea
     needed = {nm.CHANNEL_VARIABLES[channel] for channel in world.needs.channels}
@@ -212,12 +216,12 @@ def lacking_data(world: World, period: tuple[float, float]) -> str:
     told = [f" The data end {format_time(last)}."] if last < period[1] else []
     told += [
         f" They tell nothing from {format_time(gap.after)} to {format_time(gap.before)}."
-        for gap in gaps_of(sea)
+        for gap in data_gaps(sea)
         if gap.before > period[0] and gap.after < period[1]
     ]
     return "".join(told)
 
 
-def _lots(options: list[Option], size: int) -> Iterator[list[Option]]:
+def _batches(options: list[LoadOption], size: int) -> Iterator[list[LoadOption]]:
     for first in range(0, len(options), size):
         yield options[first : first + size]

@@ -12,7 +12,7 @@ from thalweg.route import Route
 
 
 @dataclass(frozen=True, eq=False)
-class Leg:
+class SailedLeg:
     """One way between the sites.
 
     Attributes
@@ -71,7 +71,7 @@ class Leg:
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle:
+class DredgingCycle:
     """Load, sail full, unload, sail empty.
 
     Attributes
@@ -94,8 +94,8 @@ class Cycle:
     volume: float
     loading: float
     unloading: float
-    out: Leg
-    back: Leg
+    out: SailedLeg
+    back: SailedLeg
 
     @property
     def end(self) -> float:
@@ -108,7 +108,7 @@ class Cycle:
         return self.volume / (self.end - self.start)
 
     @property
-    def legs(self) -> tuple[Leg, Leg]:
+    def legs(self) -> tuple[SailedLeg, SailedLeg]:
         """Both ways."""
         return self.out, self.back
 

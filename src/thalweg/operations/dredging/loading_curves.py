@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 
 _KEYS = ("rate_m3_s", "minutes", "share", "power_kw", "fixed_minutes")
 
 
 @dataclass(frozen=True)
-class Pumping:
+class LoadingCurve:
     """Loading or unloading: which share of the hopper is done after which time.
 
     Attributes
@@ -43,7 +43,7 @@ class Pumping:
     @classmethod
     def constant(
         cls, rate: float, hopper: float, *, power: float = 0.0, fixed: float = 0.0
-    ) -> Pumping:
+    ) -> LoadingCurve:
         """Return pumping at one rate [m3/s] of a hopper [m3].
 
         Raises
@@ -55,7 +55,7 @@ class Pumping:
         return cls((0.0, hopper / rate), (0.0, 1.0), power, fixed)
 
     @classmethod
-    def from_data(cls, data: Any, hopper: float, what: str) -> Pumping:
+    def from_data(cls, data: Any, hopper: float, what: str) -> LoadingCurve:
         """Read a rate [m3/s], or a mapping with a rate or a curve, and powers.
 
         Parameters
@@ -75,7 +75,7 @@ class Pumping:
         given = data if isinstance(data, Mapping) else {"rate_m3_s": data}
         for key in given:
             if key not in _KEYS:
-                raise unknown_name(f"entry of {what}", str(key), _KEYS)
+                raise unknown_name_error(f"entry of {what}", str(key), _KEYS)
         more = {
             "power": 1000.0 * _number(f"{what}.power_kw", given.get("power_kw", 0.0)),
             "fixed": 60.0 * _number(f"{what}.fixed_minutes", given.get("fixed_minutes", 0.0)),

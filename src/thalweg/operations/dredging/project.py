@@ -8,23 +8,23 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY
-from thalweg.operations.dredging.loading_curves import Pumping
+from thalweg.operations.dredging.loading_curves import LoadingCurve
 from thalweg.operations.dredging.project_validation import (
     check_clearance,
-    days_of,
-    factors_of,
-    place_of,
-    positive,
-    start_of,
+    parse_days,
+    parse_load_factors,
+    parse_place,
+    parse_start,
+    positive_number,
 )
 
 LARGEST_FILE = 1_000_000  #: bytes
-BEST = "best"
-_AT_SITE = 250.0  # how far from the sites the route of the base case may start and end [m]
+BEST_LOAD_FACTOR = "best"
+_SITE_TOLERANCE = 250.0  # how far from the sites the route of the base case may start and end [m]
 
 
 @dataclass(frozen=True)
@@ -66,19 +66,19 @@ class Sites:
             check_clearance("min_ukc_m", self.min_ukc)
         check_clearance("margin_m", self.margin)
         if self.spacing is not None:
-            positive({"spacing_m": self.spacing}, "spacing_m")
+            positive_number({"spacing_m": self.spacing}, "spacing_m")
         if type(self.rings) is not int or self.rings not in (1, 2, 3):
             raise InputError(
                 f"rings is {self.rings!r}.", "1, 2 or 3.", "Choose one.", field="rings"
             )
-        if positive({"detour": self.detour}, "detour") < 1.2:
+        if positive_number({"detour": self.detour}, "detour") < 1.2:
             raise InputError(
                 f"detour is {self.detour:g}.", "It is at least 1.2.", "Give 3.", field="detour"
             )
 
 
 @dataclass(frozen=True)
-class Work:
+class WorkScope:
     """What is moved, and how fast.
 
     Attributes
@@ -94,8 +94,8 @@ class Work:
 
     volume: float
     hopper: float
-    loading: Pumping
-    unloading: Pumping
+    loading: LoadingCurve
+    unloading: LoadingCurve
     load_factors: tuple[float, ...]
 
 
@@ -137,7 +137,7 @@ class Project:
 
     name: str
     sites: Sites
-    work: Work
+    work: WorkScope
     start: float
     days: float
     ship: str | Mapping[str, Any] = "hopper-dredger"
@@ -160,24 +160,24 @@ class Project:
             and load factors that cannot be.
         """
         _check_keys(data)
-        volume, hopper = positive(data, "volume_m3"), positive(data, "hopper_m3")
-        work = Work(
+        volume, hopper = positive_number(data, "volume_m3"), positive_number(data, "hopper_m3")
+        work = WorkScope(
             volume=volume,
             hopper=hopper,
-            loading=Pumping.from_data(data["loading"], hopper, "loading"),
-            unloading=Pumping.from_data(data["unloading"], hopper, "unloading"),
-            load_factors=factors_of(data.get("load_factors", 11)),
+            loading=LoadingCurve.from_data(data["loading"], hopper, "loading"),
+            unloading=LoadingCurve.from_data(data["unloading"], hopper, "unloading"),
+            load_factors=parse_load_factors(data.get("load_factors", 11)),
         )
         sites = _sites(data)
         return cls(
             name=str(data.get("name", "dredging project")),
             sites=sites,
             work=work,
-            start=start_of(data["start"]),
-            days=days_of(data),
+            start=parse_start(data["start"]),
+            days=parse_days(data),
             ship=data.get("ship", "hopper-dredger"),
-            world={key: _plain(data[key]) for key in _WORLD if key in data},
-            base=_base(data.get("base_case"), sites),
+            world={key: _plain_value(data[key]) for key in _ENVIRONMENT_KEYS if key in data},
+            base=_base_case(data.get("base_case"), sites),
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -229,8 +229,10 @@ class Project:
         except (yaml.YAMLError, UnicodeDecodeError) as error:
             raise InputError(f"{path} is not YAML: {error}.", "", "Mend it.") from error
         if not isinstance(data, dict):
-            raise InputError(f"{path} holds no project.", f"Entries: {', '.join(_KEYS)}.", "")
-        return cls.from_dict(_beside(data, path.parent))
+            raise InputError(
+                f"{path} holds no project.", f"Entries: {', '.join(_ALLOWED_KEYS)}.", ""
+            )
+        return cls.from_dict(_with_files_beside(data, path.parent))
 
     def save(self, path: str | Path) -> None:
         """Write the project as YAML."""
@@ -240,33 +242,33 @@ class Project:
         Path(path).write_text(text, encoding="utf-8")
 
 
-_WORLD = ("sea", "tides", "map", "depth", "zones", "coast")
-_NEEDED = ("load", "unload", "volume_m3", "hopper_m3", "loading", "unloading", "start")
-_KEYS = (
+_ENVIRONMENT_KEYS = ("sea", "tides", "map", "depth", "zones", "coast")
+_REQUIRED_KEYS = ("load", "unload", "volume_m3", "hopper_m3", "loading", "unloading", "start")
+_ALLOWED_KEYS = (
     *("name", "ship"),
-    *_NEEDED,
+    *_REQUIRED_KEYS,
     *("days", "min_ukc_m", "margin_m", "load_factors", "spacing_m", "rings", "detour"),
-    *_WORLD,
+    *_ENVIRONMENT_KEYS,
     "base_case",
 )
 
 
 def _check_keys(data: Mapping[str, Any]) -> None:
     for key in data:
-        if key not in _KEYS:
-            raise unknown_name("project entry", str(key), _KEYS)
-    missing = [key for key in _NEEDED if key not in data]
+        if key not in _ALLOWED_KEYS:
+            raise unknown_name_error("project entry", str(key), _ALLOWED_KEYS)
+    missing = [key for key in _REQUIRED_KEYS if key not in data]
     if missing:
         raise InputError(
             f"The project lacks {', '.join(missing)}.",
-            f"Needed: {', '.join(_NEEDED)}.",
+            f"Needed: {', '.join(_REQUIRED_KEYS)}.",
             "Add them.",
             missing=missing,
         )
 
 
 def _sites(data: Mapping[str, Any]) -> Sites:
-    load, unload = place_of(data["load"], "load"), place_of(data["unload"], "unload")
+    load, unload = parse_place(data["load"], "load"), parse_place(data["unload"], "unload")
     if load == unload:
         raise InputError(
             "Loading and unloading site are the same place.",
@@ -284,7 +286,7 @@ def _sites(data: Mapping[str, Any]) -> Sites:
     )
 
 
-def _base(data: Any, sites: Sites) -> BaseCase | None:
+def _base_case(data: Any, sites: Sites) -> BaseCase | None:
     if data is None:
         return None
     if not isinstance(data, Mapping) or not isinstance(data.get("route"), Sequence):
@@ -295,14 +297,16 @@ def _base(data: Any, sites: Sites) -> BaseCase | None:
         )
     for key in data:
         if key not in ("route", "load_factor"):
-            raise unknown_name("entry of the base case", str(key), ("route", "load_factor"))
-    route = tuple(place_of(place, f"base_case.route[{k}]") for k, place in enumerate(data["route"]))
+            raise unknown_name_error("entry of the base case", str(key), ("route", "load_factor"))
+    route = tuple(
+        parse_place(place, f"base_case.route[{k}]") for k, place in enumerate(data["route"])
+    )
     if len(route) < 2:
         raise InputError(
             "The route of the base case is no way.", "Two places or more.", "Add the others."
         )
     factor = data.get("load_factor", 1.0)
-    if factor != BEST:
+    if factor != BEST_LOAD_FACTOR:
         number = isinstance(factor, (int, float)) and not isinstance(factor, bool)
         if not number or not 0.0 < factor <= 1.0:
             raise InputError(
@@ -319,7 +323,7 @@ def _base(data: Any, sites: Sites) -> BaseCase | None:
 def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
     for end, site, which in ((route[0], sites.load, "starts"), (route[-1], sites.unload, "ends")):
         away = float(distance(*end, *site))
-        if away > _AT_SITE:
+        if away > _SITE_TOLERANCE:
             raise InputError(
                 f"The route of the base case {which} {away:,.0f} m from the site.",
                 "It leads from the loading site to the unloading site.",
@@ -328,14 +332,14 @@ def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
             )
 
 
-def _plain(value: Any) -> Any:
+def _plain_value(value: Any) -> Any:
     """Return paths as the text that files hold."""
     if isinstance(value, (list, tuple)):
-        return [_plain(one) for one in value]
+        return [_plain_value(one) for one in value]
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
-def _beside(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+def _with_files_beside(data: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the data with the files it names taken from beside the project file, if there."""
 
     def found(name: Any) -> Any:

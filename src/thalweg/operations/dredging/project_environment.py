@@ -13,18 +13,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, along, direct, distance, inverse
+from thalweg.core.geodesy import Position, direct, distance, inverse, positions_along
 from thalweg.kernels import codes
 from thalweg.network import Network, NetworkMeta, lattice, mesh
-from thalweg.network.assembly import Stations, assemble, measure, no_samples
-from thalweg.network.triangular_mesh.edge_sampling import sampled_on_sides
+from thalweg.network.assembly import Stations, assemble, measured_pairs, no_samples
+from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.operations.dredging.project import Sites
 from thalweg.planning.frozen_sea import MEMORY_LIMIT
-from thalweg.planning.request.requirements import Needs, check_period, find_needs, least_clearance
-from thalweg.planning.single.passage import table_of
+from thalweg.planning.request.requirements import (
+    Requirements,
+    check_period,
+    derive_requirements,
+    required_under_keel_clearance,
+)
+from thalweg.planning.single.passage import performance_table_of
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import standard_names as nm
-from thalweg.search import Passages, Waters
+from thalweg.search import PreparedNetwork, ProfileSearch
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -39,11 +44,11 @@ _BED_SAMPLES = 8  # looks at the bed per spacing of the network
 _SAME_PLACE = 1.0  # [m]
 _CHUNK = 200_000
 
-Tell = Callable[[str], None]
+MessageCallback = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class World:
+class ProjectEnvironment:
     """What a project is sailed in.
 
     Attributes
@@ -63,12 +68,12 @@ class World:
     ship: Ship
     sea: Sea
     chart: Chart
-    needs: Needs
+    needs: Requirements
 
     @classmethod
     def open(
         cls, sites: Sites, period: tuple[float, float], *, ship: Ship, sea: Sea, chart: Chart
-    ) -> World:
+    ) -> ProjectEnvironment:
         """Find what the ship needs of the sea.
 
         Raises
@@ -77,22 +82,22 @@ class World:
             If the sea lacks a variable, or does not hold the beginning of the period.
         """
         voyage = _voyage(sites, period)
-        needs = find_needs(voyage, ship=ship.with_load_factor(1.0), sea=sea, chart=chart)
+        needs = derive_requirements(voyage, ship=ship.with_load_factor(1.0), sea=sea, chart=chart)
         check_period(voyage, sea, needs)
         return cls(sites, period, ship, sea, chart, needs)
 
     @property
     def min_ukc(self) -> float:
         """Least under-keel clearance [m]: that of the sites, else the ship file's own."""
-        return least_clearance(_voyage(self.sites, self.period), self.ship)
+        return required_under_keel_clearance(_voyage(self.sites, self.period), self.ship)
 
     @property
-    def bed_stands_still(self) -> bool:
+    def bed_is_static(self) -> bool:
         """Whether every source of the bed's depth holds at all times."""
         rows = [row for row in self.sea.coverage() if row.variable == nm.BED_DEPTH]
         return bool(rows) and all(row.start is None for row in rows)
 
-    def loaded(self, load_factor: float) -> Loaded:
+    def loaded(self, load_factor: float) -> LoadedShip:
         """Return the ship at a load, with its table and limits."""
         ship = self.ship.with_load_factor(load_factor)
         limits = self.needs.limits.copy()
@@ -102,7 +107,7 @@ class World:
         setting = len(ship.speeds) - 1
         top = ship.top_speed(setting)
         speed = float(ship.speeds[setting]) if top is None else top
-        return Loaded(ship, table_of(ship), limits, setting, speed)
+        return LoadedShip(ship, performance_table_of(ship), limits, setting, speed)
 
 
 def _voyage(sites: Sites, period: tuple[float, float]) -> Voyage:
@@ -111,7 +116,7 @@ def _voyage(sites: Sites, period: tuple[float, float]) -> Voyage:
 
 
 @dataclass(frozen=True, eq=False)
-class Loaded:
+class LoadedShip:
     """A ship at one load: table, limits in the order of kernels, setting, top speed [m/s]."""
 
     ship: Ship
@@ -127,7 +132,7 @@ class Loaded:
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
+class SiteNetwork:
     """A network between the sites with the sea frozen on it.
 
     Attributes
@@ -138,9 +143,11 @@ class Ways:
     """
 
     network: Network
-    waters: Waters
+    waters: PreparedNetwork
 
-    def passages(self, loaded: Loaded, *, full: bool, extra_depth: float = 0.0) -> Passages:
+    def passages(
+        self, loaded: LoadedShip, *, full: bool, extra_depth: float = 0.0
+    ) -> ProfileSearch:
         """Prepare the passages from loading to unloading site (full), or back."""
         ends = (self.network.meta.start, self.network.meta.goal)
         limits = loaded.limits.copy()
@@ -162,7 +169,9 @@ class Ways:
         return float(distance(lat[a], lon[a], lat[b], lon[b]))
 
 
-def open_ways(world: World, network: Network, tell: Tell) -> Ways:
+def freeze_site_network(
+    world: ProjectEnvironment, network: Network, tell: MessageCallback
+) -> SiteNetwork:
     """Freeze the sea at a network for the whole period.
 
     Raises
@@ -171,9 +180,9 @@ def open_ways(world: World, network: Network, tell: Tell) -> Ways:
         If it would take more memory than is allowed.
     """
     channels = list(world.needs.channels)
-    if world.bed_stands_still and codes.BED_DEPTH in channels:
+    if world.bed_is_static and codes.BED_DEPTH in channels:
         channels.remove(codes.BED_DEPTH)
-        network = over_the_bed(world, network)
+        network = with_bed_depth(world, network)
     lat, lon = network.station_lat, network.station_lon
     steps = len(world.sea.times(*world.period))
     field = world.ship.speed_field
@@ -187,24 +196,24 @@ def open_ways(world: World, network: Network, tell: Tell) -> Ways:
         )
     tell(f"freezing the sea at {len(lat):,} places and {steps:,} times")
     fields = world.sea.freeze_stations(lat, lon, *world.period, channels, extra=extra)
-    return Ways(network, Waters.prepare(network, fields))
+    return SiteNetwork(network, PreparedNetwork.prepare(network, fields))
 
 
-def project_network(world: World) -> Network:
+def project_network(world: ProjectEnvironment) -> Network:
     """Build the network between the sites: the sea's own mesh where it has one, else a lattice."""
     sites, chart = world.sites, world.chart
     model = world.sea.mesh()
     if model is None:
         return lattice(chart, sites.load, sites.unload, spacing=sites.spacing, directions=32)
-    lat, lon, faces = _near(model.lat, model.lon, model.triangles, sites)
-    network = sampled_on_sides(
+    lat, lon, faces = _mesh_near_sites(model.lat, model.lon, model.triangles, sites)
+    network = sampled_on_triangle_sides(
         mesh(chart, lat, lon, faces, largest_spacing=sites.spacing, rings=sites.rings)
     )
     ends = [_node_at(network, place) for place in (sites.load, sites.unload)]
     return replace(network, meta=replace(network.meta, start=ends[0], goal=ends[1]))
 
 
-def _near(
+def _mesh_near_sites(
     lat: FloatArray, lon: FloatArray, triangles: NDArray[np.int64], sites: Sites
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return the nodes of a model around the sites, after the sites themselves."""
@@ -248,7 +257,7 @@ def _node_at(network: Network, place: Position) -> int:
     return nearest
 
 
-def line_network(chart: Chart, route: Sequence[Position]) -> Network:
+def fixed_route_network(chart: Chart, route: Sequence[Position]) -> Network:
     """Return a charted way as a network: one line, with waiting anywhere on it.
 
     Raises
@@ -256,7 +265,7 @@ def line_network(chart: Chart, route: Sequence[Position]) -> Network:
     InputError
         If the chart does not let it pass.
     """
-    lat, lon = _spaced(route)
+    lat, lon = _resampled_route(route)
     first = np.arange(len(lat) - 1, dtype=np.int32)
     blocked = np.asarray(chart.legs_blocked(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     if blocked.any():
@@ -266,23 +275,23 @@ def line_network(chart: Chart, route: Sequence[Position]) -> Network:
             "It crosses land or a no-go zone, or leaves the chart.",
             "Correct base_case.route.",
         )
-    pairs = measure(lat, lon, first, first + np.int32(1))
+    pairs = measured_pairs(lat, lon, first, first + np.int32(1))
     meta = NetworkMeta(LINE, _LINE_SPACING, 2, 0.0, start=0, goal=len(lat) - 1)
     stations = Stations(lat, lon, len(lat))
     return assemble(chart, stations, pairs, no_samples(len(first)), meta=meta)
 
 
-def _spaced(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]:
+def _resampled_route(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]:
     lats, lons = [np.array([route[0][0]])], [np.array([route[0][1]])]
     for (lat1, lon1), (lat2, lon2) in itertools.pairwise(route):
         pieces = max(1, math.ceil(float(distance(lat1, lon1, lat2, lon2)) / _LINE_SPACING))
-        lat, lon = along(lat1, lon1, lat2, lon2, np.arange(1, pieces + 1) / pieces)
+        lat, lon = positions_along(lat1, lon1, lat2, lon2, np.arange(1, pieces + 1) / pieces)
         lats.append(lat)
         lons.append(lon)
     return np.concatenate(lats), np.concatenate(lons)
 
 
-def over_the_bed(world: World, network: Network) -> Network:
+def with_bed_depth(world: ProjectEnvironment, network: Network) -> Network:
     """Return the network with the least depth of the sea's bed along every edge."""
     tails, heads = network.tails(), network.target
     once = tails < heads
@@ -293,7 +302,7 @@ def over_the_bed(world: World, network: Network) -> Network:
     bounds = np.searchsorted(np.cumsum(count), np.arange(0, count.sum() + _CHUNK, _CHUNK))
     for first, last in itertools.pairwise(bounds):
         part = slice(int(first), int(last) + 1)
-        least[part] = _least_bed(
+        least[part] = _minimum_bed_depth(
             world, network, (tails[once][part], heads[once][part]), count[part]
         )
     key = np.minimum(tails, heads).astype(np.int64) * network.n_nodes + np.maximum(tails, heads)
@@ -303,8 +312,8 @@ def over_the_bed(world: World, network: Network) -> Network:
     return replace(network, depth=depth.astype(np.float32))
 
 
-def _least_bed(
-    world: World, network: Network, ends: tuple[Any, Any], count: NDArray[np.int64]
+def _minimum_bed_depth(
+    world: ProjectEnvironment, network: Network, ends: tuple[Any, Any], count: NDArray[np.int64]
 ) -> FloatArray:
     a, b = ends
     lat, lon = network.lat, network.lon

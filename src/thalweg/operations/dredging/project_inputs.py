@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ESTUARY = "synthetic-estuary"  #: a made-up world, named in place of files
 EXAMPLE = "example"  #: the name of the example project
-COASTS = ("c", "l", "i", "h", "f", "none")
+COASTLINE_RESOLUTIONS = ("c", "l", "i", "h", "f", "none")
 
 
 def example_file() -> Path:
@@ -31,7 +31,7 @@ def open_project(path: str | Path) -> Project:
     return Project.load(example_file() if str(path) == EXAMPLE else path)
 
 
-def open_things(project: Project) -> tuple[Ship, Sea, Chart]:
+def open_project_inputs(project: Project) -> tuple[Ship, Sea, Chart]:
     """Return the ship, sea and chart that a project file names.
 
     Raises
@@ -58,7 +58,7 @@ def open_things(project: Project) -> tuple[Ship, Sea, Chart]:
 def _sea(world: Mapping[str, Any]) -> Sea:
     from thalweg.sea import Sea
 
-    files, mapping, tides = _listed(world.get("sea")), world.get("map"), world.get("tides")
+    files, mapping, tides = _as_list(world.get("sea")), world.get("map"), world.get("tides")
     if not files or not all(files):
         raise InputError(
             "The project names no sea.",
@@ -74,7 +74,7 @@ def _sea(world: Mapping[str, Any]) -> Sea:
             "Write it that way.",
             field="map",
         )
-    named = [] if isinstance(tides, bool) else _listed(tides)
+    named = [] if isinstance(tides, bool) else _as_list(tides)
     _check_names("tides", named, "It is true, or a list of constituents such as [M2, S2].")
     sea = Sea.open(*files, mapping=mapping)
     if not tides:
@@ -104,19 +104,21 @@ def _chart(world: Mapping[str, Any], chart: Chart | None) -> Chart:
 
     coast = world.get("coast", "i")
     coast = "none" if coast is None or coast is False else str(coast)
-    if coast not in COASTS:
-        raise InputError(f"coast is {coast!r}.", f"One of {', '.join(COASTS)}.", "", field="coast")
+    if coast not in COASTLINE_RESOLUTIONS:
+        raise InputError(
+            f"coast is {coast!r}.", f"One of {', '.join(COASTLINE_RESOLUTIONS)}.", "", field="coast"
+        )
     if chart is None:
         whole = (-90.0, 90.0, -180.0, 180.0)
         chart = Chart.open_water(*whole) if coast == "none" else Chart.gshhg(coast)
-    for path in _listed(world.get("depth")):
+    for path in _as_list(world.get("depth")):
         chart = chart.with_depth(path)
-    for path in _listed(world.get("zones")):
+    for path in _as_list(world.get("zones")):
         chart = chart.with_zones(path)
     return chart
 
 
-def _listed(value: Any) -> list[Any]:
+def _as_list(value: Any) -> list[Any]:
     if value is None:
         return []
     return list(value) if isinstance(value, (list, tuple)) else [value]

@@ -15,19 +15,19 @@ import numpy as np
 
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY, HOUR, KNOT, TONNE
-from thalweg.operations.dredging.cycles import Cycle
+from thalweg.operations.dredging.cycles import DredgingCycle
 from thalweg.operations.dredging.project import Project
-from thalweg.planning.report.output_files import check_folder
+from thalweg.planning.report.output_files import make_folder
 from thalweg.ship import Ship
 
 if TYPE_CHECKING:
-    from thalweg.operations.dredging.project_environment import World
+    from thalweg.operations.dredging.project_environment import ProjectEnvironment
 
 WEEK = 7.0 * DAY
 _PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel, where the ship file tells none
 
 #: Rows of the table: key, words, how to print.
-ROWS = (
+TABLE_ROWS = (
     ("production_m3_week", "production [1000 m3/week]", lambda v: f"{v / 1000:.1f}"),
     ("duration_days", "duration", lambda v: "{} d {} h".format(*divmod(round(24 * v), 24))),
     ("cycles", "cycles", lambda v: f"{v:d}"),
@@ -52,7 +52,7 @@ ROWS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class ProjectRun:
     """One way of sailing the project, to its end.
 
     Attributes
@@ -60,12 +60,12 @@ class Run:
     name : str
     cycles : tuple of Cycle
     totals : mapping of str to float or None
-        By the keys of `ROWS`; None where unknown.
+        By the keys of `TABLE_ROWS`; None where unknown.
     notes : tuple of str
     """
 
     name: str
-    cycles: tuple[Cycle, ...]
+    cycles: tuple[DredgingCycle, ...]
     totals: Mapping[str, float | int | None]
     notes: tuple[str, ...] = ()
 
@@ -91,13 +91,13 @@ class ProjectResult:
     """
 
     project: Project
-    world: World
-    optimised: Run
-    base: Run | None = None
+    world: ProjectEnvironment
+    optimised: ProjectRun
+    base: ProjectRun | None = None
     provenance: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
-    def runs(self) -> tuple[Run, ...]:
+    def runs(self) -> tuple[ProjectRun, ...]:
         """The base case, if there is one, and the optimised project."""
         return (self.optimised,) if self.base is None else (self.base, self.optimised)
 
@@ -121,7 +121,7 @@ class ProjectResult:
         columns = [dict(run.totals) for run in self.runs]
         columns[-1].update(self.gains())
         rows = [["", *(run.name for run in self.runs)]]
-        for key, words, written in ROWS:
+        for key, words, written in TABLE_ROWS:
             values = [column.get(key) for column in columns]
             if any(value is not None for value in values):
                 rows.append([words, *("" if v is None else written(v) for v in values)])
@@ -147,7 +147,7 @@ class ProjectResult:
         """Write project.json, cycles.csv, project.png and routes.png; return the files."""
         from thalweg.operations.plots.project_plots import draw_project, draw_routes
 
-        folder = check_folder(folder)
+        folder = make_folder(folder)
         self.to_json(folder / "project.json")
         with (folder / "cycles.csv").open("w", encoding="utf-8", newline="") as file:
             writer = csv.DictWriter(file, _COLUMNS)
@@ -160,9 +160,14 @@ class ProjectResult:
         return [folder / name for name in names]
 
 
-def finished_run(
-    name: str, cycles: list[Cycle], *, project: Project, ship: Ship, notes: tuple[str, ...] = ()
-) -> Run:
+def summarise_run(
+    name: str,
+    cycles: list[DredgingCycle],
+    *,
+    project: Project,
+    ship: Ship,
+    notes: tuple[str, ...] = (),
+) -> ProjectRun:
     """Sum cycles up."""
     duration = cycles[-1].end - cycles[0].start
     legs = [leg for cycle in cycles for leg in cycle.legs]
@@ -182,16 +187,18 @@ def finished_run(
         "distance_m": sum(leg.distance for leg in legs),
         "mean_load_factor": volume / (len(cycles) * project.work.hopper),
         **{key: value / duration for key, value in shares.items()},
-        "least_clearance_m": _known(float(np.min([leg.clearance for leg in legs]))),
-        **_burnt(cycles, project, ship),
+        "least_clearance_m": _finite_or_none(float(np.min([leg.clearance for leg in legs]))),
+        **_energy_and_fuel(cycles, project, ship),
     }
     broken = sum(not leg.route.feasible for leg in legs)
     if broken:
         notes += (f"The referee finds a limit broken on {broken} of {len(legs)} legs.",)
-    return Run(name, tuple(cycles), MappingProxyType(totals), notes)
+    return ProjectRun(name, tuple(cycles), MappingProxyType(totals), notes)
 
 
-def _burnt(cycles: list[Cycle], project: Project, ship: Ship) -> dict[str, float | None]:
+def _energy_and_fuel(
+    cycles: list[DredgingCycle], project: Project, ship: Ship
+) -> dict[str, float | None]:
     """Return energy, fuel, CO2 and cost; None where the ship file does not tell."""
     work, engine = project.work, ship.data.get("engine", {})
     hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
@@ -203,16 +210,16 @@ def _burnt(cycles: list[Cycle], project: Project, ship: Ship) -> dict[str, float
     co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
     volume = sum(c.volume for c in cycles)
     return {
-        "energy_gj": _known((propulsion + hotel + pumps) / 1e9),
-        "hotel_gj": None if math.isnan(propulsion) else _known(hotel / 1e9),
-        "fuel_t": _known(fuel / TONNE),
-        "co2_t": _known(co2 / TONNE),
-        "co2_kg_m3": _known(co2 / volume),
-        "cost": _known(_cost(cycles, ship)),
+        "energy_gj": _finite_or_none((propulsion + hotel + pumps) / 1e9),
+        "hotel_gj": None if math.isnan(propulsion) else _finite_or_none(hotel / 1e9),
+        "fuel_t": _finite_or_none(fuel / TONNE),
+        "co2_t": _finite_or_none(co2 / TONNE),
+        "co2_kg_m3": _finite_or_none(co2 / volume),
+        "cost": _finite_or_none(_cost(cycles, ship)),
     }
 
 
-def _cost(cycles: list[Cycle], ship: Ship) -> float:
+def _cost(cycles: list[DredgingCycle], ship: Ship) -> float:
     """Return van Halem's cost, lambda_t t + lambda_f t V^3 while sailing; NaN if not given."""
     costs = ship.data.get("costs", {})
     if not costs:
@@ -226,11 +233,11 @@ def _cost(cycles: list[Cycle], ship: Ship) -> float:
     return float(total)
 
 
-def _known(value: float) -> float | None:
+def _finite_or_none(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _run_data(run: Run) -> dict[str, Any]:
+def _run_data(run: ProjectRun) -> dict[str, Any]:
     return {
         "totals": dict(run.totals),
         "feasible": run.feasible,
@@ -247,7 +254,7 @@ _COLUMNS = (
 )
 
 
-def _cycle_data(cycle: Cycle) -> dict[str, Any]:
+def _cycle_data(cycle: DredgingCycle) -> dict[str, Any]:
     """Return one row of cycles.csv, in the order of its columns."""
     data: dict[str, Any] = {
         "cycle": cycle.number,
@@ -260,7 +267,7 @@ def _cycle_data(cycle: Cycle) -> dict[str, Any]:
         "production_m3_h": round(cycle.production * HOUR, 2),
     }
     for name, leg in (("full", cycle.out), ("empty", cycle.back)):
-        clearance = _known(leg.clearance)
+        clearance = _finite_or_none(leg.clearance)
         data |= {
             f"sail_{name}": format_time(leg.depart),
             f"{name}_h": round(leg.duration / HOUR, 4),
@@ -269,14 +276,16 @@ def _cycle_data(cycle: Cycle) -> dict[str, Any]:
             f"{name}_least_clearance_m": None if clearance is None else round(clearance, 3),
         }
     sailing = sum(leg.duration - leg.waiting for leg in cycle.legs)
-    fuel, energy = (_known(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy"))
+    fuel, energy = (
+        _finite_or_none(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy")
+    )
     data["mean_speed_kn"] = round(sum(leg.distance for leg in cycle.legs) / sailing / KNOT, 2)
     data["fuel_t"] = None if fuel is None else round(fuel / TONNE, 3)
     data["energy_gj"] = None if energy is None else round(energy / 1e9, 3)
     return {key: data[key] for key in _COLUMNS if key != "run"}
 
 
-def load_factor_counts(run: Run) -> tuple[list[float], list[int]]:
+def load_factor_counts(run: ProjectRun) -> tuple[list[float], list[int]]:
     """Return the load factors of a run and how many cycles have each."""
     values, counts = np.unique([cycle.load_factor for cycle in run.cycles], return_counts=True)
     return values.tolist(), counts.tolist()

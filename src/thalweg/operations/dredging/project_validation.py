@@ -12,13 +12,13 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import parse_time
 
-MOST_FACTORS = 201
-MOST_DAYS = 4000.0  #: that can be looked ahead
+MAX_LOAD_FACTORS = 201
+MAX_DAYS = 4000.0  #: that can be looked ahead
 
 
-def factors_of(value: Any) -> tuple[float, ...]:
+def parse_load_factors(value: Any) -> tuple[float, ...]:
     """Return load factors, ascending: a list, or a number of even steps from 0 to 1."""
-    if isinstance(value, int) and not isinstance(value, bool) and 2 <= value <= MOST_FACTORS:
+    if isinstance(value, int) and not isinstance(value, bool) and 2 <= value <= MAX_LOAD_FACTORS:
         return tuple(round(float(x), 12) for x in np.linspace(0.0, 1.0, value))
     listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value)
     if not listed or not all(
@@ -26,17 +26,17 @@ def factors_of(value: Any) -> tuple[float, ...]:
     ):
         raise InputError(
             f"load_factors is {value!r}.",
-            f"A list of shares from 0 to 1, or how many even steps (2 to {MOST_FACTORS}).",
+            f"A list of shares from 0 to 1, or how many even steps (2 to {MAX_LOAD_FACTORS}).",
             "Write load_factors: 11.",
             field="load_factors",
         )
     found = tuple(sorted({float(x) for x in value}))
-    if found[-1] <= 0.0 or len(found) > MOST_FACTORS:
+    if found[-1] <= 0.0 or len(found) > MAX_LOAD_FACTORS:
         raise InputError("With no load nothing is moved.", "", "Give a load factor above 0.")
     return found
 
 
-def start_of(value: Any) -> float:
+def parse_start(value: Any) -> float:
     """Return a start [s]; a bare number is refused: 20260501 would be seconds since 1970."""
     if isinstance(value, (int, float)):
         raise InputError(
@@ -48,17 +48,17 @@ def start_of(value: Any) -> float:
     return parse_time(value)
 
 
-def days_of(data: Mapping[str, Any]) -> float:
+def parse_days(data: Mapping[str, Any]) -> float:
     """Return how many days are looked ahead."""
-    days = positive(data, "days", 35.0)
-    if days > MOST_DAYS:
+    days = positive_number(data, "days", 35.0)
+    if days > MAX_DAYS:
         raise InputError(
-            f"days is {days:g}.", f"At most {MOST_DAYS:g} are looked ahead.", "Look fewer days."
+            f"days is {days:g}.", f"At most {MAX_DAYS:g} are looked ahead.", "Look fewer days."
         )
     return days
 
 
-def place_of(value: Any, what: str) -> Position:
+def parse_place(value: Any, what: str) -> Position:
     """Return a (lat, lon) [deg]."""
     try:
         lat, lon = value
@@ -71,7 +71,7 @@ def place_of(value: Any, what: str) -> Position:
         ) from None
 
 
-def positive(data: Mapping[str, Any], name: str, otherwise: float | None = None) -> float:
+def positive_number(data: Mapping[str, Any], name: str, otherwise: float | None = None) -> float:
     """Return the number above zero under a name."""
     value = data.get(name, otherwise)
     number = isinstance(value, (int, float)) and not isinstance(value, bool)

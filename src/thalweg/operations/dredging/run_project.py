@@ -13,18 +13,18 @@ from thalweg.core.geodesy import Position, format_position
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.operations.dredging.cycle_simulation import Simulator
-from thalweg.operations.dredging.project import BEST, Project
+from thalweg.operations.dredging.project import BEST_LOAD_FACTOR, Project
 from thalweg.operations.dredging.project_environment import (
     LINE,
-    Tell,
-    Ways,
-    World,
-    line_network,
-    open_ways,
+    MessageCallback,
+    ProjectEnvironment,
+    SiteNetwork,
+    fixed_route_network,
+    freeze_site_network,
     project_network,
 )
-from thalweg.operations.dredging.project_result import ProjectResult, Run, finished_run
-from thalweg.planning.request.coverage_check import check_kinds
+from thalweg.operations.dredging.project_result import ProjectResult, ProjectRun, summarise_run
+from thalweg.planning.request.coverage_check import check_argument_types
 from thalweg.planning.voyage import Voyage
 
 if TYPE_CHECKING:
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 OPTIMISED, BASE_CASE = "optimised", "base case"
-_HALVINGS = 24  # of a depth, to the millimetre
-_DEEPEST = 200.0  # [m]
+_MAX_BISECTIONS = 24  # of a depth, to the millimetre
+_MAX_DEPTH = 200.0  # [m]
 
 
 def run_project(
@@ -83,40 +83,46 @@ def run_project(
     (2019), section 3.2.1. The choice is greedy: a cycle does not make way for a better one after
     it. Every leg is then sailed by the referee in fine steps; its times are those of the project.
     """
-    tell: Tell = progress or (lambda text: None)
+    tell: MessageCallback = progress or (lambda text: None)
     voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
-    check_kinds(voyage, ship, sea, chart)
+    check_argument_types(voyage, ship, sea, chart)
     _check_hopper(project.work.hopper, ship)
     period = (project.start, project.end)
-    world = World.open(project.sites, period, ship=ship, sea=sea, chart=chart)
+    world = ProjectEnvironment.open(project.sites, period, ship=ship, sea=sea, chart=chart)
     check_sites(world)
     tell("building the network")
-    ways = open_ways(world, project_network(world), tell)
+    ways = freeze_site_network(world, project_network(world), tell)
     factors = project.work.load_factors
-    optimised = _run(project, world, ways, factors, name=OPTIMISED, tell=tell)
+    optimised = _simulate_run(project, world, ways, factors, name=OPTIMISED, tell=tell)
     base = None
     if project.base is not None:
         given = project.base.load_factor
-        line = open_ways(world, line_network(chart, project.base.route), tell)
-        chosen = factors if given == BEST else (float(given),)
-        base = _run(project, world, line, chosen, name=BASE_CASE, tell=tell)
+        line = freeze_site_network(world, fixed_route_network(chart, project.base.route), tell)
+        chosen = factors if given == BEST_LOAD_FACTOR else (float(given),)
+        base = _simulate_run(project, world, line, chosen, name=BASE_CASE, tell=tell)
     return ProjectResult(project, world, optimised, base, _provenance(world, ways))
 
 
-def _run(
-    project: Project, world: World, ways: Ways, factors: tuple[float, ...], *, name: str, tell: Tell
-) -> Run:
+def _simulate_run(
+    project: Project,
+    world: ProjectEnvironment,
+    ways: SiteNetwork,
+    factors: tuple[float, ...],
+    *,
+    name: str,
+    tell: MessageCallback,
+) -> ProjectRun:
     tell(f"{name}: preparing {len(factors)} loads")
     simulator = Simulator(project, world, ways, factors=factors, tell=tell, name=name)
     possible = simulator.possible
     if not possible:
-        raise no_way(world, ways, min(x for x in factors if x > 0.0), name)
+        raise no_passage_error(world, ways, min(x for x in factors if x > 0.0), name)
     notes: tuple[str, ...] = ()
     shut = [x for x in factors if x > max(possible)]
     if shut:
         notes = (f"Load factors above {max(possible):g} have no way at any tide.",)
     cycles = simulator.run()
-    return finished_run(name, cycles, project=project, ship=world.ship, notes=notes)
+    return summarise_run(name, cycles, project=project, ship=world.ship, notes=notes)
 
 
 def _check_hopper(hopper: float, ship: Ship) -> None:
@@ -130,7 +136,7 @@ def _check_hopper(hopper: float, ship: Ship) -> None:
         )
 
 
-def check_sites(world: World) -> None:
+def check_sites(world: ProjectEnvironment) -> None:
     """Raise `InputError` for sites that are on land or fall too dry for the empty ship always."""
     sites, chart = world.sites, world.chart
     for what, place in (("loading", sites.load), ("unloading", sites.unload)):
@@ -144,7 +150,7 @@ def check_sites(world: World) -> None:
         _check_depth(world, what, place)
 
 
-def _check_depth(world: World, what: str, place: Position) -> None:
+def _check_depth(world: ProjectEnvironment, what: str, place: Position) -> None:
     empty = world.loaded(0.0).required_depth
     if not math.isfinite(empty):
         return
@@ -168,7 +174,7 @@ def _check_depth(world: World, what: str, place: Position) -> None:
         )
 
 
-def _depth_at(world: World, place: Position) -> tuple[np.ndarray, np.ndarray]:
+def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, np.ndarray]:
     """Return (times, water depth [m]) at a place over the period."""
     from thalweg.sea import standard_names as nm
 
@@ -186,7 +192,9 @@ def _depth_at(world: World, place: Position) -> tuple[np.ndarray, np.ndarray]:
     return times, depth + got.get(nm.WATER_LEVEL, 0.0)
 
 
-def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteError:
+def no_passage_error(
+    world: ProjectEnvironment, ways: SiteNetwork, load_factor: float, name: str
+) -> NoRouteError:
     """Build the error for a project whose lightest load has no way at any tide.
 
     It names the shallowest place that every way must pass, when the water is highest there, and
@@ -197,7 +205,7 @@ def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteEr
     open_to = _passable_depth(ways, loaded) if math.isfinite(required) else -math.inf
     asked = f"No tide opens a way with load factor {load_factor:g} ({name})."
     if not math.isfinite(open_to):
-        unknown = _first_unknown(ways.network) if ways.network.meta.kind == LINE else None
+        unknown = _first_unknown_depth(ways.network) if ways.network.meta.kind == LINE else None
         if unknown is not None:
             return NoRouteError(
                 asked,
@@ -223,20 +231,20 @@ def no_way(world: World, ways: Ways, load_factor: float, name: str) -> NoRouteEr
     )
 
 
-def _passable_depth(ways: Ways, loaded: Any) -> float:
+def _passable_depth(ways: SiteNetwork, loaded: Any) -> float:
     """Return the greatest depth that some way has all along at its highest tides [m]."""
-    low, high = -_DEEPEST, _DEEPEST
+    low, high = -_MAX_DEPTH, _MAX_DEPTH
     required = loaded.required_depth
     if ways.passages(loaded, full=True, extra_depth=low - required).shortest == math.inf:
         return -math.inf
-    for _ in range(_HALVINGS):
+    for _ in range(_MAX_BISECTIONS):
         middle = 0.5 * (low + high)
         open_way = ways.passages(loaded, full=True, extra_depth=middle - required).shortest
         low, high = (middle, high) if open_way < math.inf else (low, middle)
     return low
 
 
-def _first_unknown(network: Network) -> Position | None:
+def _first_unknown_depth(network: Network) -> Position | None:
     """Return where the first edge begins whose depth is not known, from the loading site on."""
     unknown = np.flatnonzero(np.isnan(network.depth))
     if not len(unknown):
@@ -245,7 +253,7 @@ def _first_unknown(network: Network) -> Position | None:
     return float(network.lat[node]), float(network.lon[node])
 
 
-def _bottleneck(ways: Ways, depth: float) -> tuple[Position, float]:
+def _bottleneck(ways: SiteNetwork, depth: float) -> tuple[Position, float]:
     """Return the node whose greatest depth is just that of the best way, and when it has it."""
     waters, network = ways.waters, ways.network
     sea = waters.sea
@@ -259,7 +267,7 @@ def _bottleneck(ways: Ways, depth: float) -> tuple[Position, float]:
     return (float(network.lat[node]), float(network.lon[node])), when
 
 
-def _provenance(world: World, ways: Ways) -> dict[str, Any]:
+def _provenance(world: ProjectEnvironment, ways: SiteNetwork) -> dict[str, Any]:
     from importlib.metadata import version
 
     network = ways.network

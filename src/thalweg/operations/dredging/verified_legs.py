@@ -8,22 +8,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import MEAN_RADIUS
-from thalweg.network.regional_lattice.conformal_projection import unit_vectors
-from thalweg.operations.dredging.cycles import Leg, leg_energy
-from thalweg.operations.dredging.project_environment import Loaded, Ways, World
+from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
+from thalweg.operations.dredging.cycles import SailedLeg, leg_energy
+from thalweg.operations.dredging.project_environment import (
+    LoadedShip,
+    ProjectEnvironment,
+    SiteNetwork,
+)
 from thalweg.route import Route, Track, evaluate
-from thalweg.route.referee.limit_checks import is_gap
-from thalweg.search import Passage, Passages
+from thalweg.route.referee.limit_checks import is_data_gap
+from thalweg.search import NetworkPassage, ProfileSearch
 
 FloatArray = NDArray[np.float64]
 
 #: Depth added for a leg while the referee finds a limit broken between the nodes [m].
-CAREFUL = (0.0, 0.05, 0.2, 0.5)
+DEPTH_MARGINS = (0.0, 0.05, 0.2, 0.5)
 LARGEST_STEP = 600.0  #: twice the referee's coarser step at most [m]
-_ASIDE = 0.5  # nodes so near the line between their neighbours are no waypoints [m]
+_CROSS_TRACK_TOLERANCE = 0.5  # nodes so near the line between their neighbours are no waypoints [m]
 
 
-class LegSailor:
+class SiteLegPlanner:
     """Sails legs over one set of ways and lets the referee judge them.
 
     Parameters
@@ -32,19 +36,19 @@ class LegSailor:
     ways : Ways
     """
 
-    def __init__(self, world: World, ways: Ways) -> None:
+    def __init__(self, world: ProjectEnvironment, ways: SiteNetwork) -> None:
         self.world, self.ways = world, ways
         self.step = 0.5 * min(ways.network.meta.spacing_m, LARGEST_STEP)
-        self._loaded: dict[float, Loaded] = {}
-        self._passages: dict[tuple[float, bool, float], Passages] = {}
+        self._loaded: dict[float, LoadedShip] = {}
+        self._passages: dict[tuple[float, bool, float], ProfileSearch] = {}
 
-    def loaded(self, load_factor: float) -> Loaded:
+    def loaded(self, load_factor: float) -> LoadedShip:
         """Return the ship at a load."""
         if load_factor not in self._loaded:
             self._loaded[load_factor] = self.world.loaded(load_factor)
         return self._loaded[load_factor]
 
-    def passages(self, load_factor: float, *, outward: bool, extra: float = 0.0) -> Passages:
+    def passages(self, load_factor: float, *, outward: bool, extra: float = 0.0) -> ProfileSearch:
         """Return the passages of a load to the unloading site (outward) or back."""
         key = (load_factor, outward, extra)
         if key not in self._passages:
@@ -58,8 +62,8 @@ class LegSailor:
         depart: float,
         *,
         outward: bool,
-        passage: Passage | None = None,
-    ) -> Leg | None:
+        passage: NetworkPassage | None = None,
+    ) -> SailedLeg | None:
         """Sail one leg; with more water planned for, while the referee finds a limit broken.
 
         Parameters
@@ -79,28 +83,30 @@ class LegSailor:
             limit is returned as it is; its route tells what is broken.
         """
         loaded, best = self.loaded(load_factor), None
-        for extra in CAREFUL:
+        for extra in DEPTH_MARGINS:
             if passage is None:
                 passage = self.passages(load_factor, outward=outward, extra=extra).sail(depart)
             if passage.found:
-                route = self._judged(passage, loaded)
+                route = self._evaluated_passage(passage, loaded)
                 best = route if best is None or route.feasible else best
                 if route.feasible:
                     break
             passage = None
         if best is None or not math.isfinite(best.arrive):
             return None
-        return Leg(best, leg_energy(best))
+        return SailedLeg(best, leg_energy(best))
 
-    def _judged(self, passage: Passage, loaded: Loaded) -> Route:
+    def _evaluated_passage(self, passage: NetworkPassage, loaded: LoadedShip) -> Route:
         """Score a passage by its corners; by all its nodes where these just leave the data."""
-        route = self._scored(track_of_passage(self.ways, passage, loaded.setting), loaded)
-        if any(is_gap(violation) for violation in route.violations):
-            track = track_of_passage(self.ways, passage, loaded.setting, corners=False)
-            return self._scored(track, loaded)
+        route = self._evaluated_track(
+            track_from_passage(self.ways, passage, loaded.setting), loaded
+        )
+        if any(is_data_gap(violation) for violation in route.violations):
+            track = track_from_passage(self.ways, passage, loaded.setting, corners=False)
+            return self._evaluated_track(track, loaded)
         return route
 
-    def _scored(self, track: Track, loaded: Loaded) -> Route:
+    def _evaluated_track(self, track: Track, loaded: LoadedShip) -> Route:
         world = self.world
         return evaluate(
             track,
@@ -113,28 +119,32 @@ class LegSailor:
         )
 
 
-def track_of_passage(ways: Ways, passage: Passage, setting: int, *, corners: bool = True) -> Track:
+def track_from_passage(
+    ways: SiteNetwork, passage: NetworkPassage, setting: int, *, corners: bool = True
+) -> Track:
     """Return the track of a passage, by its corners or all its nodes; waits below 1 s are none."""
     wait = np.maximum(0.0, passage.node_depart - passage.node_arrive)
     wait[-1] = 0.0
     wait = np.where(wait < 1.0, 0.0, wait)
     network = ways.network
     lat, lon = network.lat[passage.nodes], network.lon[passage.nodes]
-    keep = _corners(lat, lon) | (wait > 0.0) if corners else np.ones(len(lat), bool)
+    keep = _essential_nodes(lat, lon) | (wait > 0.0) if corners else np.ones(len(lat), bool)
     count = int(keep.sum())
     return Track(lat[keep], lon[keep], passage.depart, wait[keep], np.full(count - 1, setting))
 
 
-def _corners(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-    """Return which nodes of a way are needed so that it stays within `_ASIDE` of all of them."""
-    points = unit_vectors(lat, lon)
+def _essential_nodes(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
+    """Return which nodes of a way are needed so that it stays within `_CROSS_TRACK_TOLERANCE` of
+    all of them.
+    """
+    points = conformal_unit_vectors(lat, lon)
     keep = np.zeros(len(lat), bool)
     keep[[0, -1]] = True
     first = 0
     for last in range(2, len(lat)):
         across = np.cross(points[first], points[last])  # of the great circle between them
         aside = MEAN_RADIUS * np.abs(points[first + 1 : last] @ across)
-        if aside.max() > _ASIDE * float(np.linalg.norm(across)):
+        if aside.max() > _CROSS_TRACK_TOLERANCE * float(np.linalg.norm(across)):
             first = last - 1
             keep[first] = True
     return keep

@@ -31,7 +31,10 @@ _RIDGE_Y, _RIDGE_WIDTH, _RIDGE_END = -1.5, 1.2, -7.0  # the bank [km]
 _SADDLE_X, _SADDLE_WIDTH, _SADDLE_DEPTH, _CREST_DEPTH = 4.5, 1.2, 4.3, 0.3
 _BAR_X, _BAR_WIDTH, BAR_DEPTH = -6.0, 1.0, 7.86  # of the gully, below datum [m]
 _OUTSIDE, _INSIDE, _COAST_Y = 14.0, 10.0, -6.6
-_LEVEL: Final = {"M2": (1.45, 60.0), "S2": (0.36, 118.0)}  # amplitude [m], phase lag [deg]
+_LEVEL_CONSTITUENTS: Final = {
+    "M2": (1.45, 60.0),
+    "S2": (0.36, 118.0),
+}  # amplitude [m], phase lag [deg]
 _LAG = 20.0  # of the tide from west to east [deg]
 _STREAM_LEAD = 65.0  # of the stream before the level [deg]
 
@@ -48,7 +51,7 @@ class Estuary:
         Depth below datum; no coastline but the rim.
     load, unload : (lat, lon)
         A dredging area at sea and a place behind the bank [deg].
-    by_gully : tuple of (lat, lon)
+    gully_waypoints : tuple of (lat, lon)
         The charted way from one to the other, round the bank and through the gully [deg].
     bar : (lat, lon)
         The shallowest place of that way [deg].
@@ -58,7 +61,7 @@ class Estuary:
     chart: Chart
     load: Position
     unload: Position
-    by_gully: tuple[Position, ...]
+    gully_waypoints: tuple[Position, ...]
     bar: Position
 
 
@@ -94,18 +97,18 @@ def synthetic_estuary(spacing_m: float = 300.0) -> Estuary:
     gully = ((2.0, 5.0), (-7.8, -0.4), (-7.8, -3.0), (-6.0, -4.3), (0.0, -4.8), (7.0, -4.5))
     places = tuple(_position(x, y) for x, y in gully)
     return Estuary(
-        sea=Sea.from_tides(_constants(lat, lon)),
+        sea=Sea.from_tides(_tidal_constants(lat, lon)),
         chart=chart,
         load=places[0],
         unload=places[-1],
-        by_gully=places,
+        gully_waypoints=places,
         bar=places[3],
     )
 
 
 def bed_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     """Return the depth of the bed [m below datum, positive down] at positions [deg]."""
-    x, y = _plane(lat, lon)
+    x, y = _to_plane(lat, lon)
     inner = y < _RIDGE_Y
     bar = (_INSIDE - BAR_DEPTH) * np.exp(-(((x - _BAR_X) / _BAR_WIDTH) ** 2))
     around = np.where(inner, _INSIDE - bar, _OUTSIDE)
@@ -120,18 +123,18 @@ def bed_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     return np.asarray(depth - 16.0 / (1.0 + np.exp((y - _COAST_Y) / 0.12)))
 
 
-def _constants(lat: FloatArray, lon: FloatArray) -> Constituents:
-    x, _ = _plane(lat, lon)
+def _tidal_constants(lat: FloatArray, lon: FloatArray) -> Constituents:
+    x, _ = _to_plane(lat, lon)
     lag = _LAG * (x + HALF_WIDTH) / (2.0 * HALF_WIDTH)
     strength = 0.62 * np.clip(np.sqrt(np.maximum(bed_depth(lat, lon) + 0.5, 0.0) / 10.0), 0.0, 1.2)
-    level = np.array([_LEVEL[name] for name in _LEVEL])
+    level = np.array([_LEVEL_CONSTITUENTS[name] for name in _LEVEL_CONSTITUENTS])
     ones = np.ones(lat.size)
     amplitude = level[:, :1] * ones
     phase = level[:, 1:] + lag
     east, north = nm.CURRENT.pair
     stream = amplitude * strength
     return Constituents(
-        tuple(_LEVEL),
+        tuple(_LEVEL_CONSTITUENTS),
         {nm.WATER_LEVEL: amplitude, east: stream, north: 0.15 * stream},
         {nm.WATER_LEVEL: phase, east: phase - _STREAM_LEAD, north: phase - _STREAM_LEAD},
         {nm.WATER_LEVEL: 0.0 * ones, east: 0.0 * ones, north: 0.0 * ones},
@@ -153,23 +156,25 @@ def _nodes(side: float) -> tuple[FloatArray, FloatArray]:
             across = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
         places.append(np.column_stack([across, np.full(across.size, row)]))
     east, north = np.concatenate(places).T
-    return _degrees(east, north)
+    return _to_degrees(east, north)
 
 
 def _box() -> tuple[float, float, float, float]:
-    lat, lon = _degrees(np.array([-HALF_WIDTH, HALF_WIDTH]), np.array([-HALF_HEIGHT, HALF_HEIGHT]))
+    lat, lon = _to_degrees(
+        np.array([-HALF_WIDTH, HALF_WIDTH]), np.array([-HALF_HEIGHT, HALF_HEIGHT])
+    )
     return float(lat[0]), float(lat[1]), float(lon[0]), float(lon[1])
 
 
-def _plane(lat: ArrayLike, lon: ArrayLike) -> tuple[FloatArray, FloatArray]:
+def _to_plane(lat: ArrayLike, lon: ArrayLike) -> tuple[FloatArray, FloatArray]:
     x = (np.asarray(lon, float) - CENTRE[1]) * _KM_EAST
     return x, (np.asarray(lat, float) - CENTRE[0]) * _KM_NORTH
 
 
-def _degrees(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _to_degrees(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     return CENTRE[0] + y / _KM_NORTH, CENTRE[1] + x / _KM_EAST
 
 
 def _position(x: float, y: float) -> Position:
-    lat, lon = _degrees(np.array([x]), np.array([y]))
+    lat, lon = _to_degrees(np.array([x]), np.array([y]))
     return round(float(lat[0]), 4), round(float(lon[0]), 4)

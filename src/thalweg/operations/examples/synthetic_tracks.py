@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
     from thalweg.sea import Sea
 
-_STEPS = 4  # of the ship for each message
-_LONGEST = 14.0 * 86400.0  # a trip may take [s]
+_STEPS_PER_MESSAGE = 4  # of the ship for each message
+_MAX_TRIP_DURATION = 14.0 * 86400.0  # a trip may take [s]
 
 
 @dataclass(frozen=True)
-class Cycle:
+class SyntheticCycle:
     """What a ship repeats.
 
     Attributes
@@ -88,12 +88,12 @@ class SyntheticTrack:
 
     frame: pd.DataFrame
     truth: pd.DataFrame
-    cycle: Cycle
+    cycle: SyntheticCycle
     current_factor: float
 
 
 def synthetic_track(
-    cycle: Cycle,
+    cycle: SyntheticCycle,
     *,
     sea: Sea,
     start: TimeLike,
@@ -142,7 +142,7 @@ def synthetic_track(
             "At least one cycle, a positive interval and no negative noise.",
             "Correct them.",
         )
-    maker = _Maker(cycle, sea, current_factor, interval_s / _STEPS)
+    maker = _TrackSynthesiser(cycle, sea, current_factor, interval_s / _STEPS_PER_MESSAGE)
     random = np.random.default_rng(seed)
     time = parse_time(start)
     for _ in range(cycles):
@@ -153,10 +153,10 @@ def synthetic_track(
     return maker.written(interval_s, position_noise_m, random)
 
 
-class _Maker:
+class _TrackSynthesiser:
     """Sails and keeps what was sailed."""
 
-    def __init__(self, cycle: Cycle, sea: Sea, factor: float, step: float) -> None:
+    def __init__(self, cycle: SyntheticCycle, sea: Sea, factor: float, step: float) -> None:
         self.cycle, self.sea, self.factor, self.step = cycle, sea, factor, step
         self.rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.told: list[dict[str, Any]] = []
@@ -168,7 +168,7 @@ class _Maker:
         reach = 0.5 * self.cycle.radius_nm * 1852.0
         east = reach * np.sin(speed / reach * at) * np.sin(np.pi * at / at[-1])
         lat, lon = direct(place[0], place[1], math.radians(90.0), east)
-        self._keep(time + at, lat, lon, kind)
+        self._record(time + at, lat, lon, kind)
         return time + count * self.step
 
     def trip(self, time: float, kind: str, share: float) -> float:
@@ -182,15 +182,19 @@ class _Maker:
         while done < length:
             way.append(done)
             lat, lon = direct(*start, course, done)
-            done += self.step * self._ahead(time + passed, float(lat), float(lon), goal, speed)
+            done += self.step * self._speed_made_good(
+                time + passed, float(lat), float(lon), goal, speed
+            )
             passed += self.step
-            if passed > _LONGEST:
-                raise _stuck(start, goal)
+            if passed > _MAX_TRIP_DURATION:
+                raise _no_progress_error(start, goal)
         lat, lon = direct(*start, course, np.array(way))
-        self._keep(time + self.step * np.arange(len(way), dtype=np.float64), lat, lon, kind)
+        self._record(time + self.step * np.arange(len(way), dtype=np.float64), lat, lon, kind)
         return time + passed
 
-    def _ahead(self, time: float, lat: float, lon: float, goal: Position, speed: float) -> float:
+    def _speed_made_good(
+        self, time: float, lat: float, lon: float, goal: Position, speed: float
+    ) -> float:
         told = self.sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], time, lat, lon)
         flow = self.factor * complex(float(told[EASTWARD_CURRENT]), float(told[NORTHWARD_CURRENT]))
         if not math.isfinite(abs(flow)):
@@ -203,10 +207,10 @@ class _Maker:
         turned = flow * complex(math.sin(course), -math.cos(course))  # along, to starboard
         cross, along = -turned.imag, turned.real
         if abs(cross) >= speed or math.sqrt(speed**2 - cross**2) + along <= 0.0:
-            raise _stuck((lat, lon), goal)
+            raise _no_progress_error((lat, lon), goal)
         return math.sqrt(speed**2 - cross**2) + along
 
-    def _keep(self, time: FloatArray, lat: FloatArray, lon: FloatArray, kind: str) -> None:
+    def _record(self, time: FloatArray, lat: FloatArray, lon: FloatArray, kind: str) -> None:
         self.rows.append((time, lat, lon))
         end = float(time[-1]) + self.step
         self.told.append({"kind": kind, "start": float(time[0]), "end": end})
@@ -219,7 +223,7 @@ class _Maker:
         full = np.concatenate([np.full(len(r[0]), k % 4) for k, r in enumerate(self.rows)])
         way, course, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
         speed = np.append(way / np.diff(time), 0.0)
-        take = np.arange(0, len(time), _STEPS)
+        take = np.arange(0, len(time), _STEPS_PER_MESSAGE)
         shift = noise * random.normal(size=(2, len(take)))
         seen_lat, seen_lon = direct(
             lat[take], lon[take], np.arctan2(shift[0], shift[1]), np.hypot(*shift)
@@ -239,7 +243,7 @@ class _Maker:
         return SyntheticTrack(frame, truth, self.cycle, self.factor)
 
 
-def _stuck(start: Position, goal: Position) -> NoRouteError:
+def _no_progress_error(start: Position, goal: Position) -> NoRouteError:
     return NoRouteError(
         f"The ship does not get from {start[0]:.3f}, {start[1]:.3f} to {goal[0]:.3f}, "
         f"{goal[1]:.3f} against the current.",

@@ -1,4 +1,4 @@
-"""`Fairways`: legs between named places, planned when they are asked for.
+"""`LegPlanner`: legs between named places, planned when they are asked for.
 
 What a simulation of several vessels and sites asks of a planner: from here to there, now, with this
 load. Networks, frozen sea and searches are prepared once for each pair of places and kept.
@@ -18,12 +18,16 @@ from thalweg.core.errors import InputError, NoRouteError, OutsidePeriodError
 from thalweg.core.geodesy import Position, check_position, distance, format_position
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY
-from thalweg.operations.dredging.cycles import Leg
+from thalweg.operations.dredging.cycles import SailedLeg
 from thalweg.operations.dredging.project import Sites
-from thalweg.operations.dredging.project_environment import World, open_ways, project_network
-from thalweg.operations.dredging.project_validation import MOST_DAYS
-from thalweg.operations.dredging.verified_legs import LegSailor
-from thalweg.planning.request.coverage_check import check_kinds
+from thalweg.operations.dredging.project_environment import (
+    ProjectEnvironment,
+    freeze_site_network,
+    project_network,
+)
+from thalweg.operations.dredging.project_validation import MAX_DAYS
+from thalweg.operations.dredging.verified_legs import SiteLegPlanner
+from thalweg.planning.request.coverage_check import check_argument_types
 from thalweg.planning.voyage import Voyage
 
 if TYPE_CHECKING:
@@ -35,7 +39,7 @@ _SAME_PLACE = 1.0  # [m]
 
 
 @dataclass(frozen=True, eq=False)
-class Fairways:
+class LegPlanner:
     """Legs of one ship between places, over a period.
 
     Attributes
@@ -90,7 +94,7 @@ class Fairways:
         rings: int = 3,
         detour: float = 3.0,
         load_steps: int = 10,
-    ) -> Fairways:
+    ) -> LegPlanner:
         """Return the fairways of a ship.
 
         Parameters
@@ -113,11 +117,11 @@ class Fairways:
         """
         first = parse_time(start)
         voyage = Voyage(start=(0.0, 0.0), goal=(0.0, 1.0), depart=first, min_ukc_m=min_ukc)
-        check_kinds(voyage, ship, sea, chart)
-        if not (isinstance(days, (int, float)) and 0.0 < days <= MOST_DAYS):
+        check_argument_types(voyage, ship, sea, chart)
+        if not (isinstance(days, (int, float)) and 0.0 < days <= MAX_DAYS):
             raise InputError(
                 f"A period of {days!r} days cannot be.",
-                f"More than 0 and at most {MOST_DAYS:g}.",
+                f"More than 0 and at most {MAX_DAYS:g}.",
                 "Correct it.",
             )
         whole = isinstance(load_steps, int) and not isinstance(load_steps, bool)
@@ -134,7 +138,7 @@ class Fairways:
 
     def sail(
         self, origin: Position, destination: Position, *, depart: TimeLike, load_factor: float
-    ) -> Leg:
+    ) -> SailedLeg:
         """Plan a leg with the earliest arrival, and let the referee sail it.
 
         Parameters
@@ -169,7 +173,7 @@ class Fairways:
                 "Open fairways for a longer period.",
             )
         share = self._rounded(load_factor)
-        sailor, outward = self._sailor(origin, destination)
+        sailor, outward = self._site_planner_between(origin, destination)
         leg = sailor.sail(share, time, outward=outward)
         if leg is None:
             raise self._no_way(origin, destination, time, share)
@@ -183,10 +187,12 @@ class Fairways:
         return min(1.0, math.ceil(load_factor * self.load_steps - 1e-9) / self.load_steps)
 
     @cached_property
-    def _sailors(self) -> dict[tuple[Position, Position], LegSailor]:
+    def _site_planners(self) -> dict[tuple[Position, Position], SiteLegPlanner]:
         return {}
 
-    def _sailor(self, origin: Position, destination: Position) -> tuple[LegSailor, bool]:
+    def _site_planner_between(
+        self, origin: Position, destination: Position
+    ) -> tuple[SiteLegPlanner, bool]:
         """Return what sails between two places, and whether they are in its order."""
         first = check_position(float(origin[0]), float(origin[1]), "origin")
         last = check_position(float(destination[0]), float(destination[1]), "destination")
@@ -195,16 +201,18 @@ class Fairways:
                 f"A leg from {format_position(*first)} leads to itself.", "", "Give two places."
             )
         for pair, outward in (((first, last), True), ((last, first), False)):
-            if pair in self._sailors:
-                return self._sailors[pair], outward
+            if pair in self._site_planners:
+                return self._site_planners[pair], outward
         self._check_water(first, "origin")
         self._check_water(last, "destination")
         sites = replace(self.sites, load=first, unload=last)
         period = (self.start, self.end)
-        world = World.open(sites, period, ship=self.ship, sea=self.sea, chart=self.chart)
-        ways = open_ways(world, project_network(world), self.tell)
-        self._sailors[first, last] = LegSailor(world, ways)
-        return self._sailors[first, last], True
+        world = ProjectEnvironment.open(
+            sites, period, ship=self.ship, sea=self.sea, chart=self.chart
+        )
+        ways = freeze_site_network(world, project_network(world), self.tell)
+        self._site_planners[first, last] = SiteLegPlanner(world, ways)
+        return self._site_planners[first, last], True
 
     def _check_water(self, place: Position, what: str) -> None:
         if not bool(np.all(self.chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):

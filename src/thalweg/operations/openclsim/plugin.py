@@ -1,9 +1,9 @@
 """OpenCLSim vessels that sail Thalweg's routes (needs ``pip install "thalweg[openclsim]"``).
 
-`SailsFairways` is a mix-in for the classes of OpenCLSim: it takes the place of ``Movable`` among
-the parts of a vessel. When an activity moves the vessel, the leg is planned for the simulation's
-present time and the vessel's present load; its duration, distance, waits, energy and fuel come from
-the plan, and are written to the vessel's log.
+`PlannedRouteMovable` is a mix-in for the classes of OpenCLSim: it takes the place of ``Movable``
+among the parts of a vessel. When an activity moves the vessel, the leg is planned for the
+simulation's present time and the vessel's present load; its duration, distance, waits, energy and
+fuel come from the plan, and are written to the vessel's log.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from shapely.geometry import Point, shape
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
-from thalweg.operations.dredging.cycles import Leg
+from thalweg.operations.dredging.cycles import SailedLeg
 
 try:
     from openclsim.core import LogState, Movable
@@ -26,15 +26,15 @@ except ImportError as error:
     ) from error
 
 if TYPE_CHECKING:
-    from thalweg.operations.openclsim.leg_planner import Fairways
+    from thalweg.operations.openclsim.leg_planner import LegPlanner
 
 
-class SailsFairways(Movable):
+class PlannedRouteMovable(Movable):
     """A part of an OpenCLSim vessel: it moves along Thalweg's routes.
 
     Parameters
     ----------
-    fairways : Fairways
+    leg_planner : Fairways
         The ship, the sea and the chart. The simulation's clock (``env.now``) is in seconds since
         1970-01-01T00:00Z, as OpenCLSim writes it to its logs.
     *args, **kwargs
@@ -61,25 +61,25 @@ class SailsFairways(Movable):
                                  UnloadingFunction, HasContainer, HasResource, Log), {})
     """
 
-    def __init__(self, fairways: Fairways, *args: Any, **kwargs: Any) -> None:
+    def __init__(self, leg_planner: LegPlanner, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self.fairways = fairways
-        self.legs: list[Leg] = []
+        self.leg_planner = leg_planner
+        self.legs: list[SailedLeg] = []
 
     @property
     def load_factor(self) -> float:
         """Level over capacity of the container, or the load of the ship without one."""
         container = getattr(self, "container", None)
         if container is None:
-            return self.fairways.ship.loading.load_factor
+            return self.leg_planner.ship.loading.load_factor
         return float(container.get_level() / container.get_capacity())
 
     @property
     def v(self) -> float:
         """Speed through calm, deep water at the present load [m/s]."""
-        return float(self.fairways.ship.with_load_factor(self.load_factor).speeds[-1])
+        return float(self.leg_planner.ship.with_load_factor(self.load_factor).speeds[-1])
 
-    def plan_leg(self, destination: Any, origin: Any = None) -> Leg:
+    def plan_leg(self, destination: Any, origin: Any = None) -> SailedLeg:
         """Return the leg that would be sailed now.
 
         Parameters
@@ -89,13 +89,13 @@ class SailsFairways(Movable):
         """
         here = _position(self.geometry if origin is None else origin)
         there = _position(destination)
-        return self.fairways.sail(
+        return self.leg_planner.sail(
             here, there, depart=float(self.env.now), load_factor=self.load_factor
         )
 
     def compute_distance(self, origin: Any, destination: Any) -> float:
         """Return the length of the route that would be sailed now [m]."""
-        if _together(origin, destination):
+        if _same_position(origin, destination):
             return 0.0
         return self.plan_leg(destination, origin).distance
 
@@ -103,7 +103,9 @@ class SailsFairways(Movable):
         """Return how long the route would take now, waits included [s]."""
         _check_order(engine_order)
         return (
-            0.0 if _together(origin, destination) else self.plan_leg(destination, origin).duration
+            0.0
+            if _same_position(origin, destination)
+            else self.plan_leg(destination, origin).duration
         )
 
     def move(
@@ -121,7 +123,7 @@ class SailsFairways(Movable):
             If there is no way, or not within the data.
         """
         _check_order(1.0 if engine_order is None else engine_order)
-        if destination is None or duration is not None or _together(self, destination):
+        if destination is None or duration is not None or _same_position(self, destination):
             yield from super().move(destination, duration=duration or 0.0)
             return
         leg = self.plan_leg(destination)
@@ -136,11 +138,11 @@ class SailsFairways(Movable):
         self.geometry = shape(destination.geometry)
         self.legs.append(leg)
         self.log_entry_v1(
-            self.env.now, self.activity_id, LogState.STOP, additional_state=_told(leg)
+            self.env.now, self.activity_id, LogState.STOP, additional_state=_leg_summary(leg)
         )
 
 
-def _waits(leg: Leg) -> list[tuple[float, float, Point]]:
+def _waits(leg: SailedLeg) -> list[tuple[float, float, Point]]:
     """Return (begin, length, place) of every wait on a leg."""
     track, arrive = leg.route.track, leg.route.legs["arrive"]
     return [
@@ -153,7 +155,7 @@ def _waits(leg: Leg) -> list[tuple[float, float, Point]]:
     ]
 
 
-def _told(leg: Leg) -> dict[str, float | None]:
+def _leg_summary(leg: SailedLeg) -> dict[str, float | None]:
     facts = {
         "distance_m": leg.distance,
         "waiting_s": leg.waiting,
@@ -170,7 +172,7 @@ def _position(place: Any) -> Position:
     return float(point.y), float(point.x)
 
 
-def _together(origin: Any, destination: Any) -> bool:
+def _same_position(origin: Any, destination: Any) -> bool:
     return bool(np.allclose(_position(origin), _position(destination), rtol=0.0, atol=1e-9))
 
 

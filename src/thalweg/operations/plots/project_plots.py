@@ -11,7 +11,7 @@ from thalweg.core.time import format_time
 from thalweg.core.units import DAY, HOUR
 
 if TYPE_CHECKING:
-    from thalweg.operations.dredging.project_result import ProjectResult, Run
+    from thalweg.operations.dredging.project_result import ProjectResult, ProjectRun
 
 _COLOURS = {"optimised": "#0b6e99", "base case": "#b5651d"}
 _ACTIVITIES = {
@@ -23,7 +23,7 @@ _ACTIVITIES = {
 }
 _UNKNOWN = "#d9d4c8"  # land, and where no depth is known
 _FIRST_DAYS = 4.0  # shown hour by hour
-_MOST_LINES = 600  # ways drawn of each run
+_MAX_LINES = 600  # ways drawn of each run
 
 
 def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
@@ -45,17 +45,17 @@ def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
     figure = Figure(figsize=(11, 8.5), dpi=120, layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.add_gridspec(3, 2, height_ratios=(1.1, 1.0, 0.9))
-    _volume(result, figure.add_subplot(grid[0, :]))
-    _first_days(result, figure.add_subplot(grid[1, :]))
-    _loads(result, figure.add_subplot(grid[2, 0]))
-    _shares(result, figure.add_subplot(grid[2, 1]))
+    _draw_volume(result, figure.add_subplot(grid[0, :]))
+    _draw_first_days(result, figure.add_subplot(grid[1, :]))
+    _draw_load_factors(result, figure.add_subplot(grid[2, 0]))
+    _draw_time_shares(result, figure.add_subplot(grid[2, 1]))
     figure.suptitle(result.project.name, fontsize=11, parse_math=False)
     if path is not None:
         figure.savefig(path)
     return figure
 
 
-def _volume(result: ProjectResult, axes: Any) -> None:
+def _draw_volume(result: ProjectResult, axes: Any) -> None:
     start = result.project.start
     for run in result.runs:
         moment = [0.0] + [(c.out.arrive + c.unloading - start) / DAY for c in run.cycles]
@@ -71,16 +71,16 @@ def _volume(result: ProjectResult, axes: Any) -> None:
     axes.grid(alpha=0.3, lw=0.4)
 
 
-def _first_days(result: ProjectResult, axes: Any) -> None:
+def _draw_first_days(result: ProjectResult, axes: Any) -> None:
     """Draw what is done in the first days, under the water level."""
     start = result.project.start
     end = min(start + _FIRST_DAYS * DAY, max(run.cycles[-1].end for run in result.runs))
     for row, run in enumerate(result.runs):
-        for activity, spans in _spans(run).items():
+        for activity, spans in _activity_periods(run).items():
             bars = [((a - start) / HOUR, (b - a) / HOUR) for a, b in spans if a < end]
             axes.broken_barh(bars, (row - 0.35, 0.7), color=_ACTIVITIES[activity], lw=0)
     hours = np.arange(0.0, (end - start) / HOUR, 1.0 / 6.0)
-    level = _level(result, start + hours * HOUR)
+    level = _water_level(result, start + hours * HOUR)
     axes.set_yticks(range(len(result.runs)), [run.name for run in result.runs])
     axes.set(xlim=(0.0, (end - start) / HOUR), ylim=(-0.6, len(result.runs) - 0.4))
     axes.set_xlabel(f"hours since {format_time(start)}")
@@ -88,12 +88,12 @@ def _first_days(result: ProjectResult, axes: Any) -> None:
         above = axes.twinx()
         above.plot(hours, level, color="#22303c", lw=1.0, alpha=0.8)
         above.set_ylabel("level at the unloading site [m]", fontsize=8)
-    handles = [_patch(colour, name) for name, colour in _ACTIVITIES.items()]
+    handles = [_legend_patch(colour, name) for name, colour in _ACTIVITIES.items()]
     axes.legend(handles=handles, fontsize=7, ncols=5, frameon=False, loc="lower left",
                 bbox_to_anchor=(0.0, 1.0))  # fmt: skip
 
 
-def _spans(run: Run) -> dict[str, list[tuple[float, float]]]:
+def _activity_periods(run: ProjectRun) -> dict[str, list[tuple[float, float]]]:
     """Return when each activity begins and ends; waits along a way are put where they happen."""
     spans: dict[str, list[tuple[float, float]]] = {name: [] for name in _ACTIVITIES}
     for cycle in run.cycles:
@@ -109,7 +109,7 @@ def _spans(run: Run) -> dict[str, list[tuple[float, float]]]:
     return {name: spans[name] for name in order}
 
 
-def _level(result: ProjectResult, times: np.ndarray) -> np.ndarray:
+def _water_level(result: ProjectResult, times: np.ndarray) -> np.ndarray:
     from thalweg.sea import standard_names as nm
 
     sea, (lat, lon) = result.world.sea, result.project.sites.unload
@@ -119,13 +119,13 @@ def _level(result: ProjectResult, times: np.ndarray) -> np.ndarray:
     return np.asarray(sea.sample([nm.WATER_LEVEL], times, *where)[nm.WATER_LEVEL])
 
 
-def _patch(colour: str, label: str) -> Any:
+def _legend_patch(colour: str, label: str) -> Any:
     from matplotlib.patches import Patch
 
     return Patch(color=colour, label=label)
 
 
-def _loads(result: ProjectResult, axes: Any) -> None:
+def _draw_load_factors(result: ProjectResult, axes: Any) -> None:
     from thalweg.operations.dredging.project_result import load_factor_counts
 
     factors = np.array(result.project.work.load_factors)
@@ -139,7 +139,7 @@ def _loads(result: ProjectResult, axes: Any) -> None:
     axes.legend(fontsize=8, frameon=False)
 
 
-def _shares(result: ProjectResult, axes: Any) -> None:
+def _draw_time_shares(result: ProjectResult, axes: Any) -> None:
     keys = ("loading_share", "sailing_full_share", "unloading_share", "sailing_empty_share")
     names = ("loading", "sailing full", "unloading", "sailing empty")
     left = np.zeros(len(result.runs))
@@ -181,11 +181,11 @@ def draw_routes(
     last = max(run.totals["duration_days"] or 0.0 for run in result.runs)
     bundle = None
     for axes, run in zip(frames, result.runs):
-        bundle = _bundle(run, axes, colour, float(last))
+        bundle = _draw_route_bundle(run, axes, colour, float(last))
         axes.set_title(run.name, fontsize=10)
         axes.set_aspect(1.0 / np.cos(np.radians(result.project.sites.load[0])))
     for axes in frames:
-        depth = _depth(result, axes)
+        depth = _draw_depth(result, axes)
         for what, place in (("load", result.project.sites.load),
                             ("unload", result.project.sites.unload)):  # fmt: skip
             axes.plot(place[1], place[0], "o", ms=6, mfc="w", mec="k", zorder=5)
@@ -202,12 +202,12 @@ def draw_routes(
     return figure
 
 
-def _bundle(run: Run, axes: Any, colour: str, last: float) -> Any:
+def _draw_route_bundle(run: ProjectRun, axes: Any, colour: str, last: float) -> Any:
     from matplotlib.collections import LineCollection
 
     lines, values = [], []
     start = run.cycles[0].start
-    for cycle in run.cycles[:_MOST_LINES]:
+    for cycle in run.cycles[:_MAX_LINES]:
         for leg, load in ((cycle.out, cycle.load_factor), (cycle.back, 0.0)):
             track = leg.route.track
             lines.append(np.column_stack([track.lon, track.lat]))
@@ -221,7 +221,7 @@ def _bundle(run: Run, axes: Any, colour: str, last: float) -> Any:
     return bundle
 
 
-def _depth(result: ProjectResult, axes: Any) -> Any:
+def _draw_depth(result: ProjectResult, axes: Any) -> Any:
     """Draw the depth of chart or sea behind the ways; nothing where the chart lets no ship."""
     from thalweg.sea import standard_names as nm
 

@@ -15,10 +15,10 @@ from thalweg.operations.tracks.activities import (
     UNSEEN,
 )
 from thalweg.operations.tracks.track_analysis import TrackAnalysis
-from thalweg.operations.tracks.track_calibration import leg_speeds, spread
+from thalweg.operations.tracks.track_calibration import agreement_statistics, leg_speeds
 from thalweg.operations.tracks.work_areas import LOADING, UNLOADING, WAITING
 
-COLOURS: Final = {
+ACTIVITY_COLOURS: Final = {
     LOADING: "#b8860b",
     SAILING_FULL: "#c2185b",
     UNLOADING: "#2e7d32",
@@ -77,14 +77,14 @@ def _map(analysis: TrackAnalysis, axes: Any) -> None:
         label = None if activity.kind in seen else activity.kind
         seen.add(activity.kind)
         style = ":" if activity.kind == UNSEEN else "-"
-        colour = COLOURS[activity.kind]
+        colour = ACTIVITY_COLOURS[activity.kind]
         axes.plot(lon[part], log.lat[part], style, color=colour, lw=0.7, label=label)
     import shapely
 
     for kind, shape in analysis.areas.shapes.items():
         for polygon in shapely.get_parts(shape):
             x, y = np.asarray(polygon.exterior.coords).T
-            axes.plot(x, y, "--", color=COLOURS[kind], lw=1.2)
+            axes.plot(x, y, "--", color=ACTIVITY_COLOURS[kind], lw=1.2)
     middle = 0.5 * float(log.lat.min() + log.lat.max())
     axes.set_aspect(1.0 / max(0.05, np.cos(np.radians(middle))), adjustable="datalim")
     axes.ticklabel_format(useOffset=False)
@@ -97,7 +97,7 @@ def _map(analysis: TrackAnalysis, axes: Any) -> None:
 
 def _hours(analysis: TrackAnalysis, axes: Any) -> None:
     start = analysis.log.time[0]
-    for kind, colour in COLOURS.items():
+    for kind, colour in ACTIVITY_COLOURS.items():
         found = [a for a in analysis.activities if a.kind == kind and (a.whole or kind == UNSEEN)]
         if found:
             days = [(a.start - start) / 86400.0 for a in found]
@@ -120,7 +120,9 @@ def _speeds(analysis: TrackAnalysis, axes: Any) -> None:
         at = part.start.to_numpy().astype("datetime64[ns]").astype(np.int64) / 1e9
         label = f"{kind}: {part.speed_kn.mean():.2f} ± {part.speed_kn.std():.2f} kn"
         days = (at - start) / 86400.0
-        axes.plot(days, part.speed_kn, "o-", ms=3, lw=0.6, color=COLOURS[kind], label=label)
+        axes.plot(
+            days, part.speed_kn, "o-", ms=3, lw=0.6, color=ACTIVITY_COLOURS[kind], label=label
+        )
     axes.set_xlabel("day of the track")
     axes.set_ylabel("measured speed over ground [kn]")
     low, high = axes.get_ylim()
@@ -138,15 +140,17 @@ def _spread(analysis: TrackAnalysis, axes: Any) -> None:
         return
     measured = leg_speeds(pieces, pieces.speed) / KNOT
     modelled = leg_speeds(pieces, models[best]) / KNOT
-    _, kind = pieces.by_leg(pieces.kind.astype(np.float64))
+    _, kind = pieces.sum_by_leg(pieces.kind.astype(np.float64))
     for index, name in enumerate((SAILING_FULL, SAILING_EMPTY)):
         here = (kind > 0.0) == bool(index)
-        axes.plot(measured[here], modelled[here], "o", ms=3.5, color=COLOURS[name], label=name)
+        axes.plot(
+            measured[here], modelled[here], "o", ms=3.5, color=ACTIVITY_COLOURS[name], label=name
+        )
     known = np.isfinite(measured + modelled)
     if known.any():
         both = np.concatenate([measured[known], modelled[known]])
         ends = np.array([both.min() - 0.2, both.max() + 0.2])
-        fit = spread(measured, modelled)
+        fit = agreement_statistics(measured, modelled)
         axes.plot(ends, ends, color="0.5", lw=0.8, label="perfect")
         axes.plot(ends, fit.slope * ends + fit.intercept, "--", color="k", lw=0.9, label="fitted")
         axes.set_title(

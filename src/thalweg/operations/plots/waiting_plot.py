@@ -42,7 +42,7 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
     axes = figure.subplots(2, 2)
     _savings(study, axes[0, 0])
     _bars(study, axes[0, 1])
-    _ways(study, axes[1, 0])
+    _draw_space_time_lines(study, axes[1, 0])
     _trips(study, axes[1, 1])
     for one in axes.flat:
         one.grid(alpha=0.3, lw=0.4)
@@ -58,7 +58,7 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
 
 
 def _savings(study: WaitingStudy, axes: Any) -> None:
-    hours = study.most_waits / HOUR
+    hours = study.max_waits / HOUR
     for i, start in enumerate(study.starts):
         colour = _COLOURS[i % len(_COLOURS)]
         for rule, style in _STYLES.items():
@@ -85,14 +85,14 @@ def _bars(study: WaitingStudy, axes: Any) -> None:
     axes.set_xticks(places, [format_time(float(s))[11:16] for s in study.starts])
     axes.set_xlabel("ready for the first trip")
     axes.set_ylabel("energy [kWh]")
-    axes.set_title(f"allowed wait {study.most_waits[-1] / HOUR:.1f} h (axis does not start at 0)")
+    axes.set_title(f"allowed wait {study.max_waits[-1] / HOUR:.1f} h (axis does not start at 0)")
     axes.legend(fontsize=7, frameon=False, ncols=len(rules))
 
 
-def _ways(study: WaitingStudy, axes: Any) -> None:
+def _draw_space_time_lines(study: WaitingStudy, axes: Any) -> None:
     names = list(dict.fromkeys(trip.name for trip in study.trips))
     for k, rule in enumerate(study.plans):
-        hours, place = _way(study, study.plans[rule][0][-1], names)
+        hours, place = _draw_space_time_line(study, study.plans[rule][0][-1], names)
         axes.plot(hours, place, color=_COLOURS[k], lw=1.1, label=rule)
     axes.set_xlabel(f"hours since {format_time(float(study.starts[0]))[:16]}")
     axes.set_ylabel("share of the way")
@@ -101,7 +101,9 @@ def _ways(study: WaitingStudy, axes: Any) -> None:
     axes.legend(fontsize=7, frameon=False, ncols=4, loc="upper center")
 
 
-def _way(study: WaitingStudy, plan: WaitingPlan, names: list[str]) -> tuple[Any, Any]:
+def _draw_space_time_line(
+    study: WaitingStudy, plan: WaitingPlan, names: list[str]
+) -> tuple[Any, Any]:
     hours, place = [0.0], [float(_from(study, 0, names))]
     for k, (leave, reach) in enumerate(zip(plan.departs, plan.arrives)):
         begin = _from(study, k, names)

@@ -18,7 +18,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.tracks.track_cleaning import TrackLog
-from thalweg.operations.tracks.work_areas import KINDS, LOADING, UNLOADING, WAITING, Areas
+from thalweg.operations.tracks.work_areas import AREA_KINDS, LOADING, UNLOADING, WAITING, WorkAreas
 
 SAILING_FULL, SAILING_EMPTY = "sailing full", "sailing empty"
 AWAY, UNSEEN = "away", "not seen"
@@ -27,14 +27,14 @@ _SAILING: Final = {(LOADING, UNLOADING): SAILING_FULL, (UNLOADING, LOADING): SAI
 
 
 @dataclass(frozen=True)
-class CuttingRules:
+class SegmentationRules:
     """How a track is cut.
 
     Attributes
     ----------
     slow : float
         Outside the areas, slower than this [m/s] is waiting or manoeuvring ...
-    least_wait : float
+    min_wait : float
         ... if it lasts this long [s].
     short_trip : float
         A ship that leaves an area and comes back to one of the same kind within this time [s] is
@@ -42,11 +42,11 @@ class CuttingRules:
     """
 
     slow: float = 2.0 * KNOT
-    least_wait: float = 600.0
+    min_wait: float = 600.0
     short_trip: float = 1800.0
 
     def __post_init__(self) -> None:
-        values = (self.slow, self.least_wait, self.short_trip)
+        values = (self.slow, self.min_wait, self.short_trip)
         if not all(np.isfinite(v) and v >= 0.0 for v in values):
             raise InputError(
                 f"A track cannot be cut by {self}.", "The numbers are not negative.", "Correct it."
@@ -87,7 +87,7 @@ class Activity:
 
 
 def find_activities(
-    log: TrackLog, areas: Areas, *, rules: CuttingRules | None = None
+    log: TrackLog, areas: WorkAreas, *, rules: SegmentationRules | None = None
 ) -> tuple[Activity, ...]:
     """Cut a track into activities.
 
@@ -107,21 +107,24 @@ def find_activities(
     InputError
         If the ship never comes into an area for loading or unloading.
     """
-    rules = rules or CuttingRules()
+    rules = rules or SegmentationRules()
     where = areas.at(log.lat, log.lon)
-    if not (where == KINDS.index(LOADING)).any() and not (where == KINDS.index(UNLOADING)).any():
+    if (
+        not (where == AREA_KINDS.index(LOADING)).any()
+        and not (where == AREA_KINDS.index(UNLOADING)).any()
+    ):
         raise InputError(
             "The ship is never in an area for loading or unloading.",
             f"The track runs from {log.lat.min():.3f} to {log.lat.max():.3f} N and from "
             f"{log.lon.min():.3f} to {log.lon.max():.3f} E.",
             "Check the areas (longitude first in GeoJSON) and the ship.",
         )
-    kinds, trips, whole = _kinds(log, where, rules)
+    kinds, trips, whole = _classify_positions(log, where, rules)
     away = log.broken & (np.diff(log.time) > rules.short_trip)
     return tuple(_activities(log, kinds, trips, whole, away))
 
 
-def _runs(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]:
+def _constant_stretches(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]:
     """Return (first, last) of stretches of equal keys."""
     found, at = [], 0
     for _, group in itertools.groupby(keys):
@@ -131,16 +134,16 @@ def _runs(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]:
     return found
 
 
-def _kinds(
-    log: TrackLog, where: NDArray[np.int8], rules: CuttingRules
+def _classify_positions(
+    log: TrackLog, where: NDArray[np.int8], rules: SegmentationRules
 ) -> tuple[list[str], list[int], list[bool]]:
     """Return the activity, trip and wholeness of every position."""
     count = len(log)
-    kinds = [KINDS[w] if w in (0, 1) else "" for w in where.tolist()]
+    kinds = [AREA_KINDS[w] if w in (0, 1) else "" for w in where.tolist()]
     trips, whole = [-1] * count, [True] * count
-    slow = _slow(log, where, rules)
+    slow = _waiting_positions(log, where, rules)
     number = 0
-    for first, last in _runs([(k,) for k in kinds]):
+    for first, last in _constant_stretches([(k,) for k in kinds]):
         if kinds[first]:
             continue
         before = kinds[first - 1] if first > 0 else ""
@@ -150,7 +153,7 @@ def _kinds(
         if before and before == after and span <= rules.short_trip and not cut_off:
             kinds[first : last + 1] = [before] * (last + 1 - first)
             continue
-        kind = _between(before, after)
+        kind = _activity_between(before, after)
         ends = not before or not after
         for i in range(first, last + 1):
             waits = slow[i] and kind != AWAY
@@ -160,7 +163,7 @@ def _kinds(
     return kinds, trips, whole
 
 
-def _between(before: str, after: str) -> str:
+def _activity_between(before: str, after: str) -> str:
     """Return what a ship does between areas of two kinds; at the ends of a track one is unknown."""
     if before and after:
         return _SAILING.get((before, after), AWAY)
@@ -170,18 +173,20 @@ def _between(before: str, after: str) -> str:
     return AWAY
 
 
-def _slow(log: TrackLog, where: NDArray[np.int8], rules: CuttingRules) -> NDArray[np.bool_]:
+def _waiting_positions(
+    log: TrackLog, where: NDArray[np.int8], rules: SegmentationRules
+) -> NDArray[np.bool_]:
     """Return where the ship waits outside the areas of work."""
-    waiting = where == KINDS.index(WAITING)
+    waiting = where == AREA_KINDS.index(WAITING)
     slow = (log.speeds() < rules.slow) & (where < 0)
-    edges = _edges(log)
-    for first, last in _runs([(bool(s),) for s in slow]):
-        if slow[first] and edges[last + 1] - edges[first] < rules.least_wait:
+    edges = _interval_boundaries(log)
+    for first, last in _constant_stretches([(bool(s),) for s in slow]):
+        if slow[first] and edges[last + 1] - edges[first] < rules.min_wait:
             slow[first : last + 1] = False
     return np.asarray(slow | waiting)
 
 
-def _edges(log: TrackLog) -> FloatArray:
+def _interval_boundaries(log: TrackLog) -> FloatArray:
     """Return the times half-way between positions, with both ends."""
     middles = 0.5 * (log.time[1:] + log.time[:-1])
     return np.concatenate([log.time[:1], middles, log.time[-1:]])
@@ -198,10 +203,10 @@ def _activities(
 
     What holds an interval of ``away``, a gap long enough for a trip, is not whole.
     """
-    segment = np.concatenate([[0], np.cumsum(_unseen(log, kinds))]).tolist()
-    edges = _edges(log)
+    segment = np.concatenate([[0], np.cumsum(_unobserved_intervals(log, kinds))]).tolist()
+    edges = _interval_boundaries(log)
     found: list[Activity] = []
-    for first, last in _runs(list(zip(kinds, trips, segment))):
+    for first, last in _constant_stretches(list(zip(kinds, trips, segment))):
         start, end = float(edges[first]), float(edges[last + 1])
         if first > 0 and segment[first] != segment[first - 1]:
             start = float(log.time[first])
@@ -218,7 +223,7 @@ def _activities(
     return found
 
 
-def _unseen(log: TrackLog, kinds: list[str]) -> NDArray[np.bool_]:
+def _unobserved_intervals(log: TrackLog, kinds: list[str]) -> NDArray[np.bool_]:
     """Return the intervals in which a broken track does not tell what the ship did.
 
     A gap with the same area of work at both ends belongs to that work.

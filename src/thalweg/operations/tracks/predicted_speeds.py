@@ -11,10 +11,16 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.tracks.track_calibration import mean_speeds
 from thalweg.operations.tracks.track_cleaning import TrackLog
-from thalweg.operations.tracks.track_segments import KINDS, Pieces
-from thalweg.operations.waiting.trip_durations import check_depth_is_told
-from thalweg.route.referee.leg_segments import Points
-from thalweg.route.referee.sailing_physics import World, conditions_at, look, move, open_world
+from thalweg.operations.tracks.track_segments import SAILING_KINDS, MeasuredSegments
+from thalweg.operations.waiting.trip_durations import check_depth_available
+from thalweg.route.referee.leg_segments import TrackPoints
+from thalweg.route.referee.sailing_physics import (
+    SailingEnvironment,
+    conditions_at,
+    make_sailing_environment,
+    sample_sea_and_depth,
+    solve_sailing_state,
+)
 from thalweg.route.referee.wind_speed_only import with_wind_speed
 from thalweg.ship.conditions import Conditions
 
@@ -22,12 +28,12 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-_HALVINGS = 40
-_FASTEST = 25.0  #: a speed through water that is looked for at a power [m/s]
+_MAX_BISECTIONS = 40
+_MAX_SPEED = 25.0  #: a speed through water that is looked for at a power [m/s]
 
 
-def ship_speeds(
-    pieces: Pieces, ship: Ship, sea: Sea, *, speed_kn: float | None = None
+def predicted_speeds_through_water(
+    pieces: MeasuredSegments, ship: Ship, sea: Sea, *, speed_kn: float | None = None
 ) -> FloatArray:
     """Return the speed through water [m/s] that a ship model gives on every piece.
 
@@ -47,19 +53,23 @@ def ship_speeds(
         NaN where the sea does not tell what the model needs.
     """
     found = np.full(len(pieces), np.nan)
-    for kind, (loaded, setting) in ordered(pieces, ship, speed_kn=speed_kn).items():
-        mine = pieces.kind == KINDS.index(kind)
-        world = open_world(loaded, with_wind_speed(loaded, sea), None)
-        check_depth_is_told(world)
+    for kind, (loaded, setting) in ordered_settings(pieces, ship, speed_kn=speed_kn).items():
+        mine = pieces.kind == SAILING_KINDS.index(kind)
+        world = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
+        check_depth_available(world)
         here = pieces.part(mine)
-        found[mine] = move(world, _points(here, setting), here.time).through_water
+        found[mine] = solve_sailing_state(
+            world, _segment_points(here, setting), here.time
+        ).speed_through_water
     return found
 
 
-def ordered(
-    pieces: Pieces, ship: Ship, *, speed_kn: float | None = None
+def ordered_settings(
+    pieces: MeasuredSegments, ship: Ship, *, speed_kn: float | None = None
 ) -> dict[str, tuple[Ship, int]]:
-    """Return the loaded ship and its setting for each activity there is; as in `ship_speeds`."""
+    """Return the loaded ship and its setting for each activity there is; as in
+    `predicted_speeds_through_water`.
+    """
     found = {}
     wanted = mean_speeds(pieces, 1.0)
     wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(pieces, 0.0))
@@ -71,12 +81,12 @@ def ordered(
         if speed_kn is not None:
             loaded = loaded.with_speeds([speed_kn * KNOT])
         setting = int(np.argmin(np.abs(loaded.speeds - wanted[mine][0])))
-        found[KINDS[index]] = (loaded, setting)
+        found[SAILING_KINDS[index]] = (loaded, setting)
     return found
 
 
 def speeds_at_measured_power(
-    log: TrackLog, pieces: Pieces, ship: Ship, sea: Sea
+    log: TrackLog, pieces: MeasuredSegments, ship: Ship, sea: Sea
 ) -> FloatArray | None:
     """Return the speed through water [m/s] at the measured power, as Schless (2023) validated.
 
@@ -103,15 +113,15 @@ def speeds_at_measured_power(
     """
     if "power" not in log.values or not hasattr(ship.model, "power_at_speed"):
         return None
-    power = piece_means(log, pieces, "power")
-    world = open_world(ship, with_wind_speed(ship, sea), None)
-    check_depth_is_told(world)
-    points = _points(pieces, 0)
+    power = segment_means(log, pieces, "power")
+    world = make_sailing_environment(ship, with_wind_speed(ship, sea), None)
+    check_depth_available(world)
+    points = _segment_points(pieces, 0)
     met = _conditions(world, points, pieces.time)
     met = met.with_values(load_factor=_load_factors(log, pieces, ship))
-    low, high = np.zeros(len(pieces)), np.full(len(pieces), _FASTEST)
+    low, high = np.zeros(len(pieces)), np.full(len(pieces), _MAX_SPEED)
     with np.errstate(invalid="ignore"):
-        for _ in range(_HALVINGS):
+        for _ in range(_MAX_BISECTIONS):
             middle = 0.5 * (low + high)
             needed = ship.power_at_speed(met, middle)
             enough = ~(needed > power)  # beyond the range of a method: look lower
@@ -122,7 +132,7 @@ def speeds_at_measured_power(
     return np.where(close, low, np.nan)
 
 
-def piece_means(log: TrackLog, pieces: Pieces, name: str) -> FloatArray:
+def segment_means(log: TrackLog, pieces: MeasuredSegments, name: str) -> FloatArray:
     """Return the mean over each piece of a measured value; NaN where it is not known at all."""
     values = log.values[name]
     known = np.isfinite(values)
@@ -134,9 +144,9 @@ def piece_means(log: TrackLog, pieces: Pieces, name: str) -> FloatArray:
     return np.where(count > 0, (sums[last] - sums[first]) / np.maximum(count, 1), np.nan)
 
 
-def _points(pieces: Pieces, setting: int) -> Points:
+def _segment_points(pieces: MeasuredSegments, setting: int) -> TrackPoints:
     zero = np.zeros(len(pieces), dtype=np.int64)
-    return Points(
+    return TrackPoints(
         lat=pieces.lat,
         lon=pieces.lon,
         course=pieces.course,
@@ -147,17 +157,17 @@ def _points(pieces: Pieces, setting: int) -> Points:
     )
 
 
-def _conditions(world: World, points: Points, time: FloatArray) -> Conditions:
-    sampled, depth = look(world, points, time)
+def _conditions(world: SailingEnvironment, points: TrackPoints, time: FloatArray) -> Conditions:
+    sampled, depth = sample_sea_and_depth(world, points, time)
     return conditions_at(world, points, time, sampled=sampled, depth=depth, heading=points.course)
 
 
-def _load_factors(log: TrackLog, pieces: Pieces, ship: Ship) -> FloatArray:
+def _load_factors(log: TrackLog, pieces: MeasuredSegments, ship: Ship) -> FloatArray:
     """Return load factors: from the measured draught, else 1 while full and 0 while empty."""
     assumed = np.where(pieces.kind == 0, 1.0, 0.0)
     deep, light = (ship.with_load_factor(f).draught for f in (1.0, 0.0))
     if "draught" not in log.values or deep <= light:
         return assumed
-    measured = (piece_means(log, pieces, "draught") - light) / (deep - light)
+    measured = (segment_means(log, pieces, "draught") - light) / (deep - light)
     rounded = np.round(np.clip(measured, 0.0, 1.0), 2)  # a ship is floated anew for each
     return np.where(np.isfinite(measured), rounded, assumed)

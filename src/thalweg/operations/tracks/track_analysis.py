@@ -20,27 +20,32 @@ from thalweg.operations.tracks.activities import (
     SAILING_FULL,
     UNSEEN,
     Activity,
-    CuttingRules,
+    SegmentationRules,
     find_activities,
 )
 from thalweg.operations.tracks.predicted_speeds import (
-    ordered,
-    ship_speeds,
+    ordered_settings,
+    predicted_speeds_through_water,
     speeds_at_measured_power,
 )
 from thalweg.operations.tracks.track_calibration import (
+    AgreementStatistics,
     Calibration,
-    Spread,
+    agreement_statistics,
     calibrate,
     leg_speeds,
     mean_speeds,
-    over_ground,
-    spread,
+    speeds_over_ground,
 )
-from thalweg.operations.tracks.track_cleaning import Cleaning, TrackLog
+from thalweg.operations.tracks.track_cleaning import CleaningRules, TrackLog
 from thalweg.operations.tracks.track_readers import TrackSource, read_tracks
-from thalweg.operations.tracks.track_segments import KINDS, PIECE, Pieces, cut_pieces
-from thalweg.operations.tracks.work_areas import LOADING, UNLOADING, WAITING, Areas
+from thalweg.operations.tracks.track_segments import (
+    SAILING_KINDS,
+    SEGMENT_DURATION,
+    MeasuredSegments,
+    cut_segments,
+)
+from thalweg.operations.tracks.work_areas import LOADING, UNLOADING, WAITING, WorkAreas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -71,18 +76,18 @@ class TrackAnalysis:
     """
 
     log: TrackLog
-    areas: Areas
+    areas: WorkAreas
     activities: tuple[Activity, ...]
-    pieces: Pieces
+    pieces: MeasuredSegments
     models: dict[str, FloatArray]
     calibration: Calibration | None
     notes: tuple[str, ...]
 
-    def spreads(self) -> dict[str, Spread]:
+    def spreads(self) -> dict[str, AgreementStatistics]:
         """Return how the mean speeds of the legs, modelled, lie against those measured."""
         measured = leg_speeds(self.pieces, self.pieces.speed)
         return {
-            name: spread(measured, leg_speeds(self.pieces, model))
+            name: agreement_statistics(measured, leg_speeds(self.pieces, model))
             for name, model in self.models.items()
         }
 
@@ -116,7 +121,7 @@ class TrackAnalysis:
             part = pieces.part(here)
             row = {
                 "trip": trip,
-                "activity": KINDS[int(part.kind[0])],
+                "activity": SAILING_KINDS[int(part.kind[0])],
                 "start": to_datetime64(part.time[0] - 0.5 * part.took[0]),
                 "hours": part.took.sum() / HOUR,
                 "distance_nm": float(part.speed @ part.took) / NAUTICAL_MILE,
@@ -124,7 +129,7 @@ class TrackAnalysis:
             }
             for name, model in self.models.items():
                 row[f"{name} [kn]"] = float(leg_speeds(part, model[here])[0]) / KNOT
-                row[f"{name} rmse_rel [%]"] = spread(part.speed, model[here]).rmse_rel
+                row[f"{name} rmse_rel [%]"] = agreement_statistics(part.speed, model[here]).rmse_rel
             rows.append(row)
         return pd.DataFrame(rows)
 
@@ -133,7 +138,7 @@ class TrackAnalysis:
         import pandas as pd
 
         rows = []
-        for first, last in _cycles(self.activities):
+        for first, last in _whole_cycles(self.activities):
             part = self.activities[first:last]
             row: dict[str, Any] = {"start": to_datetime64(part[0].start)}
             for kind in (LOADING, SAILING_FULL, UNLOADING, SAILING_EMPTY, WAITING):
@@ -193,19 +198,19 @@ class TrackAnalysis:
             "calibration": None if self.calibration is None else asdict(self.calibration),
             "models": {name: asdict(s) for name, s in self.spreads().items()},
         }
-        return dict(_plain(found))
+        return dict(_json_value(found))
 
 
 def analyse_tracks(
     source: TrackSource | TrackLog,
-    areas: Areas | str | PathLike[str] | Mapping[str, Any],
+    areas: WorkAreas | str | PathLike[str] | Mapping[str, Any],
     *,
     sea: Sea | None = None,
     ship: Ship | None = None,
     speed_kn: float | None = None,
-    cutting: CuttingRules | None = None,
-    cleaning: Cleaning | None = None,
-    piece_s: float = PIECE,
+    cutting: SegmentationRules | None = None,
+    cleaning: CleaningRules | None = None,
+    piece_s: float = SEGMENT_DURATION,
     **reading: Any,
 ) -> TrackAnalysis:
     """Cut a track into activities and hold models of its speed against what was measured.
@@ -216,7 +221,7 @@ def analyse_tracks(
         The track; see `thalweg.operations.tracks.track_readers.read_tracks`, whose ``columns``,
         ``vessel`` and ``time_format`` may be given too.
     areas : Areas, path or GeoJSON mapping
-        See `thalweg.operations.tracks.work_areas.Areas.read`.
+        See `thalweg.operations.tracks.work_areas.WorkAreas.read`.
     sea : Sea, optional
         With currents: the models "currents" (as the sea tells them) and "calibrated" (times the
         factor that fits best), both with the mean speed through water that belongs to them, beside
@@ -248,39 +253,43 @@ def analyse_tracks(
         if isinstance(source, TrackLog)
         else read_tracks(source, cleaning=cleaning, **reading)
     )
-    places = areas if isinstance(areas, Areas) else Areas.read(areas)
+    places = areas if isinstance(areas, WorkAreas) else WorkAreas.read(areas)
     activities = find_activities(log, places, rules=cutting)
-    pieces = cut_pieces(log, activities, sea=sea, length=piece_s)
-    notes = [*log.notes, *_about(activities)]
+    pieces = cut_segments(log, activities, sea=sea, length=piece_s)
+    notes = [*log.notes, *_coverage_notes(activities)]
     calibration = None
-    models = {"still water": over_ground(_still(pieces), mean_speeds(_still(pieces), 0.0), 0.0)}
+    models = {
+        "still water": speeds_over_ground(
+            _without_current(pieces), mean_speeds(_without_current(pieces), 0.0), 0.0
+        )
+    }
     if sea is not None:
-        models["currents"] = over_ground(pieces, mean_speeds(pieces, 1.0), 1.0)
+        models["currents"] = speeds_over_ground(pieces, mean_speeds(pieces, 1.0), 1.0)
         calibration = calibrate(pieces)
-        notes += _about_currents(pieces, calibration)
+        notes += _calibration_notes(pieces, calibration)
     if calibration is not None:
         factor = calibration.factor
-        models["calibrated"] = over_ground(pieces, mean_speeds(pieces, factor), factor)
+        models["calibrated"] = speeds_over_ground(pieces, mean_speeds(pieces, factor), factor)
     if sea is not None and ship is not None:
-        water = ship_speeds(pieces, ship, sea, speed_kn=speed_kn)
-        models["ship"] = over_ground(pieces, water, 1.0)
+        water = predicted_speeds_through_water(pieces, ship, sea, speed_kn=speed_kn)
+        models["ship"] = speeds_over_ground(pieces, water, 1.0)
         notes += [
             f"The ship sails at its setting of {loaded.speeds[setting] / KNOT:.2f} kn while {kind}."
-            for kind, (loaded, setting) in ordered(pieces, ship, speed_kn=speed_kn).items()
+            for kind, (loaded, setting) in ordered_settings(pieces, ship, speed_kn=speed_kn).items()
         ]
         if calibration is not None:
-            models["ship, calibrated"] = over_ground(pieces, water, calibration.factor)
+            models["ship, calibrated"] = speeds_over_ground(pieces, water, calibration.factor)
         powered = speeds_at_measured_power(log, pieces, ship, sea)
         if powered is not None:
-            models["ship, measured power"] = over_ground(pieces, powered, 1.0)
+            models["ship, measured power"] = speeds_over_ground(pieces, powered, 1.0)
     return TrackAnalysis(log, places, activities, pieces, models, calibration, tuple(notes))
 
 
-def _still(pieces: Pieces) -> Pieces:
+def _without_current(pieces: MeasuredSegments) -> MeasuredSegments:
     return replace(pieces, current=np.zeros(len(pieces), dtype=np.complex128))
 
 
-def _about(activities: tuple[Activity, ...]) -> list[str]:
+def _coverage_notes(activities: tuple[Activity, ...]) -> list[str]:
     """Say what of the track cannot be counted."""
     cut = sum(1 for a in activities if not a.whole and a.kind != UNSEEN)
     unseen = [a.duration for a in activities if a.kind == UNSEEN]
@@ -295,7 +304,7 @@ def _about(activities: tuple[Activity, ...]) -> list[str]:
     return notes
 
 
-def _about_currents(pieces: Pieces, calibration: Calibration | None) -> list[str]:
+def _calibration_notes(pieces: MeasuredSegments, calibration: Calibration | None) -> list[str]:
     notes = []
     missing = int((~np.isfinite(pieces.current)).sum())
     if missing:
@@ -311,7 +320,7 @@ def _about_currents(pieces: Pieces, calibration: Calibration | None) -> list[str
     return notes
 
 
-def _cycles(activities: tuple[Activity, ...]) -> list[tuple[int, int]]:
+def _whole_cycles(activities: tuple[Activity, ...]) -> list[tuple[int, int]]:
     """Return (first, one past last) activity of every whole cycle, from loading to loading."""
     starts = [i for i, a in enumerate(activities) if a.kind == LOADING]
     found = []
@@ -323,12 +332,12 @@ def _cycles(activities: tuple[Activity, ...]) -> list[tuple[int, int]]:
     return found
 
 
-def _plain(value: Any) -> Any:
+def _json_value(value: Any) -> Any:
     """Return numbers and texts that JSON can hold; None for what is unknown."""
     if isinstance(value, dict):
-        return {str(key): _plain(v) for key, v in value.items()}
+        return {str(key): _json_value(v) for key, v in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(v) for v in value]
+        return [_json_value(v) for v in value]
     if isinstance(value, (np.integer, bool)):
         return int(value)
     if isinstance(value, (float, np.floating)):

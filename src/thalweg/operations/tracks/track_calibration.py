@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.operations.tracks.track_segments import KINDS, Pieces
+from thalweg.operations.tracks.track_segments import SAILING_KINDS, MeasuredSegments
 
-_LEAST = 3  # points of a spread, legs of a calibration
-_TURNS = 50
-_SETTLED = 1e-10
+_MIN_LEGS = 3  # points of a spread, legs of a calibration
+_MAX_ITERATIONS = 50
+_TOLERANCE = 1e-10
 LARGEST_FACTOR = 10.0  #: that a search for a slope of one looks at
 
 
 @dataclass(frozen=True)
-class Spread:
+class AgreementStatistics:
     """How modelled values lie against measured ones.
 
     Attributes
@@ -52,23 +52,25 @@ class Spread:
     modelled: float
 
 
-def spread(measured: ArrayLike, modelled: ArrayLike) -> Spread:
+def agreement_statistics(measured: ArrayLike, modelled: ArrayLike) -> AgreementStatistics:
     """Compare modelled values with measured ones; pairs with NaN are left out."""
     x, y = (np.asarray(v, dtype=np.float64).reshape(-1) for v in (measured, modelled))
     known = np.isfinite(x) & np.isfinite(y)
     x, y = x[known], y[known]
     nan = math.nan
     if not x.size:
-        return Spread(0, nan, nan, nan, nan, nan, nan, nan)
+        return AgreementStatistics(0, nan, nan, nan, nan, nan, nan, nan)
     rmse, mean = float(np.sqrt(np.mean((y - x) ** 2))), float(x.mean())
     across, up = x - mean, y - float(y.mean())
     wide, high = float(across @ across), float(up @ up)
     slope = intercept = r2 = nan
-    if x.size >= _LEAST and wide > 1e-18 * x.size * max(mean * mean, 1e-300):
+    if x.size >= _MIN_LEGS and wide > 1e-18 * x.size * max(mean * mean, 1e-300):
         slope = float(across @ up) / wide
         intercept = float(y.mean()) - slope * mean
         r2 = float(across @ up) ** 2 / (wide * high) if high > 1e-24 else nan
-    return Spread(x.size, slope, intercept, r2, rmse, 100.0 * rmse / mean, mean, float(y.mean()))
+    return AgreementStatistics(
+        x.size, slope, intercept, r2, rmse, 100.0 * rmse / mean, mean, float(y.mean())
+    )
 
 
 @dataclass(frozen=True)
@@ -99,12 +101,12 @@ class Calibration:
     legs: int
 
 
-def through_water(pieces: Pieces, factor: float) -> FloatArray:
+def speeds_through_water(pieces: MeasuredSegments, factor: float) -> FloatArray:
     """Return speeds through water [m/s]: over ground less ``factor`` times the current."""
     return np.abs(pieces.ground - factor * pieces.current)
 
 
-def calibrate(pieces: Pieces) -> Calibration | None:
+def calibrate(pieces: MeasuredSegments) -> Calibration | None:
     """Find the speeds through water and the factor on the currents by least squares.
 
     Minimises the sum over pieces, weighted with their time, of
@@ -124,13 +126,13 @@ def calibrate(pieces: Pieces) -> Calibration | None:
     """
     pieces = pieces.part(np.isfinite(pieces.current))
     legs = np.unique(pieces.leg)
-    if len(legs) < _LEAST:
+    if len(legs) < _MIN_LEGS:
         return None
     used = np.unique(pieces.kind)
     groups = (pieces.kind[:, None] == used).astype(np.float64)
     weight = pieces.took / pieces.took.mean()
     factor = 1.0
-    for _ in range(_TURNS):
+    for _ in range(_MAX_ITERATIONS):
         water = pieces.ground - factor * pieces.current
         speed = np.abs(water)
         along = -(water.real * pieces.current.real + water.imag * pieces.current.imag) / speed
@@ -140,18 +142,18 @@ def calibrate(pieces: Pieces) -> Calibration | None:
             return None
         solved = np.linalg.solve(normal, design.T @ (weight * (speed - along * factor)))
         change, factor = float(solved[-1]) - factor, float(solved[-1])
-        if abs(change) < _SETTLED:
+        if abs(change) < _TOLERANCE:
             break
     residual = speed - groups @ solved[:-1]
     errors = _errors(design, weight * residual, np.linalg.inv(normal), pieces.leg)
-    names = [KINDS[k] for k in used]
+    names = [SAILING_KINDS[k] for k in used]
     return Calibration(
         factor=factor,
         factor_error=float(errors[-1]),
         speeds=dict(zip(names, solved[:-1].tolist())),
         speed_errors=dict(zip(names, errors[:-1].tolist())),
         residual=float(np.sqrt(np.average(residual**2, weights=weight))),
-        slope_one=_slope_one(pieces),
+        slope_one=_factor_for_unit_slope(pieces),
         legs=len(legs),
     )
 
@@ -168,17 +170,19 @@ def _errors(
     return np.sqrt(np.diag(inverse @ (sums.T @ sums) @ inverse) * few)
 
 
-def mean_speeds(pieces: Pieces, factor: float) -> FloatArray:
+def mean_speeds(pieces: MeasuredSegments, factor: float) -> FloatArray:
     """Return the mean speed through water of the activity of every piece [m/s]."""
-    speed = through_water(pieces, factor)
+    speed = speeds_through_water(pieces, factor)
     known = np.isfinite(speed)
     took = np.where(known, pieces.took, 0.0)
-    way = np.bincount(pieces.kind, np.where(known, speed, 0.0) * took, minlength=len(KINDS))
+    way = np.bincount(pieces.kind, np.where(known, speed, 0.0) * took, minlength=len(SAILING_KINDS))
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray((way / np.bincount(pieces.kind, took, minlength=len(KINDS)))[pieces.kind])
+        return np.asarray(
+            (way / np.bincount(pieces.kind, took, minlength=len(SAILING_KINDS)))[pieces.kind]
+        )
 
 
-def over_ground(pieces: Pieces, water: ArrayLike, factor: float) -> FloatArray:
+def speeds_over_ground(pieces: MeasuredSegments, water: ArrayLike, factor: float) -> FloatArray:
     """Return the speed over ground [m/s] on the measured course at a speed through water.
 
     NaN where the ship cannot hold the course or the current is unknown.
@@ -190,21 +194,21 @@ def over_ground(pieces: Pieces, water: ArrayLike, factor: float) -> FloatArray:
         return np.where(found > 0.0, found, np.nan)
 
 
-def leg_speeds(pieces: Pieces, speed: ArrayLike) -> FloatArray:
+def leg_speeds(pieces: MeasuredSegments, speed: ArrayLike) -> FloatArray:
     """Return the speed over each leg [m/s]: its way over the time it takes at given speeds."""
     way = pieces.speed * pieces.took
-    _, length = pieces.by_leg(way)
-    _, time = pieces.by_leg(way / np.asarray(speed, dtype=np.float64))
+    _, length = pieces.sum_by_leg(way)
+    _, time = pieces.sum_by_leg(way / np.asarray(speed, dtype=np.float64))
     return np.asarray(length / time)
 
 
-def _slope_one(pieces: Pieces) -> float:
+def _factor_for_unit_slope(pieces: MeasuredSegments) -> float:
     """Return the factor on the currents for which the legs' spread has a slope of one."""
     measured = leg_speeds(pieces, pieces.speed)
 
     def excess(factor: float) -> float:
-        model = over_ground(pieces, mean_speeds(pieces, factor), factor)
-        return spread(measured, leg_speeds(pieces, model)).slope - 1.0
+        model = speeds_over_ground(pieces, mean_speeds(pieces, factor), factor)
+        return agreement_statistics(measured, leg_speeds(pieces, model)).slope - 1.0
 
     factors = np.linspace(0.0, LARGEST_FACTOR, 101)
     values = np.array([excess(float(f)) for f in factors])
@@ -212,7 +216,7 @@ def _slope_one(pieces: Pieces) -> float:
     if not crossings.size:
         return math.nan
     low, high = factors[crossings[0]], factors[crossings[0] + 1]
-    for _ in range(_TURNS):
+    for _ in range(_MAX_ITERATIONS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if excess(float(middle)) <= 0.0 else (low, middle)
     return float(0.5 * (low + high))

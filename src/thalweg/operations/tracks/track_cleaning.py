@@ -14,12 +14,14 @@ from thalweg.core.geodesy import FloatArray, distance, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 
-_UNDER_WAY = 2.0  #: speed of positions [m/s] from which on measured speeds are checked against it
-_LARGEST_DOUBT = 0.2
+_MIN_UNDER_WAY_SPEED = (
+    2.0  #: speed of positions [m/s] from which on measured speeds are checked against it
+)
+_SPEED_RATIO_TOLERANCE = 0.2
 
 
 @dataclass(frozen=True)
-class Cleaning:
+class CleaningRules:
     """What counts as a gap and as an impossible jump.
 
     Attributes
@@ -28,18 +30,18 @@ class Cleaning:
         Time between positions above which the track is taken to be broken [s].
     fastest : float
         Greatest speed between two positions [m/s]; positions that need more are outliers.
-    most_outliers : int
+    max_outliers : int
         So many positions in a row, and no more, are dropped as outliers; a longer run that lies
         elsewhere is kept, and the track is taken to be broken before and after it.
     """
 
     longest_gap: float = 1800.0
     fastest: float = 40.0 * KNOT
-    most_outliers: int = 5
+    max_outliers: int = 5
 
     def __post_init__(self) -> None:
         good = all(math.isfinite(x) and x > 0.0 for x in (self.longest_gap, self.fastest))
-        if not (good and self.most_outliers >= 0):
+        if not (good and self.max_outliers >= 0):
             raise InputError(
                 f"Tracks cannot be cleaned by {self}.",
                 "Gap and speed are positive numbers; outliers in a row are not negative.",
@@ -110,9 +112,9 @@ class TrackLog:
         return np.where(np.isfinite(measured), measured, derived)
 
 
-def clean(
+def clean_track(
     raw: RawTrack,
-    rules: Cleaning,
+    rules: CleaningRules,
     *,
     vessel: str | None = None,
     source: str = "the track",
@@ -140,8 +142,8 @@ def clean(
     """
     told, removed = list(notes or ()), {}
     for reason, step in (
-        ("without a readable time", _untimed),
-        ("without a position on the globe", _unplaced),
+        ("without a readable time", _has_time),
+        ("without a position on the globe", _has_position),
     ):
         keep = step(raw)
         removed[reason] = int((~keep).sum())
@@ -150,35 +152,35 @@ def clean(
     if backwards:
         told.append(f"Rows were not in order of time ({backwards} steps back); they were sorted.")
     raw = raw.part(np.argsort(raw.time, kind="stable"))
-    raw = _without_doubles(raw, removed)
-    keep, jumps = _plausible(raw, rules)
+    raw = _without_duplicate_times(raw, removed)
+    keep, jumps = _reachable_positions(raw, rules)
     removed["that no ship could reach"] = int((~keep).sum())
     raw, count = raw.part(keep), len(raw.time)
     if len(raw.time) < 2:
         raise InputError(
             f"Only {len(raw.time)} of the positions of {source} can be used.",
-            _told(removed) or f"It has {count}.",
+            _removed_rows_text(removed) or f"It has {count}.",
             "A track needs two positions at different times; check columns and units.",
             removed=removed,
         )
     gaps = np.diff(raw.time) > rules.longest_gap
     broken = gaps | jumps[keep][1:]
-    _tell(told, removed, raw, gaps, broken, rules)
+    _add_notes(told, removed, raw, gaps, broken, rules)
     lon = wrap_longitude(raw.lon)
     removed = {reason: rows for reason, rows in removed.items() if rows}
     log = TrackLog(raw.time, raw.lat, lon, raw.values, broken, vessel, tuple(told), removed)
-    return replace(log, notes=(*log.notes, *_doubts(log)))
+    return replace(log, notes=(*log.notes, *_speed_unit_warnings(log)))
 
 
-def _doubts(log: TrackLog) -> list[str]:
+def _speed_unit_warnings(log: TrackLog) -> list[str]:
     """Say if the speeds that were measured are not those of the positions."""
     if "speed" not in log.values:
         return []
     moved = replace(log, values={}).speeds()
     told = log.values["speed"]
-    fast = np.isfinite(told) & (moved > _UNDER_WAY) & (told > 0.0)
+    fast = np.isfinite(told) & (moved > _MIN_UNDER_WAY_SPEED) & (told > 0.0)
     ratio = float(np.median(told[fast] / moved[fast])) if fast.any() else 1.0
-    if abs(ratio - 1.0) <= _LARGEST_DOUBT:
+    if abs(ratio - 1.0) <= _SPEED_RATIO_TOLERANCE:
         return []
     return [
         f"Measured speeds are {ratio:.2f} times those of the positions: is their unit right? "
@@ -186,16 +188,16 @@ def _doubts(log: TrackLog) -> list[str]:
     ]
 
 
-def _untimed(raw: RawTrack) -> NDArray[np.bool_]:
+def _has_time(raw: RawTrack) -> NDArray[np.bool_]:
     return np.isfinite(raw.time)
 
 
-def _unplaced(raw: RawTrack) -> NDArray[np.bool_]:
+def _has_position(raw: RawTrack) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
         return np.asarray((np.abs(raw.lat) <= 90.0) & (np.abs(raw.lon) <= 180.0 + 1e-9))
 
 
-def _without_doubles(raw: RawTrack, removed: dict[str, int]) -> RawTrack:
+def _without_duplicate_times(raw: RawTrack, removed: dict[str, int]) -> RawTrack:
     """Keep the first row of every time."""
     first = np.append(True, np.diff(raw.time) > 0.0)[: len(raw.time)]
     of = np.maximum.accumulate(np.where(first, np.arange(len(first)), 0))
@@ -205,7 +207,9 @@ def _without_doubles(raw: RawTrack, removed: dict[str, int]) -> RawTrack:
     return raw.part(first)
 
 
-def _plausible(raw: RawTrack, rules: Cleaning) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _reachable_positions(
+    raw: RawTrack, rules: CleaningRules
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Return (positions to keep, whether a jump lies before each of those)."""
     count = len(raw.time)
     keep, jumps = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
@@ -215,7 +219,7 @@ def _plausible(raw: RawTrack, rules: Cleaning) -> tuple[NDArray[np.bool_], NDArr
     cuts = np.flatnonzero(way > rules.fastest * np.diff(raw.time)) + 1
     starts = np.concatenate([[0], cuts])
     ends = np.concatenate([cuts, [count]])
-    long = ends - starts > rules.most_outliers
+    long = ends - starts > rules.max_outliers
     if not long.any():
         long[np.argmax(ends - starts)] = True
     runs = list(zip(starts.tolist(), ends.tolist(), long.tolist()))
@@ -233,21 +237,21 @@ def _plausible(raw: RawTrack, rules: Cleaning) -> tuple[NDArray[np.bool_], NDArr
     return keep, jumps
 
 
-def _reachable(raw: RawTrack, i: int, j: int, rules: Cleaning) -> bool:
+def _reachable(raw: RawTrack, i: int, j: int, rules: CleaningRules) -> bool:
     way = float(distance(raw.lat[i], raw.lon[i], raw.lat[j], raw.lon[j]))
     return way <= rules.fastest * float(raw.time[j] - raw.time[i])
 
 
-def _tell(
+def _add_notes(
     told: list[str],
     removed: dict[str, int],
     raw: RawTrack,
     gaps: NDArray[np.bool_],
     broken: NDArray[np.bool_],
-    rules: Cleaning,
+    rules: CleaningRules,
 ) -> None:
-    if _told(removed):
-        told.append(_told(removed))
+    if _removed_rows_text(removed):
+        told.append(_removed_rows_text(removed))
     if gaps.any():
         lengths = np.diff(raw.time)[gaps]
         worst = int(np.argmax(np.where(gaps, np.diff(raw.time), 0.0)))
@@ -261,6 +265,6 @@ def _tell(
         told.append(f"{jumps} jumps faster than {rules.fastest / KNOT:g} kn break the track.")
 
 
-def _told(removed: dict[str, int]) -> str:
+def _removed_rows_text(removed: dict[str, int]) -> str:
     parts = [f"{rows} {reason}" for reason, rows in removed.items() if rows]
     return f"Rows left out: {', '.join(parts)}." if parts else ""

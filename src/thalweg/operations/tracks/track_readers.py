@@ -16,7 +16,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.units import KNOT
-from thalweg.operations.tracks.track_cleaning import Cleaning, RawTrack, TrackLog, clean
+from thalweg.operations.tracks.track_cleaning import CleaningRules, RawTrack, TrackLog, clean_track
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 TrackSource: TypeAlias = "str | PathLike[str] | pd.DataFrame"
 
 #: names of columns (lower case, units and signs taken off), the likeliest first
-NAMES: Final[dict[str, tuple[str, ...]]] = {
+COLUMN_NAMES: Final[dict[str, tuple[str, ...]]] = {
     "time": (
         *("time", "timestamp", "datetime", "date_time", "basedatetime", "base_date_time"),
         *("time_utc", "date_time_utc", "datetime_utc", "timestamp_utc", "utc", "postime", "date"),
@@ -38,7 +38,7 @@ NAMES: Final[dict[str, tuple[str, ...]]] = {
     "vessel": ("mmsi", "imo", "vessel", "vessel_name", "ship", "ship_name", "name"),
 }
 #: what one unit of a column is in SI; the first of each is taken when the header tells none
-UNITS: Final[dict[str, dict[str, float]]] = {
+UNIT_FACTORS: Final[dict[str, dict[str, float]]] = {
     "speed": {"kn": KNOT, "kt": KNOT, "knots": KNOT, "m_s": 1.0, "ms": 1.0, "km_h": 1.0 / 3.6},
     "power": {"kw": 1e3, "w": 1.0, "mw": 1e6},
     "draught": {"m": 1.0, "dm": 0.1, "cm": 0.01},
@@ -47,9 +47,9 @@ UNITS: Final[dict[str, dict[str, float]]] = {
     "lon": {"deg": 1.0},
 }
 #: values by which AIS says "not available"
-ABSENT: Final = {"speed": 102.25, "course": 359.999}
-_DATES: Final = ("%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%m-%d-%Y", "%d.%m.%Y")
-_CLOCKS: Final = (" %H:%M:%S", " %H:%M", "")
+NOT_AVAILABLE_THRESHOLDS: Final = {"speed": 102.25, "course": 359.999}
+_DATE_FORMATS: Final = ("%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%m-%d-%Y", "%d.%m.%Y")
+_TIME_FORMATS: Final = (" %H:%M:%S", " %H:%M", "")
 
 
 def read_tracks(
@@ -58,7 +58,7 @@ def read_tracks(
     columns: Mapping[str, str] | None = None,
     vessel: str | int | None = None,
     time_format: str | None = None,
-    cleaning: Cleaning | None = None,
+    cleaning: CleaningRules | None = None,
 ) -> TrackLog:
     """Read the track of one ship and clean it.
 
@@ -66,7 +66,7 @@ def read_tracks(
     ----------
     source : path or DataFrame
         A CSV file (comma, semicolon or tab) or a table with columns for time, lat, lon and maybe
-        speed, course, draught, power and vessel, under any usual name; see ``NAMES``.
+        speed, course, draught, power and vessel, under any usual name; see ``COLUMN_NAMES``.
     columns : mapping of str to str, optional
         Which column is what, where the name does not tell: ``{"time": "t_gps"}``.
     vessel : str or int, optional
@@ -100,7 +100,7 @@ def read_tracks(
         if kind not in ("time", "date", "vessel")
     }
     raw = RawTrack(time, values.pop("lat"), values.pop("lon"), values)
-    return clean(raw, cleaning or Cleaning(), vessel=ships, source=name, notes=notes)
+    return clean_track(raw, cleaning or CleaningRules(), vessel=ships, source=name, notes=notes)
 
 
 def _table(source: TrackSource) -> tuple[pd.DataFrame, str]:
@@ -128,15 +128,15 @@ def _table(source: TrackSource) -> tuple[pd.DataFrame, str]:
     return table, str(path)
 
 
-def _plain(column: str) -> str:
+def _normalised_name(column: str) -> str:
     """Return a column name in lower case, words joined by single underscores."""
     return re.sub(r"[^a-z0-9]+", "_", str(column).lower()).strip("_")
 
 
-def _stem(column: str, kind: str) -> tuple[str, str | None]:
+def _split_unit(column: str, kind: str) -> tuple[str, str | None]:
     """Return a column name without its unit, and the unit."""
-    plain = _plain(column)
-    for unit in sorted(UNITS.get(kind, {}), key=len, reverse=True):
+    plain = _normalised_name(column)
+    for unit in sorted(UNIT_FACTORS.get(kind, {}), key=len, reverse=True):
         if plain.endswith("_" + unit):
             return plain[: -len(unit) - 1], unit
     return plain, None
@@ -144,21 +144,21 @@ def _stem(column: str, kind: str) -> tuple[str, str | None]:
 
 def _columns(table: pd.DataFrame, given: dict[str, str], name: str) -> dict[str, str]:
     """Return the column of every kind that there is."""
-    unknown = sorted(set(given) - set(NAMES))
+    unknown = sorted(set(given) - set(COLUMN_NAMES))
     absent = sorted(column for column in given.values() if column not in table.columns)
     if unknown or absent:
         raise InputError(
             f"The columns given for {name} are wrong: {', '.join(unknown + absent)}.",
-            f"Kinds: {', '.join(NAMES)}; columns: {', '.join(map(str, table.columns))}.",
+            f"Kinds: {', '.join(COLUMN_NAMES)}; columns: {', '.join(map(str, table.columns))}.",
             "Correct them.",
         )
     found = dict(given)
-    for kind, names in NAMES.items():
-        stems = {_stem(c, kind)[0]: str(c) for c in reversed(list(table.columns))}
+    for kind, names in COLUMN_NAMES.items():
+        stems = {_split_unit(c, kind)[0]: str(c) for c in reversed(list(table.columns))}
         match = next((stems[n] for n in names if n in stems), None)
         if kind not in found and match is not None:
             found[kind] = match
-    dates = {_plain(c): str(c) for c in table.columns}
+    dates = {_normalised_name(c): str(c) for c in table.columns}
     if "date" in dates and found.get("time") != dates["date"] and "time" not in given:
         found["date"] = dates["date"]
     missing = [kind for kind in ("time", "lat", "lon") if kind not in found]
@@ -166,7 +166,7 @@ def _columns(table: pd.DataFrame, given: dict[str, str], name: str) -> dict[str,
         raise InputError(
             f"No column of {name} tells {' or '.join(missing)}.",
             f"Columns: {', '.join(map(str, table.columns))}; names that are known: "
-            + "; ".join(f"{kind}: {', '.join(NAMES[kind][:4])}" for kind in missing)
+            + "; ".join(f"{kind}: {', '.join(COLUMN_NAMES[kind][:4])}" for kind in missing)
             + ".",
             "Rename the columns, or say which is which (columns, or --column lat=NAME).",
             missing=missing,
@@ -207,13 +207,13 @@ def _numbers(column: pd.Series[Any], kind: str, header: str, notes: list[str]) -
     import pandas as pd
 
     values = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
-    unit = _stem(header, kind)[1]
-    units = UNITS[kind]
+    unit = _split_unit(header, kind)[1]
+    units = UNIT_FACTORS[kind]
     if unit is None:
         unit = next(iter(units))
         if kind in ("speed", "power"):
             notes.append(f"Column {header!r} is taken to be in {unit}.")
-    limit = ABSENT.get(kind)
+    limit = NOT_AVAILABLE_THRESHOLDS.get(kind)
     if limit is not None and unit in ("kn", "kt", "knots", "deg"):
         values = np.where(values > limit, np.nan, values)
     return np.asarray(values * units[unit])
@@ -236,7 +236,7 @@ def _times(
         return _seconds(pd.to_datetime(column, utc=True))
     numbers = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
     if time_format is None and 2 * np.isfinite(numbers).sum() > len(numbers):
-        return _epoch(numbers, found["time"])
+        return _epoch_seconds(numbers, found["time"])
     if time_format is not None:
         return _by_format(column, time_format)
     parsed = pd.to_datetime(column, format="ISO8601", utc=True, errors="coerce")
@@ -258,7 +258,7 @@ def _by_format(column: pd.Series[Any], time_format: str) -> FloatArray:
         ) from error
 
 
-def _epoch(numbers: FloatArray, header: str) -> FloatArray:
+def _epoch_seconds(numbers: FloatArray, header: str) -> FloatArray:
     size = float(np.nanmedian(np.abs(numbers)))
     for scale in (1.0, 1e3, 1e6, 1e9):
         if 1e8 <= size / scale < 1e10:
@@ -275,8 +275,8 @@ def _dates(column: pd.Series[Any], name: str, notes: list[str]) -> FloatArray:
     import pandas as pd
 
     fits: dict[str, FloatArray] = {}
-    for date in _DATES:
-        for clock in _CLOCKS:
+    for date in _DATE_FORMATS:
+        for clock in _TIME_FORMATS:
             parsed = pd.to_datetime(column, format=date + clock, utc=True, errors="coerce")
             if parsed.notna().sum() >= 0.99 * column.notna().sum() and parsed.notna().any():
                 fits[date + clock] = _seconds(parsed)

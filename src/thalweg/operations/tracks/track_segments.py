@@ -18,13 +18,13 @@ from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
 if TYPE_CHECKING:
     from thalweg.sea import Sea
 
-PIECE = 300.0  #: usual length of a piece [s]: long against noise, short against tides
-STEADY = 0.8  #: share of a leg's median speed from which on it counts as free sailing
-KINDS = (SAILING_FULL, SAILING_EMPTY)
+SEGMENT_DURATION = 300.0  #: usual length of a piece [s]: long against noise, short against tides
+STEADY_SPEED_SHARE = 0.8  #: share of a leg's median speed from which on it counts as free sailing
+SAILING_KINDS = (SAILING_FULL, SAILING_EMPTY)
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class MeasuredSegments:
     """Pieces of legs, with p pieces in all.
 
     Attributes
@@ -32,7 +32,7 @@ class Pieces:
     leg : int64 array (p,)
         Number of the trip each piece belongs to.
     kind : int64 array (p,)
-        Index into ``KINDS`` (sailing full, sailing empty).
+        Index into ``SAILING_KINDS`` (sailing full, sailing empty).
     time, took : float64 array (p,)
         Middle [s since 1970-01-01T00:00Z] and length [s].
     lat, lon : float64 array (p,)
@@ -65,25 +65,25 @@ class Pieces:
         """Course over ground, clockwise from north [rad]."""
         return np.asarray(np.angle(1j * np.conj(self.ground)) % (2.0 * np.pi))
 
-    def part(self, keep: NDArray[np.bool_]) -> Pieces:
+    def part(self, keep: NDArray[np.bool_]) -> MeasuredSegments:
         """Return some of the pieces."""
         names = ("leg", "kind", "time", "took", "lat", "lon", "ground", "current")
-        return Pieces(**{name: getattr(self, name)[keep] for name in names})
+        return MeasuredSegments(**{name: getattr(self, name)[keep] for name in names})
 
-    def by_leg(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+    def sum_by_leg(self, values: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
         """Return (legs, sums of values over each leg)."""
         legs, index = np.unique(self.leg, return_inverse=True)
         return legs, np.bincount(index, values, minlength=len(legs)).astype(np.float64)
 
 
-def cut_pieces(
+def cut_segments(
     log: TrackLog,
     activities: Sequence[Activity],
     *,
     sea: Sea | None = None,
-    length: float = PIECE,
+    length: float = SEGMENT_DURATION,
     steady: bool = True,
-) -> Pieces:
+) -> MeasuredSegments:
     """Cut all sailing of a track into pieces.
 
     Parameters
@@ -107,10 +107,10 @@ def cut_pieces(
     """
     speeds = log.speeds()
     rows = [
-        (activity.trip, KINDS.index(activity.kind), *pair)
+        (activity.trip, SAILING_KINDS.index(activity.kind), *pair)
         for activity in activities
-        if activity.kind in KINDS
-        for pair in _pairs(log, activity, speeds, length, steady)
+        if activity.kind in SAILING_KINDS
+        for pair in _segment_ends(log, activity, speeds, length, steady)
     ]
     table = np.array(rows, dtype=np.int64).reshape(-1, 4)
     leg, kind, first, last = table.T
@@ -126,17 +126,17 @@ def cut_pieces(
     if sea is not None and len(leg):
         told = sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], middle, lat, lon)
         current = told[EASTWARD_CURRENT] + 1j * told[NORTHWARD_CURRENT]
-    return Pieces(leg, kind, middle, took, lat, lon, ground, current)
+    return MeasuredSegments(leg, kind, middle, took, lat, lon, ground, current)
 
 
-def _pairs(
+def _segment_ends(
     log: TrackLog, activity: Activity, speeds: FloatArray, length: float, steady: bool
 ) -> list[tuple[int, int]]:
     """Return (first, last) positions of the pieces of a leg."""
     first, last = activity.first, activity.last
     if steady and last > first:
         seen = speeds[first : last + 1]
-        fast = np.flatnonzero(seen >= STEADY * np.median(seen))
+        fast = np.flatnonzero(seen >= STEADY_SPEED_SHARE * np.median(seen))
         first, last = first + int(fast[0]), first + int(fast[-1])
     ends = [first]
     for i in range(first + 1, last + 1):

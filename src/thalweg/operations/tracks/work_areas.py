@@ -11,14 +11,14 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.chart.zones.geojson_zones import polygons, read
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.chart.zones.geojson_zones import parse_polygons, read_features
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import wrap_longitude
 
 LOADING, UNLOADING, WAITING = "loading", "unloading", "waiting"
-KINDS: Final = (LOADING, UNLOADING, WAITING)
+AREA_KINDS: Final = (LOADING, UNLOADING, WAITING)
 #: words in a property ``activity``, ``kind``, ``type`` or ``name`` that tell what an area is for
-WORDS: Final[dict[str, str]] = {
+AREA_KIND_BY_WORD: Final[dict[str, str]] = {
     **dict.fromkeys(("loading", "load", "dredging", "dredge", "borrow", "trailing"), LOADING),
     **dict.fromkeys(
         ("unloading", "unload", "discharging", "dumping", "dump", "pumping", "reclamation"),
@@ -29,12 +29,12 @@ WORDS: Final[dict[str, str]] = {
         ("waiting", "wait", "anchorage", "anchor", "berth", "port", "harbour"), WAITING
     ),
 }
-_KEYS: Final = ("activity", "kind", "type", "name")
-_LEAST_OVERLAP: Final = 1e-9  # of the smaller area: what is more than touching
+_PROPERTY_NAMES: Final = ("activity", "kind", "type", "name")
+_MIN_OVERLAP: Final = 1e-9  # of the smaller area: what is more than touching
 
 
 @dataclass(frozen=True, eq=False)
-class Areas:
+class WorkAreas:
     """Polygons by kind.
 
     Attributes
@@ -46,7 +46,7 @@ class Areas:
     shapes: dict[str, Any]
 
     @classmethod
-    def read(cls, source: str | PathLike[str] | Mapping[str, Any]) -> Areas:
+    def read(cls, source: str | PathLike[str] | Mapping[str, Any]) -> WorkAreas:
         """Read areas from GeoJSON.
 
         Parameters
@@ -65,10 +65,10 @@ class Areas:
 
         shapes: dict[str, list[Any]] = {}
         names: list[tuple[str, str, Any]] = []
-        for number, (geometry, properties) in enumerate(read(source, "areas"), start=1):
+        for number, (geometry, properties) in enumerate(read_features(source, "areas"), start=1):
             kind = _kind(properties, number)
             label = str(properties.get("name") or f"area {number} ({kind})")
-            shape = shapely.union_all(polygons(geometry, "areas"))
+            shape = shapely.union_all(parse_polygons(geometry, "areas"))
             shapes.setdefault(kind, []).append(shape)
             names.append((label, kind, shape))
         missing = [kind for kind in (LOADING, UNLOADING) if kind not in shapes]
@@ -78,11 +78,11 @@ class Areas:
                 f"Areas are for: {', '.join(sorted(shapes)) or 'nothing'}.",
                 "Give polygons with a property activity: loading and activity: unloading.",
             )
-        _check_apart(names)
+        _check_disjoint(names)
         return cls({kind: shapely.union_all(parts) for kind, parts in shapes.items()})
 
     def at(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.int8]:
-        """Return which area positions [deg] lie in: index into ``KINDS``, -1 for none."""
+        """Return which area positions [deg] lie in: index into ``AREA_KINDS``, -1 for none."""
         import shapely
 
         y, x = np.asarray(lat, dtype=np.float64), wrap_longitude(lon)
@@ -91,33 +91,34 @@ class Areas:
             shapely.prepare(shape)
             for turn in (-360.0, 0.0, 360.0):  # outlines may run on beyond the antimeridian
                 inside = shapely.intersects_xy(shape, x + turn, y)
-                where[inside] = KINDS.index(kind)
+                where[inside] = AREA_KINDS.index(kind)
         return where
 
 
 def _kind(properties: Mapping[str, Any], number: int) -> str:
-    for key in _KEYS:
+    for key in _PROPERTY_NAMES:
         text = str(properties.get(key) or "").lower()
-        words = [w for w in re.split(r"[^a-z]+", text) if w in WORDS]
+        words = [w for w in re.split(r"[^a-z]+", text) if w in AREA_KIND_BY_WORD]
         if words:
-            return WORDS[words[0]]
+            return AREA_KIND_BY_WORD[words[0]]
         if text and key == "activity":
-            raise unknown_name("activity of an area", text, WORDS)
+            raise unknown_name_error("activity of an area", text, AREA_KIND_BY_WORD)
     raise InputError(
         f"Area {number} does not tell what it is for.",
-        f"A property {', '.join(_KEYS[:-1])} or {_KEYS[-1]} holds one of {', '.join(KINDS)}.",
+        f"A property {', '.join(_PROPERTY_NAMES[:-1])} or {_PROPERTY_NAMES[-1]} holds "
+        f"one of {', '.join(AREA_KINDS)}.",
         'Add "activity": "loading" (or "unloading", "waiting") to its properties.',
         area=number,
     )
 
 
-def _check_apart(names: list[tuple[str, str, Any]]) -> None:
+def _check_disjoint(names: list[tuple[str, str, Any]]) -> None:
     for i, (first, kind, shape) in enumerate(names):
         for second, other, its in names[i + 1 :]:
             if kind == other:
                 continue
             common = shape.intersection(its).area
-            if common > _LEAST_OVERLAP * min(shape.area, its.area):
+            if common > _MIN_OVERLAP * min(shape.area, its.area):
                 share = 100.0 * common / min(shape.area, its.area)
                 raise InputError(
                     f"The areas {first!r} ({kind}) and {second!r} ({other}) overlap "

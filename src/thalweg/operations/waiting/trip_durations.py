@@ -17,15 +17,15 @@ from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import FloatArray, format_position
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.operations.waiting.trip_table import TripTable
-from thalweg.route.referee.evaluation import Routable, as_track, ordered
-from thalweg.route.referee.leg_segments import Pieces, Points, cut
+from thalweg.route.referee.evaluation import RouteLike, as_track, resolve_settings
+from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
 from thalweg.route.referee.sailing_physics import (
-    Motion,
-    World,
+    SailingEnvironment,
+    SailingState,
     conditions_at,
-    look,
-    move,
-    open_world,
+    make_sailing_environment,
+    sample_sea_and_depth,
+    solve_sailing_state,
 )
 from thalweg.route.referee.wind_speed_only import with_wind_speed
 from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
@@ -36,17 +36,19 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-LEAST_STEPS = 100  #: of every trip
-MOST_DEPARTURES = 200_000  #: a table may hold
-_POINTS: Final = 200_000  # looked at in one go
-_SWEEPS: Final = 12  # of the iteration
-_SETTLED: Final = 1e-3  # change of the time for a piece [s] that ends the iteration
-_NEVER: Final = 1e9  # stands for the time [s] for a piece that cannot be passed
-_CRAB_TURNS: Final = 3  # corrections of the crab angle; each makes the error some 50 times smaller
+MIN_STEPS = 100  #: of every trip
+MAX_DEPARTURES = 200_000  #: a table may hold
+_MAX_POINTS_PER_CHUNK: Final = 200_000  # looked at in one go
+_MAX_ITERATIONS: Final = 12  # of the iteration
+_TIME_TOLERANCE: Final = 1e-3  # change of the time for a piece [s] that ends the iteration
+_IMPASSABLE_TIME: Final = 1e9  # stands for the time [s] for a piece that cannot be passed
+_CRAB_ITERATIONS: Final = (
+    3  # corrections of the crab angle; each makes the error some 50 times smaller
+)
 
 
 def trip_table(
-    route: Routable,
+    route: RouteLike,
     *,
     ship: Ship,
     sea: Sea,
@@ -108,11 +110,11 @@ def trip_table(
     if not hasattr(route, "setting") and not hasattr(route, "track"):
         settings = np.full(len(track) - 1, setting)
         track = track.replaced(setting=settings, speed=None, wait=None)
-    ship, track = ordered(ship, track)
-    world = open_world(ship, with_wind_speed(ship, sea), chart)
-    check_depth_is_told(world)
-    pieces = cut(track, float(track.lengths.sum()) / LEAST_STEPS, 1)
-    voyage = _Voyage(world, pieces, _middles(world, pieces), min_ukc)
+    ship, track = resolve_settings(ship, track)
+    world = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
+    check_depth_available(world)
+    pieces = cut_into_pieces(track, float(track.lengths.sum()) / MIN_STEPS, 1)
+    voyage = _TrackSimulation(world, pieces, _segment_midpoints(world, pieces), min_ukc)
     duration, energy = voyage.sail(departs)
     return TripTable(
         name=name,
@@ -125,7 +127,7 @@ def trip_table(
     )
 
 
-def check_depth_is_told(world: World) -> None:
+def check_depth_available(world: SailingEnvironment) -> None:
     """Refuse a world without depth for a ship whose speed depends on it.
 
     Raises
@@ -158,17 +160,17 @@ def _departures(
             "Correct them.",
         )
     count = round(length / step) if period is not None else int(length / step + 1e-9) + 1
-    if count > MOST_DEPARTURES:
+    if count > MAX_DEPARTURES:
         raise InputError(
             f"{count} departures are asked for.",
-            f"A table holds at most {MOST_DEPARTURES}.",
+            f"A table holds at most {MAX_DEPARTURES}.",
             "Use a longer step or a shorter window.",
         )
     step = length / count if period is not None else step
     return first + step * np.arange(count, dtype=np.float64), step
 
 
-def _middles(world: World, pieces: Pieces) -> Points:
+def _segment_midpoints(world: SailingEnvironment, pieces: TrackPieces) -> TrackPoints:
     """Return the middle of every piece, with the least depth charted along it."""
     points = pieces.points(pieces.leg, pieces.start + 0.5 * pieces.step)
     if world.chart is None or not world.charted:
@@ -179,26 +181,26 @@ def _middles(world: World, pieces: Pieces) -> Points:
     return replace(points, charted=np.asarray(depth, dtype=np.float64))
 
 
-class _Look(NamedTuple):
+class _SpeedAndPower(NamedTuple):
     """Speed over ground [m/s], 0 where the ship cannot pass; power [W]; where that is unknown."""
 
-    over_ground: FloatArray
+    speed_over_ground: FloatArray
     power: FloatArray
     unknown: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class _Voyage:
+class _TrackSimulation:
     """A track in pieces and what is sailed along it."""
 
-    world: World
-    pieces: Pieces
-    middles: Points
+    world: SailingEnvironment
+    pieces: TrackPieces
+    middles: TrackPoints
     min_ukc: float | None
 
     def sail(self, departs: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return (time [s], brake energy [J]) of every departure."""
-        chunk = max(1, _POINTS // len(self.pieces))
+        chunk = max(1, _MAX_POINTS_PER_CHUNK // len(self.pieces))
         parts = [self._sail(departs[i : i + chunk]) for i in range(0, len(departs), chunk)]
         duration, energy = (np.concatenate(column) for column in zip(*parts))
         if np.isnan(energy).any():
@@ -215,23 +217,23 @@ class _Voyage:
         took = np.broadcast_to(self._guess(), shape).copy()
         power, unknown = np.zeros(shape), np.zeros(shape, dtype=bool)
         active = np.arange(len(departs))
-        for _ in range(_SWEEPS):
-            spent = np.where(took[:, active] < _NEVER, took[:, active], self._guess())
+        for _ in range(_MAX_ITERATIONS):
+            spent = np.where(took[:, active] < _IMPASSABLE_TIME, took[:, active], self._guess())
             time = departs[active] + np.cumsum(spent, axis=0) - 0.5 * spent
-            found = self._pass(np.arange(shape[0]), time)
-            settled = np.abs(found[0] - took[:, active]).max(axis=0) < _SETTLED
+            found = self._segment_times(np.arange(shape[0]), time)
+            settled = np.abs(found[0] - took[:, active]).max(axis=0) < _TIME_TOLERANCE
             took[:, active], power[:, active], unknown[:, active] = found
             active = active[~settled]
             if not active.size:
                 break
         else:  # limits that are kept or broken by seconds: piece by piece
-            self._march(departs, active, (took, power, unknown))
-        passes = took < _NEVER
+            self._sail_sequentially(departs, active, (took, power, unknown))
+        passes = took < _IMPASSABLE_TIME
         under_way = np.vstack([np.ones((1, shape[1]), bool), np.cumprod(passes, axis=0)[:-1] > 0])
         bad = np.argwhere((unknown & under_way).T)
         if bad.size:
             which, piece = bad[0]
-            raise _not_told(self.middles, int(piece), float(departs[which]))
+            raise _missing_data_error(self.middles, int(piece), float(departs[which]))
         arrives = passes.all(axis=0)
         energy, duration = (power * took).sum(axis=0), took.sum(axis=0)
         return np.where(arrives, duration, math.inf), np.where(arrives, energy, math.inf)
@@ -241,41 +243,43 @@ class _Voyage:
         usual = float(self.world.ship.speeds[self.middles.setting[0]])
         return np.asarray(self.pieces.step[:, None] / (usual if usual > 0.0 else 5.0))
 
-    def _pass(self, pieces: NDArray[np.int64], time: FloatArray) -> tuple[Any, ...]:
+    def _segment_times(self, pieces: NDArray[np.int64], time: FloatArray) -> tuple[Any, ...]:
         """Return (time [s], power [W], whether unknown) for pieces, in their middle at times."""
         here = self.middles.part(np.repeat(pieces, time.shape[1]))
-        look = self._look(here, time.reshape(-1))
-        ground = look.over_ground.reshape(time.shape)
+        look = self._speed_and_power(here, time.reshape(-1))
+        ground = look.speed_over_ground.reshape(time.shape)
         with np.errstate(divide="ignore"):
-            took = np.where(ground > 0.0, self.pieces.step[pieces, None] / ground, _NEVER)
+            took = np.where(ground > 0.0, self.pieces.step[pieces, None] / ground, _IMPASSABLE_TIME)
         return took, look.power.reshape(time.shape), look.unknown.reshape(time.shape)
 
-    def _march(self, departs: FloatArray, which: NDArray[np.int64], into: tuple[Any, ...]) -> None:
+    def _sail_sequentially(
+        self, departs: FloatArray, which: NDArray[np.int64], into: tuple[Any, ...]
+    ) -> None:
         """Sail departures piece after piece, each timed by the one before it."""
         spent, clock = np.broadcast_to(self._guess()[0], which.shape), departs[which]
         before = self.pieces.step[0]
         for i, step in enumerate(self.pieces.step):
-            found = self._pass(np.array([i]), (clock + 0.5 * spent * step / before)[None])
-            spent = np.where(found[0][0] < _NEVER, found[0][0], spent * step / before)
+            found = self._segment_times(np.array([i]), (clock + 0.5 * spent * step / before)[None])
+            spent = np.where(found[0][0] < _IMPASSABLE_TIME, found[0][0], spent * step / before)
             clock, before = clock + spent, step
             for column, values in zip(into, found):
                 column[i, which] = values[0]
 
-    def _look(self, here: Points, time: FloatArray) -> _Look:
+    def _speed_and_power(self, here: TrackPoints, time: FloatArray) -> _SpeedAndPower:
         """Return how the ship fares at points and times."""
-        motion = move(self.world, here, time)
+        motion = solve_sailing_state(self.world, here, time)
         if self.world.ship.data.get("models", {}).get("rudder", "none") != "none":
-            motion, conditions = self._with_crab(here, time, motion)
+            motion, conditions = self._with_crab_angle(here, time, motion)
         else:
             conditions = self._conditions(here, time, motion)
         power = np.asarray(self.world.ship.power(conditions, here.setting), dtype=np.float64)
-        unknown = np.isnan(motion.through_water)
+        unknown = np.isnan(motion.speed_through_water)
         for name in (EASTWARD_CURRENT, NORTHWARD_CURRENT):
             if name in motion.sampled:
                 unknown |= np.isnan(motion.sampled[name])
         aground = motion.depth <= self.world.ship.draught
         unknown &= ~aground
-        passes = np.isfinite(motion.over_ground) & ~aground
+        passes = np.isfinite(motion.speed_over_ground) & ~aground
         for name in ("wave_height", "wind_speed"):
             largest = getattr(self.world.ship.limits, name)
             if math.isfinite(largest):
@@ -284,7 +288,7 @@ class _Voyage:
         safety = self.world.ship.limits.safety
         if safety is not None:
             passes &= ~safety.forbids(
-                motion.through_water,
+                motion.speed_through_water,
                 wave_angle=conditions.wave_angle,
                 wave_height=conditions.wave_height,
                 wave_period=conditions.wave_period,
@@ -292,9 +296,9 @@ class _Voyage:
         if self.min_ukc is not None:
             unknown |= np.isnan(motion.depth)
             passes &= motion.depth - self.world.ship.draught >= self.min_ukc
-        return _Look(np.where(passes, motion.over_ground, 0.0), power, unknown)
+        return _SpeedAndPower(np.where(passes, motion.speed_over_ground, 0.0), power, unknown)
 
-    def _conditions(self, here: Points, time: FloatArray, motion: Motion) -> Conditions:
+    def _conditions(self, here: TrackPoints, time: FloatArray, motion: SailingState) -> Conditions:
         return conditions_at(
             self.world,
             here,
@@ -304,9 +308,9 @@ class _Voyage:
             heading=motion.heading,
         )
 
-    def _with_crab(
-        self, here: Points, time: FloatArray, motion: Motion
-    ) -> tuple[Motion, Conditions]:
+    def _with_crab_angle(
+        self, here: TrackPoints, time: FloatArray, motion: SailingState
+    ) -> tuple[SailingState, Conditions]:
         """Return the motion of a ship whose rudder drags when it crabs, and its conditions."""
         east, north = np.sin(here.course), np.cos(here.course)
         along = across = np.zeros(len(here))
@@ -314,19 +318,21 @@ class _Voyage:
             current = [motion.sampled[n] for n in (EASTWARD_CURRENT, NORTHWARD_CURRENT)]
             along = current[0] * east + current[1] * north
             across = current[0] * north - current[1] * east
-        for _ in range(_CRAB_TURNS):
+        for _ in range(_CRAB_ITERATIONS):
             with np.errstate(invalid="ignore", divide="ignore"):
-                crab = -np.arcsin(across / motion.through_water)
+                crab = -np.arcsin(across / motion.speed_through_water)
             motion = replace(motion, heading=(here.course + crab) % (2.0 * math.pi))
             conditions = self._conditions(here, time, motion).with_values(crab_angle=crab)
             speed = self.world.ship.speed_through_water(conditions, here.setting)
-            motion = replace(motion, through_water=np.asarray(speed, dtype=np.float64))
+            motion = replace(motion, speed_through_water=np.asarray(speed, dtype=np.float64))
         with np.errstate(invalid="ignore"):
-            ground = along + np.sqrt(motion.through_water**2 - across**2)
-        return replace(motion, over_ground=np.where(ground > 0.0, ground, math.nan)), conditions
+            ground = along + np.sqrt(motion.speed_through_water**2 - across**2)
+        return replace(
+            motion, speed_over_ground=np.where(ground > 0.0, ground, math.nan)
+        ), conditions
 
 
-def _not_told(here: Points, i: int, depart: float) -> CoverageError:
+def _missing_data_error(here: TrackPoints, i: int, depart: float) -> CoverageError:
     place = format_position(float(here.lat[i]), float(here.lon[i]))
     left = format_time(depart)
     return CoverageError(
@@ -339,12 +345,16 @@ def _not_told(here: Points, i: int, depart: float) -> CoverageError:
     )
 
 
-def _first_current(world: World, pieces: Pieces, departs: FloatArray) -> FloatArray:
+def _first_current(
+    world: SailingEnvironment, pieces: TrackPieces, departs: FloatArray
+) -> FloatArray:
     """Return the current at the place of departure along the first course [m/s]."""
     if not world.has_current:
         return np.zeros(departs.shape)
     zero = np.zeros(1, dtype=np.int64)
     there = pieces.points(zero, np.zeros(1))
-    sampled, _ = look(world, there.part(np.zeros(len(departs), dtype=np.int64)), departs)
+    sampled, _ = sample_sea_and_depth(
+        world, there.part(np.zeros(len(departs), dtype=np.int64)), departs
+    )
     east, north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
     return np.asarray(east * np.sin(there.course[0]) + north * np.cos(there.course[0]))

@@ -67,13 +67,13 @@ class TripTable:
         return replace(
             self,
             step=self.step / factor,
-            duration=_between(self.duration, at, self.periodic),
-            energy=_between(self.energy, at, self.periodic),
-            current=_between(self.current, at, self.periodic),
+            duration=_interpolate(self.duration, at, self.periodic),
+            energy=_interpolate(self.energy, at, self.periodic),
+            current=_interpolate(self.current, at, self.periodic),
         )
 
 
-def _between(values: FloatArray, at: FloatArray, periodic: bool) -> FloatArray:
+def _interpolate(values: FloatArray, at: FloatArray, periodic: bool) -> FloatArray:
     """Interpolate between values at 0, 1, 2 ..."""
     from scipy.interpolate import CubicSpline
 

@@ -29,12 +29,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import CoverageError, InputError, unknown_name
+from thalweg.core.errors import CoverageError, InputError, unknown_name_error
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.operations.waiting.trip_table import TripTable
 
-RULES: Final = ("none", "current", "next trip", "optimum")
+DEPARTURE_RULES: Final = ("none", "current", "next trip", "optimum")
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def plan_waiting(
     trips: Sequence[TripTable],
     *,
     start: TimeLike,
-    most_wait: float,
+    max_wait: float,
     hotel_power: float = 0.0,
     rule: str = "optimum",
 ) -> WaitingPlan:
@@ -85,7 +85,7 @@ def plan_waiting(
         In the order in which they are sailed, all with the same departures.
     start : time
         When the ship is ready for the first.
-    most_wait : float
+    max_wait : float
         Longest wait before each trip [s], at least 0, counted from when the trip can be made.
     hotel_power : float
         Power that is used all the time, waiting or not [W].
@@ -102,26 +102,26 @@ def plan_waiting(
     InputError
         If the tables do not go together, or a number makes no sense.
     """
-    if rule not in RULES:
-        raise unknown_name("waiting rule", rule, RULES)
-    board = _Board.of(trips, most_wait if rule != "none" else 0.0, hotel_power)
+    if rule not in DEPARTURE_RULES:
+        raise unknown_name_error("waiting rule", rule, DEPARTURE_RULES)
+    board = _DepartureGrid.of(trips, max_wait if rule != "none" else 0.0, hotel_power)
     first = board.index(parse_time(start))
     return board.follow(rule, first, board.values() if rule == "optimum" else None)
 
 
 def optimum_energy(
-    trips: Sequence[TripTable], *, most_wait: float, hotel_power: float = 0.0
+    trips: Sequence[TripTable], *, max_wait: float, hotel_power: float = 0.0
 ) -> FloatArray:
     """Return the least energy [J] of a sequence of trips, for every start in the tables.
 
     Arguments as in `plan_waiting`; +inf for starts from which the tables end too early.
     """
-    board = _Board.of(trips, most_wait, hotel_power)
+    board = _DepartureGrid.of(trips, max_wait, hotel_power)
     return board.best_from(board.values()[0], trips[0])[: len(trips[0])]
 
 
 @dataclass(frozen=True, eq=False)
-class _Board:
+class _DepartureGrid:
     """Trips over one grid of departures."""
 
     trips: tuple[TripTable, ...]
@@ -129,10 +129,10 @@ class _Board:
     hotel: float  # energy of one step of hotel load [J]
 
     @classmethod
-    def of(cls, trips: Sequence[TripTable], most_wait: float, hotel_power: float) -> _Board:
-        _check(trips)
+    def of(cls, trips: Sequence[TripTable], max_wait: float, hotel_power: float) -> _DepartureGrid:
+        _check_trips(trips)
         for name, value, unit in (
-            ("longest wait", most_wait, "s"),
+            ("longest wait", max_wait, "s"),
             ("hotel power", hotel_power, "W"),
         ):
             if not (math.isfinite(value) and value >= 0.0):
@@ -142,7 +142,7 @@ class _Board:
                     "Correct it.",
                 )
         table = trips[0]
-        width = int(most_wait / table.step + 1e-9)
+        width = int(max_wait / table.step + 1e-9)
         if table.periodic:  # after a whole period all is as before
             width = min(width, len(table) - 1)
         return cls(tuple(trips), min(width, len(table)), hotel_power * table.step)
@@ -163,7 +163,7 @@ class _Board:
         count = len(trip)
         possible = np.isfinite(trip.duration)
         if not possible.any():
-            raise _never(trip)
+            raise _no_departure_error(trip)
         if trip.periodic:
             ahead = index + np.flatnonzero(possible[(index + np.arange(count)) % count])
         else:
@@ -194,12 +194,14 @@ class _Board:
             trip = self.trips[k]
             total = self.cost(trip, at, later is None)
             if later is not None:
-                total = total + self._onward(trip, at, later)
+                total = total + self._energy_after_arrival(trip, at, later)
             found.append(np.where(np.isfinite(total), total + self.hotel * at, np.inf))
             later = self.best_from(found[-1], trip)
         return found[::-1]
 
-    def _onward(self, trip: TripTable, at: NDArray[np.int64], later: FloatArray) -> FloatArray:
+    def _energy_after_arrival(
+        self, trip: TripTable, at: NDArray[np.int64], later: FloatArray
+    ) -> FloatArray:
         """Return the energy [J] after arrival, for departures ``at``."""
         count = len(trip)
         ready = at + trip.steps[at % count]
@@ -211,7 +213,7 @@ class _Board:
     def best_from(self, values: FloatArray, trip: TripTable) -> FloatArray:
         """Return the least energy [J] of a ship that is ready for a trip at each departure."""
         count = len(trip)
-        least = _least_ahead(values, self.width)
+        least = _windowed_minimum(values, self.width)
         at = np.arange(len(values))
         ahead = np.where(np.isfinite(trip.duration[at % count]), at, len(values))
         ahead = np.minimum.accumulate(ahead[::-1])[::-1]  # the next departure that is possible
@@ -262,7 +264,7 @@ class _Board:
         )
 
 
-def _never(trip: TripTable) -> CoverageError:
+def _no_departure_error(trip: TripTable) -> CoverageError:
     return CoverageError(
         f"The trip {trip.name!r} cannot be made at any of its {len(trip)} departures.",
         "All of them meet too little water, too strong a current or weather beyond the limits.",
@@ -270,7 +272,7 @@ def _never(trip: TripTable) -> CoverageError:
     )
 
 
-def _least_ahead(values: FloatArray, width: int) -> FloatArray:
+def _windowed_minimum(values: FloatArray, width: int) -> FloatArray:
     """Return the least of each value and the ``width`` after it, by doubling windows."""
     least, span = values.copy(), 1
     while 2 * span <= width + 1:
@@ -282,7 +284,7 @@ def _least_ahead(values: FloatArray, width: int) -> FloatArray:
     return least
 
 
-def _check(trips: Sequence[TripTable]) -> None:
+def _check_trips(trips: Sequence[TripTable]) -> None:
     if not trips:
         raise InputError("There are no trips.", "At least one is needed.", "Give some.")
     kinds = {(t.start, t.step, len(t), t.periodic) for t in trips}

@@ -15,14 +15,18 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, format_time, parse_time, to_datetime64
 from thalweg.core.units import HOUR
 from thalweg.operations.waiting.trip_table import TripTable
-from thalweg.operations.waiting.waiting_optimisation import RULES, WaitingPlan, plan_waiting
+from thalweg.operations.waiting.waiting_optimisation import (
+    DEPARTURE_RULES,
+    WaitingPlan,
+    plan_waiting,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
 
 KWH = 3.6e6  #: [J]
-MOST_PLANS = 20_000  #: a study may hold
-_LEAST_SAVING = 1e-9  # share of the energy that counts as a saving
+MAX_PLANS = 20_000  #: a study may hold
+_MIN_SAVING = 1e-9  # share of the energy that counts as a saving
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,7 @@ class WaitingStudy:
         [W].
     starts : float64 array (s,)
         [s since 1970-01-01T00:00Z].
-    most_waits : float64 array (w,)
+    max_waits : float64 array (w,)
         Longest wait before each trip [s].
     plans : dict of str to tuple of tuple of WaitingPlan
         By rule, then start, then allowed wait.
@@ -46,7 +50,7 @@ class WaitingStudy:
     trips: tuple[TripTable, ...]
     hotel_power: float
     starts: FloatArray
-    most_waits: FloatArray
+    max_waits: FloatArray
     plans: dict[str, tuple[tuple[WaitingPlan, ...], ...]]
 
     def energy(self, rule: str) -> FloatArray:
@@ -73,7 +77,7 @@ class WaitingStudy:
                         {
                             "rule": rule,
                             "start": to_datetime64(self.starts[i]),
-                            "most_wait_h": self.most_waits[j] / HOUR,
+                            "most_wait_h": self.max_waits[j] / HOUR,
                             "energy_kwh": plan.energy / KWH,
                             "saving_percent": saving[i, j],
                             "waited_h": plan.waited / HOUR,
@@ -95,7 +99,7 @@ def waiting_study(
     trips: Sequence[TripTable],
     *,
     starts: Sequence[TimeLike],
-    most_waits: ArrayLike,
+    max_waits: ArrayLike,
     hotel_power: float = 0.0,
 ) -> WaitingStudy:
     """Plan the departures by every rule, for several starts and allowed waits.
@@ -106,7 +110,7 @@ def waiting_study(
         In the order in which they are sailed; five cycles of two trips are ``[out, back] * 5``.
     starts : sequence of time
         When the ship is ready for the first trip.
-    most_waits : array_like
+    max_waits : array_like
         Longest wait before each trip [s].
     hotel_power : float
         Power used all the time [W]; 0 for waiting that costs nothing.
@@ -123,23 +127,23 @@ def waiting_study(
         If there is nothing to study or more than 20,000 plans are asked for.
     """
     begin = np.array([parse_time(s) for s in starts], dtype=np.float64)
-    waits = np.atleast_1d(np.asarray(most_waits, dtype=np.float64))
-    count = begin.size * waits.size * len(RULES)
-    if not 0 < count <= MOST_PLANS:
+    waits = np.atleast_1d(np.asarray(max_waits, dtype=np.float64))
+    count = begin.size * waits.size * len(DEPARTURE_RULES)
+    if not 0 < count <= MAX_PLANS:
         raise InputError(
             f"{count} plans of waiting are asked for.",
-            f"A study holds 1 to {MOST_PLANS}.",
+            f"A study holds 1 to {MAX_PLANS}.",
             "Give at least one start and one allowed wait, and not too many.",
         )
     plans = {
         rule: tuple(
             tuple(
-                plan_waiting(trips, start=s, most_wait=w, hotel_power=hotel_power, rule=rule)
+                plan_waiting(trips, start=s, max_wait=w, hotel_power=hotel_power, rule=rule)
                 for w in waits.tolist()
             )
             for s in begin.tolist()
         )
-        for rule in RULES
+        for rule in DEPARTURE_RULES
     }
     return WaitingStudy(tuple(trips), float(hotel_power), begin, waits, plans)
 
@@ -148,7 +152,7 @@ def break_even_power(
     trips: Sequence[TripTable],
     *,
     start: TimeLike,
-    most_wait: float,
+    max_wait: float,
     rule: str = "optimum",
     largest: float = 1e6,
 ) -> float:
@@ -158,7 +162,7 @@ def break_even_power(
     ----------
     trips : sequence of TripTable
     start : time
-    most_wait : float
+    max_wait : float
         Longest wait before each trip [s].
     rule : str
         As in `plan_waiting`.
@@ -180,11 +184,11 @@ def break_even_power(
 
     def saves(power: float) -> bool:
         none, some = (
-            plan_waiting(trips, start=start, most_wait=most_wait, hotel_power=power, rule=r).energy
+            plan_waiting(trips, start=start, max_wait=max_wait, hotel_power=power, rule=r).energy
             for r in ("none", rule)
         )
         rounding = power * trips[0].step * (len(trips) - 1)
-        return some < none * (1.0 - _LEAST_SAVING) - rounding
+        return some < none * (1.0 - _MIN_SAVING) - rounding
 
     if not saves(0.0):
         return 0.0

@@ -15,11 +15,11 @@ from thalweg.network import Network, mesh
 from thalweg.network.triangular_mesh.thinning import dimensionless_curl
 from thalweg.sea import Mesh, Sea, standard_names
 
-MOST_TIMES = 150  #: moments at which the flow is looked at
-MOST_NODES = 30_000  #: models with more nodes are thinned where no spacing is asked for
-_LOOK = 25 * HOUR  # the flow is looked at for two tides
-_WIDER = 1.25  # steps of the spacing until few enough nodes are left
-_SLOW = 0.1  # speed [m/s] by which curl is made dimensionless at least
+MAX_TIMES = 150  #: moments at which the flow is looked at
+MAX_MESH_NODES = 30_000  #: models with more nodes are thinned where no spacing is asked for
+_FLOW_PERIOD = 25 * HOUR  # the flow is looked at for two tides
+_SPACING_GROWTH = 1.25  # steps of the spacing until few enough nodes are left
+_MIN_SPEED_SCALE = 0.1  # speed [m/s] by which curl is made dimensionless at least
 
 
 def pruned_mesh(
@@ -68,14 +68,14 @@ def pruned_mesh(
         )
     speed, curl = None, None
     if largest_spacing is not None:
-        speed, curl = flow_of(sea, start, end, length=largest_spacing)
+        speed, curl = flow_statistics(sea, start, end, length=largest_spacing)
     return mesh(
         chart, model.lat, model.lon, model.triangles, speed=speed, curl=curl,
         largest_spacing=largest_spacing, **options,
     )  # fmt: skip
 
 
-def model_network(
+def model_mesh_network(
     chart: Chart, sea: Sea, period: tuple[float, float], *, spacing: float | None = None
 ) -> Network:
     """Build a network on the model's nodes: all, or those that a spacing leaves.
@@ -89,19 +89,19 @@ def model_network(
         Of the voyage [s since 1970]; the flow is looked at for its first 25 h.
     spacing : float, optional
         In still water [m], less where the flow is strong or turns. By default all nodes are kept,
-        of models with more than `MOST_NODES` about so many.
+        of models with more than `MAX_MESH_NODES` about so many.
     """
     model = sea.mesh()
-    if spacing is None and (model is None or model.lat.size <= MOST_NODES):
+    if spacing is None and (model is None or model.lat.size <= MAX_MESH_NODES):
         return pruned_mesh(chart, sea, *period, largest_spacing=None)
-    start, end = period[0], min(period[1], period[0] + _LOOK)
+    start, end = period[0], min(period[1], period[0] + _FLOW_PERIOD)
     if spacing is not None:
         return pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
     assert model is not None  # told by the size above
     spacing = 2.0 * mean_spacing(model)
     network = pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
-    while network.n_nodes > MOST_NODES:
-        spacing *= max(_WIDER, math.sqrt(network.n_nodes / MOST_NODES))
+    while network.n_nodes > MAX_MESH_NODES:
+        spacing *= max(_SPACING_GROWTH, math.sqrt(network.n_nodes / MAX_MESH_NODES))
         network = pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
     return network
 
@@ -112,7 +112,7 @@ def mean_spacing(model: Mesh) -> float:
     return float(np.mean(distance(model.lat[a], model.lon[a], model.lat[b], model.lon[b])))
 
 
-def flow_of(
+def flow_statistics(
     sea: Sea, start: float, end: float, *, length: float
 ) -> tuple[FloatArray | None, FloatArray | None]:
     """Return the largest speed [m/s] and dimensionless curl over a period at the mesh's nodes.
@@ -129,7 +129,7 @@ def flow_of(
     speed = np.hypot(east, north).max(axis=0)
     curl = dimensionless_curl(
         model.lat, model.lon, model.triangles, east, north,
-        length=length, speed=max(float(speed.max()), _SLOW),
+        length=length, speed=max(float(speed.max()), _MIN_SPEED_SCALE),
     )  # fmt: skip
     return np.asarray(speed), curl
 
@@ -137,6 +137,6 @@ def flow_of(
 def _times(sea: Sea, start: float, end: float) -> FloatArray:
     """Return native times of the current in a period, not too many."""
     times = sea.times(start, end, names=standard_names.CURRENT.pair)
-    if times.size <= MOST_TIMES:
+    if times.size <= MAX_TIMES:
         return times if times.size else np.array([start])
-    return np.asarray(times[np.linspace(0, times.size - 1, MOST_TIMES).round().astype(int)])
+    return np.asarray(times[np.linspace(0, times.size - 1, MAX_TIMES).round().astype(int)])

@@ -9,21 +9,21 @@ from dataclasses import dataclass, replace
 
 from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
-from thalweg.network import Network, lattice, shortest
-from thalweg.network.network_concatenation import joined
+from thalweg.network import Network, lattice, shortest_path
+from thalweg.network.network_concatenation import concatenate_networks
 from thalweg.planning.network_selection.network_choice import build_network, lattice_between
-from thalweg.planning.request.voyage_endpoints import End
-from thalweg.planning.single.passage import Task
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.passage import PlanningContext
 
 #: Fronts are searched on networks of about this many nodes, unless a resolution is given.
-MOST_NODES = 3_000
+MAX_FRONT_NODES = 3_000
 #: Ways round longer than this multiple of the shortest are not looked at.
-LONGEST_WAY = 1.8
+MAX_LENGTH_RATIO = 1.8
 _COAST_LEVELS = 2
 
 
 @dataclass(frozen=True)
-class Way:
+class RouteAlternative:
     """One way round, and the network it is searched on.
 
     Attributes
@@ -38,78 +38,84 @@ class Way:
     network: Network
 
 
-def find_ways(task: Task, ends: Sequence[End]) -> list[Way]:
+def find_route_alternatives(
+    context: PlanningContext, ends: Sequence[Endpoint]
+) -> list[RouteAlternative]:
     """Return the ways round between the ends of a voyage.
 
     The shortest way comes first. Where it takes n canals there are up to 2^n - 1 more, one for
-    every set of them that is closed; those over `LONGEST_WAY` times as long are left out, and so
-    are those that turn out to be the same.
+    every set of them that is closed; those over `MAX_LENGTH_RATIO` times as long are left out, and
+    so are those that turn out to be the same.
     """
-    task.tell(f"building the network from {ends[0].name} to {ends[-1].name}")
-    first = _way(task, ends, task.chart)
-    ways, used = {first.name: first}, canals_used(first.network, task.chart)
-    longest = LONGEST_WAY * _length(first.network)
+    context.tell(f"building the network from {ends[0].name} to {ends[-1].name}")
+    first = _route_alternative(context, ends, context.chart)
+    ways, used = {first.name: first}, canals_used(first.network, context.chart)
+    longest = MAX_LENGTH_RATIO * _shortest_length(first.network)
     for count in range(1, len(used) + 1):
         for closed in itertools.combinations(used, count):
-            task.tell(f"looking for a way without {' and '.join(closed)}")
+            context.tell(f"looking for a way without {' and '.join(closed)}")
             try:
-                way = _way(task, ends, task.chart.without_canals(*closed))
+                way = _route_alternative(context, ends, context.chart.without_canals(*closed))
             except NoRouteError:
                 continue
-            if _length(way.network) <= longest:
+            if _shortest_length(way.network) <= longest:
                 ways.setdefault(way.name, way)
     return list(ways.values())
 
 
 def canals_used(network: Network, chart: Chart) -> tuple[str, ...]:
     """Return the names of the canals on the shortest way over a network."""
-    _, path = shortest(network, network.meta.start, network.meta.goal)
+    _, path = shortest_path(network, network.meta.start, network.meta.goal)
     lat, lon = network.lat[path], network.lon[path]
     which = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
     return tuple(dict.fromkeys(chart.canals[i].name for i in which if i >= 0))
 
 
-def _length(network: Network) -> float:
-    return float(shortest(network, network.meta.start, network.meta.goal)[0][network.meta.goal])
+def _shortest_length(network: Network) -> float:
+    return float(
+        shortest_path(network, network.meta.start, network.meta.goal)[0][network.meta.goal]
+    )
 
 
-def _way(task: Task, ends: Sequence[End], chart: Chart) -> Way:
-    task = replace(task, chart=chart)
-    stretches = [_network(task, a, b) for a, b in itertools.pairwise(ends)]
-    network = joined(stretches, [None] * (len(stretches) - 1))
-    return Way(" and ".join(canals_used(network, chart)) or "open sea", network)
+def _route_alternative(
+    context: PlanningContext, ends: Sequence[Endpoint], chart: Chart
+) -> RouteAlternative:
+    context = replace(context, chart=chart)
+    stretches = [_network(context, a, b) for a, b in itertools.pairwise(ends)]
+    network = concatenate_networks(stretches, [None] * (len(stretches) - 1))
+    return RouteAlternative(" and ".join(canals_used(network, chart)) or "open sea", network)
 
 
-def _network(task: Task, start: End, goal: End) -> Network:
+def _network(context: PlanningContext, start: Endpoint, goal: Endpoint) -> Network:
     """Return a network that is not too large for the search of a whole front."""
-    choice = task.choice
-    period = task.voyage.earliest_departure, task.last
+    choice = context.choice
+    period = context.voyage.earliest_departure, context.last
     if choice.network not in ("auto", "lattice") or choice.spacing is not None:
-        return build_network(choice, task.chart, task.sea, (start, goal), period=period)
-    if choice.network == "auto" and task.sea.mesh() is not None:
-        network = build_network(choice, task.chart, task.sea, (start, goal), period=period)
+        return build_network(choice, context.chart, context.sea, (start, goal), period=period)
+    if choice.network == "auto" and context.sea.mesh() is not None:
+        network = build_network(choice, context.chart, context.sea, (start, goal), period=period)
         if network.meta.kind == "mesh":
             return network
     places = (start.lat, start.lon), (goal.lat, goal.lon)
     for levels in range(_COAST_LEVELS, -1, -1):
-        network = lattice_between(task.chart, *places, coast_levels=levels)
-        if network.n_nodes <= MOST_NODES:
+        network = lattice_between(context.chart, *places, coast_levels=levels)
+        if network.n_nodes <= MAX_FRONT_NODES:
             return network
-    return _along(task.chart, network, places)
+    return _corridor_lattice(context.chart, network, places)
 
 
-def _along(
+def _corridor_lattice(
     chart: Chart, wide: Network, places: tuple[tuple[float, float], tuple[float, float]]
 ) -> Network:
     """Return a lattice of a corridor about the shortest way over a network that is too large."""
-    _, path = shortest(wide, wide.meta.start, wide.meta.goal)
+    _, path = shortest_path(wide, wide.meta.start, wide.meta.goal)
     way = list(zip(wide.lat[path], wide.lon[path]))
-    length = _length(wide)
+    length = _shortest_length(wide)
     width = min(max(length / 10.0, 40_000.0), 400_000.0)
-    spacing = max(math.sqrt(2.5 * length * width / (0.5 * MOST_NODES)), length / 150.0)
+    spacing = max(math.sqrt(2.5 * length * width / (0.5 * MAX_FRONT_NODES)), length / 150.0)
     for _ in range(6):
         network = lattice(chart, *places, along=way, width=width, spacing=spacing, coast_levels=1)
-        if network.n_nodes <= MOST_NODES:
+        if network.n_nodes <= MAX_FRONT_NODES:
             break
         spacing *= 1.3
     return network

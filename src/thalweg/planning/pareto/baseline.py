@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from thalweg.planning.pareto.objective import Criterion
-    from thalweg.planning.single.passage import Task
+    from thalweg.planning.single.passage import PlanningContext
 
 
-_MOST_SPEEDS = 6
+_MAX_SPEEDS = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class BaselineComparison:
     """The shortest way, sailed at each constant setting through the same weather.
 
     Attributes
@@ -44,49 +44,49 @@ class Comparison:
     rows: tuple[dict[str, Any], ...]
 
 
-def blind_tracks(
-    task: Task, lat: FloatArray, lon: FloatArray, settings: NDArray[np.int64]
+def weather_blind_tracks(
+    context: PlanningContext, lat: FloatArray, lon: FloatArray, settings: NDArray[np.int64]
 ) -> list[Track]:
     """Return the shortest way over the chart from a rough one, at up to six settings.
 
     Where the chart tells no depth but the sea does, the sea's depth is kept to.
     """
-    depth_from_sea = math.isfinite(task.needs.limits[0]) and not task.chart.has_depth
-    sea = task.sea if depth_from_sea else _still(task)
-    depart = task.voyage.earliest_departure
-    top = len(task.ship.speeds) - 1
+    depth_from_sea = math.isfinite(context.needs.limits[0]) and not context.chart.has_depth
+    sea = context.sea if depth_from_sea else _calm_sea(context)
+    depart = context.voyage.earliest_departure
+    top = len(context.ship.speeds) - 1
     rough = Track(lat, lon, depart, None, np.full(len(lat) - 1, top))  # type: ignore[arg-type]
-    common = {"ship": task.ship, "sea": sea, "chart": task.chart, "min_ukc": task.min_ukc}
+    common = {"ship": context.ship, "sea": sea, "chart": context.chart, "min_ukc": context.min_ukc}
     scored = evaluate(rough, strict=False, **common)  # type: ignore[arg-type]
     short = better_route(
         scored,
-        table=task.table,
-        limits=task.needs.limits,
+        table=context.table,
+        limits=context.needs.limits,
         objective="distance",
         wait=False,
         **common,  # type: ignore[arg-type]
     ).track
     legs = len(short.lat) - 1
-    chosen = settings[
-        np.unique(np.linspace(0, len(settings) - 1, _MOST_SPEEDS).round().astype(int))
-    ]
+    chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]
     return [short.replaced(setting=np.full(legs, s)) for s in chosen]
 
 
-def _still(task: Task) -> Sea:
+def _calm_sea(context: PlanningContext) -> Sea:
     """Return the sea without weather, with all the variables that the ship reads."""
-    return Sea.layered(Sea.calm(), task.sea)
+    return Sea.layered(Sea.calm(), context.sea)
 
 
-def sail_blind(task: Task, criterion: Criterion, tracks: Sequence[Track]) -> list[Route]:
+def evaluate_weather_blind(
+    context: PlanningContext, criterion: Criterion, tracks: Sequence[Track]
+) -> list[Route]:
     """Sail weather-blind tracks in the weather of the plan; by ascending time."""
     sailed = [
         evaluate(
             track,
-            ship=task.ship,
-            sea=task.sea,
-            chart=task.chart,
-            min_ukc=task.min_ukc,
+            ship=context.ship,
+            sea=context.sea,
+            chart=context.chart,
+            min_ukc=context.min_ukc,
             strict=False,
             terms=criterion.terms,
         )
@@ -96,13 +96,13 @@ def sail_blind(task: Task, criterion: Criterion, tracks: Sequence[Track]) -> lis
     return sorted(known, key=lambda route: route.time_h)
 
 
-def compare(
-    task: Task,
+def compare_with_baseline(
+    context: PlanningContext,
     criterion: Criterion,
     front: Sequence[Route],
     values: FloatArray,
     blind: Sequence[Route],
-) -> Comparison | None:
+) -> BaselineComparison | None:
     """Tell what a front saves over weather-blind routes.
 
     Between two routes of the front it is read off the line between them: sailing the one for a
@@ -114,15 +114,16 @@ def compare(
     time = np.array([front[i].time_h for i in order])
     value = np.minimum.accumulate(np.asarray(values)[order])
     counts = np.array([criterion.of(route) for route in blind])
-    speeds = np.asarray(task.ship.speeds) / KNOT
+    speeds = np.asarray(context.ship.speeds) / KNOT
     rows = tuple(
-        {"speed_kn": float(speeds[int(route.track.setting[0])])} | _row(route, count, time, value)
+        {"speed_kn": float(speeds[int(route.track.setting[0])])}
+        | _savings_row(route, count, time, value)
         for route, count in zip(blind, counts)
     )
-    return Comparison(tuple(blind), counts, rows)
+    return BaselineComparison(tuple(blind), counts, rows)
 
 
-def _row(blind: Route, count: float, time: FloatArray, value: FloatArray) -> dict[str, Any]:
+def _savings_row(blind: Route, count: float, time: FloatArray, value: FloatArray) -> dict[str, Any]:
     """Return what a front saves over one route: None where it holds nothing to compare."""
     no_earlier = blind.time_h >= time[0] * (1.0 - 1e-6)
     no_cheaper = count >= value[-1] * (1.0 - 1e-6)

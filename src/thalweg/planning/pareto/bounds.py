@@ -8,19 +8,26 @@ import numpy as np
 
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR
-from thalweg.planning.pareto.exploration import Explored, Means, not_dominated, strongest_current
-from thalweg.planning.pareto.plan_front import FrontOfPlan
+from thalweg.planning.pareto.exploration import (
+    ExploredAlternative,
+    TradeOffContext,
+    non_dominated_indices,
+    strongest_current,
+)
+from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Proof
-from thalweg.search import extreme
+from thalweg.search import table_bounds
 
 _KIND = (
     "the lower front of the network: all as favourable as at any moment of each time step, "
     "lengths as short as in open water"
 )
-_KIND_CERTAIN = "the geodesic at the greatest speed over ground in the data"
+_KIND_ABSOLUTE = "the geodesic at the greatest speed over ground in the data"
 
 
-def lower_front(explored: list[Explored], criterion_floor: float) -> np.ndarray:
+def open_water_lower_front(
+    explored: list[ExploredAlternative], criterion_lower_bound: float
+) -> np.ndarray:
     """Return the lower front of open water over all ways round: times [h] and values.
 
     A way in open water that takes T and costs C has one on the network that takes at most T / k
@@ -33,13 +40,13 @@ def lower_front(explored: list[Explored], criterion_floor: float) -> np.ndarray:
             continue
         k = one.factor
         time.append(k * one.exact.lower_time / HOUR)
-        value.append(np.maximum(k * one.exact.lower_cost, criterion_floor))
+        value.append(np.maximum(k * one.exact.lower_cost, criterion_lower_bound))
     times, values = np.concatenate(time), np.concatenate(value)
-    kept = not_dominated(times, values)
+    kept = non_dominated_indices(times, values)
     return np.array([times[kept], values[kept]]).reshape(2, -1)
 
 
-def disproved(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
+def correction_factors(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return the factors (time, value) by which routes show the lower front to be too high.
 
     1 where none does. Ways between islands may be shorter, by more than the factor of directions,
@@ -56,10 +63,16 @@ def disproved(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.n
     return factors
 
 
-def proof_of(means: Means, explored: list[Explored], front: FrontOfPlan, *, whole: bool) -> Proof:
+def derive_proof(
+    trade_off: TradeOffContext,
+    explored: list[ExploredAlternative],
+    front: ParetoFront,
+    *,
+    whole: bool,
+) -> Proof:
     """Return the bound: of the fast end for a whole front, else of the criterion."""
-    certain_time, certain_value = certain(means, explored)
-    kind = _KIND if front.lower.size else _KIND_CERTAIN
+    certain_time, certain_value = absolute_lower_bound(trade_off, explored)
+    kind = _KIND if front.lower.size else _KIND_ABSOLUTE
     if whole:
         fastest = min(one.first.duration for one in explored) / HOUR
         lower = front.lower[0].min() if front.lower.size else certain_time
@@ -73,30 +86,32 @@ def proof_of(means: Means, explored: list[Explored], front: FrontOfPlan, *, whol
     return Proof(max(lower, certain_value), kind, certain_value, solver)
 
 
-def certain(means: Means, explored: list[Explored]) -> tuple[float, float]:
+def absolute_lower_bound(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative]
+) -> tuple[float, float]:
     """Return what no route at all undercuts: a time [h] and a value of the criterion.
 
     The geodesic at the greatest speed over ground that the data allow, for the value with the
     least rate of the best setting and the least weight of it.
     """
-    task, criterion = means.task, means.criterion
-    start, goal = means.ends[0], means.ends[-1]
+    context, criterion = trade_off.context, trade_off.criterion
+    start, goal = trade_off.ends[0], trade_off.ends[-1]
     geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
     current = max(strongest_current(one.frozen.stations) for one in explored)
     least = min(criterion.inside, criterion.outside)
     if criterion.name == "cost":
         least *= min(float(one.way.network.price.min()) for one in explored)
-    rates = np.maximum(extreme(means.rate.table.kernel_arrays(), np.fmin), 0.0)
+    rates = np.maximum(table_bounds(trade_off.rate.table.kernel_arrays(), np.fmin), 0.0)
     fastest, value = 0.0, math.inf
-    for setting in means.settings:
-        over_ground = float(task.ship.top_speed(int(setting)) or math.inf) + current
+    for setting in trade_off.settings:
+        over_ground = float(context.ship.top_speed(int(setting)) or math.inf) + current
         fastest = max(fastest, over_ground)
         per_second = least * float(rates[setting]) + criterion.time_price
         value = min(value, per_second * geodesic / over_ground)
     return geodesic / fastest / HOUR, value
 
 
-def lowered_notes(share: np.ndarray) -> list[str]:
+def correction_notes(share: np.ndarray) -> list[str]:
     """Say by how much the lower front had to be lowered, if at all."""
     least = float(share.min())
     if least == 1.0:

@@ -10,41 +10,49 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import wrap_longitude
-from thalweg.evolution import Evaluator, Evolution, Genome, evolve, make_evaluator
+from thalweg.evolution import Evaluator, EvolutionResult, Genome, evolve, make_evaluator
 from thalweg.evolution.memetic import refine_front
 from thalweg.network.network import FloatArray
-from thalweg.planning.pareto.exploration import Candidate, Explored, Means, not_dominated, spread
+from thalweg.planning.pareto.exploration import (
+    ExploredAlternative,
+    TrackCandidate,
+    TradeOffContext,
+    evenly_spaced_subset,
+    non_dominated_indices,
+)
 from thalweg.route import Track
 
 if TYPE_CHECKING:
     from thalweg.sea import GridFields
 
 #: Tracks that refinement begins with: of the front, and others.
-_MOST_SEEDS, _MOST_DOMINATED = 48, 16
+_MAX_SEEDS, _MAX_DOMINATED_SEEDS = 48, 16
 #: Tracks that are kept, and generations, of the refinement and of an evolution of its own.
-_SIZE, _GENERATIONS = 140, 26
-_OWN_SIZE, _OWN_GENERATIONS = 100, 300
+_REFINEMENT_POPULATION, _REFINEMENT_GENERATIONS = 140, 26
+_EVOLUTION_POPULATION, _EVOLUTION_GENERATIONS = 100, 300
 _LARGEST_RASTER = 24_000_000  # numbers in the frozen raster
-_ROOM = 0.15  # about the tracks, as a share of their box
-_FINEST = 240  # cells along the longer side
-_COARSEST = 24
+_RASTER_MARGIN = 0.15  # about the tracks, as a share of their box
+_MAX_CELLS = 240  # cells along the longer side
+_MIN_CELLS = 24
 
 
-def evolved(means: Means, explored: Explored, found: list[Candidate]) -> list[Candidate]:
+def evolutionary_candidates(
+    trade_off: TradeOffContext, explored: ExploredAlternative, found: list[TrackCandidate]
+) -> list[TrackCandidate]:
     """Return the tracks that evolution finds on one way round, beginning with those found."""
-    task, method = means.task, means.task.voyage.method
-    seeds = _seeds(means, explored, found)
-    evaluator = _evaluator(means, explored, seeds)
-    genomes = [_genome(means, seed) for seed in seeds]
-    seed = task.voyage.seed
+    context, method = trade_off.context, trade_off.context.voyage.method
+    seeds = _seeds(trade_off, explored, found)
+    evaluator = _evaluator(trade_off, explored, seeds)
+    genomes = [_genome(trade_off, seed) for seed in seeds]
+    seed = context.voyage.seed
     if method == "default":
         result = refine_front(
             evaluator,
             genomes,
-            size=_SIZE,
-            generations=_GENERATIONS,
+            size=_REFINEMENT_POPULATION,
+            generations=_REFINEMENT_GENERATIONS,
             seed=seed,
-            cancel=means.keeper.stopped,
+            cancel=trade_off.interrupt_guard.stopped,
         )
     else:
         ends = [genomes[0], genomes[-1]]
@@ -52,63 +60,69 @@ def evolved(means: Means, explored: Explored, found: list[Candidate]) -> list[Ca
             evaluator,
             ends,
             method=method,
-            size=_OWN_SIZE,
-            generations=_OWN_GENERATIONS,
+            size=_EVOLUTION_POPULATION,
+            generations=_EVOLUTION_GENERATIONS,
             seed=seed,
-            cancel=means.keeper.stopped,
+            cancel=trade_off.interrupt_guard.stopped,
         )
-    return _candidates(result, explored, task.voyage.earliest_departure)
+    return _candidates(result, explored, context.voyage.earliest_departure)
 
 
-def _seeds(means: Means, explored: Explored, found: list[Candidate]) -> list[Track]:
+def _seeds(
+    trade_off: TradeOffContext, explored: ExploredAlternative, found: list[TrackCandidate]
+) -> list[Track]:
     """Return the fastest refined track and a selection of those found, by ascending time.
 
     Most are not dominated; some are though, since refinement may make these the better ones.
     """
     time = np.array([item.time for item in found])
     value = np.array([item.value for item in found])
-    kept = np.array(not_dominated(time, value))
+    kept = np.array(non_dominated_indices(time, value))
     rest = np.setdiff1d(np.arange(len(found)), kept)
-    chosen = kept[spread(time[kept], value[kept], _MOST_SEEDS)]
+    chosen = kept[evenly_spaced_subset(time[kept], value[kept], _MAX_SEEDS)]
     if len(rest):
-        chosen = np.append(chosen, rest[spread(time[rest], value[rest], _MOST_DOMINATED)])
+        chosen = np.append(
+            chosen, rest[evenly_spaced_subset(time[rest], value[rest], _MAX_DOMINATED_SEEDS)]
+        )
     chosen = chosen[np.argsort(time[chosen], kind="stable")]
     fastest = explored.fastest
     tracks = [found[index].track for index in chosen]
     return [fastest.track, *tracks] if fastest.feasible else tracks
 
 
-def _genome(means: Means, track: Track) -> Genome:
+def _genome(trade_off: TradeOffContext, track: Track) -> Genome:
     """Return a track as a genome; via points and ends of canals are held."""
-    held = [(end.lat, end.lon) for end in means.via]
-    held = [place for place in held if _on(track, place)]
-    return Genome.from_track(track, settings=len(means.task.ship.speeds), via=held)
+    held = [(end.lat, end.lon) for end in trade_off.via]
+    held = [place for place in held if _passes_through(track, place)]
+    return Genome.from_track(track, settings=len(trade_off.context.ship.speeds), via=held)
 
 
-def _on(track: Track, place: tuple[float, float]) -> bool:
+def _passes_through(track: Track, place: tuple[float, float]) -> bool:
     away = np.abs(track.lat - place[0]) + np.abs(wrap_longitude(track.lon - place[1]))
     return bool(away.min() < 1e-9)
 
 
-def _evaluator(means: Means, explored: Explored, seeds: list[Track]) -> Evaluator:
-    criterion, task = means.criterion, means.task
-    depart = task.voyage.earliest_departure
-    latest = task.latest if math.isfinite(task.latest) else task.last
+def _evaluator(
+    trade_off: TradeOffContext, explored: ExploredAlternative, seeds: list[Track]
+) -> Evaluator:
+    criterion, context = trade_off.criterion, trade_off.context
+    depart = context.voyage.earliest_departure
+    latest = context.latest if math.isfinite(context.latest) else context.last
     assert explored.exact is not None  # a front that was stopped is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
     return make_evaluator(
-        table=task.table,
-        fuel=means.rate.table,
-        fields=_raster(means, seeds, depart, until),
-        limits=means.limits,
+        table=context.table,
+        fuel=trade_off.rate.table,
+        fields=_freeze_raster(trade_off, seeds, depart, until),
+        limits=trade_off.limits,
         depart=depart,
-        chart=task.chart,
+        chart=context.chart,
         latest=until,
         weight_inside=criterion.inside,
         weight_outside=criterion.outside,
         time_price=criterion.time_price,
-        waiting_fuel=means.rate.waiting,
+        waiting_fuel=trade_off.rate.waiting,
         fees=criterion.name == "cost",
         total=float(np.median([_rough_length(track) for track in seeds])),
     )
@@ -120,27 +134,29 @@ def _rough_length(track: Track) -> float:
     return float(np.hypot(np.diff(lat), east).sum() * 6371008.8)
 
 
-def _raster(means: Means, seeds: list[Track], start: float, end: float) -> GridFields:
+def _freeze_raster(
+    trade_off: TradeOffContext, seeds: list[Track], start: float, end: float
+) -> GridFields:
     """Freeze the sea around all seeds, as fine as the data or a limit of memory allows."""
-    sea, channels = means.task.sea, means.task.needs.channels
-    lat, lon = _box(seeds)
+    sea, channels = trade_off.context.sea, trade_off.context.needs.channels
+    lat, lon = _unwrapped_positions(seeds)
     extent = max(np.ptp(lat), np.ptp(lon), 1e-4)
-    room = _ROOM * extent
+    room = _RASTER_MARGIN * extent
     south, north = max(lat.min() - room, -89.9), min(lat.max() + room, 89.9)
     width = min(np.ptp(lon) + 2.0 * room, 359.0)
     west = 0.5 * (lon.min() + lon.max() - width)
     numbers = max(len(sea.times(start, end)), 2) * max(len(channels), 1)
     least = math.sqrt((north - south) * width * numbers / _LARGEST_RASTER)
     native = [row.spacing_deg for row in sea.coverage() if row.spacing_deg]
-    spacing = max(min([extent / _FINEST * 2.0, *native]), least, extent / _FINEST)
-    spacing = min(spacing, extent / _COARSEST)
+    spacing = max(min([extent / _MAX_CELLS * 2.0, *native]), least, extent / _MAX_CELLS)
+    spacing = min(spacing, extent / _MIN_CELLS)
     frozen = sea.freeze_grid(
         south, north, west, west + width, start, end, channels, spacing_deg=spacing
     )
-    return replace(frozen, values=_reached_out(frozen.values))
+    return replace(frozen, values=_extrapolated_one_cell(frozen.values))
 
 
-def _reached_out(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def _extrapolated_one_cell(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return a raster with cells beside known ones as the mean of those, where they are unknown.
 
     Between a known cell and an unknown one a raster knows nothing, where the data may reach on. The
@@ -161,16 +177,18 @@ def _reached_out(values: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.where(unknown, reached, values).astype(np.float32)
 
 
-def _box(seeds: list[Track]) -> tuple[FloatArray, FloatArray]:
+def _unwrapped_positions(seeds: list[Track]) -> tuple[FloatArray, FloatArray]:
     """Return all latitudes, and longitudes without jumps, of tracks with one start."""
     lon = [np.degrees(np.unwrap(np.radians(track.lon))) for track in seeds]
     lon = [line - 360.0 * np.round((line[0] - lon[0][0]) / 360.0) for line in lon]
     return np.concatenate([track.lat for track in seeds]), np.concatenate(lon)
 
 
-def _candidates(found: Evolution, explored: Explored, depart: float) -> list[Candidate]:
+def _candidates(
+    found: EvolutionResult, explored: ExploredAlternative, depart: float
+) -> list[TrackCandidate]:
     return [
-        Candidate(genome.to_track(depart), origin, explored.way.name, float(time), float(cost))
+        TrackCandidate(genome.to_track(depart), origin, explored.way.name, float(time), float(cost))
         for genome, origin, time, cost in zip(found.genomes, found.origin, found.time, found.cost)
         if origin != "seed"
     ]

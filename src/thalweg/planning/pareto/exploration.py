@@ -13,35 +13,46 @@ from thalweg.core.geodesy import FloatArray, distance, inverse
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
-from thalweg.network import Network, shortest
-from thalweg.planning.frozen_sea import Frozen, freeze
-from thalweg.planning.interrupt_guard import Keeper, Stopped
-from thalweg.planning.network_selection.route_alternatives import Way
-from thalweg.planning.pareto.objective import Criterion, Rate
-from thalweg.planning.request.voyage_endpoints import End
-from thalweg.planning.single.no_route_diagnosis import no_route, too_late
-from thalweg.planning.single.passage import Task, isochrones, refined, track_of
+from thalweg.network import Network, shortest_path
+from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
+from thalweg.planning.interrupt_guard import InterruptGuard, SearchInterrupted
+from thalweg.planning.network_selection.route_alternatives import RouteAlternative
+from thalweg.planning.pareto.objective import ConsumptionRate, Criterion
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
+from thalweg.planning.single.passage import (
+    PlanningContext,
+    isochrones,
+    refine_track,
+    track_from_result,
+)
 from thalweg.route import Route, Track
 from thalweg.sea import StationFields
-from thalweg.search import Front, SearchResult, direction_factor, earliest_arrival, front
+from thalweg.search import (
+    NetworkFront,
+    SearchResult,
+    direction_factor,
+    earliest_arrival,
+    pareto_front,
+)
 
 #: How much longer than in still water the slowest ship worth looking at may take ...
-_PATIENCE = 1.25
+_SLOWEST_TIME_RATIO = 1.25
 #: ... how much longer than the cheapest constant setting that was sailed ...
-_SPARE = 1.1
+_TIME_MARGIN = 1.1
 #: ... and how much longer than in still water it is looked for, step by step.
-_LONGEST, _GROWTH = 30.0, 1.6
+_MAX_TIME_RATIO, _HORIZON_GROWTH = 30.0, 1.6
 _TWO_TIDES = 25 * HOUR
 #: How much longer the sea is frozen, so that edges left last can be sailed to their end.
-_MORE = 0.05
+_HORIZON_MARGIN = 0.05
 #: A turn [rad] that is none: by it a leg of 100 km is a metre off at its middle at most.
-_STRAIGHT = 2e-5
+_MIN_COURSE_CHANGE = 2e-5
 #: Into how many bins the time of a front is divided; refinement makes up for what they miss.
-_BINS = 300
+_TIME_BINS = 300
 
 
 @dataclass(frozen=True)
-class Explored:
+class ExploredAlternative:
     """What came of one way round.
 
     Attributes
@@ -60,36 +71,36 @@ class Explored:
         How much shorter than the network's way the way in open water may be.
     """
 
-    way: Way
-    frozen: Frozen
+    way: RouteAlternative
+    frozen: FrozenSea
     fastest: Route
     first: SearchResult
-    exact: Front | None
+    exact: NetworkFront | None
     isochrones: np.ndarray
     factor: float
 
 
 @dataclass(frozen=True)
-class Means:
+class TradeOffContext:
     """What all ways round are explored with."""
 
-    task: Task
+    context: PlanningContext
     criterion: Criterion
-    rate: Rate
-    ends: tuple[End, ...]
+    rate: ConsumptionRate
+    ends: tuple[Endpoint, ...]
     settings: np.ndarray
     limits: np.ndarray
-    keeper: Keeper
+    interrupt_guard: InterruptGuard
     notes: list[str] = field(default_factory=list)  # for the plan, as they come up
 
     @property
-    def via(self) -> tuple[End, ...]:
+    def via(self) -> tuple[Endpoint, ...]:
         """The places between the first end and the last."""
         return self.ends[1:-1]
 
 
 @dataclass(frozen=True)
-class Ahead:
+class SearchHorizon:
     """The sea over a network for as long as a front needs it.
 
     Attributes
@@ -103,14 +114,14 @@ class Ahead:
         Latest arrival of the front [s since 1970].
     """
 
-    frozen: Frozen
+    frozen: FrozenSea
     first: SearchResult
     setting: int
     latest: float
 
 
 @dataclass(frozen=True)
-class Candidate:
+class TrackCandidate:
     """A track with what the solver says of it.
 
     Attributes
@@ -133,7 +144,7 @@ class Candidate:
     value: float
 
 
-def explore(means: Means, way: Way) -> Explored:
+def explore_alternative(trade_off: TradeOffContext, way: RouteAlternative) -> ExploredAlternative:
     """Search the fastest route and the exact front of one way round.
 
     Raises
@@ -141,39 +152,54 @@ def explore(means: Means, way: Way) -> Explored:
     NoRouteError
         If there is no way in time, with the earliest arrival when there is one.
     """
-    task = means.task
-    depart = task.voyage.earliest_departure
-    task.tell(f"freezing the sea: {way.name}")
-    ahead = look_ahead(means, way.network)
+    context = trade_off.context
+    depart = context.voyage.earliest_departure
+    context.tell(f"freezing the sea: {way.name}")
+    ahead = extend_horizon(trade_off, way.network)
     frozen, first, latest = ahead.frozen, ahead.first, ahead.latest
-    task.tell(f"searching: {way.name}")
+    context.tell(f"searching: {way.name}")
     if not first.found:
-        raise no_route(
+        raise no_route_error(
             way.network,
             first,
-            (means.ends[0], means.ends[-1]),
+            (trade_off.ends[0], trade_off.ends[-1]),
             depart=depart,
-            last=task.last,
+            last=context.last,
             fields=frozen.stations,
-            required=float(means.limits[codes.LIMIT_REQUIRED_DEPTH]),
+            required=float(trade_off.limits[codes.LIMIT_REQUIRED_DEPTH]),
         )
-    if first.arrive > task.latest:
-        raise too_late(task.latest, first.arrive)
-    fastest = refined(task, track_of(way.network, first, ahead.setting), means.limits)
-    means.keeper.begin()
-    task.tell(f"searching the front: {way.name}")
+    if first.arrive > context.latest:
+        raise late_arrival_error(context.latest, first.arrive)
+    fastest = refine_track(
+        context, track_from_result(way.network, first, ahead.setting), trade_off.limits
+    )
+    trade_off.interrupt_guard.begin()
+    context.tell(f"searching the front: {way.name}")
     try:
-        exact = network_front(means, way.network, frozen, latest)
-    except Stopped:
+        exact = network_pareto_front(trade_off, way.network, frozen, latest)
+    except SearchInterrupted:
         exact = None
     until = first.arrive + 0.5 * first.duration
-    arrival = isochrones(task, way.network, frozen, depart, until)
-    return Explored(way, frozen, fastest, first, exact, arrival, _factor(means, way, frozen))
+    arrival = isochrones(context, way.network, frozen, depart, until)
+    return ExploredAlternative(
+        way,
+        frozen,
+        fastest,
+        first,
+        exact,
+        arrival,
+        _largest_direction_factor(trade_off, way, frozen),
+    )
 
 
-def network_front(
-    means: Means, network: Network, frozen: Frozen, latest: float, *, lower: bool = True
-) -> Front:
+def network_pareto_front(
+    trade_off: TradeOffContext,
+    network: Network,
+    frozen: FrozenSea,
+    latest: float,
+    *,
+    lower: bool = True,
+) -> NetworkFront:
     """Search the exact front of a network.
 
     Raises
@@ -181,76 +207,82 @@ def network_front(
     Stopped
         If Ctrl-C is pressed before there is a front.
     """
-    task = means.task
+    context = trade_off.context
     share_of_labels = 0.5 if lower else 1.0
 
     def progress(share: float) -> None:
-        if share < share_of_labels and means.keeper.stopped():
-            raise Stopped
+        if share < share_of_labels and trade_off.interrupt_guard.stopped():
+            raise SearchInterrupted
 
-    depart = task.voyage.earliest_departure
-    dues = network.fee if means.criterion.name == "cost" else np.zeros(network.n_edges)
-    return front(
+    depart = context.voyage.earliest_departure
+    dues = network.fee if trade_off.criterion.name == "cost" else np.zeros(network.n_edges)
+    return pareto_front(
         replace(network, fee=dues),
         frozen.stations,
-        task.table,
-        means.rate.table,
+        context.table,
+        trade_off.rate.table,
         start=network.meta.start,
         goal=network.meta.goal,
         depart=depart,
-        limits=means.limits,
+        limits=trade_off.limits,
         latest=latest,
-        settings=means.settings,
-        weight=means.criterion.weights(network, task.chart),
-        time_price=means.criterion.time_price,
-        waiting_fuel=means.rate.waiting,
-        waiting_weight=means.criterion.outside,
-        wait=task.voyage.wait,
-        bin_s=(latest - depart) / _BINS,
+        settings=trade_off.settings,
+        weight=trade_off.criterion.weights(network, context.chart),
+        time_price=trade_off.criterion.time_price,
+        waiting_fuel=trade_off.rate.waiting,
+        waiting_weight=trade_off.criterion.outside,
+        wait=context.voyage.wait,
+        bin_s=(latest - depart) / _TIME_BINS,
         top_speed=frozen.top_speed,
         lower=lower,
         progress=progress,
     )
 
 
-def _factor(means: Means, way: Way, frozen: Frozen) -> float:
+def _largest_direction_factor(
+    trade_off: TradeOffContext, way: RouteAlternative, frozen: FrozenSea
+) -> float:
     """Return the factor of directions for the slowest setting in the strongest current."""
-    slowest = float(np.min(np.asarray(means.task.ship.speeds)[means.settings]))
+    slowest = float(np.min(np.asarray(trade_off.context.ship.speeds)[trade_off.settings]))
     ratio = strongest_current(frozen.stations) / slowest if slowest > 0.0 else 1.0
     return direction_factor(way.network.meta.gap_rad, ratio)
 
 
-def fastest_allowed(means: Means, network: Network, frozen: Frozen) -> tuple[SearchResult, int]:
+def fastest_at_highest_feasible_setting(
+    trade_off: TradeOffContext, network: Network, frozen: FrozenSea
+) -> tuple[SearchResult, int]:
     """Search the fastest way at the highest setting with which there is one; return both.
 
     A lower setting may keep what is forbidden in waves where the highest does not.
     """
-    table = means.task.table.kernel_arrays()
+    table = trade_off.context.table.kernel_arrays()
     heeds = table.safety.size > 0 or table.motions.size > 0
-    tried = means.settings[::-1] if heeds else means.settings[-1:]
-    ways = ((fastest_way(means, network, frozen, int(one)), int(one)) for one in tried)
+    tried = trade_off.settings[::-1] if heeds else trade_off.settings[-1:]
+    ways = ((fastest_path(trade_off, network, frozen, int(one)), int(one)) for one in tried)
     first = next(ways)
     return first if first[0].found else next((way for way in ways if way[0].found), first)
 
 
-def fastest_way(means: Means, network: Network, frozen: Frozen, setting: int) -> SearchResult:
+def fastest_path(
+    trade_off: TradeOffContext, network: Network, frozen: FrozenSea, setting: int
+) -> SearchResult:
     """Search the fastest way over a network at one setting."""
-    task = means.task
+    context = trade_off.context
     return earliest_arrival(
         network,
         frozen.stations,
-        task.table,
+        context.table,
         start=network.meta.start,
         goal=network.meta.goal,
-        depart=task.voyage.earliest_departure,
+        depart=context.voyage.earliest_departure,
         setting=setting,
-        limits=means.limits,
-        wait=task.voyage.wait,
+        limits=trade_off.limits,
+        wait=context.voyage.wait,
         top_speed=frozen.top_speed,
     )
 
 
-def look_ahead(means: Means, network: Network) -> Ahead:
+def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizon:
     """Freeze the sea over a network as long as its front needs it, and search the fastest way.
 
     Without a latest arrival that is until the slowest ship worth looking at has arrived. How long
@@ -262,75 +294,83 @@ def look_ahead(means: Means, network: Network) -> Ahead:
     InputError
         If the sea over the shortest period takes more memory than is allowed.
     """
-    task, depart = means.task, means.task.voyage.earliest_departure
-    asked = math.isfinite(task.latest)
-    tides = math.isfinite(task.needs.limits[codes.LIMIT_REQUIRED_DEPTH])
-    length = shortest_length(network)
+    context, depart = trade_off.context, trade_off.context.voyage.earliest_departure
+    asked = math.isfinite(context.latest)
+    tides = math.isfinite(context.needs.limits[codes.LIMIT_REQUIRED_DEPTH])
+    length = shortest_path_length(network)
     if math.isinf(length):  # no way: the sea is frozen as for a straight one
-        ends = means.ends[0], means.ends[-1]
+        ends = trade_off.ends[0], trade_off.ends[-1]
         length = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
-    still = length / float(task.ship.speeds[economical(means)])
-    slow = depart + _PATIENCE * still + (_TWO_TIDES if tides else 0.0)
-    final = min(task.last, depart + _LONGEST * still + _TWO_TIDES)
-    latest = min(task.latest, task.last) if asked else min(slow, final)
-    ahead: Ahead | None = None
+    still = length / float(context.ship.speeds[most_economical_setting(trade_off)])
+    slow = depart + _SLOWEST_TIME_RATIO * still + (_TWO_TIDES if tides else 0.0)
+    final = min(context.last, depart + _MAX_TIME_RATIO * still + _TWO_TIDES)
+    latest = min(context.latest, context.last) if asked else min(slow, final)
+    ahead: SearchHorizon | None = None
     while True:
-        until = latest if asked else min(latest + _MORE * (latest - depart), final)
+        until = latest if asked else min(latest + _HORIZON_MARGIN * (latest - depart), final)
         until = max(until, min(slow, final))
         try:
-            frozen = freeze(task, network, depart, until)
+            frozen = freeze_at_stations(context, network, depart, until)
         except InputError:
             if ahead is None:
                 raise
             return ahead  # what fits into the memory
-        warm_up.finish()
-        first, setting = fastest_allowed(means, network, frozen)
-        ahead = Ahead(frozen, first, setting, latest)
-        need = first.arrive if asked else _slow_arrival(means, network, frozen, until)
+        warm_up.wait_until_compiled()
+        first, setting = fastest_at_highest_feasible_setting(trade_off, network, frozen)
+        ahead = SearchHorizon(frozen, first, setting, latest)
+        need = first.arrive if asked else _latest_useful_arrival(trade_off, network, frozen, until)
         if need <= until or until >= final:
             return ahead
-        slow = depart + _GROWTH * (until - depart) if math.isinf(need) else need
+        slow = depart + _HORIZON_GROWTH * (until - depart) if math.isinf(need) else need
         latest = latest if asked else min(slow, final)
 
 
-def _slow_arrival(means: Means, network: Network, frozen: Frozen, until: float) -> float:
+def _latest_useful_arrival(
+    trade_off: TradeOffContext, network: Network, frozen: FrozenSea, until: float
+) -> float:
     """Return until when a front is worth looking for: later than its cheapest constant setting.
 
     Infinite while a setting that has not arrived when the frozen sea ends may still be cheaper.
     """
-    depart = means.task.voyage.earliest_departure
+    depart = trade_off.context.voyage.earliest_departure
 
     def duration(setting: int) -> float:
-        return fastest_way(means, network, frozen, setting).arrive - depart
+        return fastest_path(trade_off, network, frozen, setting).arrive - depart
 
-    late = _SPARE * duration(economical(means))
+    late = _TIME_MARGIN * duration(most_economical_setting(trade_off))
     if depart + late <= until:
         return depart + late
-    rates = spending(means)
-    time = np.array([duration(int(setting)) for setting in means.settings])
+    rates = cost_rates_in_calm_water(trade_off)
+    time = np.array([duration(int(setting)) for setting in trade_off.settings])
     cost = rates * np.minimum(time, until - depart)  # of what has not arrived: so much at least
-    return depart + _SPARE * float(time[np.argmin(cost)])
+    return depart + _TIME_MARGIN * float(time[np.argmin(cost)])
 
 
-def shortest_length(network: Network) -> float:
+def shortest_path_length(network: Network) -> float:
     """Return the length of the shortest way over a network [m]; inf if there is none."""
     meta = network.meta
-    return float(shortest(network, meta.start, meta.goal)[0][meta.goal])
+    return float(shortest_path(network, meta.start, meta.goal)[0][meta.goal])
 
 
-def economical(means: Means) -> int:
+def most_economical_setting(trade_off: TradeOffContext) -> int:
     """Return the setting that makes a mile cheapest in still water."""
-    cost = spending(means) / np.asarray(means.task.ship.speeds)[means.settings]
-    return int(means.settings[np.argmin(cost)])
+    cost = (
+        cost_rates_in_calm_water(trade_off)
+        / np.asarray(trade_off.context.ship.speeds)[trade_off.settings]
+    )
+    return int(trade_off.settings[np.argmin(cost)])
 
 
-def spending(means: Means) -> FloatArray:
+def cost_rates_in_calm_water(trade_off: TradeOffContext) -> FloatArray:
     """Return what a second at each of the settings costs in still water; infinite if unknown."""
-    rate = means.criterion.outside * means.rate.still[means.settings] + means.criterion.time_price
+    rate = (
+        trade_off.criterion.outside * trade_off.rate.still[trade_off.settings]
+        + trade_off.criterion.time_price
+    )
     return np.where(np.isfinite(rate), rate, np.inf)
 
 
-def track_of_point(network: Network, point: Any) -> Track:
+def track_from_front_point(network: Network, point: Any) -> Track:
     """Turn a point of an exact front into a track."""
     path = np.asarray(point.path)
     wait = np.maximum(0.0, np.asarray(point.path_depart) - np.asarray(point.path_arrive))
@@ -338,21 +378,21 @@ def track_of_point(network: Network, point: Any) -> Track:
     wait = np.where(wait < 1.0, 0.0, wait)
     setting = np.asarray(point.setting)
     lat, lon = network.station_lat[path], network.station_lon[path]
-    kept = np.flatnonzero(_corners(lat, lon, setting, wait))
+    kept = np.flatnonzero(_essential_nodes(lat, lon, setting, wait))
     return Track(lat[kept], lon[kept], float(point.path_arrive[0]), wait[kept], setting[kept[:-1]])
 
 
-def _corners(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:
+def _essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:
     """Return which points of a path are needed: it turns, waits or changes its speed there."""
     keep = np.ones(len(lat), bool)
     _, course, back = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
     turn = np.angle(np.exp(1j * (course[1:] - back[:-1])))
-    same = (np.abs(turn) < _STRAIGHT) & (setting[1:] == setting[:-1]) & (wait[1:-1] == 0.0)
+    same = (np.abs(turn) < _MIN_COURSE_CHANGE) & (setting[1:] == setting[:-1]) & (wait[1:-1] == 0.0)
     keep[1:-1] = ~same
     return keep
 
 
-def spread(time: FloatArray, value: FloatArray, count: int) -> np.ndarray:
+def evenly_spaced_subset(time: FloatArray, value: FloatArray, count: int) -> np.ndarray:
     """Return indices of at most ``count`` points of a front: its ends, and evenly between."""
     order = np.argsort(time, kind="stable")
     if len(order) <= count:
@@ -365,7 +405,7 @@ def spread(time: FloatArray, value: FloatArray, count: int) -> np.ndarray:
     return np.asarray(order[picked])
 
 
-def not_dominated(time: FloatArray, value: FloatArray) -> list[int]:
+def non_dominated_indices(time: FloatArray, value: FloatArray) -> list[int]:
     """Return the indices of what is not dominated, by ascending time."""
     kept: list[int] = []
     least = math.inf

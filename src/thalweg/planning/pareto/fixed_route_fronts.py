@@ -9,68 +9,79 @@ from __future__ import annotations
 
 import math
 
-from thalweg.network import Network, Weighing, line, ways_round
-from thalweg.network.alternatives.alternative_path import Way as TautWay
-from thalweg.planning.interrupt_guard import Stopped
+from thalweg.network import EdgeWeights, Network, alternative_paths, fixed_route
+from thalweg.network.alternatives.alternative_path import AlternativePath as TautWay
+from thalweg.planning.interrupt_guard import SearchInterrupted
 from thalweg.planning.network_selection.network_choice import lattice_between
 from thalweg.planning.pareto.exploration import (
-    Candidate,
-    Means,
-    look_ahead,
-    network_front,
-    track_of_point,
+    TrackCandidate,
+    TradeOffContext,
+    extend_horizon,
+    network_pareto_front,
+    track_from_front_point,
 )
 
-_MOST = 5  # ways round
-_STRETCH = 0.2  # at most so much longer, or dearer, than the best
-_PIECES = 60  # of a way, between which the speed may change
-_POINTS = 24  # of the front of each way
+_MAX_ALTERNATIVES = 5  # ways round
+_MAX_DETOUR = 0.2  # at most so much longer, or dearer, than the best
+_LEGS_PER_ROUTE = 60  # of a way, between which the speed may change
+_POINTS_PER_FRONT = 24  # of the front of each way
 
 
-def round_candidates(means: Means) -> list[Candidate]:
+def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
     """Return routes along the ways round between two ends, with their best speeds.
 
     Voyages by other places, and networks that are asked for by name, have none.
     """
-    task = means.task
-    choice = task.choice
-    own = choice.network not in ("auto", "lattice") or task.sea.mesh() is not None
-    if own or choice.spacing is not None or means.via:
+    context = trade_off.context
+    choice = context.choice
+    own = choice.network not in ("auto", "lattice") or context.sea.mesh() is not None
+    if own or choice.spacing is not None or trade_off.via:
         return []
-    task.tell("drawing the ways round land and control areas")
-    start, goal = ((end.lat, end.lon) for end in (means.ends[0], means.ends[-1]))
-    network = lattice_between(task.chart, start, goal)
-    found: list[Candidate] = []
-    for way in ways_round(
-        network, task.chart, weighings=_weighings(means, network), most=_MOST, stretch=_STRETCH
+    context.tell("drawing the ways round land and control areas")
+    start, goal = ((end.lat, end.lon) for end in (trade_off.ends[0], trade_off.ends[-1]))
+    network = lattice_between(context.chart, start, goal)
+    found: list[TrackCandidate] = []
+    for way in alternative_paths(
+        network,
+        context.chart,
+        edge_weight_sets=_edge_weights(trade_off, network),
+        most=_MAX_ALTERNATIVES,
+        stretch=_MAX_DETOUR,
     ):
         try:
-            found += _sped(means, way)
-        except Stopped:
+            found += _speed_optimised(trade_off, way)
+        except SearchInterrupted:
             break
     return found
 
 
-def _weighings(means: Means, network: Network) -> list[Weighing]:
+def _edge_weights(trade_off: TradeOffContext, network: Network) -> list[EdgeWeights]:
     """Return lengths, and lengths with what control areas and zones cost, in full and by half."""
-    inside, outside = means.criterion.inside, means.criterion.outside
+    inside, outside = trade_off.criterion.inside, trade_off.criterion.outside
     ratio = inside / outside if inside != outside else 1.0
-    if ratio == 1.0 and not means.task.chart.zones.price:
-        return [Weighing()]
+    if ratio == 1.0 and not trade_off.context.chart.zones.price:
+        return [EdgeWeights()]
     factors = sorted({math.sqrt(ratio), ratio})
-    return [Weighing(), *(Weighing.priced(network, means.task.chart, f) for f in factors)]
+    return [
+        EdgeWeights(),
+        *(EdgeWeights.priced(network, trade_off.context.chart, f) for f in factors),
+    ]
 
 
-def _sped(means: Means, way: TautWay) -> list[Candidate]:
+def _speed_optimised(trade_off: TradeOffContext, way: TautWay) -> list[TrackCandidate]:
     """Return routes along one way with the best speeds; none if it cannot be sailed in time."""
-    task = means.task
-    network = line(task.chart, way.waypoints, spacing=max(way.length / _PIECES, 1.0))
-    ahead = look_ahead(means, network)
+    context = trade_off.context
+    network = fixed_route(
+        context.chart, way.waypoints, spacing=max(way.length / _LEGS_PER_ROUTE, 1.0)
+    )
+    ahead = extend_horizon(trade_off, network)
     if not ahead.first.found or ahead.first.arrive > ahead.latest:
         return []
-    found = network_front(means, network, ahead.frozen, ahead.latest, lower=False)
+    found = network_pareto_front(trade_off, network, ahead.frozen, ahead.latest, lower=False)
     name = " and ".join(way.canals) or "open sea"
     return [
-        Candidate(track_of_point(network, point), "way round", name, point.time, point.cost)
-        for point in found.spread(_POINTS)
+        TrackCandidate(
+            track_from_front_point(network, point), "way round", name, point.time, point.cost
+        )
+        for point in found.spread(_POINTS_PER_FRONT)
     ]

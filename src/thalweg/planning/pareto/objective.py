@@ -11,7 +11,7 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.units import DAY, HOUR, MEGAWATT_HOUR, TONNE
-from thalweg.network import Network, eca_shares
+from thalweg.network import Network, eca_fractions
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 from thalweg.ship import Conditions, PerformanceTable, Ship
@@ -19,7 +19,7 @@ from thalweg.ship.fuel_prices import FuelTerms
 from thalweg.ship.tables.tabulate import tabulate_cubed_speed
 
 #: What a ship meets in still water; the period of no waves is any.
-_STILL = {
+_CALM_CONDITIONS = {
     "wind_speed": 0.0,
     "wind_angle": 0.0,
     "wave_height": 0.0,
@@ -33,7 +33,7 @@ _STILL = {
 
 
 @dataclass(frozen=True)
-class Rate:
+class ConsumptionRate:
     """What a ship spends in a second, by which a criterion counts.
 
     Attributes
@@ -61,8 +61,8 @@ class Criterion:
     unit : str
         Unit it is told in: t, MWh, or the currency of the prices.
     inside, outside : float
-        What a kilogram of fuel (a joule, a cubed speed for a second; see `rate_of`) counts inside
-        and outside emission control areas [unit].
+        What a kilogram of fuel (a joule, a cubed speed for a second; see `consumption_rate`)
+        counts inside and outside emission control areas [unit].
     time_price : float
         What a second counts besides [unit].
     terms : FuelTerms
@@ -86,7 +86,7 @@ class Criterion:
         }[self.name]
         return math.inf if value is None or not math.isfinite(value) else float(value)
 
-    def rate_of(self, ship: Ship) -> Rate:
+    def consumption_rate(self, ship: Ship) -> ConsumptionRate:
         """Return what the ship spends in a second, as far as this counts it.
 
         Raises
@@ -96,21 +96,25 @@ class Criterion:
         """
         if self.name == "cost" and self.terms.by_speed:
             cubed = np.asarray(ship.speeds, float) ** 3
-            return Rate(tabulate_cubed_speed(ship.speeds), 0.0, cubed)
+            return ConsumptionRate(tabulate_cubed_speed(ship.speeds), 0.0, cubed)
         energy = self.name == "energy"
         table = ship.tabulate_power() if energy else ship.tabulate_fuel()
-        conditions = Conditions({name: v for name, v in _STILL.items() if name in ship.reads})
+        conditions = Conditions(
+            {name: v for name, v in _CALM_CONDITIONS.items() if name in ship.reads}
+        )
         power, fuel = ship.power_and_fuel(conditions, np.arange(len(ship.speeds)))
         if energy:
-            return Rate(table, ship.hotel_power, np.asarray(power, float) + ship.hotel_power)
-        return Rate(table, ship.waiting_fuel_rate, np.asarray(fuel, float))
+            return ConsumptionRate(
+                table, ship.hotel_power, np.asarray(power, float) + ship.hotel_power
+            )
+        return ConsumptionRate(table, ship.waiting_fuel_rate, np.asarray(fuel, float))
 
     def weights(self, network: Network, chart: Chart) -> FloatArray:
         """Return what `inside` and `outside` tell, on every edge of a network [unit]."""
         price = np.asarray(network.price, float) if self.name == "cost" else 1.0
         weight = np.full(network.n_edges, self.outside)
         if self.inside != self.outside:
-            weight += eca_shares(network, chart) * (self.inside - self.outside)
+            weight += eca_fractions(network, chart) * (self.inside - self.outside)
         return np.asarray(weight * price)
 
 
@@ -136,17 +140,17 @@ def find_criterion(voyage: Voyage, ship: Ship) -> Criterion:
         joule = 1.0 / MEGAWATT_HOUR
         return Criterion(name, "MWh", joule, joule, 0.0, terms)
     if name == "cost" and terms.by_speed:
-        price, currency = terms.speed_price, terms.currency or "USD"
+        price, currency = terms.cubed_speed_price, terms.currency or "USD"
         return Criterion(name, currency, price, price, terms.time_price, terms)
     inside, outside = (terms.per_kg(name, inside=inside) for inside in (True, False))
     if not (math.isfinite(inside) and math.isfinite(outside)):
-        raise _unknown(name, ship)
+        raise _unknown_consumption_error(name, ship)
     if name == "cost":
         return Criterion(name, terms.currency or "USD", inside, outside, terms.time_price, terms)
     return Criterion(name, "t", inside / TONNE, outside / TONNE, 0.0, terms)
 
 
-def _unknown(name: str, ship: Ship) -> InputError:
+def _unknown_consumption_error(name: str, ship: Ship) -> InputError:
     if name == "cost":
         return InputError(
             f"The cost of a voyage of {ship.name!r} is asked, but no price of fuel is known.",

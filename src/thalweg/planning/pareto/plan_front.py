@@ -1,4 +1,4 @@
-"""`FrontOfPlan`: the trade of a plan, point by point, with its bound and what it is compared to."""
+"""`ParetoFront`: the trade of a plan, point by point, with its bound and what it is compared to."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 
 if TYPE_CHECKING:
-    from thalweg.planning.pareto.baseline import Comparison
+    from thalweg.planning.pareto.baseline import BaselineComparison
     from thalweg.route import Route
 
 
 @dataclass(frozen=True, eq=False)
-class FrontOfPlan:
+class ParetoFront:
     """The trade of time against one other thing, as refereed.
 
     Attributes
@@ -35,7 +35,7 @@ class FrontOfPlan:
         speed"`` (of the weather-blind route).
     ways : tuple of str (n,)
         The way round of each: its canals, or ``"open sea"``; where routes pass land on other sides,
-        with these (`thalweg.planning.pareto.route_names.names_of_ways`).
+        with these (`thalweg.planning.pareto.route_names.route_labels`).
     lower : ndarray (2, m)
         Times [h] and values of the lower front: on the evidence of the network no route that
         takes at most such a time counts less.
@@ -49,7 +49,7 @@ class FrontOfPlan:
     stages: tuple[str, ...]
     ways: tuple[str, ...]
     lower: FloatArray
-    comparison: Comparison | None = None
+    comparison: BaselineComparison | None = None
 
     def lower_at(self, time_h: float) -> float:
         """Return the least value of the lower front at a time [h]; NaN before it begins."""

@@ -16,9 +16,9 @@ from thalweg.network import Network
 from thalweg.network.alternatives.homotopy import obstacles
 from thalweg.route import Route
 
-_SMALLEST = 0.01  # land narrower than this share of the distance does not count
-_MOST = 3  # pieces of land in a name
-_COMPASS = (
+_MIN_RELATIVE_SIZE = 0.01  # land narrower than this share of the distance does not count
+_MAX_LANDMASSES_IN_LABEL = 3  # pieces of land in a name
+_COMPASS_POINTS = (
     "north",
     "north-east",
     "east",
@@ -29,7 +29,7 @@ _COMPASS = (
     "north-west",
 )
 #: A position (lat, lon) [deg] on each piece of land that has a name here.
-LANDS: Final[dict[str, tuple[float, float]]] = {
+LANDMASSES: Final[dict[str, tuple[float, float]]] = {
     "Europe and Asia": (50.0, 60.0), "Africa": (10.0, 20.0), "North America": (45.0, -100.0),
     "South America": (-10.0, -60.0), "Australia": (-25.0, 135.0), "Greenland": (72.0, -40.0),
     "Great Britain": (52.5, -1.5), "Ireland": (53.2, -7.8), "Iceland": (64.9, -18.5),
@@ -73,7 +73,7 @@ LANDS: Final[dict[str, tuple[float, float]]] = {
 }  # fmt: skip
 
 
-def names_of_ways(
+def route_labels(
     routes: Sequence[Route], ways: Sequence[str], networks: Mapping[str, Network], chart: Chart
 ) -> tuple[str, ...]:
     """Return names that tell ways apart which pass land on other sides.
@@ -98,23 +98,26 @@ def names_of_ways(
     default = next(iter(networks.values()))
     for way in dict.fromkeys(ways):
         mine = [k for k, name in enumerate(ways) if name == way]
-        found = _kinds([routes[k] for k in mine], networks.get(way, default), chart)
+        found = _homotopy_labels([routes[k] for k in mine], networks.get(way, default), chart)
         for k, text in zip(mine, found):
             names[k] = text if way == "open sea" and text else ", ".join(filter(None, (way, text)))
     return tuple(names)
 
 
-def _kinds(routes: Sequence[Route], network: Network, chart: Chart) -> list[str]:
+def _homotopy_labels(routes: Sequence[Route], network: Network, chart: Chart) -> list[str]:
     """Return what tells routes apart that pass land on other sides; nothing where none do."""
     ends = [(network.lat[k], network.lon[k]) for k in (network.meta.start, network.meta.goal)]
-    seen = obstacles(network, chart, _SMALLEST * float(distance(*ends[0], *ends[1])))
+    seen = obstacles(network, chart, _MIN_RELATIVE_SIZE * float(distance(*ends[0], *ends[1])))
     keys = [seen.along(chart, route.track.lat, route.track.lon) for route in routes]
     counts = np.array([np.frombuffer(key, np.int64) for key in keys])[:, 1 : len(seen.points)]
     kinds, first, kind = np.unique(counts, axis=0, return_index=True, return_inverse=True)
     if len(kinds) == 1:
         return [""] * len(routes)
-    lands = [_ring_at(chart.land.rings, *seen.points[1 + k]) for k in _telling(kinds)]
-    told = [_told(routes[k], lands) for k in first]
+    lands = [
+        _outline_at(chart.land.rings, *seen.points[1 + k])
+        for k in _distinguishing_landmasses(kinds)
+    ]
+    told = [_passing_sides_label(routes[k], lands) for k in first]
     alike = [[n for n, text in enumerate(told) if text == mine] for mine in told]
     names = [
         text if len(same) == 1 else f"{text} ({same.index(n) + 1})"
@@ -123,7 +126,7 @@ def _kinds(routes: Sequence[Route], network: Network, chart: Chart) -> list[str]
     return [names[n] for n in kind.reshape(-1)]
 
 
-def _telling(counts: NDArray[np.int64]) -> list[int]:
+def _distinguishing_landmasses(counts: NDArray[np.int64]) -> list[int]:
     """Return the largest pieces of land that are passed differently, each in another way."""
     found: list[int] = []
     patterns: set[bytes] = set()
@@ -132,10 +135,10 @@ def _telling(counts: NDArray[np.int64]) -> list[int]:
         if len(set(column.tolist())) > 1 and pattern not in patterns:
             patterns.add(pattern)
             found.append(k)
-    return found[:_MOST]
+    return found[:_MAX_LANDMASSES_IN_LABEL]
 
 
-def _ring_at(rings: Rings, lat: float, lon: float) -> tuple[FloatArray, FloatArray]:
+def _outline_at(rings: Rings, lat: float, lon: float) -> tuple[FloatArray, FloatArray]:
     """Return the outline [deg] that begins at a position, longitudes without jumps."""
     begin = rings.start[:-1]
     k = int(np.flatnonzero((rings.lat[begin] == lat) & (rings.lon[begin] == lon))[0])
@@ -143,11 +146,11 @@ def _ring_at(rings: Rings, lat: float, lon: float) -> tuple[FloatArray, FloatArr
     return rings.lat[part], np.degrees(np.unwrap(np.radians(rings.lon[part])))
 
 
-def _told(route: Route, lands: Sequence[tuple[FloatArray, FloatArray]]) -> str:
-    return ", ".join(f"{_side(route, *land)} of {name_of(*land)}" for land in lands)
+def _passing_sides_label(route: Route, lands: Sequence[tuple[FloatArray, FloatArray]]) -> str:
+    return ", ".join(f"{_passing_side(route, *land)} of {land_name(*land)}" for land in lands)
 
 
-def _side(route: Route, lat: FloatArray, lon: FloatArray) -> str:
+def _passing_side(route: Route, lat: FloatArray, lon: FloatArray) -> str:
     """Return the point of the compass at which a route passes land, seen from its middle."""
     middle = 0.5 * (lat.min() + lat.max()), 0.5 * (lon.min() + lon.max())
     there = route.samples["lat"], route.samples["lon"]
@@ -155,16 +158,16 @@ def _side(route: Route, lat: FloatArray, lon: FloatArray) -> str:
         np.full(len(there[0]), middle[0]), np.full(len(there[0]), middle[1]), *there
     )
     nearest = float(course[int(np.nanargmin(away))])
-    return _COMPASS[round(nearest / (math.pi / 4.0)) % 8]
+    return _COMPASS_POINTS[round(nearest / (math.pi / 4.0)) % 8]
 
 
-def name_of(lat: FloatArray, lon: FloatArray) -> str:
+def land_name(lat: FloatArray, lon: FloatArray) -> str:
     """Return the name of the land inside an outline [deg]; where it lies if it has none."""
     middle = (
         0.5 * (float(lat.min()) + float(lat.max())),
         0.5 * (float(lon.min()) + float(lon.max())),
     )
-    for name, (y, x) in LANDS.items():
+    for name, (y, x) in LANDMASSES.items():
         east = middle[1] + float(wrap_longitude(x - middle[1]))
         if not (lat.min() <= y <= lat.max() and lon.min() <= east <= lon.max()):
             continue

@@ -13,50 +13,65 @@ from thalweg.core.errors import NoRouteError
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
-from thalweg.network import shortest
-from thalweg.planning.interrupt_guard import Keeper
-from thalweg.planning.network_selection.route_alternatives import find_ways
-from thalweg.planning.pareto.baseline import blind_tracks, compare, sail_blind
-from thalweg.planning.pareto.bounds import certain, disproved, lower_front, lowered_notes, proof_of
+from thalweg.network import shortest_path
+from thalweg.planning.interrupt_guard import InterruptGuard
+from thalweg.planning.network_selection.route_alternatives import find_route_alternatives
+from thalweg.planning.pareto.baseline import (
+    compare_with_baseline,
+    evaluate_weather_blind,
+    weather_blind_tracks,
+)
+from thalweg.planning.pareto.bounds import (
+    absolute_lower_bound,
+    correction_factors,
+    correction_notes,
+    derive_proof,
+    open_water_lower_front,
+)
 from thalweg.planning.pareto.exploration import (
-    Candidate,
-    Explored,
-    Means,
-    explore,
-    not_dominated,
-    shortest_length,
-    spread,
-    track_of_point,
+    ExploredAlternative,
+    TrackCandidate,
+    TradeOffContext,
+    evenly_spaced_subset,
+    explore_alternative,
+    non_dominated_indices,
+    shortest_path_length,
+    track_from_front_point,
 )
 from thalweg.planning.pareto.objective import find_criterion
-from thalweg.planning.pareto.plan_front import FrontOfPlan
-from thalweg.planning.pareto.route_names import names_of_ways
-from thalweg.planning.plan import Plan, Surroundings
-from thalweg.planning.report.provenance import known, network_facts, provenance, route_notes
-from thalweg.planning.request.voyage_endpoints import End
-from thalweg.planning.single.passage import Task
+from thalweg.planning.pareto.plan_front import ParetoFront
+from thalweg.planning.pareto.route_names import route_labels
+from thalweg.planning.plan import Plan, PlotContext
+from thalweg.planning.report.provenance import (
+    finite_or_none,
+    network_summary,
+    provenance,
+    route_warnings,
+)
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.passage import PlanningContext
 from thalweg.route import Route, evaluate
 
 #: Margins on the depth [m] and on wave height and wind [fraction], tried in turn while the referee
 #: finds no route within the limits.
-_MARGINS = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.1))
+_TIGHTENING_SCHEDULE = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.1))
 #: A route that ends so near the end of the data was bounded by it [s].
-_NEAR_THE_END = 3.0 * HOUR
+_DATA_END_MARGIN = 3.0 * HOUR
 #: Routes of a front that are refereed and published, fewer where one takes many steps to sail.
-_FEWEST_ROUTES, _MOST_ROUTES, _MOST_STEPS = 40, 100, 150_000
-_STOPPED_ROUTES = 20  # after Ctrl-C
+_MIN_ROUTES, _MAX_ROUTES, _MAX_STEPS = 40, 100, 150_000
+_MAX_ROUTES_INTERRUPTED = 20  # after Ctrl-C
 
 
 @dataclass(frozen=True)
-class Scored:
+class RefereedCandidate:
     """A candidate with what the referee says of it."""
 
-    candidate: Candidate
+    candidate: TrackCandidate
     route: Route
     value: float
 
 
-def trade(task: Task, ends: list[End]) -> Plan:
+def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     """Plan a voyage whose objective trades time for fuel, energy, cost or CO2.
 
     Raises
@@ -66,35 +81,37 @@ def trade(task: Task, ends: list[End]) -> Plan:
     NoRouteError
         If no route exists within the limits and in time.
     """
-    criterion = find_criterion(task.voyage, task.ship)
-    rate = criterion.rate_of(task.ship)
-    single = task.voyage.speed_kn is not None
-    settings = np.array([task.setting]) if single else np.arange(len(task.ship.speeds))
-    with Keeper() as keeper:
-        means = Means(task, criterion, rate, tuple(ends), settings, task.needs.limits, keeper)
-        ways = find_ways(task, ends)
-        for depth, fraction in _MARGINS:
-            limits = task.needs.limits * (1.0 - fraction)
+    criterion = find_criterion(context.voyage, context.ship)
+    rate = criterion.consumption_rate(context.ship)
+    single = context.voyage.speed_kn is not None
+    settings = np.array([context.setting]) if single else np.arange(len(context.ship.speeds))
+    with InterruptGuard() as interrupt_guard:
+        trade_off = TradeOffContext(
+            context, criterion, rate, tuple(ends), settings, context.needs.limits, interrupt_guard
+        )
+        ways = find_route_alternatives(context, ends)
+        for depth, fraction in _TIGHTENING_SCHEDULE:
+            limits = context.needs.limits * (1.0 - fraction)
             limits[codes.LIMIT_REQUIRED_DEPTH] = (
-                task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+                context.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
             )
-            explored = _explored(replace(means, limits=limits), ways)
-            scored = _scored(means, _candidates(replace(means, limits=limits), explored))
-            if keeper.stopped() or any(item.route.feasible for item in scored):
+            explored = _explore_all(replace(trade_off, limits=limits), ways)
+            scored = _refereed(trade_off, _candidates(replace(trade_off, limits=limits), explored))
+            if interrupt_guard.stopped() or any(item.route.feasible for item in scored):
                 break
-        return _gathered(means, ends, explored, scored)
+        return _assemble_plan(trade_off, ends, explored, scored)
 
 
-def _explored(means: Means, ways: list[Any]) -> list[Explored]:
+def _explore_all(trade_off: TradeOffContext, ways: list[Any]) -> list[ExploredAlternative]:
     """Explore all ways round; one that cannot be sailed is left out if another can."""
-    found: list[Explored] = []
+    found: list[ExploredAlternative] = []
     refusal: NoRouteError | None = None
     for way in ways:
-        if found and means.keeper.stopped():
-            means.notes.append(f"Stopped before the way round by {way.name} was looked at.")
+        if found and trade_off.interrupt_guard.stopped():
+            trade_off.notes.append(f"Stopped before the way round by {way.name} was looked at.")
             break
         try:
-            found.append(explore(means, way))
+            found.append(explore_alternative(trade_off, way))
         except NoRouteError as error:
             refusal = refusal or error
     if not found:
@@ -103,73 +120,83 @@ def _explored(means: Means, ways: list[Any]) -> list[Explored]:
     return found
 
 
-def _candidates(means: Means, explored: list[Explored]) -> list[Candidate]:
+def _candidates(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative]
+) -> list[TrackCandidate]:
     """Return routes worth the referee's time: the fastest of each way, and a front."""
     fastest = [
-        Candidate(one.fastest.track, "fastest", one.way.name, one.fastest.time_h * HOUR, math.nan)
+        TrackCandidate(
+            one.fastest.track, "fastest", one.way.name, one.fastest.time_h * HOUR, math.nan
+        )
         for one in explored
     ]
-    found = [candidate for one in explored for candidate in _exact(one)]
+    found = [candidate for one in explored for candidate in _exact_candidates(one)]
     if not found:  # stopped before there was a front
         return fastest
-    found += _refined(means, explored, found)
-    kept = not_dominated(*_points(found))
-    time, value = _points([found[index] for index in kept])
+    found += _refined_candidates(trade_off, explored, found)
+    kept = non_dominated_indices(*_times_and_values(found))
+    time, value = _times_and_values([found[index] for index in kept])
     steps = max(len(one.fastest.samples["time"]) for one in explored)
-    most = min(max(_MOST_STEPS // max(steps, 1), _FEWEST_ROUTES), _MOST_ROUTES)
-    if means.keeper.stopped():
-        most = min(most, _STOPPED_ROUTES)
-    return [*fastest, *(found[kept[index]] for index in spread(time, value, most))]
+    most = min(max(_MAX_STEPS // max(steps, 1), _MIN_ROUTES), _MAX_ROUTES)
+    if trade_off.interrupt_guard.stopped():
+        most = min(most, _MAX_ROUTES_INTERRUPTED)
+    return [*fastest, *(found[kept[index]] for index in evenly_spaced_subset(time, value, most))]
 
 
-def _exact(one: Explored) -> list[Candidate]:
+def _exact_candidates(one: ExploredAlternative) -> list[TrackCandidate]:
     """Return the exact front of one way round."""
     network, name = one.way.network, one.way.name
     return [
-        Candidate(track_of_point(network, point), "exact", name, point.time, point.cost)
+        TrackCandidate(
+            track_from_front_point(network, point), "exact", name, point.time, point.cost
+        )
         for point in (one.exact.points if one.exact else ())
     ]
 
 
-def _refined(means: Means, explored: list[Explored], exact: list[Candidate]) -> list[Candidate]:
+def _refined_candidates(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative], exact: list[TrackCandidate]
+) -> list[TrackCandidate]:
     """Return what comes of drawing ways round and of refining the front, as far as was asked."""
-    method, stopped = means.task.voyage.method, means.keeper.stopped
+    method, stopped = trade_off.context.voyage.method, trade_off.interrupt_guard.stopped
     if method == "exact" or stopped():
         return []
-    from thalweg.planning.pareto.evolutionary_refinement import evolved
-    from thalweg.planning.pareto.fixed_route_fronts import round_candidates
+    from thalweg.planning.pareto.evolutionary_refinement import evolutionary_candidates
+    from thalweg.planning.pareto.fixed_route_fronts import fixed_route_candidates
 
-    found = round_candidates(means) if method == "default" else []
+    found = fixed_route_candidates(trade_off) if method == "default" else []
     for one in explored:
         if stopped():
             break
-        means.task.tell(f"refining the front: {one.way.name}")
+        trade_off.context.tell(f"refining the front: {one.way.name}")
         of_way = [c for c in (*exact, *found) if c.way == one.way.name]
-        found += evolved(means, one, of_way)
+        found += evolutionary_candidates(trade_off, one, of_way)
     return found
 
 
-def _points(found: list[Candidate]) -> tuple[np.ndarray, np.ndarray]:
+def _times_and_values(found: list[TrackCandidate]) -> tuple[np.ndarray, np.ndarray]:
     return np.array([item.time for item in found]), np.array([item.value for item in found])
 
 
-def _scored(means: Means, candidates: list[Candidate]) -> list[Scored]:
+def _refereed(
+    trade_off: TradeOffContext, candidates: list[TrackCandidate]
+) -> list[RefereedCandidate]:
     """Let the referee score candidates; what is dominated is dropped, what breaks limits too."""
-    task = means.task
-    task.tell(f"refereeing {len(candidates)} routes")
+    context = trade_off.context
+    context.tell(f"refereeing {len(candidates)} routes")
     scored = []
     for candidate in candidates:
         route = evaluate(
             candidate.track,
-            ship=task.ship,
-            sea=task.sea,
-            chart=task.chart,
-            min_ukc=task.min_ukc,
+            ship=context.ship,
+            sea=context.sea,
+            chart=context.chart,
+            min_ukc=context.min_ukc,
             strict=False,
-            terms=means.criterion.terms,
+            terms=trade_off.criterion.terms,
         )
-        scored.append(Scored(candidate, route, means.criterion.of(route)))
-    latest = task.latest
+        scored.append(RefereedCandidate(candidate, route, trade_off.criterion.of(route)))
+    latest = context.latest
     usable = [
         item
         for item in scored
@@ -179,67 +206,70 @@ def _scored(means: Means, candidates: list[Candidate]) -> list[Scored]:
         return [item for item in scored if math.isfinite(item.route.arrive)]
     time = np.array([item.route.time_h for item in usable])
     value = np.array([item.value for item in usable])
-    return [usable[index] for index in not_dominated(time, value)]
+    return [usable[index] for index in non_dominated_indices(time, value)]
 
 
-def _gathered(
-    means: Means, ends: list[End], explored: list[Explored], scored: list[Scored]
+def _assemble_plan(
+    trade_off: TradeOffContext,
+    ends: list[Endpoint],
+    explored: list[ExploredAlternative],
+    scored: list[RefereedCandidate],
 ) -> Plan:
     """Put the plan together."""
-    task, criterion = means.task, means.criterion
-    whole = task.voyage.objective == "front"
-    blind = _blind(means, explored)
-    scored = _with_blind(means, scored, blind)
+    context, criterion = trade_off.context, trade_off.criterion
+    whole = context.voyage.objective == "front"
+    blind = _weather_blind_routes(trade_off, explored)
+    scored = _including_constant_speeds(trade_off, scored, blind)
     if not scored:
-        raise _nothing_sails(means, explored)
+        raise _no_feasible_route_error(trade_off, explored)
     ordered = sorted(scored, key=lambda item: item.route.time_h)
     if not whole:
         best = min(ordered, key=lambda item: item.value)
         ordered = [best, *(item for item in ordered if item is not best)]
     routes = tuple(item.route for item in ordered)
     values = np.array([item.value for item in ordered])
-    lower = lower_front(explored, certain(means, explored)[1])
-    share = disproved(lower, np.array([route.time_h for route in routes]), values)
+    lower = open_water_lower_front(explored, absolute_lower_bound(trade_off, explored)[1])
+    share = correction_factors(lower, np.array([route.time_h for route in routes]), values)
     lower *= share[:, None]
-    shortest_way = min(explored, key=lambda one: shortest_length(one.way.network)).way.name
-    front = FrontOfPlan(
+    shortest_way = min(explored, key=lambda one: shortest_path_length(one.way.network)).way.name
+    front = ParetoFront(
         criterion=criterion.name,
         unit=criterion.unit,
         values=values,
         stages=tuple(item.candidate.stage for item in ordered),
-        ways=names_of_ways(
+        ways=route_labels(
             routes,
             [item.candidate.way or shortest_way for item in ordered],
             {one.way.name: one.way.network for one in explored},
-            task.chart,
+            context.chart,
         ),
         lower=lower,
-        comparison=compare(task, criterion, routes, values, blind),
+        comparison=compare_with_baseline(context, criterion, routes, values, blind),
     )
-    stopped = means.keeper.stopped()
+    stopped = trade_off.interrupt_guard.stopped()
     return Plan(
-        voyage=task.voyage,
+        voyage=context.voyage,
         routes=routes,
-        proof=proof_of(means, explored, front, whole=whole),
+        proof=derive_proof(trade_off, explored, front, whole=whole),
         rejections=_rejections(explored),
         notes=tuple(
             dict.fromkeys(
                 [
-                    *(_stopped(explored, front) if stopped else ()),
-                    *_notes(means, ends, explored, ordered),
-                    *means.notes,
-                    *lowered_notes(share),
+                    *(_interruption_notes(explored, front) if stopped else ()),
+                    *_notes(trade_off, ends, explored, ordered),
+                    *trade_off.notes,
+                    *correction_notes(share),
                 ]
             )
         ),
-        provenance=provenance(task, ends, _networks(explored), _speeds_kn(means)),
-        surroundings=_surroundings(task, explored),
+        provenance=provenance(context, ends, _network_summaries(explored), _speeds_kn(trade_off)),
+        plot_context=_plot_context(context, explored),
         front=front,
         cancelled=stopped,
     )
 
 
-def _stopped(explored: list[Explored], front: FrontOfPlan) -> list[str]:
+def _interruption_notes(explored: list[ExploredAlternative], front: ParetoFront) -> list[str]:
     """Say what a plan holds that was stopped by Ctrl-C."""
     if all(one.exact is None for one in explored):
         kept = "before there was a front: the fastest route is kept"
@@ -250,28 +280,36 @@ def _stopped(explored: list[Explored], front: FrontOfPlan) -> list[str]:
     return [f"Stopped by Ctrl-C {kept}; more time may find better."]
 
 
-def _blind(means: Means, explored: list[Explored]) -> list[Route]:
+def _weather_blind_routes(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative]
+) -> list[Route]:
     """Return the weather-blind routes of the shortest way round, in the weather of the plan."""
-    if means.keeper.stopped():
+    if trade_off.interrupt_guard.stopped():
         return []
-    network = min((one.way.network for one in explored), key=shortest_length)
-    _, path = shortest(network, network.meta.start, network.meta.goal)
-    means.task.tell("sailing the weather-blind route")
-    tracks = blind_tracks(means.task, network.lat[path], network.lon[path], means.settings)
-    sailed = sail_blind(means.task, means.criterion, tracks)
+    network = min((one.way.network for one in explored), key=shortest_path_length)
+    _, path = shortest_path(network, network.meta.start, network.meta.goal)
+    trade_off.context.tell("sailing the weather-blind route")
+    tracks = weather_blind_tracks(
+        trade_off.context, network.lat[path], network.lon[path], trade_off.settings
+    )
+    sailed = evaluate_weather_blind(trade_off.context, trade_off.criterion, tracks)
     if not sailed:
-        means.notes.append(
+        trade_off.notes.append(
             "The weather-blind route cannot be sailed to its end in these data: nothing to compare."
         )
     return sailed
 
 
-def _with_blind(means: Means, scored: list[Scored], blind: list[Route]) -> list[Scored]:
+def _including_constant_speeds(
+    trade_off: TradeOffContext, scored: list[RefereedCandidate], blind: list[Route]
+) -> list[RefereedCandidate]:
     """Return all that is not dominated, constant speeds on the shortest way among it."""
-    latest = means.task.latest
+    latest = trade_off.context.latest
     constant = [
-        Scored(Candidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value)
-        for r, value in ((route, means.criterion.of(route)) for route in blind)
+        RefereedCandidate(
+            TrackCandidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value
+        )
+        for r, value in ((route, trade_off.criterion.of(route)) for route in blind)
         if r.feasible and r.arrive <= latest + 1.0
     ]
     if not any(item.route.feasible for item in scored):
@@ -279,10 +317,10 @@ def _with_blind(means: Means, scored: list[Scored], blind: list[Route]) -> list[
     pool = [*scored, *constant]
     time = np.array([item.route.time_h for item in pool])
     value = np.array([item.value for item in pool])
-    return [pool[index] for index in not_dominated(time, value)]
+    return [pool[index] for index in non_dominated_indices(time, value)]
 
 
-def _rejections(explored: list[Explored]) -> dict[str, int]:
+def _rejections(explored: list[ExploredAlternative]) -> dict[str, int]:
     refused: Counter[str] = Counter()
     for one in explored:
         refused.update(one.way.network.meta.rejected)
@@ -291,9 +329,9 @@ def _rejections(explored: list[Explored]) -> dict[str, int]:
     return {reason: count for reason, count in refused.items() if count}
 
 
-def _networks(explored: list[Explored]) -> list[dict[str, Any]]:
+def _network_summaries(explored: list[ExploredAlternative]) -> list[dict[str, Any]]:
     return [
-        network_facts(
+        network_summary(
             one.way.network,
             settled=int(one.first.settled),
             depart=one.fastest.depart,
@@ -303,39 +341,48 @@ def _networks(explored: list[Explored]) -> list[dict[str, Any]]:
     ]
 
 
-def _speeds_kn(means: Means) -> list[float | None]:
-    return [known(float(means.task.ship.speeds[s]) / KNOT) for s in means.settings]
+def _speeds_kn(trade_off: TradeOffContext) -> list[float | None]:
+    return [
+        finite_or_none(float(trade_off.context.ship.speeds[s]) / KNOT) for s in trade_off.settings
+    ]
 
 
-def _surroundings(task: Task, explored: list[Explored]) -> Surroundings:
+def _plot_context(context: PlanningContext, explored: list[ExploredAlternative]) -> PlotContext:
     """Return what the pictures need, the earliest arrivals of all ways round."""
     networks = [one.way.network for one in explored]
-    return Surroundings(
+    return PlotContext(
         lat=np.concatenate([network.lat for network in networks]),
         lon=np.concatenate([network.lon for network in networks]),
         arrival=np.concatenate([one.isochrones for one in explored]),
-        chart=task.chart,
-        sea=task.sea,
-        ship=task.ship,
+        chart=context.chart,
+        sea=context.sea,
+        ship=context.ship,
     )
 
 
 def _notes(
-    means: Means, ends: list[End], explored: list[Explored], ordered: list[Scored]
+    trade_off: TradeOffContext,
+    ends: list[Endpoint],
+    explored: list[ExploredAlternative],
+    ordered: list[RefereedCandidate],
 ) -> list[str]:
-    task, best = means.task, ordered[0].route
-    notes = [end.note for end in ends if end.note] + list(task.needs.notes)
+    context, best = trade_off.context, ordered[0].route
+    notes = [end.note for end in ends if end.note] + list(context.needs.notes)
     notes += [f"The referee finds a limit broken: {v}." for v in best.violations[:5]]
-    notes += route_notes(task, best)
+    notes += route_warnings(context, best)
     slowest = max(item.route.arrive for item in ordered)
-    bounded = task.voyage.arrive_by is None and math.isfinite(task.last)
-    if bounded and slowest > task.last - _NEAR_THE_END:
-        notes.append(f"The data end at {format_time(task.last)}: slower routes were not looked at.")
+    bounded = context.voyage.arrive_by is None and math.isfinite(context.last)
+    if bounded and slowest > context.last - _DATA_END_MARGIN:
+        notes.append(
+            f"The data end at {format_time(context.last)}: slower routes were not looked at."
+        )
     return notes
 
 
-def _nothing_sails(means: Means, explored: list[Explored]) -> NoRouteError:
-    latest = means.task.latest
+def _no_feasible_route_error(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative]
+) -> NoRouteError:
+    latest = trade_off.context.latest
     by = f" by {format_time(latest)}" if math.isfinite(latest) else ""
     soonest = min(one.first.arrive for one in explored)
     return NoRouteError(

@@ -15,16 +15,20 @@ from numpy.typing import NDArray
 
 from thalweg.core.geodesy import FloatArray
 from thalweg.route import Route
-from thalweg.route.referee.leg_segments import Pieces, Points, cut
-from thalweg.route.referee.sailing import move_along
-from thalweg.route.referee.sailing_physics import CURRENTS, World, open_world
+from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
+from thalweg.route.referee.sailing import sailing_state_along
+from thalweg.route.referee.sailing_physics import (
+    CURRENTS,
+    SailingEnvironment,
+    make_sailing_environment,
+)
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-PLACES, TIMES = 240, 240
+POSITION_COUNT, TIME_COUNT = 240, 240
 _SLACK = 1e-9  # of clearance, as the referee allows [m]
 
 
@@ -69,7 +73,7 @@ def find_closures(
     chart: Chart | None = None,
     min_ukc: float = 0.0,
     times: FloatArray | None = None,
-    places: int = PLACES,
+    places: int = POSITION_COUNT,
 ) -> Closures:
     """Return when a track can be passed where.
 
@@ -91,16 +95,18 @@ def find_closures(
     -------
     Closures
     """
-    world = open_world(ship, sea, chart)
-    pieces = cut(route.track, float(route.track.lengths.sum()) / max(places, 2), 1, chart)
-    points = _points(world, pieces)
+    world = make_sailing_environment(ship, sea, chart)
+    pieces = cut_into_pieces(
+        route.track, float(route.track.lengths.sum()) / max(places, 2), 1, chart
+    )
+    points = _segment_ends(world, pieces)
     start = np.concatenate([[0.0], np.cumsum(pieces.length)])
     order = np.lexsort((points.along, points.leg))
     points = points.part(order)
     times = default_times(route) if times is None else np.asarray(times, float)
     shape = (len(points), len(times))
     wide = points.part(np.repeat(np.arange(shape[0]), shape[1]))
-    motion = move_along(world, pieces.canals, wide, np.tile(times, shape[0]))
+    motion = sailing_state_along(world, pieces.canals, wide, np.tile(times, shape[0]))
     clearance = (motion.depth - world.ship.draught).reshape(shape)
     lost = np.zeros(shape, bool)
     if world.has_current:
@@ -109,19 +115,19 @@ def find_closures(
     sailed = (pieces.canals.number[points.leg] < 0)[:, None]  # canals are always open
     unknown = sailed & (lost | np.isnan(clearance))
     shallow = sailed & ~unknown & (clearance < min_ukc - _SLACK)
-    stuck = np.isnan(motion.over_ground) & np.isfinite(motion.through_water)
+    stuck = np.isnan(motion.speed_over_ground) & np.isfinite(motion.speed_through_water)
     strong = sailed & stuck.reshape(shape) & ~unknown & ~shallow
     return Closures(start[points.leg] + points.along, times, shallow, strong, unknown, clearance)
 
 
-def default_times(route: Route, count: int = TIMES) -> FloatArray:
+def default_times(route: Route, count: int = TIME_COUNT) -> FloatArray:
     """Return times from a little before the departure to a while after the arrival."""
     end = route.arrive if math.isfinite(route.arrive) else float(np.nanmax(route.samples["time"]))
     length = max(end - route.depart, 60.0)
     return np.linspace(route.depart - 0.05 * length, end + 0.25 * length, count)
 
 
-def _points(world: World, pieces: Pieces) -> Points:
+def _segment_ends(world: SailingEnvironment, pieces: TrackPieces) -> TrackPoints:
     """Return the ends of all pieces, with the charted depth at them."""
     points = pieces.ends()
     if world.chart is None or not world.charted:

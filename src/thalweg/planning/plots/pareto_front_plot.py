@@ -12,12 +12,12 @@ from thalweg.planning.pareto.plan_front import knee
 if TYPE_CHECKING:
     from thalweg.planning.plan import Plan
 
-_WORDS = {"fuel": "fuel", "energy": "energy", "cost": "cost", "co2": "CO2"}
+_CRITERION_LABELS = {"fuel": "fuel", "energy": "energy", "cost": "cost", "co2": "CO2"}
 _COLOURS = ("#c2185b", "#1565c0", "#2e7d32", "#ef6c00", "#6a1b9a", "#00838f")
 _INK = "#22303c"
 
 
-def draw_front(plan: Plan, path: str | Path | None = None) -> Any:
+def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
     """Draw the front of a plan that trades time for fuel, energy, cost or CO2.
 
     Parameters
@@ -46,11 +46,11 @@ def draw_front(plan: Plan, path: str | Path | None = None) -> Any:
     figure = Figure(figsize=(8.4, 5.4), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    _draw_lower(axes, plan)
-    _draw_blind(axes, plan)
+    _draw_lower_bound(axes, plan)
+    _draw_weather_blind(axes, plan)
     _draw_points(axes, plan)
     axes.set_xlabel("time from departure to arrival [h]")
-    axes.set_ylabel(f"{_WORDS[front.criterion]} [{front.unit}]")
+    axes.set_ylabel(f"{_CRITERION_LABELS[front.criterion]} [{front.unit}]")
     axes.set_title(
         f"{plan.provenance['from']} to {plan.provenance['to']}: what time buys",
         fontsize=10,
@@ -90,7 +90,7 @@ def _draw_points(axes: Any, plan: Plan) -> None:
         )
 
 
-def _draw_lower(axes: Any, plan: Plan) -> None:
+def _draw_lower_bound(axes: Any, plan: Plan) -> None:
     front = plan.front
     assert front is not None
     shown = front.lower[:, np.isfinite(front.lower).all(axis=0)]
@@ -104,7 +104,7 @@ def _draw_lower(axes: Any, plan: Plan) -> None:
     )
 
 
-def _draw_blind(axes: Any, plan: Plan) -> None:
+def _draw_weather_blind(axes: Any, plan: Plan) -> None:
     comparison = plan.front.comparison if plan.front is not None else None
     if comparison is None:
         return

@@ -13,7 +13,7 @@ from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.planning.plan import Plan
 from thalweg.planning.plots.channel_closures import Closures, default_times, find_closures
-from thalweg.planning.request.requirements import least_clearance
+from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.route import Route
 from thalweg.sea.standard_names import WATER_LEVEL
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 _INK, _ROUTE, _WAIT = "#22303c", "#c2185b", "#f57f17"
-_KINDS = (
+_CLOSURE_STYLES = (
     ("shallow", "too little water", "#b0bec5", "////"),
     ("strong", "current too strong", "#ffcc80", "\\\\\\\\"),
     ("unknown", "not known", "#eceff1", ".."),
 )
 
 
-def draw_st(
+def draw_space_time_diagram(
     plan_or_route: Plan | Route,
     path: str | Path | None = None,
     *,
@@ -64,7 +64,7 @@ def draw_st(
     """
     voyage = plan_or_route.voyage if isinstance(plan_or_route, Plan) else None
     route = plan_or_route.best if isinstance(plan_or_route, Plan) else plan_or_route
-    known = plan_or_route.surroundings if isinstance(plan_or_route, Plan) else None
+    known = plan_or_route.plot_context if isinstance(plan_or_route, Plan) else None
     ship = ship or (known.ship if known else None)
     sea = sea or (known.sea if known else None)
     if ship is None or sea is None:
@@ -74,7 +74,7 @@ def draw_st(
             "Give ship and sea.",
         )
     if min_ukc is None:
-        min_ukc = 0.0 if voyage is None else least_clearance(voyage, ship)
+        min_ukc = 0.0 if voyage is None else required_under_keel_clearance(voyage, ship)
     closures = find_closures(
         route,
         ship=ship,
@@ -86,13 +86,13 @@ def draw_st(
     return _draw(route, closures, voyage, min_ukc, path)
 
 
-def write_st(plan: Plan, folder: str | Path) -> list[Path]:
+def write_space_time_diagram(plan: Plan, folder: str | Path) -> list[Path]:
     """Draw st.png into a folder where the tide matters to a plan; return what was written.
 
     It matters where depth and water level are known, and the ship waits or some part of its track
     is closed at some time around the voyage.
     """
-    known, best = plan.surroundings, plan.best
+    known, best = plan.plot_context, plan.best
     if known is None or best.min_ukc_m is None or not math.isfinite(best.arrive):
         return []
     if known.sea.members or WATER_LEVEL not in known.sea.variables:
@@ -100,13 +100,13 @@ def write_st(plan: Plan, folder: str | Path) -> list[Path]:
     if not best.waiting_h > 0.0:
         closures = find_closures(
             best, ship=known.ship, sea=known.sea, chart=known.chart,
-            min_ukc=least_clearance(plan.voyage, known.ship), places=60,
+            min_ukc=required_under_keel_clearance(plan.voyage, known.ship), places=60,
             times=default_times(best, 60),
         )  # fmt: skip
         if not (closures.shallow | closures.strong).any():
             return []
     path = Path(folder) / "st.png"
-    draw_st(plan, path)
+    draw_space_time_diagram(plan, path)
     return [path]
 
 
@@ -115,13 +115,13 @@ def _times(route: Route, voyage: Voyage | None) -> np.ndarray:
     times = default_times(route)
     low, high = float(times[0]), float(times[-1])
     reach = high - low
-    for edge in _edges(voyage):
+    for edge in _window_limits(voyage):
         if low - reach <= edge <= high + reach:
             low, high = min(low, edge - 0.03 * reach), max(high, edge + 0.03 * reach)
     return np.linspace(low, high, len(times))
 
 
-def _edges(voyage: Voyage | None) -> list[float]:
+def _window_limits(voyage: Voyage | None) -> list[float]:
     if voyage is None:
         return []
     latest = [] if voyage.arrive_by is None else [parse_time(voyage.arrive_by)]
@@ -143,9 +143,9 @@ def _draw(
     axes = figure.subplots()
     hours = (closures.times - route.depart) / HOUR
     miles = closures.distance / NAUTICAL_MILE
-    handles = _closed(axes, closures, hours, miles)
-    handles += _ship_line(axes, route)
-    handles += _windows(axes, route, voyage, float(miles[-1]))
+    handles = _hatch_closures(axes, closures, hours, miles)
+    handles += _draw_ship_track(axes, route)
+    handles += _draw_time_windows(axes, route, voyage, float(miles[-1]))
     axes.set_xlim(hours[0], hours[-1])
     axes.set_ylim(0.0, miles[-1])
     axes.set_xlabel(f"hours since {format_time(route.depart)}", fontsize=9)
@@ -160,12 +160,14 @@ def _draw(
     return figure
 
 
-def _closed(axes: Any, closures: Closures, hours: np.ndarray, miles: np.ndarray) -> list[Any]:
+def _hatch_closures(
+    axes: Any, closures: Closures, hours: np.ndarray, miles: np.ndarray
+) -> list[Any]:
     """Hatch what is closed, each kind in its own way; return what the legend shows."""
     from matplotlib.patches import Patch
 
     handles = []
-    for name, label, colour, hatch in _KINDS:
+    for name, label, colour, hatch in _CLOSURE_STYLES:
         mask = getattr(closures, name)
         if not mask.any():
             continue
@@ -179,7 +181,7 @@ def _closed(axes: Any, closures: Closures, hours: np.ndarray, miles: np.ndarray)
     return handles
 
 
-def _ship_line(axes: Any, route: Route) -> list[Any]:
+def _draw_ship_track(axes: Any, route: Route) -> list[Any]:
     """Draw the ship's way, with its waits."""
     hours = (route.samples["time"] - route.depart) / HOUR
     miles = route.samples["distance"] / NAUTICAL_MILE
@@ -198,7 +200,7 @@ def _ship_line(axes: Any, route: Route) -> list[Any]:
     return [*handles, line]
 
 
-def _windows(axes: Any, route: Route, voyage: Voyage | None, end: float) -> list[Any]:
+def _draw_time_windows(axes: Any, route: Route, voyage: Voyage | None, end: float) -> list[Any]:
     """Draw the window of departure and the latest arrival."""
     if voyage is None:
         return []

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.geodesy import along, wrap_longitude
+from thalweg.core.geodesy import positions_along, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 
 if TYPE_CHECKING:
-    from thalweg.planning.plan import Plan, Surroundings
+    from thalweg.planning.plan import Plan, PlotContext
     from thalweg.route import Route
 
 _WAVES = "sea_surface_wave_significant_height"
@@ -27,7 +27,7 @@ _LAND, _SHORE, _ROUTE, _INK = "#e9e3d5", "#8f8672", "#c2185b", "#22303c"
 
 
 @dataclass(frozen=True)
-class Box:
+class MapExtent:
     """The part of the world that is drawn; longitudes run on past 180 where they must."""
 
     south: float
@@ -47,7 +47,7 @@ class Box:
 
     def line(self, lon: np.ndarray) -> np.ndarray:
         """Return the longitudes of a line without jumps, moved by whole turns into the box."""
-        lon = _without_jumps(lon)
+        lon = _unwrapped(lon)
         away = 0.5 * (self.west + self.east) - 0.5 * (float(lon.min()) + float(lon.max()))
         return np.asarray(lon + 360.0 * round(away / 360.0))
 
@@ -70,7 +70,7 @@ def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    box = _box_of(plan)
+    box = _map_extent(plan)
     shape = (box.north - box.south) * box.aspect / (box.east - box.west)
     width = min(10.0, 9.0 / shape + 1.6)
     height = max(3.6, (width - 1.6) * shape + 0.8)
@@ -78,30 +78,30 @@ def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     axes.set_facecolor("#f4f8fb")
-    if plan.surroundings is not None:
-        _draw_sea(figure, axes, plan, plan.surroundings, box)
-        _draw_land(axes, plan.surroundings.chart, box)
+    if plan.plot_context is not None:
+        _draw_sea(figure, axes, plan, plan.plot_context, box)
+        _draw_land(axes, plan.plot_context.chart, box)
     _draw_routes(figure, axes, plan, box)
-    _finish(axes, plan, box)
+    _decorate_axes(axes, plan, box)
     if path is not None:
         figure.savefig(path)
     return figure
 
 
-def _without_jumps(lon: np.ndarray) -> np.ndarray:
+def _unwrapped(lon: np.ndarray) -> np.ndarray:
     return np.degrees(np.unwrap(np.radians(np.asarray(lon, float))))
 
 
-def _box_of(plan: Plan) -> Box:
+def _map_extent(plan: Plan) -> MapExtent:
     lat = np.concatenate([route.samples["lat"] for route in plan.routes])
-    lon = np.concatenate([_without_jumps(route.samples["lon"]) for route in plan.routes])
+    lon = np.concatenate([_unwrapped(route.samples["lon"]) for route in plan.routes])
     high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
     margin = 0.12 * max(high, wide, 1e-3)
     stretch = math.cos(math.radians(min(80.0, float(np.max(np.abs(lat))))))
     grow = max(0.0, 0.42 * max(wide, high) - high) / 2
     widen = max(0.0, 0.6 * high - wide) / 2
     aside = min((margin + widen) / stretch, max(0.0, 0.5 * (359.0 - float(np.ptp(lon)))))
-    return Box(
+    return MapExtent(
         max(-89.9, float(lat.min()) - margin - grow),
         min(89.9, float(lat.max()) + margin + grow),
         float(lon.min()) - aside,
@@ -109,14 +109,14 @@ def _box_of(plan: Plan) -> Box:
     )
 
 
-def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box) -> None:
+def _draw_sea(figure: Any, axes: Any, plan: Plan, world: PlotContext, box: MapExtent) -> None:
     lon, lat = np.meshgrid(
         np.linspace(box.west, box.east, 240), np.linspace(box.south, box.north, 180)
     )
     reached = _passage_times(plan, world, box, lat, lon)
     moment = np.where(np.isfinite(reached), reached, plan.best.depart)
-    on_water = _on_water(world, moment, lat, wrap_longitude(lon))
-    shown = _shade(world, moment, lat, lon)
+    on_water = _water_mask(world, moment, lat, wrap_longitude(lon))
+    shown = _shading_field(world, moment, lat, lon)
     if shown is not None:
         values, label, colours = shown
         filled = axes.contourf(lon, lat, values, levels=14, cmap=colours, alpha=0.85)
@@ -127,8 +127,8 @@ def _draw_sea(figure: Any, axes: Any, plan: Plan, world: Surroundings, box: Box)
     _draw_isochrones(axes, plan, reached, (lat, lon), on_water)
 
 
-def _on_water(
-    world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+def _water_mask(
+    world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
     """Return where there is water: not on the chart's land, nor dry, nor in holes of a mesh."""
     wet = np.asarray(world.chart.is_navigable(lat, lon), bool)
@@ -140,7 +140,7 @@ def _on_water(
 
 
 def _passage_times(
-    plan: Plan, world: Surroundings, box: Box, lat: np.ndarray, lon: np.ndarray
+    plan: Plan, world: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
     """Return when the fastest ship would be at each point; NaN where it never gets."""
     from scipy.interpolate import LinearNDInterpolator
@@ -157,8 +157,8 @@ def _passage_times(
     return np.asarray(LinearNDInterpolator(points, world.arrival[index])(lon, lat))
 
 
-def _shade(
-    world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+def _shading_field(
+    world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> tuple[np.ndarray, str, str] | None:
     """Return the most telling field of the sea at passage, its label and its colours."""
     at = (moment, lat, wrap_longitude(lon))
@@ -180,7 +180,7 @@ def _shade(
 
 
 def _depth(
-    world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+    world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray | None:
     """Return the depth of water [m] by chart and sea; None where neither tells it."""
     names, depths = world.sea.variables, []
@@ -202,7 +202,7 @@ def _varies(values: np.ndarray) -> bool:
 
 
 def _draw_arrows(
-    axes: Any, world: Surroundings, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
+    axes: Any, world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> None:
     pick = (slice(6, None, 12), slice(6, None, 12))
     lat, lon, moment = lat[pick], lon[pick], moment[pick]
@@ -224,7 +224,7 @@ def _draw_isochrones(
     on_water: np.ndarray,
 ) -> None:
     lat, lon = grid
-    hours = np.where(_widened(on_water), (reached - plan.best.depart) / HOUR, np.nan)
+    hours = np.where(_dilated(on_water), (reached - plan.best.depart) / HOUR, np.nan)
     if np.count_nonzero(np.isfinite(hours)) < 10:
         return
     steps = np.array([0.05, 0.1, 0.25, 0.5, 1, 2, 3, 6, 12, 24, 48, 96])
@@ -237,14 +237,14 @@ def _draw_isochrones(
     axes.clabel(lines, levels[1::2], fontsize=6, fmt=lambda value: f"{value:g} h")
 
 
-def _widened(mask: np.ndarray) -> np.ndarray:
+def _dilated(mask: np.ndarray) -> np.ndarray:
     """Return a mask grown by one cell all round, so that lines end at the drawn coast."""
     from scipy.ndimage import binary_dilation
 
     return np.asarray(binary_dilation(mask, np.ones((3, 3), bool)))
 
 
-def _draw_land(axes: Any, chart: Any, box: Box) -> None:
+def _draw_land(axes: Any, chart: Any, box: MapExtent) -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Outline
 
@@ -254,7 +254,7 @@ def _draw_land(axes: Any, chart: Any, box: Box) -> None:
         axes.add_patch(PathPatch(outline, fc=_LAND, ec=_SHORE, lw=0.4, zorder=3))
 
 
-def _draw_speed(figure: Any, axes: Any, route: Route, box: Box) -> None:
+def _draw_speed(figure: Any, axes: Any, route: Route, box: MapExtent) -> None:
     """Draw a route coloured by its speed over ground."""
     from matplotlib.collections import LineCollection
 
@@ -270,12 +270,12 @@ def _draw_speed(figure: Any, axes: Any, route: Route, box: Box) -> None:
     bar.ax.tick_params(labelsize=7)
 
 
-def _draw_routes(figure: Any, axes: Any, plan: Plan, box: Box) -> None:
+def _draw_routes(figure: Any, axes: Any, plan: Plan, box: MapExtent) -> None:
     from matplotlib.patheffects import withStroke
 
     best = plan.best
     fractions = np.linspace(0, 1, 101)
-    direct_lat, direct_lon = along(
+    direct_lat, direct_lon = positions_along(
         best.track.lat[0], best.track.lon[0], best.track.lat[-1], best.track.lon[-1], fractions
     )
     axes.plot(
@@ -293,7 +293,7 @@ def _draw_routes(figure: Any, axes: Any, plan: Plan, box: Box) -> None:
         )  # fmt: skip
     else:
         _draw_speed(figure, axes, best, box)
-    track, track_lon = best.track, _on_line(best, box)
+    track, track_lon = best.track, _longitudes_on_line(best, box)
     axes.plot(track_lon, track.lat, ".", color=_ROUTE, ms=4, zorder=6)
     waits = track.wait > 0
     if waits.any():
@@ -323,7 +323,7 @@ def _draw_routes(figure: Any, axes: Any, plan: Plan, box: Box) -> None:
         )
 
 
-def _on_line(route: Route, box: Box) -> np.ndarray:
+def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
     """Return the longitudes of the waypoints where the drawn line of the route passes them."""
     lat, lon, drawn = route.samples["lat"], route.samples["lon"], box.line(route.samples["lon"])
     places = zip(route.track.lat, route.track.lon)
@@ -331,7 +331,7 @@ def _on_line(route: Route, box: Box) -> np.ndarray:
     return np.asarray(drawn[near] + wrap_longitude(route.track.lon - lon[near]))
 
 
-def _finish(axes: Any, plan: Plan, box: Box) -> None:
+def _decorate_axes(axes: Any, plan: Plan, box: MapExtent) -> None:
     best = plan.best
     fuel = "" if best.fuel_t is None else f", {best.fuel_t:.1f} t fuel"
     certain = 100 * (1 - plan.proof.certain / plan.objective_value) if plan.objective_value else 0.0
@@ -345,14 +345,14 @@ def _finish(axes: Any, plan: Plan, box: Box) -> None:
     axes.set_xlim(box.west, box.east)
     axes.set_ylim(box.south, box.north)
     axes.set_aspect(box.aspect)
-    axes.xaxis.set_major_formatter(lambda x, _: _degrees(float(wrap_longitude(x)), "EW"))
-    axes.yaxis.set_major_formatter(lambda y, _: _degrees(y, "NS"))
+    axes.xaxis.set_major_formatter(lambda x, _: _degree_label(float(wrap_longitude(x)), "EW"))
+    axes.yaxis.set_major_formatter(lambda y, _: _degree_label(y, "NS"))
     axes.tick_params(labelsize=7)
     axes.grid(alpha=0.25, lw=0.4)
     axes.legend(loc="lower right", fontsize=7, framealpha=0.9)
 
 
-def _degrees(value: float, letters: str) -> str:
+def _degree_label(value: float, letters: str) -> str:
     if not 1e-9 < abs(value) < 180.0 - 1e-9:
         return f"{abs(round(value)):d}°"
     return f"{abs(value):g}°{letters[0] if value >= 0 else letters[1]}"

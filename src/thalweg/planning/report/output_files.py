@@ -13,7 +13,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike
 from thalweg.planning.plots.route_profile import draw_profile
-from thalweg.planning.plots.space_time_diagram import write_st
+from thalweg.planning.plots.space_time_diagram import write_space_time_diagram
 from thalweg.route import Route, write_csv, write_geojson, write_gpx
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
 
 
-def check_folder(folder: str | Path) -> Path:
+def make_folder(folder: str | Path) -> Path:
     """Make a folder if needed and return it.
 
     Raises
@@ -35,13 +35,13 @@ def check_folder(folder: str | Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         writable = os.access(folder, os.W_OK)
     except OSError as error:
-        raise _unwritable(folder, error.strerror or str(error)) from error
+        raise _unwritable_error(folder, error.strerror or str(error)) from error
     if not writable:
-        raise _unwritable(folder, "permission denied")
+        raise _unwritable_error(folder, "permission denied")
     return folder
 
 
-def _unwritable(folder: Path, why: str) -> InputError:
+def _unwritable_error(folder: Path, why: str) -> InputError:
     return InputError(
         f"The folder {folder} cannot be written: {why}.", "", "Choose another with --out."
     )
@@ -49,27 +49,27 @@ def _unwritable(folder: Path, why: str) -> InputError:
 
 def write_plan(plan: Plan, folder: str | Path) -> list[Path]:
     """Write plan.json, the best route in three formats, and both pictures."""
-    folder = check_folder(folder)
+    folder = make_folder(folder)
     plan.to_json(folder / "plan.json")
     files = [folder / "plan.json", *_write_formats(plan.best, folder)]
     plan.plot(folder / "map.png")
     draw_profile(plan.best, folder / "profile.png")
-    files += [folder / "map.png", folder / "profile.png", *write_st(plan, folder)]
+    files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
     return files if plan.front is None else files + _write_front(plan, folder)
 
 
 def _write_front(plan: Plan, folder: Path) -> list[Path]:
     """Write front.csv, front.png, comparison.csv and, in ``routes``, each route."""
-    from thalweg.planning.plots.pareto_front_plot import draw_front
+    from thalweg.planning.plots.pareto_front_plot import draw_pareto_front
 
     front = plan.front
     assert front is not None  # checked by the caller
     files = [_write_table(front.rows(plan.routes), folder / "front.csv")]
-    draw_front(plan, folder / "front.png")
+    draw_pareto_front(plan, folder / "front.png")
     files.append(folder / "front.png")
     if front.comparison is not None:
         files.append(_write_table(front.comparison.rows, folder / "comparison.csv"))
-    each = check_folder(folder / "routes")
+    each = make_folder(folder / "routes")
     for number, route in enumerate(plan.routes, start=1):
         files += _write_formats(route, each, f"route_{number:02d}")
     return files
@@ -88,7 +88,7 @@ def _write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> Path:
 
 def write_route(route: Route, folder: str | Path) -> list[Path]:
     """Write a route as route.json, in three formats, and its profile."""
-    folder = check_folder(folder)
+    folder = make_folder(folder)
     text = json.dumps(route.as_dict(), indent=2, allow_nan=False)
     (folder / "route.json").write_text(text + "\n", encoding="utf-8")
     files = [folder / "route.json", *_write_formats(route, folder)]
@@ -101,11 +101,11 @@ def draw_sea(sea: Sea, path: str | Path, *, time: TimeLike | None = None) -> Pat
     from thalweg.chart import Chart
 
     path = Path(path)
-    sea.draw(path, time=time, coastline=_coast_of(sea, Chart.gshhg("i")))
+    sea.draw(path, time=time, coastline=_coastlines(sea, Chart.gshhg("i")))
     return path
 
 
-def _coast_of(sea: Sea, chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
+def _coastlines(sea: Sea, chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the rims of the land inside what a sea covers, as (lat, lon)."""
     rows = sea.coverage()
     south, north = min(row.south for row in rows), max(row.north for row in rows)

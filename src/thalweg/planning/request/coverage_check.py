@@ -15,20 +15,20 @@ from thalweg.core.geodesy import FloatArray, direct, format_position
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.kernels import codes
-from thalweg.planning.request.requirements import Needs
-from thalweg.planning.request.voyage_endpoints import SNAP_PORT, End
+from thalweg.planning.request.requirements import Requirements
+from thalweg.planning.request.voyage_endpoints import MAX_SNAP_PORT, Endpoint
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import Sea, standard_names
 from thalweg.ship import Ship
 
 _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
 #: Where there is no end of the data, the ends are looked at over so long a time [s].
-_LONGEST = 20 * 24 * HOUR
-_MOMENTS = 24
-_RINGS, _BEARINGS, _TRIED = 40, 72, 40
+_MAX_PERIOD = 20 * 24 * HOUR
+_SAMPLE_TIMES = 24
+_SEARCH_RINGS, _SEARCH_BEARINGS, _MAX_CANDIDATES = 40, 72, 40
 
 
-def check_kinds(voyage: object, ship: object, sea: object, chart: object) -> None:
+def check_argument_types(voyage: object, ship: object, sea: object, chart: object) -> None:
     """Raise `InputError` when an argument of `plan` is not what it should be."""
     wanted = {
         "voyage": (voyage, Voyage, "Voyage(start=..., goal=..., depart=...)"),
@@ -46,16 +46,16 @@ def check_kinds(voyage: object, ship: object, sea: object, chart: object) -> Non
             )
 
 
-def covered_ends(
-    ends: Sequence[End],
+def endpoints_within_coverage(
+    ends: Sequence[Endpoint],
     *,
     voyage: Voyage,
     ship: Ship,
     sea: Sea,
     chart: Chart,
-    needs: Needs,
+    needs: Requirements,
     last: float,
-) -> list[End]:
+) -> list[Endpoint]:
     """Return the ends; ports move to the nearest water that is known and deep enough.
 
     Parameters
@@ -73,15 +73,24 @@ def covered_ends(
     NoRouteError
         If the water at an end is too shallow at any tide.
     """
-    knowledge = _Knowledge(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs, last=last)
-    return [_covered(end, knowledge, chart) for end in ends]
+    coverage_probe = _CoverageProbe(
+        voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs, last=last
+    )
+    return [_moved_into_coverage(end, coverage_probe, chart) for end in ends]
 
 
-class _Knowledge:
+class _CoverageProbe:
     """What the data must know at a place, and when it is looked for."""
 
     def __init__(
-        self, *, voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, needs: Needs, last: float
+        self,
+        *,
+        voyage: Voyage,
+        ship: Ship,
+        sea: Sea,
+        chart: Chart,
+        needs: Requirements,
+        last: float,
     ) -> None:
         channels = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
         self.names = sorted(
@@ -90,8 +99,8 @@ class _Knowledge:
         self.sea, self.chart = sea, chart
         self.depth = float(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
         first = voyage.earliest_departure
-        end = last if math.isfinite(last) else voyage.latest_departure + _LONGEST
-        self.times = np.linspace(first, end, _MOMENTS)
+        end = last if math.isfinite(last) else voyage.latest_departure + _MAX_PERIOD
+        self.times = np.linspace(first, end, _SAMPLE_TIMES)
 
     def missing(self, lat: FloatArray, lon: FloatArray) -> list[str]:
         """Return what is not known at a place at any time."""
@@ -112,7 +121,7 @@ class _Knowledge:
             good &= depths >= self.depth if harbour else np.isfinite(depths)
         return good
 
-    def check_deep_enough(self, end: End) -> None:
+    def check_deep_enough(self, end: Endpoint) -> None:
         """Raise `NoRouteError` if the water at an end is too shallow at any tide of the data."""
         if not math.isfinite(self.depth):
             return
@@ -130,7 +139,7 @@ class _Knowledge:
             highest = int(np.nanargmax(values))
             depth, time = depth + float(values[highest]), float(native[highest])
         if depth < self.depth:
-            raise _too_shallow(end, depth, time, self.depth)
+            raise _too_shallow_error(end, depth, time, self.depth)
 
     def _sample(self, wanted: list[str], lat: FloatArray, lon: FloatArray) -> dict[str, FloatArray]:
         return self.sea.sample(wanted, self.times[:, None], lat, lon) if wanted else {}
@@ -146,27 +155,31 @@ class _Knowledge:
         return depths
 
 
-def _covered(end: End, knowledge: _Knowledge, chart: Chart) -> End:
+def _moved_into_coverage(end: Endpoint, coverage_probe: _CoverageProbe, chart: Chart) -> Endpoint:
     here = np.array([end.lat]), np.array([end.lon])
-    if end.is_port and not knowledge.suits(*here, harbour=True)[0]:
-        near = _nearest(end, knowledge, chart, harbour=True)
+    if end.is_port and not coverage_probe.suits(*here, harbour=True)[0]:
+        near = _nearest_suitable_water(end, coverage_probe, chart, harbour=True)
         if near is not None:
             why = "in water that is shallow or outside the data"
-            return replace(end, lat=near[0], lon=near[1], moved_m=near[2], why=why)
-    lacking = knowledge.missing(*here)
+            return replace(end, lat=near[0], lon=near[1], moved_distance_m=near[2], why=why)
+    lacking = coverage_probe.missing(*here)
     if not lacking:
-        knowledge.check_deep_enough(end)
+        coverage_probe.check_deep_enough(end)
         return end
     raise OutsideAreaError(
         f"{end.name} lies outside the data: {', '.join(lacking)} "
         f"{'is' if len(lacking) == 1 else 'are'} not known there.",
-        _possible(_nearest(end, knowledge, chart, harbour=False), knowledge, lacking),
+        _coverage_hint(
+            _nearest_suitable_water(end, coverage_probe, chart, harbour=False),
+            coverage_probe,
+            lacking,
+        ),
         "Choose a place inside, or add data that cover it.",
         lacking=lacking,
     )
 
 
-def _too_shallow(end: End, depth: float, time: float, required: float) -> NoRouteError:
+def _too_shallow_error(end: Endpoint, depth: float, time: float, required: float) -> NoRouteError:
     dry = "is dry" if depth <= 0.0 else f"has at most {depth:.2f} m of water"
     when = "" if math.isnan(time) else f", at its highest tide at {format_time(time)}"
     return NoRouteError(
@@ -180,39 +193,39 @@ def _too_shallow(end: End, depth: float, time: float, required: float) -> NoRout
     )
 
 
-def _nearest(
-    end: End, knowledge: _Knowledge, chart: Chart, *, harbour: bool
+def _nearest_suitable_water(
+    end: Endpoint, coverage_probe: _CoverageProbe, chart: Chart, *, harbour: bool
 ) -> tuple[float, float, float] | None:
     """Return the nearest navigable water that suits: lat, lon [deg], distance [m]."""
     radius, bearing = np.meshgrid(
-        np.linspace(0.0, SNAP_PORT, _RINGS + 1)[1:],
-        np.linspace(0.0, 2.0 * math.pi, _BEARINGS, endpoint=False),
+        np.linspace(0.0, MAX_SNAP_PORT, _SEARCH_RINGS + 1)[1:],
+        np.linspace(0.0, 2.0 * math.pi, _SEARCH_BEARINGS, endpoint=False),
         indexing="ij",
     )
     lat, lon = direct(*end.origin, bearing.ravel(), radius.ravel())
     use = np.asarray(chart.is_navigable(lat, lon), bool)
-    use[use] = knowledge.suits(lat[use], lon[use], harbour=harbour)
+    use[use] = coverage_probe.suits(lat[use], lon[use], harbour=harbour)
     away = radius.ravel()
     places = np.flatnonzero(use)
-    for k in places[np.argsort(away[places], kind="stable")][:_TRIED]:
+    for k in places[np.argsort(away[places], kind="stable")][:_MAX_CANDIDATES]:
         water = chart.nearest_navigable(float(lat[k]), float(lon[k]), largest=2_000.0)
         if water is not None and water[2] < 1_000.0:
             return float(lat[k]), float(lon[k]), float(away[k])
     return None
 
 
-def _possible(
-    near: tuple[float, float, float] | None, knowledge: _Knowledge, lacking: list[str]
+def _coverage_hint(
+    near: tuple[float, float, float] | None, coverage_probe: _CoverageProbe, lacking: list[str]
 ) -> str:
     if near is not None:
         return (
             f"The nearest water they know is {near[2] / NAUTICAL_MILE:.1f} nm away, at "
             f"{format_position(near[0], near[1])}."
         )
-    rows = [row for row in knowledge.sea.coverage() if row.variable in lacking]
+    rows = [row for row in coverage_probe.sea.coverage() if row.variable in lacking]
     rows = [row for row in rows if row.north - row.south < 180.0]
     if not rows:
-        return f"They know none within {SNAP_PORT / NAUTICAL_MILE:.0f} nm."
+        return f"They know none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm."
     south, north = min(row.south for row in rows), max(row.north for row in rows)
     west, east = min(row.west for row in rows), max(row.east for row in rows)
     return (

@@ -19,7 +19,7 @@ _CHANNEL_OF = {name: channel for channel, name in standard_names.CHANNEL_VARIABL
 
 
 @dataclass(frozen=True)
-class Needs:
+class Requirements:
     """What is looked at along the way.
 
     Attributes
@@ -37,7 +37,7 @@ class Needs:
     notes: tuple[str, ...]
 
 
-def find_needs(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -> Needs:
+def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -> Requirements:
     """Check that the sea supplies what the ship and the voyage need.
 
     Raises
@@ -62,7 +62,7 @@ def find_needs(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -> Needs:
         if standard_names.BED_DEPTH in sea.variables:
             channels.add(codes.BED_DEPTH)
     limits = np.array([required, ship.limits.wave_height, ship.limits.wind_speed], float)
-    return Needs(tuple(sorted(channels)), limits, tuple(notes))
+    return Requirements(tuple(sorted(channels)), limits, tuple(notes))
 
 
 def _check_variables(ship: Ship, sea: Sea) -> None:
@@ -93,17 +93,17 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
     if not known:
         notes.append("No depth in the data: under-keel clearance was not checked.")
         return -math.inf
-    return float(ship.draught) + least_clearance(voyage, ship)
+    return float(ship.draught) + required_under_keel_clearance(voyage, ship)
 
 
-def least_clearance(voyage: Voyage, ship: Ship) -> float:
+def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
     """Return the least under-keel clearance [m]: the voyage's, else the ship file's own limit."""
     if voyage.min_ukc_m is not None:
         return voyage.min_ukc_m
     return float(ship.data.get("limits", {}).get("min_under_keel_clearance_m", 0.0))
 
 
-def check_period(voyage: Voyage, sea: Sea, needs: Needs) -> float:
+def check_period(voyage: Voyage, sea: Sea, needs: Requirements) -> float:
     """Return the last moment at which all that is needed is covered [s since 1970].
 
     Raises

@@ -11,13 +11,13 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.planning.voyage import Place
 
 #: Charted coast is generalised: a position given in degrees may lie this far inside it [m].
-SNAP_POSITION = 2_000.0
+MAX_SNAP_POSITION = 2_000.0
 #: Harbours lie on land at every resolution of the coastline [m].
-SNAP_PORT = 60_000.0
+MAX_SNAP_PORT = 60_000.0
 
 
 @dataclass(frozen=True)
-class End:
+class Endpoint:
     """An end of a voyage on navigable water.
 
     Attributes
@@ -26,7 +26,7 @@ class End:
         The port's name, or the position as text.
     lat, lon : float
         Position used [deg].
-    moved_m : float
+    moved_distance_m : float
         How far it was moved to reach navigable water [m].
     asked : (lat, lon), optional
         Where it was asked for [deg], when it was moved.
@@ -39,7 +39,7 @@ class End:
     name: str
     lat: float
     lon: float
-    moved_m: float
+    moved_distance_m: float
     asked: tuple[float, float] | None = None
     is_port: bool = False
     why: str = "on charted land"
@@ -52,15 +52,15 @@ class End:
     @property
     def note(self) -> str:
         """A sentence for the user when the end was moved, else nothing."""
-        if self.moved_m < 1.0:
+        if self.moved_distance_m < 1.0:
             return ""
         return (
-            f"{self.name} lies {self.why}: moved {self.moved_m / NAUTICAL_MILE:.1f} nm to "
+            f"{self.name} lies {self.why}: moved {self.moved_distance_m / NAUTICAL_MILE:.1f} nm to "
             f"open water at {format_position(self.lat, self.lon)}."
         )
 
 
-def find_end(place: Place, chart: Chart, what: str) -> End:
+def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
     """Resolve a place to navigable water of a chart.
 
     Raises
@@ -72,21 +72,23 @@ def find_end(place: Place, chart: Chart, what: str) -> End:
         position = parse_position(place)
         if position is None:
             port = chart.ports.lookup(place)
-            found = _on_water(port.name, port.lat, port.lon, chart, what, SNAP_PORT)
+            found = _snap_to_water(port.name, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
             return replace(found, is_port=True)
     else:
         position = place
-    return _on_water(format_position(*position), *position, chart, what, SNAP_POSITION)
+    return _snap_to_water(format_position(*position), *position, chart, what, MAX_SNAP_POSITION)
 
 
-def _on_water(name: str, lat: float, lon: float, chart: Chart, what: str, limit: float) -> End:
+def _snap_to_water(
+    name: str, lat: float, lon: float, chart: Chart, what: str, limit: float
+) -> Endpoint:
     if bool(chart.is_navigable(lat, lon)):
-        return End(name, lat, lon, 0.0)
-    found = chart.nearest_navigable(lat, lon, largest=SNAP_PORT)
+        return Endpoint(name, lat, lon, 0.0)
+    found = chart.nearest_navigable(lat, lon, largest=MAX_SNAP_PORT)
     if found is None:
         raise InputError(
             f"The {what} {name} is not on navigable water.",
-            f"There is none within {SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart.",
+            f"There is none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm on this chart.",
             _swap_hint(lat, lon, chart) or "Choose another position, or a chart that covers it.",
             field=what,
         )
@@ -99,7 +101,7 @@ def _on_water(name: str, lat: float, lon: float, chart: Chart, what: str, limit:
             _swap_hint(lat, lon, chart) or "Give that position, or a port by name.",
             field=what,
         )
-    return End(name, float(near_lat), float(near_lon), float(moved), asked=(lat, lon))
+    return Endpoint(name, float(near_lat), float(near_lon), float(moved), asked=(lat, lon))
 
 
 def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
@@ -108,7 +110,7 @@ def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
     return ""
 
 
-def check_apart(start: End, goal: End) -> None:
+def check_distinct(start: Endpoint, goal: Endpoint) -> None:
     """Raise `InputError` when two ends are the same place."""
     if float(distance(start.lat, start.lon, goal.lat, goal.lon)) < 1.0:
         raise InputError(

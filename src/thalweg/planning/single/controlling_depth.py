@@ -12,10 +12,10 @@ from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
 from thalweg.network import Network
 from thalweg.sea import StationFields
 
-_HALVINGS = 60
+_MAX_BISECTIONS = 60
 
 
-class Shallowest(NamedTuple):
+class ControllingDepth(NamedTuple):
     """Where the best way is shallowest.
 
     Attributes
@@ -34,7 +34,7 @@ class Shallowest(NamedTuple):
     time: float
 
 
-def shallowest_on_best_way(network: Network, fields: StationFields) -> Shallowest | None:
+def find_controlling_depth(network: Network, fields: StationFields) -> ControllingDepth | None:
     """Return the shallowest place of the way on which it is deepest, each at its highest tide.
 
     Parameters
@@ -53,7 +53,7 @@ def shallowest_on_best_way(network: Network, fields: StationFields) -> Shallowes
     from scipy.sparse.csgraph import connected_components
 
     start, goal = network.meta.start, network.meta.goal
-    greatest, place = _greatest_depths(network, fields)
+    greatest, place = _maximum_depths(network, fields)
     tails, heads, n = network.tails(), network.target, network.n_nodes
 
     def parts(keep: np.ndarray) -> np.ndarray:
@@ -66,7 +66,7 @@ def shallowest_on_best_way(network: Network, fields: StationFields) -> Shallowes
         return None
     levels = np.unique(greatest)
     low, high = 0, len(levels) - 1  # joined at low; the highest at which they are is looked for
-    for _ in range(_HALVINGS):
+    for _ in range(_MAX_BISECTIONS):
         if low >= high:
             break
         middle = (low + high + 1) // 2
@@ -75,15 +75,15 @@ def shallowest_on_best_way(network: Network, fields: StationFields) -> Shallowes
     depth = float(levels[low])
     of = parts(greatest > depth)
     least = np.flatnonzero((greatest == depth) & (of[tails] != of[heads]))
-    edge = int(least[np.argmin(_detour(network, tails[least], heads[least]))])
+    edge = int(least[np.argmin(_detour_measure(network, tails[least], heads[least]))])
     station = int(place[edge])
-    return Shallowest(
+    return ControllingDepth(
         depth, float(network.station_lat[station]), float(network.station_lon[station]),
-        _highest_time(fields, station),
+        _time_of_high_water(fields, station),
     )  # fmt: skip
 
 
-def _detour(network: Network, tails: np.ndarray, heads: np.ndarray) -> FloatArray:
+def _detour_measure(network: Network, tails: np.ndarray, heads: np.ndarray) -> FloatArray:
     """Return how far legs lie out of the way from start to goal [rough squares of degrees]."""
     lat = 0.5 * (network.station_lat[tails] + network.station_lat[heads])
     lon = 0.5 * (network.station_lon[tails] + network.station_lon[heads])
@@ -94,10 +94,10 @@ def _detour(network: Network, tails: np.ndarray, heads: np.ndarray) -> FloatArra
     return away
 
 
-def _greatest_depths(network: Network, fields: StationFields) -> tuple[FloatArray, np.ndarray]:
+def _maximum_depths(network: Network, fields: StationFields) -> tuple[FloatArray, np.ndarray]:
     """Return the greatest depth ever along each edge [m], and the station where that is least."""
-    bed = _greatest(fields, BED_DEPTH, math.inf)
-    level = _greatest(fields, WATER_LEVEL, 0.0)
+    bed = _maximum_over_time(fields, BED_DEPTH, math.inf)
+    level = _maximum_over_time(fields, WATER_LEVEL, 0.0)
     charted = np.asarray(network.depth, float)
     charted = np.where(np.isnan(charted), -math.inf, charted)
     edges = np.arange(len(charted))
@@ -117,7 +117,7 @@ def _greatest_depths(network: Network, fields: StationFields) -> tuple[FloatArra
     return depth[least], np.where(share[least] > 0.5, b[least], a[least])
 
 
-def _greatest(fields: StationFields, channel: int, absent: float) -> FloatArray:
+def _maximum_over_time(fields: StationFields, channel: int, absent: float) -> FloatArray:
     """Return the greatest value ever of a channel at every station; -inf where never known."""
     k = fields.channel_index[channel]
     if k < 0:
@@ -126,7 +126,7 @@ def _greatest(fields: StationFields, channel: int, absent: float) -> FloatArray:
     return np.where(np.isnan(values), -math.inf, values)
 
 
-def _highest_time(fields: StationFields, station: int) -> float:
+def _time_of_high_water(fields: StationFields, station: int) -> float:
     total = np.zeros(len(fields.times))
     for channel in (BED_DEPTH, WATER_LEVEL):
         k = fields.channel_index[channel]

@@ -11,16 +11,16 @@ from thalweg.core.time import format_time
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network import Network
-from thalweg.planning.request.voyage_endpoints import End
-from thalweg.planning.single.controlling_depth import shallowest_on_best_way
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.controlling_depth import find_controlling_depth
 from thalweg.sea import StationFields
 from thalweg.search import SearchResult
 
 
-def no_route(
+def no_route_error(
     network: Network,
     result: SearchResult,
-    ends: tuple[End, End],
+    ends: tuple[Endpoint, Endpoint],
     *,
     depart: float,
     last: float,
@@ -56,7 +56,7 @@ def no_route(
         nearest = (lat, lon)
         left = float(distance(lat, lon, ends[1].lat, ends[1].lon)) / NAUTICAL_MILE
         words = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."
-    never = None if fields is None else _never_deep_enough(network, fields, required)
+    never = None if fields is None else _depth_deficit(network, fields, required)
     if never is not None:
         return NoRouteError(
             f"No route from {ends[0].name} to {ends[1].name}: "
@@ -77,7 +77,7 @@ def no_route(
     )
 
 
-def too_late(arrive_by: float, earliest: float, *, window: bool = False) -> NoRouteError:
+def late_arrival_error(arrive_by: float, earliest: float, *, window: bool = False) -> NoRouteError:
     """Build the error for a latest arrival that even the fastest way misses.
 
     Parameters
@@ -106,7 +106,7 @@ def too_late(arrive_by: float, earliest: float, *, window: bool = False) -> NoRo
     )
 
 
-class Shallow(NamedTuple):
+class DepthDeficit(NamedTuple):
     """Too little water at any tide: where, how much at most, when, and how much is needed."""
 
     lat: float
@@ -133,15 +133,15 @@ class Shallow(NamedTuple):
         )
 
 
-def _never_deep_enough(network: Network, fields: StationFields, required: float) -> Shallow | None:
+def _depth_deficit(network: Network, fields: StationFields, required: float) -> DepthDeficit | None:
     """Return the shallowest place of the best way if even the highest tide is too low there."""
     if not math.isfinite(required) or min(network.meta.start, network.meta.goal) < 0:
         return None
-    found = shallowest_on_best_way(network, fields)
+    found = find_controlling_depth(network, fields)
     if found is None or found.depth >= required:
         return None
     end = float(fields.times[-1])
-    return Shallow(found.lat, found.lon, found.depth, found.time, required, end)
+    return DepthDeficit(found.lat, found.lon, found.depth, found.time, required, end)
 
 
 _ADVICE_SHALLOW = "Sail lighter, ask less clearance, or come at a higher tide than these data hold."

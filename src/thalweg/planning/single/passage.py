@@ -10,22 +10,22 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import along, distance
+from thalweg.core.geodesy import distance, positions_along
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
-from thalweg.planning.frozen_sea import Frozen, freeze
+from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.network_selection.network_choice import NetworkChoice, build_network
-from thalweg.planning.request.requirements import Needs, least_clearance
-from thalweg.planning.request.voyage_endpoints import End
-from thalweg.planning.single.no_route_diagnosis import no_route, too_late
+from thalweg.planning.request.requirements import Requirements, required_under_keel_clearance
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, better_route, evaluate
-from thalweg.route.refinement.better_route import rank
+from thalweg.route.refinement.better_route import comparison_key
 from thalweg.sea import Sea
-from thalweg.search import Bound, SearchResult, best_departure, earliest_arrival, lower_bound
+from thalweg.search import LowerBound, SearchResult, best_departure, earliest_arrival, lower_bound
 from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 
 #: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
@@ -33,11 +33,11 @@ _HORIZONS = (2.5, 8.0, 30.0)
 #: Gap to the bound [fraction] from which the way of the bound is refined as well.
 _WIDE_GAP = 0.01
 #: Isochrones are drawn until this multiple of the passage's time.
-_ISOCHRONES = 1.5
+_ISOCHRONE_TIME_RATIO = 1.5
 _TWO_TIDES = 25 * HOUR
 #: What is tried in turn while the referee finds a limit broken between the stations: how much finer
 #: the network, the margin on the depth [m], and on the limits of wave height and wind [fraction].
-_ATTEMPTS = (
+_TIGHTENING_SCHEDULE = (
     (1, 0.0, 0.0),
     (1, 0.1, 0.02),
     (2, 0.0, 0.0),
@@ -48,14 +48,14 @@ _ATTEMPTS = (
 
 
 @dataclass(frozen=True)
-class Task:
+class PlanningContext:
     """What stays the same for every passage of a voyage."""
 
     voyage: Voyage
     ship: Ship
     sea: Sea
     chart: Chart
-    needs: Needs
+    needs: Requirements
     table: PerformanceTable
     setting: int
     last: float
@@ -65,7 +65,7 @@ class Task:
     @property
     def min_ukc(self) -> float:
         """The least under-keel clearance asked [m]."""
-        return least_clearance(self.voyage, self.ship)
+        return required_under_keel_clearance(self.voyage, self.ship)
 
     @property
     def latest(self) -> float:
@@ -75,7 +75,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Passage:
+class PassageResult:
     """What came of one passage.
 
     Attributes
@@ -98,14 +98,16 @@ class Passage:
 
     route: Route
     result: SearchResult
-    bound: Bound
-    floor: Bound
+    bound: LowerBound
+    floor: LowerBound
     network: Network
     isochrones: np.ndarray
     notes: tuple[str, ...]
 
 
-def make_passage(task: Task, start: End, goal: End, window: tuple[float, float]) -> Passage:
+def plan_passage(
+    context: PlanningContext, start: Endpoint, goal: Endpoint, window: tuple[float, float]
+) -> PassageResult:
     """Find the best route between two ends, departing inside a window of times.
 
     Raises
@@ -114,18 +116,22 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
         If no route exists within the limits, the data and the latest arrival.
     """
     networks: dict[int, Network] = {}
-    passage: Passage | None = None
+    passage: PassageResult | None = None
     refusal: NoRouteError | None = None
-    for finer, depth, fraction in _ATTEMPTS:
+    for finer, depth, fraction in _TIGHTENING_SCHEDULE:
         if finer not in networks:
-            networks[finer] = _network(task, (start, goal), finer, networks)
-        limits = task.needs.limits * (1.0 - fraction)
-        limits[codes.LIMIT_REQUIRED_DEPTH] = task.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+            networks[finer] = _network(context, (start, goal), finer, networks)
+        limits = context.needs.limits * (1.0 - fraction)
+        limits[codes.LIMIT_REQUIRED_DEPTH] = (
+            context.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
+        )
         try:
-            tried = _attempt(task, networks[finer], (start, goal), window, limits)
+            tried = _search_and_refine(context, networks[finer], (start, goal), window, limits)
         except NoRouteError as error:
             refusal = refusal or error
-            denser = _replaceable(task, networks[finer]) or _thinned(task, networks[finer])
+            denser = _lattice_fallback_allowed(context, networks[finer]) or _mesh_is_thinned(
+                context, networks[finer]
+            )
             if passage is None and not denser:
                 raise refusal from None
             continue
@@ -134,135 +140,144 @@ def make_passage(task: Task, start: End, goal: End, window: tuple[float, float])
         if passage.route.feasible:
             break
     assert passage is not None  # every way without one has raised
-    arrive, latest = passage.route.arrive, task.latest
+    arrive, latest = passage.route.arrive, context.latest
     if latest + 1.0 < arrive < math.inf:
-        raise too_late(latest, arrive, window=window[1] > window[0])
+        raise late_arrival_error(latest, arrive, window=window[1] > window[0])
     return passage
 
 
-def _replaceable(task: Task, network: Network) -> bool:
+def _lattice_fallback_allowed(context: PlanningContext, network: Network) -> bool:
     """Whether a lattice may take the place of the mesh that was chosen automatically."""
-    return task.choice.network == "auto" and network.meta.kind == "mesh"
+    return context.choice.network == "auto" and network.meta.kind == "mesh"
 
 
-def _thinned(task: Task, network: Network) -> bool:
+def _mesh_is_thinned(context: PlanningContext, network: Network) -> bool:
     """Whether a mesh lacks nodes of the model, as a spacing was asked."""
-    return network.meta.kind == "mesh" and task.choice.spacing is not None
+    return network.meta.kind == "mesh" and context.choice.spacing is not None
 
 
 def _network(
-    task: Task, ends: tuple[End, End], finer: int, networks: Mapping[int, Network]
+    context: PlanningContext,
+    ends: tuple[Endpoint, Endpoint],
+    finer: int,
+    networks: Mapping[int, Network],
 ) -> Network:
-    task.tell(f"building the network from {ends[0].name} to {ends[1].name}")
-    choice, first = task.choice, networks.get(1)
-    if first is not None and _replaceable(task, first):
+    context.tell(f"building the network from {ends[0].name} to {ends[1].name}")
+    choice, first = context.choice, networks.get(1)
+    if first is not None and _lattice_fallback_allowed(context, first):
         # The nodes of a model cannot be made finer; a lattice over the same water can.
         spacing = networks[2].meta.spacing_m * 2 / finer if 2 in networks else choice.spacing
         choice = replace(choice, network="lattice", spacing=spacing)
     elif first is not None and first.meta.kind == "mesh":
-        if not _thinned(task, first):
+        if not _mesh_is_thinned(context, first):
             return first
         choice = replace(choice, spacing=None)  # all nodes, or as many as can be searched
     elif first is not None:
         choice = replace(choice, spacing=first.meta.spacing_m / finer)
-    period = task.voyage.earliest_departure, task.last
-    return build_network(choice, task.chart, task.sea, ends, period=period)
+    period = context.voyage.earliest_departure, context.last
+    return build_network(choice, context.chart, context.sea, ends, period=period)
 
 
-def _attempt(
-    task: Task,
+def _search_and_refine(
+    context: PlanningContext,
     network: Network,
-    ends: tuple[End, End],
+    ends: tuple[Endpoint, Endpoint],
     window: tuple[float, float],
     limits: np.ndarray,
-) -> Passage:
+) -> PassageResult:
     """Search, refine and bound once."""
-    frozen, result = _search(task, network, limits, window, ends)
-    route = refined(task, track_of(network, result, task.setting), limits)
-    task.tell("bounding the answer")
-    floor = _bound(task, network, frozen, result, route, any_departure=True)
+    frozen, result = _search(context, network, limits, window, ends)
+    route = refine_track(context, track_from_result(network, result, context.setting), limits)
+    context.tell("bounding the answer")
+    floor = _bound(context, network, frozen, result, route, any_departure=True)
     bound = floor
-    if task.voyage.depart_window is None:
-        bound = _bound(task, network, frozen, result, route)
-        other = _other_way(task, network, bound, route, limits)
+    if context.voyage.depart_window is None:
+        bound = _bound(context, network, frozen, result, route)
+        other = _refined_bound_path(context, network, bound, route, limits)
         if other is not route:
-            route, bound = other, _bound(task, network, frozen, result, other)
+            route, bound = other, _bound(context, network, frozen, result, other)
     notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
-    until = route.depart + _ISOCHRONES * route.time_h * HOUR if route.feasible else None
-    arrival = isochrones(task, network, frozen, route.depart, until)
-    return Passage(route, result, bound, floor, network, arrival, notes)
+    until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
+    arrival = isochrones(context, network, frozen, route.depart, until)
+    return PassageResult(route, result, bound, floor, network, arrival, notes)
 
 
-def _other_way(
-    task: Task, network: Network, bound: Bound, route: Route, limits: np.ndarray
+def _refined_bound_path(
+    context: PlanningContext, network: Network, bound: LowerBound, route: Route, limits: np.ndarray
 ) -> Route:
     """Where the gap is wide, refine the way of the bound as well and return the better route.
 
     Weather that passes makes the network's ways sensitive to their delay: the way of the bound is
     timed as a ship in open water would be.
     """
-    value = _value(task, route)
+    value = _objective_value(context, route)
     if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
         return route
     lat, lon = network.station_lat[bound.path], network.station_lon[bound.path]
-    settings = np.full(len(lat) - 1, task.setting)
-    other = refined(task, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
+    settings = np.full(len(lat) - 1, context.setting)
+    other = refine_track(context, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
     routes = (route, other)  # penalty zones count here as they did in the search
-    return min(routes, key=lambda item: rank(item, task.voyage.objective, task.chart))
+    return min(
+        routes, key=lambda item: comparison_key(item, context.voyage.objective, context.chart)
+    )
 
 
-def _value(task: Task, route: Route) -> float:
+def _objective_value(context: PlanningContext, route: Route) -> float:
     """Return what a route is compared by: its length [m] or its time [s]."""
-    if task.voyage.objective == "distance":
+    if context.voyage.objective == "distance":
         return float(route.legs["length"].sum())
     return route.time_h * HOUR
 
 
 def isochrones(
-    task: Task, network: Network, frozen: Frozen, depart: float, until: float | None
+    context: PlanningContext,
+    network: Network,
+    frozen: FrozenSea,
+    depart: float,
+    until: float | None,
 ) -> np.ndarray:
     """Return the earliest arrival everywhere [s since 1970], until a time when one is given."""
     everywhere = earliest_arrival(
         network,
         frozen.stations,
-        task.table,
+        context.table,
         start=network.meta.start,
         goal=None,
         depart=depart,
-        setting=task.setting,
-        limits=task.needs.limits,
-        wait=task.voyage.wait,
+        setting=context.setting,
+        limits=context.needs.limits,
+        wait=context.voyage.wait,
         arrive_by=until,
         top_speed=frozen.top_speed,
     )
     return everywhere.node_arrival
 
 
-def refined(task: Task, track: Track, limits: np.ndarray) -> Route:
+def refine_track(context: PlanningContext, track: Track, limits: np.ndarray) -> Route:
     """Let the referee score a track, refine it, and return the better route."""
-    task.tell("refining the route")
+    context.tell("refining the route")
     scored = evaluate(
         track,
-        ship=task.ship,
-        sea=task.sea,
-        chart=task.chart,
-        min_ukc=task.min_ukc,
+        ship=context.ship,
+        sea=context.sea,
+        chart=context.chart,
+        min_ukc=context.min_ukc,
         strict=False,
     )
     return better_route(
         scored,
-        ship=task.ship,
-        sea=task.sea,
-        chart=task.chart,
-        table=task.table,
+        ship=context.ship,
+        sea=context.sea,
+        chart=context.chart,
+        table=context.table,
         limits=limits,
-        min_ukc=task.min_ukc,
-        objective="distance" if task.voyage.objective == "distance" else "time",
-        wait=task.voyage.wait,
+        min_ukc=context.min_ukc,
+        objective="distance" if context.voyage.objective == "distance" else "time",
+        wait=context.voyage.wait,
     )
 
 
-def track_of(network: Network, result: SearchResult, setting: int) -> Track:
+def track_from_result(network: Network, result: SearchResult, setting: int) -> Track:
     """Turn a path on the network into a track with its waits."""
     path = result.path
     wait = np.maximum(0.0, result.path_depart - result.path_arrive)
@@ -277,59 +292,61 @@ def track_of(network: Network, result: SearchResult, setting: int) -> Track:
 
 
 def _search(
-    task: Task,
+    context: PlanningContext,
     network: Network,
     limits: np.ndarray,
     window: tuple[float, float],
-    ends: tuple[End, End],
-) -> tuple[Frozen, SearchResult]:
+    ends: tuple[Endpoint, Endpoint],
+) -> tuple[FrozenSea, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
-    usual = straight / _usual_speed(task, ends, window[0])
-    latest = min(task.last, task.latest)
+    usual = straight / _expected_speed(context, ends, window[0])
+    latest = min(context.last, context.latest)
     for number, horizon in enumerate(_HORIZONS):
         end = window[1] + horizon * usual + (_TWO_TIDES if number else 0.0)
         end = min(end, latest)
-        task.tell(f"freezing the sea until {format_time(end)}")
-        frozen = freeze(task, network, window[0], end)
-        warm_up.finish()
-        task.tell("searching")
-        result = _run(task, network, frozen, limits, window)
+        context.tell(f"freezing the sea until {format_time(end)}")
+        frozen = freeze_at_stations(context, network, window[0], end)
+        warm_up.wait_until_compiled()
+        context.tell("searching")
+        result = _run_search(context, network, frozen, limits, window)
         if result.found or end >= latest:
             break
     if not result.found:
-        if task.voyage.arrive_by is not None:
-            raise _too_late(task, network, limits, window, ends)
-        raise no_route(
-            network, result, ends, depart=task.voyage.earliest_departure, last=task.last,
+        if context.voyage.arrive_by is not None:
+            raise _late_arrival_error(context, network, limits, window, ends)
+        raise no_route_error(
+            network, result, ends, depart=context.voyage.earliest_departure, last=context.last,
             fields=frozen.stations, required=float(limits[codes.LIMIT_REQUIRED_DEPTH]),
         )  # fmt: skip
     return frozen, result
 
 
-def _too_late(
-    task: Task, network: Network, limits: np.ndarray, window: tuple[float, float],
-    ends: tuple[End, End],
+def _late_arrival_error(
+    context: PlanningContext, network: Network, limits: np.ndarray, window: tuple[float, float],
+    ends: tuple[Endpoint, Endpoint],
 ) -> NoRouteError:  # fmt: skip
     """Return the error for a latest arrival that is missed; raise the one without it, if any."""
-    freely = replace(task, voyage=replace(task.voyage, arrive_by=None, objective="time"))
+    freely = replace(context, voyage=replace(context.voyage, arrive_by=None, objective="time"))
     _, result = _search(freely, network, limits, window, ends)
-    return too_late(task.latest, result.arrive, window=window[1] > window[0])
+    return late_arrival_error(context.latest, result.arrive, window=window[1] > window[0])
 
 
-def _usual_speed(task: Task, ends: tuple[End, End], depart: float) -> float:
+def _expected_speed(
+    context: PlanningContext, ends: tuple[Endpoint, Endpoint], depart: float
+) -> float:
     """Return a speed [m/s] to expect: the setting's, or the mean of a speed field on the way."""
-    if task.ship.speed_field is None:
-        return float(task.ship.speeds[task.setting])
+    if context.ship.speed_field is None:
+        return float(context.ship.speeds[context.setting])
     start, goal = ends
-    lat, lon = along(start.lat, start.lon, goal.lat, goal.lon, np.linspace(0, 1, 33))
+    lat, lon = positions_along(start.lat, start.lon, goal.lat, goal.lon, np.linspace(0, 1, 33))
     time = np.full(lat.shape, depart)
-    names = sorted(task.ship.needs)
-    speed = task.ship.speed_field(task.sea.sample(names, time, lat, lon), time, lat, lon)
+    names = sorted(context.ship.needs)
+    speed = context.ship.speed_field(context.sea.sample(names, time, lat, lon), time, lat, lon)
     known = speed[np.isfinite(speed) & (speed > 0)]
     return float(known.mean()) if known.size else 1.0
 
 
-def table_of(ship: Ship) -> PerformanceTable:
+def performance_table_of(ship: Ship) -> PerformanceTable:
     """Return the table of a ship; of one whose speed is a field, a table without any say."""
     if ship.speed_field is None:
         return ship.tabulate()
@@ -337,44 +354,48 @@ def table_of(ship: Ship) -> PerformanceTable:
     return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))
 
 
-def _run(
-    task: Task, network: Network, frozen: Frozen, limits: np.ndarray, window: tuple[float, float]
+def _run_search(
+    context: PlanningContext,
+    network: Network,
+    frozen: FrozenSea,
+    limits: np.ndarray,
+    window: tuple[float, float],
 ) -> SearchResult:
     options = {
         "start": network.meta.start,
         "goal": network.meta.goal,
-        "setting": task.setting,
+        "setting": context.setting,
         "limits": limits,
-        "objective": task.voyage.objective,
-        "wait": task.voyage.wait,
-        "arrive_by": task.voyage.arrive_by,
+        "objective": context.voyage.objective,
+        "wait": context.voyage.wait,
+        "arrive_by": context.voyage.arrive_by,
         "top_speed": frozen.top_speed,
     }
     if window[1] > window[0]:
-        return best_departure(network, frozen.stations, task.table, window=window, **options)  # type: ignore[arg-type]
-    return earliest_arrival(network, frozen.stations, task.table, depart=window[0], **options)  # type: ignore[arg-type]
+        return best_departure(network, frozen.stations, context.table, window=window, **options)  # type: ignore[arg-type]
+    return earliest_arrival(network, frozen.stations, context.table, depart=window[0], **options)  # type: ignore[arg-type]
 
 
 def _bound(
-    task: Task,
+    context: PlanningContext,
     network: Network,
-    frozen: Frozen,
+    frozen: FrozenSea,
     result: SearchResult,
     route: Route,
     *,
     any_departure: bool = False,
-) -> Bound:
+) -> LowerBound:
     return lower_bound(
         network,
         frozen.stations,
-        task.table,
+        context.table,
         start=network.meta.start,
         goal=network.meta.goal,
         depart=float(result.path_arrive[0]),
-        setting=task.setting,
-        limits=task.needs.limits,
-        objective="distance" if task.voyage.objective == "distance" else "time",
+        setting=context.setting,
+        limits=context.needs.limits,
+        objective="distance" if context.voyage.objective == "distance" else "time",
         top_speed=frozen.top_speed,
-        known=_value(task, route) if route.feasible else None,
+        known=_objective_value(context, route) if route.feasible else None,
         any_departure=any_departure,
     )

@@ -10,7 +10,13 @@ from pathlib import Path
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.route.formats.parsed_track import SPEEDS, WAITS, ParsedTrack, order_of, position_of
+from thalweg.route.formats.parsed_track import (
+    SPEEDS,
+    WAITS,
+    ParsedTrack,
+    position_of,
+    waypoint_order,
+)
 from thalweg.route.route import Route
 
 _NAMES = {
@@ -56,7 +62,7 @@ def parse_csv(text: str) -> ParsedTrack:
     )
     told = [name for name in (*WAITS, *SPEEDS) if name in header]
     orders = [
-        order_of({name: _cell_of(row, header.index(name)) for name in told}, number)
+        waypoint_order({name: _cell_of(row, header.index(name)) for name in told}, number)
         for number, row in enumerate(rows[1:] if told else (), start=1)
     ]
     return ParsedTrack(positions, parse_time(first) if first else None, orders)

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import Position, along, densify
+from thalweg.core.geodesy import Position, densify, positions_along
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.route.formats.parsed_track import ParsedTrack, order_of, position_of
+from thalweg.route.formats.parsed_track import ParsedTrack, position_of, waypoint_order
 from thalweg.route.route import Route
 
 _LINE_SPACING = 20.0 * NAUTICAL_MILE  # legs are geodesics, GeoJSON lines are not: cut them finely
@@ -61,7 +61,7 @@ def parse_geojson(text: str) -> ParsedTrack:
     positions = [_position(item, i) for i, (item, _) in enumerate(chosen, start=1)]
     if chosen is on_line:
         return ParsedTrack(_without_cuts(positions), first_time)
-    orders = [order_of(told, i) for i, (_, told) in enumerate(chosen, start=1)]
+    orders = [waypoint_order(told, i) for i, (_, told) in enumerate(chosen, start=1)]
     return ParsedTrack(positions, first_time, orders)
 
 
@@ -70,13 +70,13 @@ def _first_line(lines: list[list[list[Any]]]) -> list[Any]:
     found: list[Any] = []
     for parts in lines:
         line = [position for part in parts for position in part]
-        if found and line and not _goes_on(_position(found[-1], 1), _position(line[0], 1)):
+        if found and line and not _continues(_position(found[-1], 1), _position(line[0], 1)):
             break
         found += line
     return found
 
 
-def _goes_on(end: Position, start: Position) -> bool:
+def _continues(end: Position, start: Position) -> bool:
     return end[0] == start[0] and (end[1] - start[1]) % 360.0 == 0.0
 
 
@@ -167,9 +167,9 @@ def _crossing_latitude(here: tuple[float, float], there: tuple[float, float]) ->
     low, high = 0.0, 1.0
     for _ in range(50):
         middle = 0.5 * (low + high)
-        _, lon = along(here[0], here[1], there[0], there[1], middle)
+        _, lon = positions_along(here[0], here[1], there[0], there[1], middle)
         if (float(lon) >= 0.0) == (here[1] >= 0.0):
             low = middle
         else:
             high = middle
-    return float(along(here[0], here[1], there[0], there[1], low)[0])
+    return float(positions_along(here[0], here[1], there[0], there[1], low)[0])

@@ -11,11 +11,17 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
-from thalweg.route.formats.parsed_track import SPEEDS, WAITS, ParsedTrack, order_of, position_of
+from thalweg.route.formats.parsed_track import (
+    SPEEDS,
+    WAITS,
+    ParsedTrack,
+    position_of,
+    waypoint_order,
+)
 from thalweg.route.route import Route
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
-_OWN = "urn:thalweg:route:1"
+_OWN_NAMESPACE = "urn:thalweg:route:1"
 
 
 def parse_gpx(text: str) -> ParsedTrack:
@@ -43,8 +49,8 @@ def parse_gpx(text: str) -> ParsedTrack:
             "Export the route itself, not only waypoints.",
         )
     positions = [position_of(p.get("lat"), p.get("lon"), i) for i, p in enumerate(points, start=1)]
-    time = next((e.text for e in points[0] if _plain(e.tag) == "time" and e.text), None)
-    orders = [order_of(_extensions(point), i) for i, point in enumerate(points, start=1)]
+    time = next((e.text for e in points[0] if _local_name(e.tag) == "time" and e.text), None)
+    orders = [waypoint_order(_extensions(point), i) for i, point in enumerate(points, start=1)]
     return ParsedTrack(positions, parse_time(time) if time else None, orders)
 
 
@@ -61,7 +67,7 @@ def write_gpx(route: Route, path: str | Path) -> None:
         ElementTree.SubElement(point, "name").text = f"WP{number:03d}"
         _extend(point, row)
     tree = ElementTree.ElementTree(root)
-    ElementTree.register_namespace("thalweg", _OWN)
+    ElementTree.register_namespace("thalweg", _OWN_NAMESPACE)
     ElementTree.indent(tree)
     tree.write(Path(path), encoding="utf-8", xml_declaration=True)
 
@@ -72,24 +78,24 @@ def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:
     if told:
         extensions = ElementTree.SubElement(point, "extensions")
         for name, value in told.items():
-            ElementTree.SubElement(extensions, f"{{{_OWN}}}{name}").text = repr(value)
+            ElementTree.SubElement(extensions, f"{{{_OWN_NAMESPACE}}}{name}").text = repr(value)
 
 
 def _extensions(point: ElementTree.Element) -> dict[str, str]:
     """Return what a point has of our own elements, by name."""
-    own = [e for e in point.iter() if str(e.tag).startswith(f"{{{_OWN}}}")]
-    return {_plain(element.tag): (element.text or "").strip() for element in own}
+    own = [e for e in point.iter() if str(e.tag).startswith(f"{{{_OWN_NAMESPACE}}}")]
+    return {_local_name(element.tag): (element.text or "").strip() for element in own}
 
 
 def _points(root: ElementTree.Element, parent: str, name: str) -> list[ElementTree.Element]:
     """Return the points of the first parent element that has any, of whatever GPX version."""
     for element in root.iter():
-        if _plain(element.tag) == parent:
-            found = [point for point in element.iter() if _plain(point.tag) == name]
+        if _local_name(element.tag) == parent:
+            found = [point for point in element.iter() if _local_name(point.tag) == name]
             if found:
                 return found
     return []
 
 
-def _plain(tag: object) -> str:
+def _local_name(tag: object) -> str:
     return str(tag).rpartition("}")[2]

@@ -32,10 +32,10 @@ class ParsedTrack:
 
     positions: list[Position]
     first_time: float | None = None
-    orders: list[Order] = field(default_factory=list)
+    orders: list[WaypointOrder] = field(default_factory=list)
 
 
-class Order(NamedTuple):
+class WaypointOrder(NamedTuple):
     """How long to wait at a waypoint [s], and the calm-water speed ordered after it [m/s]."""
 
     wait: float = 0.0
@@ -48,7 +48,7 @@ SPEEDS = {"ordered_speed_kn": KNOT}
 LONGEST_WAIT = 366.0 * DAY  #: [s]
 
 
-def order_of(values: Mapping[str, object], number: int) -> Order:
+def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
     """Return what a file orders at the numbered waypoint (from 1), by name; blanks are none.
 
     Raises
@@ -57,8 +57,8 @@ def order_of(values: Mapping[str, object], number: int) -> Order:
         If a value is not a number, a wait negative or longer than a year, or a speed not above
         zero.
     """
-    wait = _told(values, WAITS, f"wait at waypoint {number}")
-    speed = _told(values, SPEEDS, f"ordered speed at waypoint {number}")
+    wait = _first_value(values, WAITS, f"wait at waypoint {number}")
+    speed = _first_value(values, SPEEDS, f"ordered speed at waypoint {number}")
     if not (wait is None or 0.0 <= wait <= LONGEST_WAIT) or not (speed is None or speed > 0.0):
         raise InputError(
             f"Waypoint {number} has a wait of {wait} s and an ordered speed of {speed} m/s.",
@@ -66,10 +66,12 @@ def order_of(values: Mapping[str, object], number: int) -> Order:
             "Correct them, or leave them empty.",
             waypoint=number,
         )
-    return Order(wait or 0.0, math.nan if speed is None else speed)
+    return WaypointOrder(wait or 0.0, math.nan if speed is None else speed)
 
 
-def _told(values: Mapping[str, object], names: Mapping[str, float], what: str) -> float | None:
+def _first_value(
+    values: Mapping[str, object], names: Mapping[str, float], what: str
+) -> float | None:
     """Return the value under the first of some names, in SI; None if there is none."""
     for name, unit in names.items():
         if values.get(name) not in (None, ""):
@@ -126,11 +128,11 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
 
 def _track(parsed: ParsedTrack, depart: float) -> Track:
     """Merge repeated positions: their waits add up, the last of their speeds holds."""
-    orders = parsed.orders or [Order()] * len(parsed.positions)
-    merged: list[tuple[Position, Order]] = []
+    orders = parsed.orders or [WaypointOrder()] * len(parsed.positions)
+    merged: list[tuple[Position, WaypointOrder]] = []
     for place, order in zip(parsed.positions, orders):
         if merged and merged[-1][0] == place:
-            order = Order(merged.pop()[1].wait + order.wait, order.speed)
+            order = WaypointOrder(merged.pop()[1].wait + order.wait, order.speed)
         merged.append((place, order))
     lat, lon = np.array([place for place, _ in merged]).T
     wait = np.array([order.wait for _, order in merged])

@@ -18,10 +18,10 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import KNOT, NAUTICAL_MILE
-from thalweg.route.referee.limit_checks import coverage_error, is_gap
-from thalweg.route.referee.route_assembly import report
-from thalweg.route.referee.sailing import sail, spacings
-from thalweg.route.referee.sailing_physics import World, open_world
+from thalweg.route.referee.limit_checks import coverage_error, is_data_gap
+from thalweg.route.referee.route_assembly import assemble_route
+from thalweg.route.referee.sailing import data_spacings, sail_track
+from thalweg.route.referee.sailing_physics import SailingEnvironment, make_sailing_environment
 from thalweg.route.referee.wind_speed_only import with_wind_speed
 from thalweg.route.route import Route
 from thalweg.route.track import Track
@@ -32,16 +32,16 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-Routable: TypeAlias = "Track | Route | str | Path | Iterable[Sequence[float]]"
+RouteLike: TypeAlias = "Track | Route | str | Path | Iterable[Sequence[float]]"
 
-LEAST_PIECES = 8  #: of every leg
-LARGEST_STEP = 0.5 * NAUTICAL_MILE  #: [m]
-MOST_PIECES = 2000  #: of a route at the coarser of its two step sizes (besides `LEAST_PIECES`)
-_SAME_SPEED = 1e-6  # relative, for speeds that went through a file
+MIN_PIECES = 8  #: of every leg
+MAX_STEP = 0.5 * NAUTICAL_MILE  #: [m]
+MAX_PIECES = 2000  #: of a route at the coarser of its two step sizes (besides `MIN_PIECES`)
+_SPEED_TOLERANCE = 1e-6  # relative, for speeds that went through a file
 
 
 def evaluate(
-    route: Routable,
+    route: RouteLike,
     *,
     ship: Ship,
     sea: Sea,
@@ -118,20 +118,20 @@ def evaluate(
     _check_given(ship, sea, min_ukc)
     terms = _checked_terms(ship, terms)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
-    ship, track = ordered(ship, as_track(route, depart), speed_kn)
-    world = open_world(ship, with_wind_speed(ship, sea), chart)
+    ship, track = resolve_settings(ship, as_track(route, depart), speed_kn)
+    world = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
     step = _default_step(world, track) if step is None else _checked_step(step)
-    coarse = sail(world, track, step, LEAST_PIECES, None)
-    fine = sail(world, track, 0.5 * step, 2 * LEAST_PIECES, coarse)
-    result = report(fine, min_ukc, abs(fine.arrive - coarse.arrive), terms)
+    coarse = sail_track(world, track, step, MIN_PIECES, None)
+    fine = sail_track(world, track, 0.5 * step, 2 * MIN_PIECES, coarse)
+    result = assemble_route(fine, min_ukc, abs(fine.arrive - coarse.arrive), terms)
     if strict and not math.isfinite(result.arrive):
-        gaps = [violation for violation in result.violations if is_gap(violation)]
+        gaps = [violation for violation in result.violations if is_data_gap(violation)]
         if gaps:
             raise coverage_error(gaps[-1])
     return result
 
 
-def as_track(route: Routable, depart: TimeLike | None = None) -> Track:
+def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
     """Return the track of a route, a file or positions, with the departure if one is given.
 
     Raises
@@ -157,7 +157,7 @@ def as_track(route: Routable, depart: TimeLike | None = None) -> Track:
     return Track.from_positions(route, depart=depart)
 
 
-def ordered(ship: Ship, track: Track, speed_kn: float | None = None) -> tuple[Ship, Track]:
+def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) -> tuple[Ship, Track]:
     """Return the ship and the track with every setting an index from the bottom, by its speeds.
 
     Where the track orders speeds that are none of the ship's, the ship gets these.
@@ -169,7 +169,7 @@ def ordered(ship: Ship, track: Track, speed_kn: float | None = None) -> tuple[Sh
     """
     if speed_kn is not None:
         ship = ship.with_speeds([speed_kn * KNOT])
-        return ship, _settled(track, np.zeros(len(track) - 1, dtype=np.int64))
+        return ship, _with_settings(track, np.zeros(len(track) - 1, dtype=np.int64))
     count = len(ship.speeds)
     setting = np.where(track.setting < 0, track.setting + count, track.setting)
     by_speed = np.isfinite(track.speed)
@@ -180,21 +180,21 @@ def ordered(ship: Ship, track: Track, speed_kn: float | None = None) -> tuple[Sh
             "Give the settings of this ship, or an ordered speed.",
         )
     if not by_speed.any():
-        return ship, _settled(track, setting)
+        return ship, _with_settings(track, setting)
     wanted = np.where(by_speed, track.speed, ship.speeds[setting])
-    if not _matched(ship, wanted)[1]:
+    if not _nearest_settings(ship, wanted)[1]:
         ship = ship.with_speeds(wanted)
-    return ship, _settled(track, _matched(ship, wanted)[0])
+    return ship, _with_settings(track, _nearest_settings(ship, wanted)[0])
 
 
-def _settled(track: Track, setting: NDArray[np.int64]) -> Track:
+def _with_settings(track: Track, setting: NDArray[np.int64]) -> Track:
     return track.replaced(setting=setting, speed=None)
 
 
-def _matched(ship: Ship, wanted: FloatArray) -> tuple[NDArray[np.int64], bool]:
+def _nearest_settings(ship: Ship, wanted: FloatArray) -> tuple[NDArray[np.int64], bool]:
     """Return the setting nearest to each speed, and whether all are the same to rounding."""
     off = np.abs(ship.speeds[None, :] - wanted[:, None])
-    same = bool(np.all(off.min(axis=1) <= _SAME_SPEED * wanted))
+    same = bool(np.all(off.min(axis=1) <= _SPEED_TOLERANCE * wanted))
     return np.asarray(np.argmin(off, axis=1), dtype=np.int64), same
 
 
@@ -240,6 +240,6 @@ def _checked_step(step: float) -> float:
     return float(step)
 
 
-def _default_step(world: World, track: Track) -> float:
-    finest = min([LARGEST_STEP, *spacings(world, 0.25)])
-    return max(finest, float(track.lengths.sum()) / MOST_PIECES, 1e-3)
+def _default_step(world: SailingEnvironment, track: Track) -> float:
+    finest = min([MAX_STEP, *data_spacings(world, 0.25)])
+    return max(finest, float(track.lengths.sum()) / MAX_PIECES, 1e-3)

@@ -23,7 +23,7 @@ GAUSS_NODES = np.array([0.5 - math.sqrt(3.0) / 6.0, 0.5 + math.sqrt(3.0) / 6.0])
 
 
 @dataclass(frozen=True)
-class Points:
+class TrackPoints:
     """Places on a track where a ship is looked at.
 
     Attributes
@@ -53,9 +53,9 @@ class Points:
     def __len__(self) -> int:
         return len(self.lat)
 
-    def part(self, index: slice | IntArray | NDArray[np.bool_]) -> Points:
+    def part(self, index: slice | IntArray | NDArray[np.bool_]) -> TrackPoints:
         """Return some of the points."""
-        return Points(
+        return TrackPoints(
             self.lat[index],
             self.lon[index],
             self.course[index],
@@ -67,7 +67,7 @@ class Points:
 
 
 @dataclass(frozen=True)
-class Pieces:
+class TrackPieces:
     """A track cut into short pieces, with its legs.
 
     Attributes
@@ -99,7 +99,7 @@ class Pieces:
     def __len__(self) -> int:
         return len(self.leg)
 
-    def points(self, leg: IntArray, along: FloatArray) -> Points:
+    def points(self, leg: IntArray, along: FloatArray) -> TrackPoints:
         """Return the points at given distances along given legs, without charted depth."""
         track = self.track
         lon, lat, back = WGS84.fwd(
@@ -110,7 +110,7 @@ class Pieces:
         for canal in self.canals.legs:
             on = leg == canal
             lat[on], lon[on], course[on] = self.canals.places(canal, along[on])
-        return Points(
+        return TrackPoints(
             lat,
             lon,
             course,
@@ -120,12 +120,12 @@ class Pieces:
             np.full(len(leg), math.inf),
         )
 
-    def gauss_points(self) -> Points:
+    def gauss_points(self) -> TrackPoints:
         """Return the two Gauss points of every piece, in order."""
         along = self.start[:, None] + self.step[:, None] * GAUSS_NODES
         return self.points(np.repeat(self.leg, 2), along.reshape(-1))
 
-    def ends(self) -> Points:
+    def ends(self) -> TrackPoints:
         """Return the start of every piece, then the end of every leg."""
         legs = np.arange(len(self.length))
         return self.points(
@@ -137,7 +137,9 @@ class Pieces:
         return np.append(self.leg[1:] != self.leg[:-1], True)
 
 
-def cut(track: Track, step: float, least: int, chart: Chart | None = None) -> Pieces:
+def cut_into_pieces(
+    track: Track, step: float, least: int, chart: Chart | None = None
+) -> TrackPieces:
     """Cut every leg into equal pieces.
 
     Parameters
@@ -159,4 +161,4 @@ def cut(track: Track, step: float, least: int, chart: Chart | None = None) -> Pi
     piece = length / count
     wait = np.zeros(len(leg))
     wait[np.cumsum(count) - 1] = track.wait[1:]
-    return Pieces(track, length, course, leg, number * piece[leg], piece[leg], wait, canals)
+    return TrackPieces(track, length, course, leg, number * piece[leg], piece[leg], wait, canals)

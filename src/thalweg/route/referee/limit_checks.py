@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import CoverageError, OutsideAreaError, OutsidePeriodError
-from thalweg.core.geodesy import FloatArray, along, format_position
+from thalweg.core.geodesy import FloatArray, format_position, positions_along
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.kernels.codes import REASONS
-from thalweg.route.referee.leg_segments import Pieces, Points
-from thalweg.route.referee.sailing_physics import Motion, World
+from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
+from thalweg.route.referee.sailing_physics import SailingEnvironment, SailingState
 from thalweg.route.route import Violation
 from thalweg.route.track import Track
 from thalweg.ship.condition_variables import (
@@ -28,12 +28,12 @@ from thalweg.ship.condition_variables import (
 from thalweg.ship.conditions import Conditions
 
 BoolArray = NDArray[np.bool_]
-_SLACK = 1e-9  # rounding allowed on every limit, in its own unit
+_LIMIT_TOLERANCE = 1e-9  # rounding allowed on every limit, in its own unit
 
 
-def broken_limits(
-    world: World,
-    points: Points,
+def limit_violations(
+    world: SailingEnvironment,
+    points: TrackPoints,
     time: FloatArray,
     *,
     sampled: Mapping[str, FloatArray],
@@ -58,14 +58,14 @@ def broken_limits(
     """
     reached = np.isfinite(time)
     found: list[Violation] = []
-    for reason, bad, values, limit in _checks(world, sampled, depth, min_ukc):
+    for reason, bad, values, limit in _limit_checks(world, sampled, depth, min_ukc):
         for first, last in _stretches(bad & reached, points.leg):
             worst = first + int(np.argmax(np.abs(values[first:last] - limit)))
-            found.append(_record(reason, points, time, worst, float(values[worst]), limit))
-    return found + _gaps(world, points, time, sampled)
+            found.append(_violation_at(reason, points, time, worst, float(values[worst]), limit))
+    return found + _data_gap_violations(world, points, time, sampled)
 
 
-def land_violations(world: World, track: Track, times: FloatArray) -> list[Violation]:
+def land_violations(world: SailingEnvironment, track: Track, times: FloatArray) -> list[Violation]:
     """Return the legs that touch land or a no-go zone or leave the chart, each at its middle."""
     if world.chart is None:
         return []
@@ -73,19 +73,21 @@ def land_violations(world: World, track: Track, times: FloatArray) -> list[Viola
     found = []
     for leg in np.flatnonzero(np.asarray(status) != codes.OK):
         ends = (track.lat[leg], track.lon[leg], track.lat[leg + 1], track.lon[leg + 1])
-        lat, lon = along(*ends, 0.5)
+        lat, lon = positions_along(*ends, 0.5)
         reason = REASONS.get(int(status[leg]), REASONS[codes.LAND])
         where = f"{reason}: leg {leg + 1}"
         found.append(Violation(where, float(times[leg]), float(lat), float(lon)))
     return found
 
 
-def canal_violations(world: World, pieces: Pieces, times: FloatArray) -> list[Violation]:
+def canal_violations(
+    world: SailingEnvironment, pieces: TrackPieces, times: FloatArray
+) -> list[Violation]:
     """Return the canals that the ship may not pass, each at the entrance it takes."""
     beam = world.ship.data.get("hull", {}).get("breadth_m")
     found = []
     for leg in pieces.canals.legs:
-        why = pieces.canals.of(leg).why_not(draught=world.ship.draught, beam=beam)
+        why = pieces.canals.of(leg).transit_restriction(draught=world.ship.draught, beam=beam)
         if why:
             place = (float(pieces.track.lat[leg]), float(pieces.track.lon[leg]))
             found.append(Violation(f"canal: {why}", float(times[leg]), *place))
@@ -111,59 +113,68 @@ def coverage_error(violation: Violation) -> CoverageError:
     )
 
 
-def is_gap(violation: Violation) -> bool:
+def is_data_gap(violation: Violation) -> bool:
     """Return whether a violation is one of missing data."""
     return violation.reason.startswith((REASONS[codes.NO_DATA], REASONS[codes.OUTSIDE_PERIOD]))
 
 
-def stops(world: World, points: Points, time: FloatArray, motion: Motion) -> list[Violation]:
+def stoppage_violations(
+    world: SailingEnvironment, points: TrackPoints, time: FloatArray, motion: SailingState
+) -> list[Violation]:
     """Return where and why the ship cannot go on."""
-    stopped = np.isnan(motion.over_ground) & np.isfinite(time)
+    stopped = np.isnan(motion.speed_over_ground) & np.isfinite(time)
     known = ~np.isnan(motion.depth)
     for values in motion.sampled.values():
         known &= ~np.isnan(values)
-    out_of_range = stopped & known & ~np.isfinite(motion.through_water)
+    out_of_range = stopped & known & ~np.isfinite(motion.speed_through_water)
     current = stopped & known & ~out_of_range
     found = []
     for code, bad in ((codes.SHIP_RANGE, out_of_range), (codes.CURRENT, current)):
         for first, _ in _stretches(bad, points.leg):
-            speed = float(motion.through_water[first])
-            found.append(_record(REASONS[code], points, time, first, speed, math.nan))
-    return found + _gaps(world, points, np.where(stopped, time, math.nan), motion.sampled)
+            speed = float(motion.speed_through_water[first])
+            found.append(_violation_at(REASONS[code], points, time, first, speed, math.nan))
+    return found + _data_gap_violations(
+        world, points, np.where(stopped, time, math.nan), motion.sampled
+    )
 
 
-def dangers(world: World, points: Points, time: FloatArray, motion: Motion) -> list[Violation]:
+def seaway_violations(
+    world: SailingEnvironment, points: TrackPoints, time: FloatArray, motion: SailingState
+) -> list[Violation]:
     """Return where the ship does what it must not in waves: its limits of safety and comfort."""
     safety = world.ship.limits.safety
     if safety is None:
         return []
     at = Conditions.from_sea(motion.sampled, heading=motion.heading)
-    height, speed = at.wave_height, motion.through_water
+    height, speed = at.wave_height, motion.speed_through_water
     bad = safety.forbids(
         speed, wave_angle=at.wave_angle, wave_height=height, wave_period=at.wave_period
     )
-    bad &= np.isfinite(time) & np.isfinite(motion.over_ground)
+    bad &= np.isfinite(time) & np.isfinite(motion.speed_over_ground)
     return [
-        _record(REASONS[codes.SAFETY], points, time, first, float(height[first]), math.nan)
+        _violation_at(REASONS[codes.SAFETY], points, time, first, float(height[first]), math.nan)
         for first, _ in _stretches(bad, points.leg)
     ]
 
 
-def _checks(
-    world: World, sampled: Mapping[str, FloatArray], depth: FloatArray, min_ukc: float | None
+def _limit_checks(
+    world: SailingEnvironment,
+    sampled: Mapping[str, FloatArray],
+    depth: FloatArray,
+    min_ukc: float | None,
 ) -> Iterator[tuple[str, BoolArray, FloatArray, float]]:
     limits, draught = world.ship.limits, world.ship.draught
     with np.errstate(invalid="ignore"):
         if min_ukc is not None and world.has_depth:
             clearance = depth - draught
-            yield REASONS[codes.DEPTH], clearance < min_ukc - _SLACK, clearance, min_ukc
+            yield REASONS[codes.DEPTH], clearance < min_ukc - _LIMIT_TOLERANCE, clearance, min_ukc
         if math.isfinite(limits.wave_height):
             height = sampled[WAVE_HEIGHT]
-            bad = height > limits.wave_height + _SLACK
+            bad = height > limits.wave_height + _LIMIT_TOLERANCE
             yield REASONS[codes.WAVE_HEIGHT], bad, height, limits.wave_height
         if math.isfinite(limits.wind_speed):
             wind = _relative_wind(sampled)
-            bad = wind > limits.wind_speed + _SLACK
+            bad = wind > limits.wind_speed + _LIMIT_TOLERANCE
             yield REASONS[codes.WIND_SPEED], bad, wind, limits.wind_speed
 
 
@@ -176,8 +187,11 @@ def _relative_wind(sampled: Mapping[str, FloatArray]) -> FloatArray:
     return np.hypot(east, north)
 
 
-def _gaps(
-    world: World, points: Points, time: FloatArray, sampled: Mapping[str, FloatArray]
+def _data_gap_violations(
+    world: SailingEnvironment,
+    points: TrackPoints,
+    time: FloatArray,
+    sampled: Mapping[str, FloatArray],
 ) -> list[Violation]:
     """Return the stretches where something is not known, each at its first point."""
     reached = np.isfinite(time)
@@ -193,7 +207,7 @@ def _gaps(
                 why = f" ({world.sea.why_missing(name, *place)})"
             code = codes.OUTSIDE_PERIOD if why == " (period)" else codes.NO_DATA
             reason = f"{REASONS[code]}: {name}{why}"
-            found.append(_record(reason, points, time, first, math.nan, math.nan))
+            found.append(_violation_at(reason, points, time, first, math.nan, math.nan))
     return found
 
 
@@ -206,8 +220,8 @@ def _stretches(bad: BoolArray, leg: NDArray[np.int64]) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in itertools.pairwise(cuts) if bad[a]]
 
 
-def _record(
-    reason: str, points: Points, time: FloatArray, index: int, value: float, limit: float
+def _violation_at(
+    reason: str, points: TrackPoints, time: FloatArray, index: int, value: float, limit: float
 ) -> Violation:
     return Violation(
         reason, float(time[index]), float(points.lat[index]), float(points.lon[index]), value, limit

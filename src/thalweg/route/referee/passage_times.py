@@ -13,18 +13,20 @@ from thalweg.core.geodesy import FloatArray
 
 #: ``(index of the first point, one past the last, times, speeds through water guessed or None) ->
 #: (slowness [s/m], NaN where it cannot go, speed through water [m/s])`` at the Gauss points
-Slowness = Callable[[int, int, FloatArray, "FloatArray | None"], tuple[FloatArray, FloatArray]]
+SlownessFunction = Callable[
+    [int, int, FloatArray, "FloatArray | None"], tuple[FloatArray, FloatArray]
+]
 
 TIME_TOLERANCE = 1e-5  #: change of any time [s] that ends the iteration
-_ROUNDS = 14  # iterations before a stretch is cut
-_WINDOW = 64  # pieces that are looked at next behind one that did not settle, at least
-_LAST_ROUNDS = 60  # iterations on a single piece
+_MAX_ITERATIONS = 14  # iterations before a stretch is cut
+_MIN_WINDOW = 64  # pieces that are looked at next behind one that did not settle, at least
+_MAX_ITERATIONS_SINGLE_PIECE = 60  # iterations on a single piece
 # Butcher's matrix of the two-stage Gauss method (Hairer, Norsett & Wanner 1993, table II.7.3)
-_GAUSS = np.array([[0.25, 0.25 - math.sqrt(3.0) / 6.0], [0.25 + math.sqrt(3.0) / 6.0, 0.25]])
+_GAUSS_MATRIX = np.array([[0.25, 0.25 - math.sqrt(3.0) / 6.0], [0.25 + math.sqrt(3.0) / 6.0, 0.25]])
 
 
 @dataclass
-class Passage:
+class PassageTimes:
     """Times of passage of consecutive pieces, being worked out.
 
     Attributes
@@ -52,20 +54,25 @@ class Passage:
     bad: NDArray[np.bool_]
 
     @property
-    def first_bad(self) -> int:
+    def first_infeasible(self) -> int:
         """The first piece that cannot be sailed; the number of pieces if all can."""
-        return _first(self.bad)
+        return _first_true(self.bad)
 
 
-def find_times(
-    slowness: Slowness, *, step: FloatArray, wait: FloatArray, depart: float, guess: FloatArray
-) -> Passage:
+def solve_passage_times(
+    slowness: SlownessFunction,
+    *,
+    step: FloatArray,
+    wait: FloatArray,
+    depart: float,
+    guess: FloatArray,
+) -> PassageTimes:
     """Work out when a ship passes each piece.
 
     Parameters
     ----------
     slowness : callable
-        See `Slowness`.
+        See `SlownessFunction`.
     step, wait : ndarray, shape (p,)
         Length of each piece [m] and the wait after it [s].
     depart : float
@@ -87,7 +94,7 @@ def find_times(
     are done, that piece is solved by itself, and the search goes on behind it.
     """
     count = len(step)
-    passage = Passage(
+    passage = PassageTimes(
         step,
         wait,
         np.empty(count + 1),
@@ -98,7 +105,7 @@ def find_times(
     )
     passage.start[0] = 0.0  # seconds since departure, which round 10^7 times finer
 
-    def look(
+    def slowness_at(
         first: int, last: int, time: FloatArray, water: FloatArray | None
     ) -> tuple[FloatArray, FloatArray]:
         return slowness(first, last, depart + time, water)
@@ -106,10 +113,10 @@ def find_times(
     waiting = [(0, count)]
     while waiting:
         first, last = waiting.pop()
-        settled = _settle(passage, look, first, last)
+        settled = _iterate_pieces(passage, slowness_at, first, last)
         stuck = first + settled
         if stuck < last:
-            window = min(stuck + 1 + max(4 * settled, _WINDOW), last)
+            window = min(stuck + 1 + max(4 * settled, _MIN_WINDOW), last)
             ahead = [(window, last), (stuck + 1, window), (stuck, stuck + 1)]
             waiting += [(a, b) for a, b in ahead if a < b]
     passage.start += depart
@@ -117,7 +124,9 @@ def find_times(
     return passage
 
 
-def _settle(passage: Passage, look: Slowness, first: int, last: int) -> int:
+def _iterate_pieces(
+    passage: PassageTimes, slowness_at: SlownessFunction, first: int, last: int
+) -> int:
     """Iterate one stretch of pieces from its known start; return how many settled from there on.
 
     A single piece always counts as settled: it is creeped up on.
@@ -132,23 +141,23 @@ def _settle(passage: Passage, look: Slowness, first: int, last: int) -> int:
     water: FloatArray | None = (
         passage.water[part] if np.isfinite(passage.water[part]).all() else None
     )
-    for turn in range(_LAST_ROUNDS if last - first == 1 else _ROUNDS):
-        found, speed = look(2 * first, 2 * last, inside.reshape(-1), _flat(water))
+    for turn in range(_MAX_ITERATIONS_SINGLE_PIECE if last - first == 1 else _MAX_ITERATIONS):
+        found, speed = slowness_at(2 * first, 2 * last, inside.reshape(-1), _flat(water))
         found, speed = found.reshape(-1, 2), speed.reshape(-1, 2)
         water = speed
         bad = ~np.isfinite(found)
         held = np.where(bad, passage.slowness[part], found)
         if seen_at is not None:
-            slope = _slope(held - before, inside - seen_at, slope, step)
+            slope = _slowness_time_derivative(held - before, inside - seen_at, slope, step)
         seen_at, before = inside, held
         if turn > 20:  # a jump inside one piece: creep up on it
             slope = np.zeros_like(slope)
             held = 0.5 * (held + passage.slowness[part])
             passage.slowness[part] = held
-        start, new = _improve(depart, step, wait, held, slope, start)
+        start, new = _newton_update(depart, step, wait, held, slope, start)
         change = np.abs(new - inside).max(axis=1)
         inside = new
-        moving = np.flatnonzero(~(change[: _first(bad) + 1] < TIME_TOLERANCE))
+        moving = np.flatnonzero(~(change[: _first_true(bad) + 1] < TIME_TOLERANCE))
         if not len(moving):
             break
     settled = int(moving[0]) if len(moving) and last - first > 1 else last - first
@@ -163,12 +172,12 @@ def _flat(values: FloatArray | None) -> FloatArray | None:
     return None if values is None or not np.isfinite(values).all() else values.reshape(-1)
 
 
-def _first(bad: NDArray[np.bool_]) -> int:
+def _first_true(bad: NDArray[np.bool_]) -> int:
     rows = np.flatnonzero(bad[:, 0] | bad[:, 1])
     return int(rows[0]) if rows.size else len(bad)
 
 
-def _slope(
+def _slowness_time_derivative(
     change: FloatArray, elapsed: FloatArray, old: FloatArray, step: FloatArray
 ) -> FloatArray:
     """Return d slowness / d time at every point, from two iterates; the old one if they agree."""
@@ -184,10 +193,10 @@ def _integrate(
     """Return (times at the ends of pieces, times at the Gauss points) for given slowness."""
     elapsed = np.concatenate([[0.0], np.cumsum(step * slowness.mean(axis=1) + wait)])
     start = depart + elapsed
-    return start, start[:-1, None] + step[:, None] * (slowness @ _GAUSS.T)
+    return start, start[:-1, None] + step[:, None] * (slowness @ _GAUSS_MATRIX.T)
 
 
-def _improve(
+def _newton_update(
     depart: float,
     step: FloatArray,
     wait: FloatArray,
@@ -207,4 +216,4 @@ def _improve(
     new = start + shift
     new[0] = depart
     better = slowness + slope * (0.5 * (shift[:-1] + shift[1:]))[:, None]
-    return new, new[:-1, None] + step[:, None] * (better @ _GAUSS.T)
+    return new, new[:-1, None] + step[:, None] * (better @ _GAUSS_MATRIX.T)

@@ -10,18 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.route.referee.leg_segments import Points
-from thalweg.route.referee.sailing import Sailed
+from thalweg.route.referee.leg_segments import TrackPoints
+from thalweg.route.referee.sailing import SailedTrack
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.ship.fuel_prices import FuelTerms
 
-OUTSIDE = "outside"  #: what lies in no emission control area, among the zones of `Bill`
+OUTSIDE_ZONES = (
+    "outside"  #: what lies in no emission control area, among the zones of `CostBreakdown`
+)
 
 
 @dataclass(frozen=True)
-class Bill:
+class CostBreakdown:
     """What the legs of a track burn and cost.
 
     Attributes
@@ -42,7 +44,7 @@ class Bill:
 
 
 @dataclass(frozen=True)
-class Rates:
+class ConsumptionRates:
     """What a ship spends at the Gauss points of its track; NaN where unknown.
 
     Attributes
@@ -58,7 +60,7 @@ class Rates:
 
 
 @dataclass(frozen=True)
-class _Burnt:
+class _FuelByPart:
     """Fuel as the ship's model tells it [kg], and where: of pieces, then of waits."""
 
     fuel: FloatArray
@@ -68,7 +70,7 @@ class _Burnt:
     zone: NDArray[np.int64]
 
 
-def bill(sailed: Sailed, rates: Rates, terms: FuelTerms) -> Bill:
+def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerms) -> CostBreakdown:
     """Add up what a track takes, burns and costs.
 
     Parameters
@@ -86,45 +88,47 @@ def bill(sailed: Sailed, rates: Rates, terms: FuelTerms) -> Bill:
     load. What is unknown makes the sum unknown, never zero.
     """
     count = len(sailed.pieces.length)
-    parts = _parts(sailed, rates.fuel)
+    parts = _fuel_by_part(sailed, rates.fuel)
     sailing = np.arange(len(parts.leg)) < len(sailed.pieces)
 
     def total(values: FloatArray) -> FloatArray:
         return np.bincount(parts.leg, weights=values, minlength=count).astype(np.float64)
 
-    mass, kept = _weighted(parts, terms, "fuel")
-    time = np.concatenate([_integral(sailed, 1.0), _waits(sailed)])
-    energy = np.concatenate([_integral(sailed, rates.power), np.zeros(count)])
+    mass, kept = _weighted_fuel(parts, terms, "fuel")
+    time = np.concatenate([_integral_over_time(sailed, 1.0), _waits_before_legs(sailed)])
+    energy = np.concatenate([_integral_over_time(sailed, rates.power), np.zeros(count)])
     energy += sailed.world.ship.hotel_power * time
     legs = {
         "fuel": total(np.where(sailing, mass, 0.0)),
         "waiting_fuel": total(np.where(sailing, 0.0, mass)),
         "fuel_in_eca": total(kept),
-        "co2": total(_weighted(parts, terms, "co2")[0]),
+        "co2": total(_weighted_fuel(parts, terms, "co2")[0]),
         "energy": total(np.where(sailing, energy, 0.0)),
         "waiting_energy": total(np.where(sailing, 0.0, energy)),
     }
     if terms.by_speed:
-        spent = np.where(sailing, terms.speed_price * _ordered(sailed)[parts.leg] ** 3 * time, 0.0)
+        spent = np.where(
+            sailing, terms.cubed_speed_price * _ordered_speeds(sailed)[parts.leg] ** 3 * time, 0.0
+        )
     else:
-        spent = _weighted(parts, terms, "cost")[0]
+        spent = _weighted_fuel(parts, terms, "cost")[0]
     cost = total(parts.price * spent)
-    fee, notes = _dues(sailed, terms, cost)
+    fee, notes = _canal_dues(sailed, terms, cost)
     legs["cost"] = cost + terms.time_price * total(time) + fee
-    return Bill(legs, _by_zone(sailed, parts, mass, kept), notes)
+    return CostBreakdown(legs, _fuel_by_zone(sailed, parts, mass, kept), notes)
 
 
-def _integral(sailed: Sailed, rate: FloatArray | float) -> FloatArray:
+def _integral_over_time(sailed: SailedTrack, rate: FloatArray | float) -> FloatArray:
     """Return a rate at the Gauss points, summed over the time of every piece; NaN if not sailed."""
     pieces, passage = sailed.pieces, sailed.passage
     rates = np.broadcast_to(rate, 2 * len(pieces)).reshape(-1, 2)
     found = 0.5 * pieces.step * (rates * passage.slowness).sum(axis=1)
-    if passage.first_bad < len(pieces):
-        found[passage.first_bad :] = math.nan
+    if passage.first_infeasible < len(pieces):
+        found[passage.first_infeasible :] = math.nan
     return np.asarray(found)
 
 
-def _ordered(sailed: Sailed) -> FloatArray:
+def _ordered_speeds(sailed: SailedTrack) -> FloatArray:
     """Return the calm-water speed that every leg is ordered to [m/s]."""
     ship, pieces = sailed.world.ship, sailed.pieces
     speeds = np.asarray(ship.speeds, float)[pieces.track.setting]
@@ -132,19 +136,19 @@ def _ordered(sailed: Sailed) -> FloatArray:
     return np.where(np.isnan(in_canals), speeds, in_canals)
 
 
-def _parts(sailed: Sailed, rate: FloatArray) -> _Burnt:
+def _fuel_by_part(sailed: SailedTrack, rate: FloatArray) -> _FuelByPart:
     """Return what is burnt on every piece, and then in the wait before every leg."""
     pieces, world = sailed.pieces, sailed.world
-    burnt = _integral(sailed, rate)
+    burnt = _integral_over_time(sailed, rate)
     legs = np.arange(len(pieces.length))
-    lying = _waits(sailed) * world.ship.waiting_fuel_rate
+    lying = _waits_before_legs(sailed) * world.ship.waiting_fuel_rate
     low = pieces.points(pieces.leg, pieces.start)
     high = pieces.points(pieces.leg, pieces.start + pieces.step)
     track = pieces.track
     still = (track.lat[:-1], track.lon[:-1])
-    inside, price, zone = _places(world.chart, low, high)
-    there = _places_still(world.chart, *still)
-    return _Burnt(
+    inside, price, zone = _zones_of_pieces(world.chart, low, high)
+    there = _zones_of_positions(world.chart, *still)
+    return _FuelByPart(
         np.concatenate([burnt, lying]),
         np.concatenate([pieces.leg, legs]),
         np.concatenate([inside, there[0]]),
@@ -153,20 +157,22 @@ def _parts(sailed: Sailed, rate: FloatArray) -> _Burnt:
     )
 
 
-def _waits(sailed: Sailed) -> FloatArray:
+def _waits_before_legs(sailed: SailedTrack) -> FloatArray:
     """Return the wait before every leg [s]."""
     return np.asarray(sailed.pieces.track.wait[:-1])
 
 
-def _weighted(parts: _Burnt, terms: FuelTerms, what: str) -> tuple[FloatArray, FloatArray]:
+def _weighted_fuel(
+    parts: _FuelByPart, terms: FuelTerms, what: str
+) -> tuple[FloatArray, FloatArray]:
     """Return a sum of fuel of every part, and how much of it lies inside control areas."""
     within = np.where(parts.inside > 0.0, parts.inside * terms.per_kg(what, True), 0.0)
     beyond = np.where(parts.inside < 1.0, (1.0 - parts.inside) * terms.per_kg(what, False), 0.0)
     return parts.fuel * (within + beyond), parts.fuel * within
 
 
-def _places(
-    chart: Chart | None, low: Points, high: Points
+def _zones_of_pieces(
+    chart: Chart | None, low: TrackPoints, high: TrackPoints
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return (share in control areas, price factor, number of the area or -1) of pieces."""
     count = len(low)
@@ -177,17 +183,19 @@ def _places(
     if chart.zones.price:
         price = chart.zone_factor(*ends)[1]
     if chart.zones.eca:
-        share = chart.eca_share(*ends)
+        share = chart.eca_fraction(*ends)
         some = np.flatnonzero(share > 0.0)
         for place in (low, high):
             zone[some] = np.where(
-                zone[some] < 0, _zone_of(chart, place.lat[some], place.lon[some]), zone[some]
+                zone[some] < 0,
+                _control_area_of(chart, place.lat[some], place.lon[some]),
+                zone[some],
             )
         zone[some] = np.where(zone[some] < 0, 0, zone[some])
     return share, price, zone
 
 
-def _places_still(
+def _zones_of_positions(
     chart: Chart | None, lat: FloatArray, lon: FloatArray
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
     """Return the same of places."""
@@ -196,11 +204,11 @@ def _places_still(
         price = chart.zone_factor(lat, lon, lat, lon)[1]
     if chart is not None and chart.zones.eca:
         share = chart.in_eca(lat, lon).astype(np.float64)
-        zone = np.where(share > 0.0, np.maximum(_zone_of(chart, lat, lon), 0), -1)
+        zone = np.where(share > 0.0, np.maximum(_control_area_of(chart, lat, lon), 0), -1)
     return share, price, zone
 
 
-def _zone_of(chart: Chart, lat: FloatArray, lon: FloatArray) -> NDArray[np.int64]:
+def _control_area_of(chart: Chart, lat: FloatArray, lon: FloatArray) -> NDArray[np.int64]:
     """Return the first control area that positions lie in; -1 for none."""
     zone = np.full(len(lat), -1)
     for number, area in enumerate(chart.zones.eca):
@@ -211,7 +219,9 @@ def _zone_of(chart: Chart, lat: FloatArray, lon: FloatArray) -> NDArray[np.int64
     return zone
 
 
-def _by_zone(sailed: Sailed, parts: _Burnt, mass: FloatArray, kept: FloatArray) -> dict[str, float]:
+def _fuel_by_zone(
+    sailed: SailedTrack, parts: _FuelByPart, mass: FloatArray, kept: FloatArray
+) -> dict[str, float]:
     """Return the fuel [kg] by control area and outside."""
     chart = sailed.world.chart
     found: dict[str, float] = {}
@@ -219,10 +229,12 @@ def _by_zone(sailed: Sailed, parts: _Burnt, mass: FloatArray, kept: FloatArray) 
         here = parts.zone == number
         if here.any():
             found[area.name] = found.get(area.name, 0.0) + float(kept[here].sum())
-    return {OUTSIDE: float((mass - kept).sum()), **found}
+    return {OUTSIDE_ZONES: float((mass - kept).sum()), **found}
 
 
-def _dues(sailed: Sailed, terms: FuelTerms, cost: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
+def _canal_dues(
+    sailed: SailedTrack, terms: FuelTerms, cost: FloatArray
+) -> tuple[FloatArray, tuple[str, ...]]:
     """Return the dues of every leg, and what is to be said; NaN in another currency than USD."""
     fee = sailed.pieces.canals.fee
     if not np.isfinite(cost).all():

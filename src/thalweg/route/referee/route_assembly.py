@@ -8,28 +8,35 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.route.referee.leg_segments import IntArray, Pieces, Points
+from thalweg.route.referee.leg_segments import IntArray, TrackPieces, TrackPoints
 from thalweg.route.referee.limit_checks import (
-    broken_limits,
     canal_violations,
-    dangers,
     land_violations,
-    stops,
+    limit_violations,
+    seaway_violations,
+    stoppage_violations,
 )
-from thalweg.route.referee.pricing import Rates, bill
-from thalweg.route.referee.sailing import Sailed, move_along, spacings
-from thalweg.route.referee.sailing_physics import Motion, World, conditions_at, look
-from thalweg.route.referee.waiting_limits import forbidden_waits
+from thalweg.route.referee.pricing import ConsumptionRates, cost_breakdown
+from thalweg.route.referee.sailing import SailedTrack, data_spacings, sailing_state_along
+from thalweg.route.referee.sailing_physics import (
+    SailingEnvironment,
+    SailingState,
+    conditions_at,
+    sample_sea_and_depth,
+)
+from thalweg.route.referee.waiting_limits import waiting_violations
 from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.fuel_prices import FuelTerms
 
-MOST_LOOKS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
-LOOKS_PER_CELL = 8  #: of gridded data
-_WAIT_LOOKS = 300.0  # longest time between two looks at the depth while waiting [s]
+MAX_CHECK_POINTS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
+CHECK_POINTS_PER_CELL = 8  #: of gridded data
+_MAX_CHECK_INTERVAL = 300.0  # longest time between two looks at the depth while waiting [s]
 
 
-def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelTerms) -> Route:
+def assemble_route(
+    sailed: SailedTrack, min_ukc: float | None, tolerance: float, terms: FuelTerms
+) -> Route:
     """Look at every point once more, check the limits and put the route together.
 
     Parameters
@@ -45,12 +52,12 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelT
     world, pieces = sailed.world, sailed.pieces
     points, time, order = _all_points(sailed)
     looked_at = np.where(np.isfinite(time), time, pieces.track.depart)
-    motion = move_along(world, pieces.canals, points, looked_at)
+    motion = sailing_state_along(world, pieces.canals, points, looked_at)
     power, rate = _rates(world, pieces, points, time=looked_at, motion=motion)
-    near, moments = _looks(sailed, points, time)
-    violations, least = _judged(sailed, near, moments, min_ukc)
-    violations += stops(world, points, time, motion)
-    violations += dangers(world, points, time, motion)
+    near, moments = _check_points(sailed, points, time)
+    violations, least = _check_limits(sailed, near, moments, min_ukc)
+    violations += stoppage_violations(world, points, time, motion)
+    violations += seaway_violations(world, points, time, motion)
     violations.sort(key=lambda item: item.time if math.isfinite(item.time) else math.inf)
     departs, arrives = sailed.leg_times()
     legs = {
@@ -61,7 +68,7 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelT
         "under_keel_clearance": least,
         "ordered_speed": np.asarray(world.ship.speeds, float)[pieces.track.setting],
     }
-    spent = bill(sailed, Rates(rate[order], power[order]), terms)
+    spent = cost_breakdown(sailed, ConsumptionRates(rate[order], power[order]), terms)
     if np.any(pieces.track.wait) and world.has_depth:
         tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
     samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
@@ -78,31 +85,33 @@ def report(sailed: Sailed, min_ukc: float | None, tolerance: float, terms: FuelT
     )
 
 
-def _judged(
-    sailed: Sailed, near: Points, moments: FloatArray, min_ukc: float | None
+def _check_limits(
+    sailed: SailedTrack, near: TrackPoints, moments: FloatArray, min_ukc: float | None
 ) -> tuple[list[Violation], FloatArray]:
     """Return the limits broken at close looks, and the least clearance of every leg [m]."""
     world, track = sailed.world, sailed.pieces.track
-    sampled, depth = look(world, near, np.where(np.isfinite(moments), moments, track.depart))
-    found = broken_limits(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
+    sampled, depth = sample_sea_and_depth(
+        world, near, np.where(np.isfinite(moments), moments, track.depart)
+    )
+    found = limit_violations(world, near, moments, sampled=sampled, depth=depth, min_ukc=min_ukc)
     waits = _wait_clearances(sailed)
-    found += _grounded_waits(track, waits, min_ukc)
-    found += forbidden_waits(world.chart, track, sailed.leg_times()[1])
+    found += _wait_depth_violations(track, waits, min_ukc)
+    found += waiting_violations(world.chart, track, sailed.leg_times()[1])
     found += canal_violations(world, sailed.pieces, sailed.leg_times()[0])
     found += land_violations(world, track, sailed.leg_times()[0])
     clearance = _finite(depth - world.ship.draught)
-    least = _leg_least(near.leg, clearance, moments, len(track) - 1)
+    least = _least_by_leg(near.leg, clearance, moments, len(track) - 1)
     for index, _, lying in waits:  # a wait belongs to the leg after it
         least[index] = np.fmin(least[index], np.fmin.reduce(_finite(lying)))
     return found, least
 
 
 def _samples(
-    sailed: Sailed,
-    points: Points,
+    sailed: SailedTrack,
+    points: TrackPoints,
     time: FloatArray,
     *,
-    motion: Motion,
+    motion: SailingState,
     rates: tuple[FloatArray, FloatArray],
 ) -> dict[str, FloatArray]:
     """Return the columns of the fine samples; NaN where the ship does not get."""
@@ -111,8 +120,8 @@ def _samples(
         **motion.sampled,
         "time": time,
         "heading": motion.heading,
-        "speed_through_water": motion.through_water,
-        "speed_over_ground": motion.over_ground,
+        "speed_through_water": motion.speed_through_water,
+        "speed_over_ground": motion.speed_over_ground,
         "depth": _finite(motion.depth),
         "under_keel_clearance": _finite(motion.depth - sailed.world.ship.draught),
         "power": rates[0],
@@ -129,7 +138,7 @@ def _samples(
     }
 
 
-def _all_points(sailed: Sailed) -> tuple[Points, FloatArray, IntArray]:
+def _all_points(sailed: SailedTrack) -> tuple[TrackPoints, FloatArray, IntArray]:
     """Return all points in the order of sailing, their times, and where the Gauss points are."""
     pieces, passage = sailed.pieces, sailed.passage
     last = pieces.last_of_leg()
@@ -137,9 +146,11 @@ def _all_points(sailed: Sailed) -> tuple[Points, FloatArray, IntArray]:
     ends = replace(pieces.ends(), charted=charted)
     arrive = passage.start[1:][last] - pieces.wait[last]
     fields = ("lat", "lon", "course", "setting", "leg", "along", "charted")
-    both = Points(*(np.concatenate([getattr(sailed.gauss, f), getattr(ends, f)]) for f in fields))
+    both = TrackPoints(
+        *(np.concatenate([getattr(sailed.gauss, f), getattr(ends, f)]) for f in fields)
+    )
     time = np.concatenate([passage.inside.reshape(-1), passage.start[:-1], arrive])
-    stop = passage.first_bad
+    stop = passage.first_infeasible
     if stop < len(pieces):
         time[time > passage.inside[stop, int(np.argmax(passage.bad[stop]))]] = math.nan
     order = np.lexsort((both.along, both.leg))
@@ -149,7 +160,12 @@ def _all_points(sailed: Sailed) -> tuple[Points, FloatArray, IntArray]:
 
 
 def _rates(
-    world: World, pieces: Pieces, points: Points, *, time: FloatArray, motion: Motion
+    world: SailingEnvironment,
+    pieces: TrackPieces,
+    points: TrackPoints,
+    *,
+    time: FloatArray,
+    motion: SailingState,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the brake power [W] and the fuel rate [kg/s] at points; NaN where not known."""
     here = conditions_at(
@@ -170,7 +186,7 @@ def _rates(
     return power, fuel
 
 
-def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
+def _least_by_leg(leg: IntArray, values: FloatArray, time: FloatArray, count: int) -> FloatArray:
     """Return the least known value on each leg as far as it is sailed; NaN where none is known."""
     least = np.full(count, math.inf)
     known = np.isfinite(values) & np.isfinite(time)
@@ -178,11 +194,13 @@ def _leg_least(leg: IntArray, values: FloatArray, time: FloatArray, count: int) 
     return np.where(np.isfinite(least), least, math.nan)
 
 
-def _looks(sailed: Sailed, points: Points, time: FloatArray) -> tuple[Points, FloatArray]:
+def _check_points(
+    sailed: SailedTrack, points: TrackPoints, time: FloatArray
+) -> tuple[TrackPoints, FloatArray]:
     """Return closely spaced points where limits are looked at, and when they are passed."""
     world, pieces = sailed.world, sailed.pieces
-    spacing = float(pieces.length.sum()) / MOST_LOOKS
-    spacing = max(spacing, min(spacings(world, 1.0 / LOOKS_PER_CELL), default=0.0))
+    spacing = float(pieces.length.sum()) / MAX_CHECK_POINTS
+    spacing = max(spacing, min(data_spacings(world, 1.0 / CHECK_POINTS_PER_CELL), default=0.0))
     count = np.maximum(np.ceil(pieces.length / max(spacing, 1e-3)).astype(np.int64), 1) + 1
     leg = np.repeat(np.arange(len(count)), count)
     share = (np.arange(len(leg)) - np.repeat(np.cumsum(count) - count, count)) / (count[leg] - 1)
@@ -194,13 +212,13 @@ def _looks(sailed: Sailed, points: Points, time: FloatArray) -> tuple[Points, Fl
     with np.errstate(invalid="ignore", divide="ignore"):
         number = np.where(step[leg] > 0.0, near.along / step[leg], 0.0).astype(np.int64)
     near = replace(near, charted=sailed.charted[np.minimum(first + number, last)])
-    key = _key(points.leg, points.along, pieces.length)
-    moments = np.interp(_key(leg, near.along, pieces.length), key, time)
+    key = _track_order_key(points.leg, points.along, pieces.length)
+    moments = np.interp(_track_order_key(leg, near.along, pieces.length), key, time)
     sea = pieces.canals.number[leg] < 0
     return near.part(sea), moments[sea]
 
 
-def _key(leg: IntArray, along: FloatArray, length: FloatArray) -> FloatArray:
+def _track_order_key(leg: IntArray, along: FloatArray, length: FloatArray) -> FloatArray:
     """Return a number that grows along the track, with a step between legs."""
     with np.errstate(invalid="ignore", divide="ignore"):
         share = np.where(length[leg] > 0.0, along / length[leg], 0.0)
@@ -211,7 +229,7 @@ def _finite(values: FloatArray) -> FloatArray:
     return np.where(np.isfinite(values), values, math.nan)
 
 
-def _wait_clearances(sailed: Sailed) -> list[tuple[int, FloatArray, FloatArray]]:
+def _wait_clearances(sailed: SailedTrack) -> list[tuple[int, FloatArray, FloatArray]]:
     """Return (waypoint, times, clearances [m]) of every wait but that at the berth."""
     world, track = sailed.world, sailed.pieces.track
     if not world.has_depth:
@@ -221,14 +239,16 @@ def _wait_clearances(sailed: Sailed) -> list[tuple[int, FloatArray, FloatArray]]
     for index in np.flatnonzero(track.wait[1:-1]) + 1:
         if not math.isfinite(arrive[index - 1]):
             continue
-        count = 2 + int(track.wait[index] / _WAIT_LOOKS)
+        count = 2 + int(track.wait[index] / _MAX_CHECK_INTERVAL)
         time = arrive[index - 1] + np.linspace(0.0, track.wait[index], count)
-        _, depth = look(world, _still(world, track, int(index), count), time)
+        _, depth = sample_sea_and_depth(
+            world, _repeated_waypoint(world, track, int(index), count), time
+        )
         found.append((int(index), time, depth - world.ship.draught))
     return found
 
 
-def _grounded_waits(
+def _wait_depth_violations(
     track: Track, waits: list[tuple[int, FloatArray, FloatArray]], min_ukc: float | None
 ) -> list[Violation]:
     """Return the waits during which there is too little water."""
@@ -247,11 +267,13 @@ def _grounded_waits(
     return found
 
 
-def _still(world: World, track: Track, index: int, count: int) -> Points:
+def _repeated_waypoint(
+    world: SailingEnvironment, track: Track, index: int, count: int
+) -> TrackPoints:
     """Return one waypoint, several times."""
     lat, lon = np.full(count, track.lat[index]), np.full(count, track.lon[index])
     charted = np.full(count, math.inf)
     if world.charted and world.chart is not None:
         charted[:] = np.asarray(world.chart.depth_at(track.lat[index], track.lon[index]), float)
     zero = np.zeros(count, dtype=np.int64)
-    return Points(lat, lon, np.zeros(count), zero, zero, np.zeros(count), charted)
+    return TrackPoints(lat, lon, np.zeros(count), zero, zero, np.zeros(count), charted)

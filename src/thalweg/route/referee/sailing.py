@@ -9,16 +9,20 @@ import numpy as np
 
 from thalweg.core.geodesy import FloatArray
 from thalweg.route.canal_legs import CanalLegs
-from thalweg.route.referee.leg_segments import Pieces, Points, cut
-from thalweg.route.referee.passage_times import Passage, find_times
-from thalweg.route.referee.sailing_physics import Motion, World, move
+from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
+from thalweg.route.referee.passage_times import PassageTimes, solve_passage_times
+from thalweg.route.referee.sailing_physics import (
+    SailingEnvironment,
+    SailingState,
+    solve_sailing_state,
+)
 from thalweg.route.track import Track
 
 METRES_PER_DEGREE = 111_000.0
 
 
 @dataclass(frozen=True)
-class Sailed:
+class SailedTrack:
     """A track, cut and sailed at one step size.
 
     Attributes
@@ -33,16 +37,16 @@ class Sailed:
         When they are passed.
     """
 
-    world: World
-    pieces: Pieces
+    world: SailingEnvironment
+    pieces: TrackPieces
     charted: FloatArray
-    gauss: Points
-    passage: Passage
+    gauss: TrackPoints
+    passage: PassageTimes
 
     @property
     def arrive(self) -> float:
         """The arrival [s]; NaN if the ship does not get there."""
-        arrives = self.passage.first_bad == len(self.pieces)
+        arrives = self.passage.first_infeasible == len(self.pieces)
         return float(self.passage.start[-1]) if arrives else math.nan
 
     def leg_times(self) -> tuple[FloatArray, FloatArray]:
@@ -51,40 +55,48 @@ class Sailed:
         first = np.concatenate([[True], last[:-1]])
         depart = passage.start[:-1][first]
         arrive = passage.start[1:][last] - self.pieces.wait[last]
-        stuck = self.pieces.leg[passage.first_bad] if passage.first_bad < len(last) else len(depart)
+        stuck = (
+            self.pieces.leg[passage.first_infeasible]
+            if passage.first_infeasible < len(last)
+            else len(depart)
+        )
         legs = np.arange(len(depart))
         return np.where(legs <= stuck, depart, math.nan), np.where(legs < stuck, arrive, math.nan)
 
 
-def sail(world: World, track: Track, step: float, least: int, coarse: Sailed | None) -> Sailed:
+def sail_track(
+    world: SailingEnvironment, track: Track, step: float, least: int, coarse: SailedTrack | None
+) -> SailedTrack:
     """Cut and sail a track; a coarser answer gives the first guess."""
-    pieces = cut(track, step, least, world.chart)
-    charted = _charted(world, pieces)
+    pieces = cut_into_pieces(track, step, least, world.chart)
+    charted = _least_charted_depths(world, pieces)
     gauss = replace(pieces.gauss_points(), charted=np.repeat(charted, 2))
 
     def slowness(
         first: int, last: int, time: FloatArray, guess: FloatArray | None
     ) -> tuple[FloatArray, FloatArray]:
-        motion = move_along(world, pieces.canals, gauss.part(slice(first, last)), time, guess)
-        return 1.0 / motion.over_ground, motion.through_water
+        motion = sailing_state_along(
+            world, pieces.canals, gauss.part(slice(first, last)), time, guess
+        )
+        return 1.0 / motion.speed_over_ground, motion.speed_through_water
 
-    passage = find_times(
+    passage = solve_passage_times(
         slowness,
         step=pieces.step,
         wait=pieces.wait,
         depart=track.depart + float(track.wait[0]),
         guess=_first_guess(world, pieces, coarse),
     )
-    return Sailed(world, pieces, charted, gauss, passage)
+    return SailedTrack(world, pieces, charted, gauss, passage)
 
 
-def move_along(
-    world: World,
+def sailing_state_along(
+    world: SailingEnvironment,
     canals: CanalLegs,
-    points: Points,
+    points: TrackPoints,
     time: FloatArray,
     guess: FloatArray | None = None,
-) -> Motion:
+) -> SailingState:
     """Return what the ship does at points of a track, some of which may lie in canals.
 
     There the speed is the canal's, whatever the sea does, and nothing of the sea is told.
@@ -92,14 +104,16 @@ def move_along(
     fixed = canals.speed[points.leg]
     free = np.flatnonzero(np.isnan(fixed))
     if len(free) == len(points):
-        return move(world, points, time, guess)
+        return solve_sailing_state(world, points, time, guess)
     unknown = {name: np.full(len(points), math.nan) for name in world.names}
-    motion = Motion(
+    motion = SailingState(
         unknown, np.full(len(points), math.nan), points.course.copy(), fixed, fixed.copy()
     )
     if not len(free):
         return motion
-    part = move(world, points.part(free), time[free], None if guess is None else guess[free])
+    part = solve_sailing_state(
+        world, points.part(free), time[free], None if guess is None else guess[free]
+    )
     for name, values in part.sampled.items():
         motion.sampled.setdefault(name, np.full(len(points), math.nan))[free] = values
     for name in ("depth", "heading", "through_water", "over_ground"):
@@ -107,7 +121,9 @@ def move_along(
     return motion
 
 
-def _first_guess(world: World, pieces: Pieces, coarse: Sailed | None) -> FloatArray:
+def _first_guess(
+    world: SailingEnvironment, pieces: TrackPieces, coarse: SailedTrack | None
+) -> FloatArray:
     """Return a slowness to begin with at the Gauss points of every piece [s/m]."""
     canal = pieces.canals.speed[pieces.leg]
     if coarse is not None:
@@ -124,7 +140,7 @@ def _first_guess(world: World, pieces: Pieces, coarse: Sailed | None) -> FloatAr
     return np.repeat(1.0 / usual[:, None], 2, axis=1)
 
 
-def _charted(world: World, pieces: Pieces) -> FloatArray:
+def _least_charted_depths(world: SailingEnvironment, pieces: TrackPieces) -> FloatArray:
     """Return the least charted depth along every piece [m below datum]; +inf if there is none."""
     if world.chart is None or not world.charted:
         return np.full(len(pieces), math.inf)
@@ -134,7 +150,7 @@ def _charted(world: World, pieces: Pieces) -> FloatArray:
     return np.where(pieces.canals.number[pieces.leg] >= 0, math.inf, np.asarray(depth, float))
 
 
-def spacings(world: World, share: float) -> list[float]:
+def data_spacings(world: SailingEnvironment, share: float) -> list[float]:
     """Return a share of the spacing of every source of data that is looked at [m]."""
     return [
         row.spacing_deg * METRES_PER_DEGREE * share

@@ -10,7 +10,7 @@ import numpy as np
 
 from thalweg.core.errors import MissingVariableError
 from thalweg.core.geodesy import FloatArray
-from thalweg.route.referee.leg_segments import Points
+from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.ship.condition_variables import (
     BED_DEPTH,
     EASTWARD_CURRENT,
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 CURRENTS = (EASTWARD_CURRENT, NORTHWARD_CURRENT)
-_TURNS = 60  # corrections of the heading at most
+_MAX_HEADING_ITERATIONS = 60  # corrections of the heading at most
 _SPEED_TOLERANCE = 1e-11  # relative change of speed that ends them ...
 _SPEED_NOISE = 1e-5  # ... or one below this that shrinks no more: ships that solve for their speed
 
 
 @dataclass(frozen=True)
-class World:
+class SailingEnvironment:
     """A ship, the sea and the chart, and which of their variables are looked at.
 
     Attributes
@@ -71,7 +71,7 @@ class World:
 
 
 @dataclass(frozen=True)
-class Motion:
+class SailingState:
     """What a ship does at points and times.
 
     Attributes
@@ -83,18 +83,18 @@ class Motion:
     heading : ndarray
         [rad from north].
     through_water, over_ground : ndarray
-        Speeds [m/s]; ``over_ground`` is NaN where the ship cannot hold its course or its speed is
-        unknown.
+        Speeds [m/s]; ``speed_over_ground`` is NaN where the ship cannot hold its course or its
+        speed is unknown.
     """
 
     sampled: dict[str, FloatArray]
     depth: FloatArray
     heading: FloatArray
-    through_water: FloatArray
-    over_ground: FloatArray
+    speed_through_water: FloatArray
+    speed_over_ground: FloatArray
 
 
-def open_world(ship: Ship, sea: Sea, chart: Chart | None) -> World:
+def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> SailingEnvironment:
     """Find which variables a ship needs, and check that the sea holds them.
 
     Raises
@@ -128,11 +128,11 @@ def open_world(ship: Ship, sea: Sea, chart: Chart | None) -> World:
         told.append("No depth in the data: under-keel clearance was not checked.")
     if chart is None:
         told.append("No chart: land was not checked.")
-    return World(ship, sea, chart, tuple(sorted(names)), tuple(dict.fromkeys(told)))
+    return SailingEnvironment(ship, sea, chart, tuple(sorted(names)), tuple(dict.fromkeys(told)))
 
 
-def look(
-    world: World, points: Points, time: FloatArray
+def sample_sea_and_depth(
+    world: SailingEnvironment, points: TrackPoints, time: FloatArray
 ) -> tuple[dict[str, FloatArray], FloatArray]:
     """Return (sampled sea variables, water depth [m]) at points and times."""
     sampled = world.sea.sample(world.names, time, points.lat, points.lon)
@@ -148,7 +148,12 @@ def look(
     return sampled, depth
 
 
-def move(world: World, points: Points, time: FloatArray, guess: FloatArray | None = None) -> Motion:
+def solve_sailing_state(
+    world: SailingEnvironment,
+    points: TrackPoints,
+    time: FloatArray,
+    guess: FloatArray | None = None,
+) -> SailingState:
     """Return what the ship does at points and times.
 
     Parameters
@@ -167,24 +172,24 @@ def move(world: World, points: Points, time: FloatArray, guess: FloatArray | Non
     (van Halem 2019, section 2.3). As V depends on the heading where waves and wind are met at
     an angle, both are found by fixed-point iteration to a relative 1e-11.
     """
-    sampled, depth = look(world, points, time)
+    sampled, depth = sample_sea_and_depth(world, points, time)
     east, north = np.sin(points.course), np.cos(points.course)
     along = across = np.zeros(len(points))
     if world.has_current:
         current_east, current_north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
         along = current_east * east + current_north * north
         across = current_east * north - current_north * east
-    speed, drift = _triangle(world, points, time, sampled, depth, across, guess)
+    speed, drift = _solve_current_triangle(world, points, time, sampled, depth, across, guess)
     with np.errstate(invalid="ignore"):
         ground = along + np.sqrt(speed * speed - across * across)
         ground = np.where((ground > 0.0) & (speed > np.abs(across)), ground, math.nan)
     heading = (points.course - drift) % (2.0 * math.pi)
-    return Motion(sampled, depth, heading, speed, ground)
+    return SailingState(sampled, depth, heading, speed, ground)
 
 
 def conditions_at(
-    world: World,
-    points: Points,
+    world: SailingEnvironment,
+    points: TrackPoints,
     time: FloatArray,
     *,
     sampled: dict[str, FloatArray],
@@ -199,9 +204,9 @@ def conditions_at(
     )
 
 
-def _triangle(
-    world: World,
-    points: Points,
+def _solve_current_triangle(
+    world: SailingEnvironment,
+    points: TrackPoints,
     time: FloatArray,
     sampled: dict[str, FloatArray],
     depth: FloatArray,
@@ -213,18 +218,18 @@ def _triangle(
     field = ship.speed_field
     if field is not None:
         speed = np.broadcast_to(field(sampled, time, points.lat, points.lon), across.shape)
-        return speed, _drift(across, speed)
+        return speed, _drift_angle(across, speed)
     fixed = not ship.heading_matters or not np.any(across)
-    drift = np.zeros_like(across) if guess is None or fixed else _drift(across, guess)
+    drift = np.zeros_like(across) if guess is None or fixed else _drift_angle(across, guess)
     speed = np.full_like(across, math.nan)
     change = math.inf
-    for _ in range(_TURNS):
+    for _ in range(_MAX_HEADING_ITERATIONS):
         before = speed
         here = conditions_at(
             world, points, time, sampled=sampled, depth=depth, heading=points.course - drift
         )
         speed = np.broadcast_to(ship.speed_through_water(here, points.setting), across.shape)
-        drift = _drift(across, speed)
+        drift = _drift_angle(across, speed)
         if fixed:
             break
         last_change, change = change, _largest_change(before, speed)
@@ -241,7 +246,7 @@ def _largest_change(before: FloatArray, speed: FloatArray) -> float:
     return math.inf if np.isnan(change).any() else float(change.max(initial=0.0))
 
 
-def _drift(across: FloatArray, speed: FloatArray) -> FloatArray:
+def _drift_angle(across: FloatArray, speed: FloatArray) -> FloatArray:
     """Return the angle between course and heading [rad]; 0 where the speed is unknown."""
     with np.errstate(invalid="ignore", divide="ignore"):
         sine = np.where(speed > 0.0, across / speed, 0.0)

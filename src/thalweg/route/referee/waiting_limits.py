@@ -13,10 +13,10 @@ from thalweg.route.track import Track
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-REASON = "waiting not allowed"
+WAITING_NOT_ALLOWED = "waiting not allowed"
 
 
-def forbidden_waits(chart: Chart | None, track: Track, arrive: FloatArray) -> list[Violation]:
+def waiting_violations(chart: Chart | None, track: Track, arrive: FloatArray) -> list[Violation]:
     """Return the waits at waypoints where the chart allows none; the first is a berth.
 
     Parameters
@@ -31,7 +31,9 @@ def forbidden_waits(chart: Chart | None, track: Track, arrive: FloatArray) -> li
         return []
     allowed = chart.may_wait(track.lat[waits], track.lon[waits])
     return [
-        Violation(REASON, float(arrive[k - 1]), float(track.lat[k]), float(track.lon[k]))
+        Violation(
+            WAITING_NOT_ALLOWED, float(arrive[k - 1]), float(track.lat[k]), float(track.lon[k])
+        )
         for k in waits[~allowed]
         if np.isfinite(arrive[k - 1])
     ]

@@ -9,9 +9,9 @@ from thalweg.sea import Sea
 from thalweg.ship import Ship
 from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND
 
-SPEED = "wind_speed"
+WIND_SPEED_NAME = "wind_speed"
 #: What is told when it is done.
-ASSUMPTION = "wind: only its speed is known and only that is looked at; taken as from the west"
+WIND_ASSUMPTION = "wind: only its speed is known and only that is looked at; taken as from the west"
 
 
 def with_wind_speed(ship: Ship, sea: Sea) -> Sea:
@@ -26,15 +26,15 @@ def with_wind_speed(ship: Ship, sea: Sea) -> Sea:
     """
     wind = {EASTWARD_WIND, NORTHWARD_WIND}
     needed = bool(wind & set(ship.needs)) and "wind_angle" not in ship.reads
-    if not needed or wind & sea.variables or SPEED not in sea.variables:
+    if not needed or wind & sea.variables or WIND_SPEED_NAME not in sea.variables:
         return sea
 
     def eastward(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
-        return np.asarray(sea.sample([SPEED], time, lat, lon)[SPEED])
+        return np.asarray(sea.sample([WIND_SPEED_NAME], time, lat, lon)[WIND_SPEED_NAME])
 
     def northward(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
         return 0.0 * eastward(time, lat, lon)
 
     directed = Sea.from_functions({EASTWARD_WIND: eastward, NORTHWARD_WIND: northward})
     both = Sea.layered(sea, directed)
-    return Sea(both.layers, (*both.assumptions, ASSUMPTION))
+    return Sea(both.layers, (*both.assumptions, WIND_ASSUMPTION))

@@ -15,9 +15,9 @@ from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
 from thalweg.route.referee.evaluation import evaluate
-from thalweg.route.refinement.feasible_interpolation import blended
-from thalweg.route.refinement.polyline import unwrapped
-from thalweg.route.refinement.simplification import thinned
+from thalweg.route.refinement.feasible_interpolation import bisect_to_feasible
+from thalweg.route.refinement.polyline import unwrapped_longitudes
+from thalweg.route.refinement.simplification import simplified_route
 from thalweg.route.refinement.smoothing import smooth
 from thalweg.route.refinement.time_evaluator import penalty_factors
 from thalweg.route.route import Route
@@ -30,17 +30,26 @@ if TYPE_CHECKING:
     from thalweg.ship import PerformanceTable, Ship
 
 LARGEST_RASTER = 4_000_000  #: numbers in the frozen raster of the sea around a track
-_LEAST_ROWS, _MOST_ROWS = 12, 120  # cells along the longer side of the raster
-_ROOM = (0.2, 0.4, 0.6)  # room around the track, as a share of its box; more when it is used up
-_RIM = 0.04  # nearness to the rim of the raster at which it counts as used up
+_MIN_ROWS, _MAX_ROWS = 12, 120  # cells along the longer side of the raster
+_RASTER_MARGINS = (
+    0.2,
+    0.4,
+    0.6,
+)  # room around the track, as a share of its box; more when it is used up
+_RASTER_EDGE_SHARE = 0.04  # nearness to the rim of the raster at which it counts as used up
 # (share by which limits are tightened, whether it may wait anywhere) while the referee objects
-_TRIES = ((0.0, True), (0.005, True), (0.02, True), (0.06, True), (0.0, False), (0.02, False))
-_MARGINS = 4  # of them differ for a ship that does not wait
-_WAIT_EXACT = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
-_WAIT_SHARE = 1e-5
-_LONGER = (0.0, 120.0, 600.0, 1800.0)  # seconds by which a wait may grow when the referee objects
+_ATTEMPTS = ((0.0, True), (0.005, True), (0.02, True), (0.06, True), (0.0, False), (0.02, False))
+_ATTEMPTS_WITHOUT_WAITING = 4  # of them differ for a ship that does not wait
+_WAIT_TOLERANCE = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
+_WAIT_TOLERANCE_SHARE = 1e-5
+_WAIT_EXTENSIONS = (
+    0.0,
+    120.0,
+    600.0,
+    1800.0,
+)  # seconds by which a wait may grow when the referee objects
 
-Score = Callable[[Track], Route]
+ScoreFunction = Callable[[Track], Route]
 
 
 def better_route(
@@ -96,40 +105,42 @@ def better_route(
             objective=objective,
             wait=wait,
         )
-        refined = _between_canals(scored, chart, score, better)
-        return min(scored, refined, key=lambda item: rank(item, objective, chart))
+        refined = _refine_between_canals(scored, chart, score, better)
+        return min(scored, refined, key=lambda item: comparison_key(item, objective, chart))
     best, wished = scored, None
     may_wait = bool(scored.track.wait.any()) if wait is None else wait
-    for margin, patient in _TRIES[: None if may_wait else _MARGINS]:
+    for margin, patient in _ATTEMPTS[: None if may_wait else _ATTEMPTS_WITHOUT_WAITING]:
         track = scored.track
-        for room in _ROOM:
-            fields = freeze_around(scored, track, room, ship=ship, sea=sea, limits=limits)
+        for room in _RASTER_MARGINS:
+            fields = freeze_around_track(scored, track, room, ship=ship, sea=sea, limits=limits)
             track = smooth(
                 track,
                 table=table,
                 fields=fields,
-                limits=tightened(limits, margin),
+                limits=tightened_limits(limits, margin),
                 chart=chart,
                 objective=objective,
                 wait=may_wait and patient,
             )
-            if objective == "distance" or not _touches_rim(track, fields):
+            if objective == "distance" or not _touches_raster_edge(track, fields):
                 break
         route = shorten_waits(score(track), score) if track != scored.track else scored
-        best = min(best, route, key=lambda item: rank(item, objective, chart))
+        best = min(best, route, key=lambda item: comparison_key(item, objective, chart))
         if route.feasible:
             break
         if best is scored and scored.feasible and math.isfinite(route.arrive):
             wished = track if wished is None else wished
     if best is scored and wished is not None:
-        best = blended(scored, wished, score)
+        best = bisect_to_feasible(scored, wished, score)
     best = shorten_waits(best, score)
-    most = rank(scored, objective, chart)[1] if scored.feasible else math.inf
-    return thinned(best, score, lambda item: rank(item, objective, chart)[1], most=most)
+    most = comparison_key(scored, objective, chart)[1] if scored.feasible else math.inf
+    return simplified_route(
+        best, score, lambda item: comparison_key(item, objective, chart)[1], most=most
+    )
 
 
-def _between_canals(
-    scored: Route, chart: Chart | None, score: Score, better: Callable[[Route], Route]
+def _refine_between_canals(
+    scored: Route, chart: Chart | None, score: ScoreFunction, better: Callable[[Route], Route]
 ) -> Route:
     """Return the route with its stretches between canals refined, one after the other."""
     route = scored
@@ -144,7 +155,7 @@ def _between_canals(
     return route
 
 
-def freeze_around(
+def freeze_around_track(
     route: Route,
     track: Track,
     room: float,
@@ -166,7 +177,7 @@ def freeze_around(
     until : float, optional
         Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
     """
-    lon = unwrapped(track.lon)
+    lon = unwrapped_longitudes(track.lon)
     extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
     margin = room * extent
     south, north = max(track.lat.min() - margin, -89.9), min(track.lat.max() + margin, 89.9)
@@ -181,22 +192,22 @@ def freeze_around(
     numbers = max(len(sea.times(start, end)), 2) * max(len(channels) + bool(extra), 1)
     finest = math.sqrt((north - south) * width * numbers / LARGEST_RASTER)
     native = [r.spacing_deg for r in sea.coverage() if r.spacing_deg]
-    spacing = max(min([extent / _MOST_ROWS, *native]), finest, extent / 400.0)
-    spacing = min(spacing, extent / _LEAST_ROWS)
+    spacing = max(min([extent / _MAX_ROWS, *native]), finest, extent / 400.0)
+    spacing = min(spacing, extent / _MIN_ROWS)
     return sea.freeze_grid(
         south, north, west, west + width, start, end, channels, spacing_deg=spacing, extra=extra
     )
 
 
-def _touches_rim(track: Track, fields: GridFields) -> bool:
+def _touches_raster_edge(track: Track, fields: GridFields) -> bool:
     """Return whether a track comes so near to the rim of a raster that it may have been held up."""
     rows, columns = fields.values.shape[1:3]
     y = (track.lat - fields.lat0) / (fields.dlat * (rows - 1))
     x = ((track.lon - fields.lon0) % 360.0) / (fields.dlon * (columns - 1))
-    return bool(min(y.min(), x.min(), 1.0 - y.max(), 1.0 - x.max()) < _RIM)
+    return bool(min(y.min(), x.min(), 1.0 - y.max(), 1.0 - x.max()) < _RASTER_EDGE_SHARE)
 
 
-def shorten_waits(route: Route, score: Score) -> Route:
+def shorten_waits(route: Route, score: ScoreFunction) -> Route:
     """Return the route with every wait as short as the referee allows, to half a second.
 
     Frozen fields blur the moment at which a bar opens by up to one of their time steps; the
@@ -206,7 +217,7 @@ def shorten_waits(route: Route, score: Score) -> Route:
     if not waiting.size:
         return route
     if not route.feasible:
-        for longer in _LONGER[1:]:
+        for longer in _WAIT_EXTENSIONS[1:]:
             later = score(_with_wait(route.track, int(waiting[-1]), longer))
             if later.feasible:
                 route = later
@@ -214,18 +225,18 @@ def shorten_waits(route: Route, score: Score) -> Route:
         else:
             return route
     for index in waiting:
-        route = _shorten(route, int(index), score)
+        route = _shorten_wait(route, int(index), score)
     return route
 
 
-def _shorten(route: Route, index: int, score: Score) -> Route:
+def _shorten_wait(route: Route, index: int, score: ScoreFunction) -> Route:
     """Halve the interval between a wait that is too short and one that is long enough."""
     long_enough = float(route.track.wait[index])
     none = score(_with_wait(route.track, index, -long_enough))
     if none.feasible:
         return none if none.arrive <= route.arrive else route
     best, track, too_short = route, route.track, 0.0
-    exact = min(_WAIT_EXACT, _WAIT_SHARE * (route.arrive - route.depart))
+    exact = min(_WAIT_TOLERANCE, _WAIT_TOLERANCE_SHARE * (route.arrive - route.depart))
     while long_enough - too_short > exact:
         tried = 0.5 * (too_short + long_enough)
         shorter = score(_with_wait(track, index, tried - float(track.wait[index])))
@@ -247,7 +258,7 @@ def _with_wait(track: Track, index: int, change: float) -> Track:
     return track.replaced(wait=wait)
 
 
-def rank(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
+def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
     """Return what routes are compared by: limits kept first, then the objective, then time."""
     if not math.isfinite(route.arrive):
         return True, math.inf, math.inf
@@ -260,7 +271,7 @@ def rank(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float
     return not route.feasible, cost, route.arrive
 
 
-def tightened(limits: ArrayLike, margin: float) -> FloatArray:
+def tightened_limits(limits: ArrayLike, margin: float) -> FloatArray:
     """Return limits that are stricter by a share of themselves."""
     tight = np.array(limits, dtype=float)
     tight[codes.LIMIT_REQUIRED_DEPTH] *= 1.0 + margin

@@ -5,24 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.kernels.codes import AXES, AXIS_DEPTH, AXIS_WAVE_PERIOD
+from thalweg.kernels.codes import AXIS_COUNT, AXIS_DEPTH, AXIS_WAVE_PERIOD
 from thalweg.kernels.leg.table_lookup import TableArrays, table_value
 
 
-def calm_rate(table: TableArrays, setting: int) -> float:
+def calm_water_value(table: TableArrays, setting: int) -> float:
     """Return a table's value without wind and waves in deep water; NaN if it has none."""
-    value, ok = table_value(table, _calm(table), setting)
+    value, ok = table_value(table, _calm_axis_values(table), setting)
     return float(value) if ok else float("nan")
 
 
-def calm_speeds(table: TableArrays) -> FloatArray:
+def calm_water_values(table: TableArrays) -> FloatArray:
     """Return the calm value of every setting."""
-    return np.array([calm_rate(table, setting) for setting in range(table.n_settings)])
+    return np.array([calm_water_value(table, setting) for setting in range(table.n_settings)])
 
 
-def _calm(table: TableArrays) -> tuple[float, ...]:
+def _calm_axis_values(table: TableArrays) -> tuple[float, ...]:
     """Return a calm value for every axis: the nearest to zero, but the greatest depth."""
-    values = np.zeros(AXES)
+    values = np.zeros(AXIS_COUNT)
     for part, ids in enumerate(table.part_axes):
         for k, axis in enumerate(ids):
             if axis < 0:

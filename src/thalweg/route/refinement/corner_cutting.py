@@ -7,25 +7,30 @@ import math
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray, direct, inverse
-from thalweg.route.refinement.cost_evaluator import Purse
-from thalweg.route.refinement.polyline import IntArray, Line, unwrapped
-from thalweg.route.refinement.string_pulling import pull
-from thalweg.route.refinement.time_evaluator import Bundle, Sailor, penalty_factors, rough_lengths
+from thalweg.route.refinement.cost_evaluator import CostEvaluator
+from thalweg.route.refinement.polyline import IntArray, Polyline, unwrapped_longitudes
+from thalweg.route.refinement.string_pulling import string_pull
+from thalweg.route.refinement.time_evaluator import (
+    TimeEvaluator,
+    TrackBatch,
+    approximate_leg_lengths,
+    penalty_factors,
+)
 
-_ROUNDS = 24
-_SCAN = 12  # cuts tried at once
-_DEEPER = 6  # scans, each inside the interval of the one before: 12^-6 of a leg
-_SETTLED = 1e-7  # relative gain of a round that ends the work
+_MAX_ROUNDS = 24
+_TRIAL_CUTS = 12  # cuts tried at once
+_SCAN_LEVELS = 6  # scans, each inside the interval of the one before: 12^-6 of a leg
+_GAIN_TOLERANCE = 1e-7  # relative gain of a round that ends the work
 
 
-def tighten(line: Line, sailor: Sailor | Purse) -> Line:
+def cut_corners(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
     """Return a line pulled tight around what it must keep clear of.
 
     Parameters
     ----------
     line : Line
         One that can be sailed.
-    sailor : Sailor
+    evaluator : Sailor
 
     Notes
     -----
@@ -35,22 +40,24 @@ def tighten(line: Line, sailor: Sailor | Purse) -> Line:
     the taut string of the same way round, corners of polygons and round capes alike, without
     knowing their outlines.
     """
-    cost = float(sailor.sail(line.bundle())[1][0])
-    for _ in range(_ROUNDS):
+    cost = float(evaluator.sail(line.batch())[1][0])
+    for _ in range(_MAX_ROUNDS):
         if len(line) < 3 or not math.isfinite(cost):
             return line
-        after = pull(_cut(line, sailor), sailor)
-        new = float(sailor.sail(after.bundle())[1][0])
+        after = string_pull(_cut_every_corner(line, evaluator), evaluator)
+        new = float(evaluator.sail(after.batch())[1][0])
         gain = cost - new
         if not gain > 0.0:
             return line
         line, cost = after, new
-        if gain < _SETTLED * (cost if sailor.by_length else cost - line.depart):
+        if gain < _GAIN_TOLERANCE * (cost if evaluator.by_length else cost - line.depart):
             return line
     return line
 
 
-def merge_close(line: Line, sailor: Sailor | Purse, *, shortest: float) -> Line:
+def merge_short_legs(
+    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, shortest: float
+) -> Polyline:
     """Return the line with the two ends of every very short leg made one, if that can be sailed.
 
     Cutting a corner down to a point of the coast leaves two waypoints a hand apart; they become the
@@ -59,17 +66,17 @@ def merge_close(line: Line, sailor: Sailor | Purse, *, shortest: float) -> Line:
     Parameters
     ----------
     line : Line
-    sailor : Sailor
+    evaluator : Sailor
     shortest : float
         Legs below this length [m] are merged.
     """
     k = 1
     while k < len(line) - 2:
-        short = rough_lengths(line.lat[k : k + 2], line.lon[k : k + 2])[0] < shortest
+        short = approximate_leg_lengths(line.lat[k : k + 2], line.lon[k : k + 2])[0] < shortest
         merged = None
-        fixed = line.kept_points(sailor)[k : k + 2]
+        fixed = line.required_points(evaluator)[k : k + 2]
         if short and np.isinf(line.leave[k : k + 2]).all() and not fixed.any():
-            merged = _merged(line, sailor, k)
+            merged = _merged(line, evaluator, k)
         if merged is None:
             k += 1
         else:
@@ -77,9 +84,9 @@ def merge_close(line: Line, sailor: Sailor | Purse, *, shortest: float) -> Line:
     return line
 
 
-def _merged(line: Line, sailor: Sailor | Purse, k: int) -> Line | None:
+def _merged(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, k: int) -> Polyline | None:
     """Return the line with one point for points k and k + 1, the nearest that can be sailed."""
-    apex = _meeting(line, k)
+    apex = _leg_intersection(line, k)
     if apex is None:
         return None
     middle = 0.5 * (line.lat[k] + line.lat[k + 1]), 0.5 * (line.lon[k] + line.lon[k + 1])
@@ -88,15 +95,17 @@ def _merged(line: Line, sailor: Sailor | Purse, k: int) -> Line | None:
     lon = np.repeat(np.delete(line.lon, k)[None], len(out), axis=0)
     lat[:, k] = middle[0] + out * (apex[0] - middle[0])
     lon[:, k] = middle[1] + out * (apex[1] - middle[1])
-    base = Line(lat[0], lon[0], np.delete(line.leave, k), np.delete(line.setting, k), line.depart)
-    cost = sailor.sail(base.bundle(lat, lon))[1]
+    base = Polyline(
+        lat[0], lon[0], np.delete(line.leave, k), np.delete(line.setting, k), line.depart
+    )
+    cost = evaluator.sail(base.batch(lat, lon))[1]
     if not np.isfinite(cost).any():
         return None
     pick = int(np.argmin(cost))
     return base.moved(lat[pick], lon[pick])
 
 
-def _meeting(line: Line, k: int) -> tuple[float, float] | None:
+def _leg_intersection(line: Polyline, k: int) -> tuple[float, float] | None:
     """Return where leg k - 1 drawn on meets leg k + 1 drawn back; None if that is not near."""
     lat, lon = line.lat[k - 1 : k + 3], line.lon[k - 1 : k + 3]
     gaps, starts, ends = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
@@ -113,35 +122,37 @@ def _meeting(line: Line, k: int) -> tuple[float, float] | None:
     return float(apex[0]), float(lon[1] + (apex[1] - lon[1] + 180.0) % 360.0 - 180.0)
 
 
-def _cut(line: Line, sailor: Sailor | Purse) -> Line:
+def _cut_every_corner(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
     """Return the line with every corner cut off as far as possible."""
     corners = np.arange(1, len(line) - 1)
-    fixed = line.kept_points(sailor)
+    fixed = line.required_points(evaluator)
     corners = corners[np.isinf(line.leave[corners]) & ~fixed[corners]]
     if not corners.size:
         return line
     back_most = np.where(corners - 1 == 0, 1.0, 0.5)
     on_most = np.where(corners + 1 == len(line) - 1, 1.0, 0.5)
-    arrive = sailor.sail(line.bundle(), check=False)[0][0, corners]
+    arrive = evaluator.sail(line.batch(), check=False)[0][0, corners]
     back, on = np.zeros(len(corners)), np.zeros(len(corners))
     for grow_back, grow_on in ((1.0, 1.0), (0.0, 1.0), (1.0, 0.0)):
         low, high = np.zeros(len(corners)), np.ones(len(corners))
-        for _ in range(_DEEPER):
-            tried = low[:, None] + (high - low)[:, None] * np.arange(1, _SCAN + 1) / _SCAN
+        for _ in range(_SCAN_LEVELS):
+            tried = (
+                low[:, None] + (high - low)[:, None] * np.arange(1, _TRIAL_CUTS + 1) / _TRIAL_CUTS
+            )
             a = back[:, None] + grow_back * tried * (back_most - back)[:, None]
             b = on[:, None] + grow_on * tried * (on_most - on)[:, None]
-            clear = _clear(line, sailor, corners, arrive, a, b)
+            clear = _feasible_cuts(line, evaluator, corners, arrive, a, b)
             count = np.cumprod(clear, axis=1).sum(axis=1)
-            width = (high - low) / _SCAN
+            width = (high - low) / _TRIAL_CUTS
             low, high = low + count * width, np.minimum(low + (count + 1) * width, high)
         back = back + grow_back * low * (back_most - back)
         on = on + grow_on * low * (on_most - on)
     return _with_cuts(line, corners, back, on)
 
 
-def _clear(
-    line: Line,
-    sailor: Sailor | Purse,
+def _feasible_cuts(
+    line: Polyline,
+    evaluator: TimeEvaluator | CostEvaluator,
     corners: IntArray,
     arrive: FloatArray,
     back: FloatArray,
@@ -150,38 +161,38 @@ def _clear(
     """Return which cuts (corners, trials) can be sailed."""
     shape = back.shape
     which = np.repeat(corners, shape[1])
-    before = _part(line, which, which - 1, back.ravel())
-    after = _part(line, which, which + 1, on.ravel())
-    bundle = Bundle(
+    before = _positions_along(line, which, which - 1, back.ravel())
+    after = _positions_along(line, which, which + 1, on.ravel())
+    batch = TrackBatch(
         np.stack([before[0], after[0]], axis=1),
         _near(np.stack([before[1], after[1]], axis=1)),
         np.full((len(which), 2), -math.inf),
         line.setting[which - 1][:, None],
         np.repeat(arrive, shape[1]),
     )
-    clear = np.isfinite(sailor.sail(bundle)[1])
-    factor = penalty_factors(sailor.chart, bundle.lat, bundle.lon)
+    clear = np.isfinite(evaluator.sail(batch)[1])
+    factor = penalty_factors(evaluator.chart, batch.lat, batch.lon)
     if factor is not None:  # a cut must not enter a zone that neither of its legs was in
-        own = penalty_factors(sailor.chart, line.lat, line.lon)
+        own = penalty_factors(evaluator.chart, line.lat, line.lon)
         allowed = np.maximum(own[which - 1], own[which])  # type: ignore[index]
         clear &= factor[:, 0] <= allowed + 1e-9
     return clear.reshape(shape)
 
 
-def _part(
-    line: Line, start: IntArray, end: IntArray, share: FloatArray
+def _positions_along(
+    line: Polyline, start: IntArray, end: IntArray, share: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the positions a share of the way along the geodesics between waypoints."""
     length, course, _ = inverse(line.lat[start], line.lon[start], line.lat[end], line.lon[end])
     return direct(line.lat[start], line.lon[start], course, share * length)
 
 
-def _with_cuts(line: Line, corners: IntArray, back: FloatArray, on: FloatArray) -> Line:
+def _with_cuts(line: Polyline, corners: IntArray, back: FloatArray, on: FloatArray) -> Polyline:
     """Return the line with each corner replaced by the two ends of its cut."""
     cut = np.maximum(back, on) > 0.0
     corners, back, on = corners[cut], back[cut], on[cut]
-    before = _part(line, corners, corners - 1, back)
-    after = _part(line, corners, corners + 1, on)
+    before = _positions_along(line, corners, corners - 1, back)
+    after = _positions_along(line, corners, corners + 1, on)
     times = np.ones(len(line), dtype=np.int64)
     times[corners] = 2
     old = np.repeat(np.arange(len(line)), times)
@@ -190,7 +201,7 @@ def _with_cuts(line: Line, corners: IntArray, back: FloatArray, on: FloatArray) 
     lat[place], lon[place] = before
     lat[place + 1], lon[place + 1] = after
     setting = line.setting[np.maximum(old[1:] - 1, 0)]
-    return Line(lat, unwrapped(lon), line.leave[old], setting, line.depart)
+    return Polyline(lat, unwrapped_longitudes(lon), line.leave[old], setting, line.depart)
 
 
 def _near(lon: FloatArray) -> FloatArray:

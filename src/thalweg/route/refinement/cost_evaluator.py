@@ -12,10 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import FloatArray
 from thalweg.kernels.leg import population_sailing as columns
-from thalweg.kernels.leg.population_sailing import FitnessWorld, sail_population
+from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, canal_rates, canal_setting
-from thalweg.route.refinement.time_evaluator import Bundle, IntArray, Sailor, make_sailor
+from thalweg.route.refinement.time_evaluator import (
+    IntArray,
+    TimeEvaluator,
+    TrackBatch,
+    make_time_evaluator,
+)
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -29,7 +34,7 @@ OBJECTIVES = ("fuel", "cost", "co2")
 
 
 @dataclass(frozen=True)
-class Weights:
+class CostWeights:
     """What is made least, in its own unit (kg of fuel, money, kg of CO2).
 
     Attributes
@@ -54,7 +59,7 @@ class Weights:
     cubed: bool = False
 
     @classmethod
-    def of(cls, objective: str, terms: FuelTerms, waiting_rate: float) -> Weights:
+    def of(cls, objective: str, terms: FuelTerms, waiting_rate: float) -> CostWeights:
         """Return the weights of an objective.
 
         Raises
@@ -70,7 +75,7 @@ class Weights:
                 field="objective",
             )
         if objective == "cost" and terms.by_speed:
-            price = terms.speed_price
+            price = terms.cubed_speed_price
             return cls(price, price, terms.time_price, 0.0, priced=True, cubed=True)
         inside, outside = terms.per_kg(objective, True), terms.per_kg(objective, False)
         if not (math.isfinite(inside) and math.isfinite(outside)):
@@ -87,12 +92,12 @@ class Weights:
 
 
 @dataclass(frozen=True)
-class Purse:
-    """Sails polylines as `Sailor` does, and tells what they cost.
+class CostEvaluator:
+    """Sails polylines as `TimeEvaluator` does, and tells what they cost.
 
     Attributes
     ----------
-    sailor : Sailor
+    time_evaluator : Sailor
         Looks up land and charted depth.
     world : FitnessWorld
         Sea, ship, limits and terms as the kernel takes them; times from ``sailor.origin``.
@@ -103,9 +108,9 @@ class Purse:
         Time [s], fuel [kg] and dues of each canal of the chart; empty if the track has none.
     """
 
-    sailor: Sailor
-    world: FitnessWorld
-    weights: Weights
+    time_evaluator: TimeEvaluator
+    world: FitnessArrays
+    weights: CostWeights
     per_second: float
     canals: FloatArray
 
@@ -115,20 +120,20 @@ class Purse:
     @property
     def chart(self) -> Chart | None:
         """The chart that tracks keep clear of."""
-        return self.sailor.chart
+        return self.time_evaluator.chart
 
     @property
     def origin(self) -> float:
         """Where its times count from [s since 1970-01-01T00:00Z]."""
-        return self.sailor.origin
+        return self.time_evaluator.origin
 
     @property
     def limits(self) -> FloatArray:
         """Required depth, wave height and wind speed."""
-        return self.sailor.limits
+        return self.time_evaluator.limits
 
     @property
-    def patience(self) -> FloatArray:
+    def waiting_parameters(self) -> FloatArray:
         """How it waits of itself: it does not."""
         return np.zeros(3)
 
@@ -137,24 +142,24 @@ class Purse:
         """Number of speed settings."""
         return int(self.world.table.n_settings)
 
-    def worth(self, per_second: float) -> Purse:
+    def value_of_time(self, per_second: float) -> CostEvaluator:
         """Return the purse with another worth of a second."""
         return replace(self, per_second=per_second)
 
     def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
         """Return how many pieces each leg of polylines (..., n) is cut into."""
-        return self.sailor.pieces(lat, lon)
+        return self.time_evaluator.pieces(lat, lon)
 
-    def look(
+    def look_up_legs(
         self, lat: FloatArray, lon: FloatArray
     ) -> tuple[NDArray[np.bool_] | None, FloatArray | None]:
         """Return (blocked, least charted depth) of the legs of polylines; None: not known."""
-        return self.sailor.look(lat, lon)
+        return self.time_evaluator.look_up_legs(lat, lon)
 
     def fixed_points(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
         """Return which points of one polyline may not move: its ends and those of canals."""
         canal = self.canal_legs(lat, lon)
-        fixed = self.sailor.fixed_points(lat, lon)
+        fixed = self.time_evaluator.fixed_points(lat, lon)
         return fixed | np.append(canal, False) | np.append(False, canal)
 
     def canal_legs(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
@@ -165,39 +170,40 @@ class Purse:
         return np.asarray(chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:]) >= 0)
 
     def sail(
-        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+        self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
     ) -> tuple[FloatArray, FloatArray]:
-        """Sail polylines: (arrival at every point [s after the origin], cost), as `Sailor.sail`.
+        """Sail polylines: (arrival at every point [s after the origin], cost), as
+        `TimeEvaluator.sail`.
 
         The cost has the worth of time in it and is +inf where a track cannot be sailed.
         """
-        arrive, cost, time = self.spend(bundle, pieces=pieces, check=check)
+        arrive, cost, time = self.cost_and_time(batch, pieces=pieces, check=check)
         return arrive, cost + self.per_second * time
 
     def sail_and_wait(
-        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+        self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Do as `sail` does, and return (arrive, leave, cost): when each point is left, too."""
-        arrive, cost = self.sail(bundle, pieces=pieces, check=check)
-        return arrive, np.maximum(arrive, bundle.leave), cost
+        arrive, cost = self.sail(batch, pieces=pieces, check=check)
+        return arrive, np.maximum(arrive, batch.leave), cost
 
-    def spend(
-        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+    def cost_and_time(
+        self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (arrival at every point, cost without the worth of time, passage time)."""
-        count, size = bundle.lat.shape
-        genes = self._genes(bundle, pieces, check)
-        waits = np.isfinite(bundle.leave[:, :-1])
+        count, size = batch.lat.shape
+        genes = self._genes(batch, pieces, check)
+        waits = np.isfinite(batch.leave[:, :-1])
         if not waits.any():
-            score, arrive = self._run(genes, bundle.depart)
+            score, arrive = self._run(genes, batch.depart)
         else:  # moments of leaving become waits leg by leg
             arrive = np.empty((count, size))
-            arrive[:, 0] = bundle.depart
-            score = np.zeros((count, columns.SCORES))
+            arrive[:, 0] = batch.depart
+            score = np.zeros((count, columns.SCORE_COUNT))
             for k in range(size - 1):
                 pair = genes[:, k : k + 2].copy()
-                late = bundle.leave[:, k] - arrive[:, k]
-                pair[:, 0, columns.WAIT] = np.where(late > 0.0, late, 0.0)
+                late = batch.leave[:, k] - arrive[:, k]
+                pair[:, 0, columns.WAITING_TIME] = np.where(late > 0.0, late, 0.0)
                 part, there = self._run(pair, arrive[:, k])
                 score, arrive[:, k + 1] = score + part, there[:, 1]
         bad = score[:, columns.VIOLATION] > 0.0
@@ -205,21 +211,21 @@ class Purse:
         arrive[bad, -1] = math.inf
         return arrive, cost, score[:, columns.TIME]
 
-    def broken_legs(self, bundle: Bundle) -> NDArray[np.bool_]:
+    def infeasible_legs(self, batch: TrackBatch) -> NDArray[np.bool_]:
         """Return which legs of polylines (L, n - 1) cannot be sailed, each by itself."""
-        arrive, _, _ = self.spend(bundle, check=False)
-        size = bundle.lat.shape[1]
-        broken = np.zeros((len(bundle.lat), size - 1), dtype=bool)
-        genes = self._genes(bundle, None, True)
+        arrive, _, _ = self.cost_and_time(batch, check=False)
+        size = batch.lat.shape[1]
+        broken = np.zeros((len(batch.lat), size - 1), dtype=bool)
+        genes = self._genes(batch, None, True)
         for k in range(size - 1):
-            depart = np.where(np.isfinite(arrive[:, k]), arrive[:, k], bundle.depart)
+            depart = np.where(np.isfinite(arrive[:, k]), arrive[:, k], batch.depart)
             score, _ = self._run(genes[:, k : k + 2], depart)
             broken[:, k] = score[:, columns.VIOLATION] > 0.0
         return broken
 
     def _run(self, genes: FloatArray, depart: FloatArray) -> tuple[FloatArray, FloatArray]:
         count, size = genes.shape[:2]
-        score, arrive = np.empty((count, columns.SCORES)), np.empty((count, size))
+        score, arrive = np.empty((count, columns.SCORE_COUNT)), np.empty((count, size))
         sail_population(
             np.full(count, size, dtype=np.int64),
             np.ascontiguousarray(genes),
@@ -227,25 +233,25 @@ class Purse:
             self.world,
             score,
             arrive,
-            np.empty((count, columns.SCRATCH)),
+            np.empty((count, columns.SCRATCH_SIZE)),
         )
         return score, arrive
 
-    def _genes(self, bundle: Bundle, pieces: IntArray | None, check: bool) -> FloatArray:
+    def _genes(self, batch: TrackBatch, pieces: IntArray | None, check: bool) -> FloatArray:
         """Return polylines as the kernel takes them, every leg looked up."""
-        count, size = bundle.lat.shape
-        genes = np.zeros((count, size, columns.COLUMNS))
-        genes[:, :, columns.LAT], genes[:, :, columns.LON] = bundle.lat, bundle.lon
+        count, size = batch.lat.shape
+        genes = np.zeros((count, size, columns.GENE_COLUMNS))
+        genes[:, :, columns.LAT], genes[:, :, columns.LON] = batch.lat, batch.lon
         legs = genes[:, :-1]
-        legs[:, :, columns.SETTING] = bundle.setting
+        legs[:, :, columns.SETTING] = batch.setting
         if pieces is not None:
             legs[:, :, columns.PIECES] = np.broadcast_to(pieces, (count, size - 1))
-        legs[:, :, columns.CHARTED] = math.inf
+        legs[:, :, columns.CHARTED_DEPTH] = math.inf
         if check:
-            blocked, charted = self.look(bundle.lat, bundle.lon)
-            legs[:, :, columns.BLOCKED] = 0.0 if blocked is None else blocked
-            legs[:, :, columns.CHARTED] = math.inf if charted is None else charted
-        lat, lon = bundle.lat, bundle.lon
+            blocked, charted = self.look_up_legs(batch.lat, batch.lon)
+            legs[:, :, columns.IS_BLOCKED] = 0.0 if blocked is None else blocked
+            legs[:, :, columns.CHARTED_DEPTH] = math.inf if charted is None else charted
+        lat, lon = batch.lat, batch.lon
         self._price(legs, (lat[:, :-1], lon[:, :-1], lat[:, 1:], lon[:, 1:]))
         return genes
 
@@ -253,27 +259,27 @@ class Purse:
         """Write weights, penalties and canals of legs in place."""
         chart: Any = self.chart
         weights = self.weights
-        legs[:, :, columns.WEIGHT], legs[:, :, columns.PENALTY] = weights.outside, 1.0
+        legs[:, :, columns.FUEL_PRICE], legs[:, :, columns.PENALTY_FACTOR] = weights.outside, 1.0
         legs[:, :, columns.FIXED_TIME] = math.nan
         if chart is None:
             return
         if chart.zones.eca and weights.inside != weights.outside:
-            share = chart.eca_share(*ends)
-            legs[:, :, columns.WEIGHT] += share * (weights.inside - weights.outside)
+            share = chart.eca_fraction(*ends)
+            legs[:, :, columns.FUEL_PRICE] += share * (weights.inside - weights.outside)
         if chart.zones.penalty or (chart.zones.price and weights.priced):
             penalty, price = chart.zone_factor(*ends)
-            legs[:, :, columns.PENALTY] = penalty
+            legs[:, :, columns.PENALTY_FACTOR] = penalty
             if weights.priced:
-                legs[:, :, columns.WEIGHT] *= price
+                legs[:, :, columns.FUEL_PRICE] *= price
         if len(self.canals):
             number = chart.canal_of_legs(*ends)
             on = number >= 0
             time, burnt, dues = self.canals[number[on]].T
             legs[on, columns.FIXED_TIME] = time
-            legs[on, columns.FIXED_COST] = burnt * legs[on, columns.WEIGHT] + dues
+            legs[on, columns.FIXED_COST] = burnt * legs[on, columns.FUEL_PRICE] + dues
 
 
-def make_purse(
+def make_cost_evaluator(
     *,
     ship: Ship,
     table: PerformanceTable | TableArrays,
@@ -282,8 +288,8 @@ def make_purse(
     limits: ArrayLike,
     chart: Chart | None,
     track: Track,
-    weights: Weights,
-) -> Purse:
+    weights: CostWeights,
+) -> CostEvaluator:
     """Put a purse together for polishing a track; times count from its departure.
 
     Raises
@@ -291,7 +297,7 @@ def make_purse(
     InputError
         If the tables differ in their settings.
     """
-    sailor = make_sailor(
+    time_evaluator = make_time_evaluator(
         table=table,
         chart=chart,
         fields=fields,
@@ -301,21 +307,23 @@ def make_purse(
         total=float(track.lengths.sum()),
     )
     rates = fuel if isinstance(fuel, TableArrays) else fuel.kernel_arrays()
-    if rates.n_settings != sailor.table.n_settings:
+    if rates.n_settings != time_evaluator.table.n_settings:
         raise InputError(
             f"The table of fuel has {rates.n_settings} settings, that of speed "
-            f"{sailor.table.n_settings}.",
+            f"{time_evaluator.table.n_settings}.",
             "Both are of one ship.",
             "Tabulate both for the same speeds.",
         )
-    terms = np.zeros(columns.TERMS)
+    terms = np.zeros(columns.TERM_COUNT)
     terms[columns.TIME_PRICE] = weights.time
     terms[columns.WAITING_PRICE] = weights.waiting
-    terms[columns.LATEST], terms[columns.SPACING] = math.inf, sailor.spacing
-    index = sailor.raster.channel_index
-    channels = np.zeros(sailor.raster.values.shape[3], dtype=np.int64)
+    terms[columns.LATEST_ARRIVAL], terms[columns.PIECE_SPACING] = math.inf, time_evaluator.spacing
+    index = time_evaluator.raster.channel_index
+    channels = np.zeros(time_evaluator.raster.values.shape[3], dtype=np.int64)
     channels[index[index >= 0]] = np.flatnonzero(index >= 0)
-    world = FitnessWorld(sailor.raster, channels, sailor.table, rates, sailor.limits, terms)
+    world = FitnessArrays(
+        time_evaluator.raster, channels, time_evaluator.table, rates, time_evaluator.limits, terms
+    )
     passed = canal_legs(track, chart)  # none: canals need not be looked for again and again
 
     def rate(canal: Canal) -> float:
@@ -327,4 +335,6 @@ def make_purse(
         (c.transit_time, rate(c) * c.transit_time, c.fee * weights.priced)
         for c in (passed.canals if passed.any else ())
     ]
-    return Purse(sailor, world, weights, 0.0, np.array(canals, float).reshape(-1, 3))
+    return CostEvaluator(
+        time_evaluator, world, weights, 0.0, np.array(canals, float).reshape(-1, 3)
+    )

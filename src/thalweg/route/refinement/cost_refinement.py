@@ -14,15 +14,20 @@ from thalweg.core.time import TimeLike, parse_time
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_ends
 from thalweg.route.referee.evaluation import evaluate
-from thalweg.route.refinement.better_route import freeze_around, tightened
-from thalweg.route.refinement.cost_evaluator import Purse, Weights, make_purse
-from thalweg.route.refinement.newton_offsets import bend
-from thalweg.route.refinement.polyline import Line, line_of, track_of_line, unwrapped
-from thalweg.route.refinement.simplification import thinned
-from thalweg.route.refinement.smoothing import resampled
-from thalweg.route.refinement.speed_profile import choose_paces
-from thalweg.route.refinement.string_pulling import pull
-from thalweg.route.refinement.time_evaluator import penalty_factors, rough_lengths
+from thalweg.route.refinement.better_route import freeze_around_track, tightened_limits
+from thalweg.route.refinement.cost_evaluator import CostEvaluator, CostWeights, make_cost_evaluator
+from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
+from thalweg.route.refinement.polyline import (
+    Polyline,
+    polyline_of_track,
+    track_of_polyline,
+    unwrapped_longitudes,
+)
+from thalweg.route.refinement.simplification import simplified_route
+from thalweg.route.refinement.smoothing import resampled_polyline
+from thalweg.route.refinement.speed_profile import choose_speeds
+from thalweg.route.refinement.string_pulling import string_pull
+from thalweg.route.refinement.time_evaluator import approximate_leg_lengths, penalty_factors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 from thalweg.ship.tables.tabulate import tabulate_cubed_speed
@@ -33,15 +38,17 @@ if TYPE_CHECKING:
     from thalweg.ship import PerformanceTable, Ship
     from thalweg.ship.fuel_prices import FuelTerms
 
-_COLUMN = {"fuel": "fuel", "cost": "cost", "co2": "co2"}
-_MARGINS = (0.0, 0.005, 0.02)  # by which limits are tightened while the referee objects
-_PARTS = (6, 12, 24, 48)  # least number of legs of each level
-_TURNS = 2  # choices of settings and bendings of a level
-_NEWTON = 4  # steps of a bending
-_HOPEFUL = 1.02  # a coarse start is worked on if it costs no more than this times the own one
-_TIMINGS = 4  # referees asked until the arrival fits
-_ON_TIME = 2e-6  # share of the passage by which it may come early
-_CROSSED = 0.02  # share of a leg in a control area, and out of it, that is worth a waypoint
+_OBJECTIVE_COLUMNS = {"fuel": "fuel", "cost": "cost", "co2": "co2"}
+_LIMIT_MARGINS = (0.0, 0.005, 0.02)  # by which limits are tightened while the referee objects
+_MIN_LEGS_OF_LEVEL = (6, 12, 24, 48)  # least number of legs of each level
+_PASSES_PER_LEVEL = 2  # choices of settings and bendings of a level
+_NEWTON_STEPS = 4  # steps of a bending
+_COARSE_START_TOLERANCE = (
+    1.02  # a coarse start is worked on if it costs no more than this times the own one
+)
+_MAX_ARRIVAL_CORRECTIONS = 4  # referees asked until the arrival fits
+_ARRIVAL_TOLERANCE = 2e-6  # share of the passage by which it may come early
+_MIN_ZONE_SHARE = 0.02  # share of a leg in a control area, and out of it, that is worth a waypoint
 
 
 def polish(
@@ -100,13 +107,14 @@ def polish(
 
     Notes
     -----
-    Level by level legs are halved, the settings chosen anew (`choose_paces`) and the waypoints bent
-    sideways by Newton's method on cost plus the worth of time, which is the slope of cost over time
-    that the settings leave. All this on frozen fields; the referee has the last word, and the
-    time of arrival it finds is met by choosing settings again, to a few millionths of the passage.
+    Level by level legs are halved, the settings chosen anew (`choose_speeds`) and the waypoints
+    bent sideways by Newton's method on cost plus the worth of time, which is the slope of cost
+    over time that the settings leave. All this on frozen fields; the referee has the last word,
+    and the time of arrival it finds is met by choosing settings again, to a few millionths of the
+    passage.
     """
     terms = ship.fuel_terms if terms is None else terms
-    weights = Weights.of(objective, terms, ship.waiting_fuel_rate)
+    weights = CostWeights.of(objective, terms, ship.waiting_fuel_rate)
     if weights.cubed:
         fuel = tabulate_cubed_speed(ship.speeds)
     latest = scored.arrive if arrive_by is None else max(parse_time(arrive_by), scored.arrive)
@@ -120,37 +128,37 @@ def polish(
 
     def value(route: Route) -> float:
         good = route.feasible and route.arrive <= latest + 1e-6
-        return _value(route, objective, chart) if good else math.inf
+        return _objective_value(route, objective, chart) if good else math.inf
 
     frozen = fields
     if frozen is None:
-        frozen = freeze_around(
+        frozen = freeze_around_track(
             scored, scored.track, 0.2, ship=ship, sea=sea, limits=limits, until=latest
         )
 
-    def purse_of(track: Track, margin: float) -> Purse:
-        return make_purse(
+    def evaluator_of(track: Track, margin: float) -> CostEvaluator:
+        return make_cost_evaluator(
             ship=ship,
             table=table,
             fuel=fuel,
             fields=frozen,
-            limits=tightened(limits, margin),
+            limits=tightened_limits(limits, margin),
             chart=chart,
             track=track,
             weights=weights,
         )
 
-    best = _attempts(scored, latest, purse_of, score, value)
+    best = _best_attempt(scored, latest, evaluator_of, score, value)
     if not thin:
         return best
     held = canal_ends(best.track, chart)
-    return thinned(best, score, value, most=value(scored), held=held)
+    return simplified_route(best, score, value, most=value(scored), held=held)
 
 
-def _attempts(
+def _best_attempt(
     scored: Route,
     latest: float,
-    purse_of: Callable[[Track, float], Purse],
+    evaluator_of: Callable[[Track, float], CostEvaluator],
     score: Callable[[Track], Route],
     value: Callable[[Route], float],
 ) -> Route:
@@ -162,12 +170,14 @@ def _attempts(
 
     def attempt(start: Route, target: float) -> Route:
         best = start
-        for margin in _MARGINS:
-            purse = purse_of(start.track, margin)
-            line = _worked(line_of(start.track, purse), purse, target - start.depart)
+        for margin in _LIMIT_MARGINS:
+            evaluator = evaluator_of(start.track, margin)
+            line = _optimised(
+                polyline_of_track(start.track, evaluator), evaluator, target - start.depart
+            )
             if line is None:
                 break
-            route = _in_time(line, purse, target, score, value)
+            route = _score_on_time(line, evaluator, target, score, value)
             best = min(best, route, key=value)
             if route.feasible:
                 break
@@ -181,80 +191,99 @@ def _attempts(
     return best
 
 
-def _value(route: Route, objective: str, chart: Chart | None) -> float:
+def _objective_value(route: Route, objective: str, chart: Chart | None) -> float:
     """Return what is made least, with what penalty zones add; inf where it is unknown."""
     legs = route.legs
-    spent = legs[_COLUMN[objective]] + (legs["waiting_fuel"] if objective == "fuel" else 0.0)
+    spent = legs[_OBJECTIVE_COLUMNS[objective]] + (
+        legs["waiting_fuel"] if objective == "fuel" else 0.0
+    )
     factor = penalty_factors(chart, route.track.lat, route.track.lon)
     total = float(np.sum(spent if factor is None else spent * factor))
     return total if math.isfinite(total) else math.inf
 
 
-def _worked(line: Line, purse: Purse, latest: float) -> Line | None:
+def _optimised(line: Polyline, evaluator: CostEvaluator, latest: float) -> Polyline | None:
     """Return the cheapest line found that is in time; None if the given one cannot be sailed."""
-    paced, worth = choose_paces(line, purse, latest)
-    own = _price(paced, purse, worth)
+    paced, value_of_time = choose_speeds(line, evaluator, latest)
+    own = _cost_with_time_value(paced, evaluator, value_of_time)
     if not math.isfinite(own):
         return None
-    starts = [pull(paced, purse.worth(worth))]
-    if not np.isfinite(line.leave).any() and not _held(line, purse)[1:-1].any():
-        for count in _PARTS[:2]:
-            coarse = resampled(paced, count + 1)
-            if len(line) > count + 1 and _price(coarse, purse, worth) <= _HOPEFUL * own:
+    starts = [string_pull(paced, evaluator.value_of_time(value_of_time))]
+    if not np.isfinite(line.leave).any() and not _fixed_waypoints(line, evaluator)[1:-1].any():
+        for count in _MIN_LEGS_OF_LEVEL[:2]:
+            coarse = resampled_polyline(paced, count + 1)
+            if (
+                len(line) > count + 1
+                and _cost_with_time_value(coarse, evaluator, value_of_time)
+                <= _COARSE_START_TOLERANCE * own
+            ):
                 starts.append(coarse)
-    found = [line, *(_levels(start, purse, latest, worth) for start in starts)]
-    return min(found, key=lambda item: _in_time_cost(item, purse, latest, worth))
+    found = [
+        line,
+        *(_refine_by_levels(start, evaluator, latest, value_of_time) for start in starts),
+    ]
+    return min(found, key=lambda item: _cost_with_lateness(item, evaluator, latest, value_of_time))
 
 
-def _held(line: Line, purse: Purse) -> np.ndarray:
-    return purse.fixed_points(line.lat, line.lon)
+def _fixed_waypoints(line: Polyline, evaluator: CostEvaluator) -> np.ndarray:
+    return evaluator.fixed_points(line.lat, line.lon)
 
 
-def _price(line: Line, purse: Purse, worth: float) -> float:
+def _cost_with_time_value(line: Polyline, evaluator: CostEvaluator, value_of_time: float) -> float:
     """Return cost plus the worth of the time."""
-    return float(purse.worth(worth).sail(line.bundle())[1][0])
+    return float(evaluator.value_of_time(value_of_time).sail(line.batch())[1][0])
 
 
-def _in_time_cost(line: Line, purse: Purse, latest: float, worth: float) -> float:
+def _cost_with_lateness(
+    line: Polyline, evaluator: CostEvaluator, latest: float, value_of_time: float
+) -> float:
     """Return the cost at the best settings, lateness at its worth (and then some)."""
-    arrive, cost, _ = purse.spend(choose_paces(line, purse, latest)[0].bundle())
+    arrive, cost, _ = evaluator.cost_and_time(choose_speeds(line, evaluator, latest)[0].batch())
     late = max(float(arrive[0, -1]) - latest, 0.0)
-    return float(cost[0]) + (2.0 * worth * late if late > 0.0 else 0.0)
+    return float(cost[0]) + (2.0 * value_of_time * late if late > 0.0 else 0.0)
 
 
-def _levels(line: Line, purse: Purse, latest: float, worth: float) -> Line:
+def _refine_by_levels(
+    line: Polyline, evaluator: CostEvaluator, latest: float, value_of_time: float
+) -> Polyline:
     """Refine a line level by level."""
-    total = float(rough_lengths(line.lat, line.lon).sum())
-    for number, parts in enumerate(_PARTS):
+    total = float(approximate_leg_lengths(line.lat, line.lon).sum())
+    for number, parts in enumerate(_MIN_LEGS_OF_LEVEL):
         while True:
-            finer = _split(line, purse, total / parts)
+            finer = _split_long_legs(line, evaluator, total / parts)
             if len(finer) == len(line):
                 break
             line = finer
-        if number == len(_PARTS) - 1:
-            line = _cut_at_borders(line, purse)
-        for _ in range(_TURNS):
-            paced, worth = choose_paces(line, purse, latest, whole=True)
-            if not math.isfinite(_price(paced, purse, worth)):
+        if number == len(_MIN_LEGS_OF_LEVEL) - 1:
+            line = _split_at_zone_borders(line, evaluator)
+        for _ in range(_PASSES_PER_LEVEL):
+            paced, value_of_time = choose_speeds(line, evaluator, latest, whole=True)
+            if not math.isfinite(_cost_with_time_value(paced, evaluator, value_of_time)):
                 return line
-            line = bend(paced, purse.worth(worth), rounds=_NEWTON)
+            line = optimise_lateral_offsets(
+                paced, evaluator.value_of_time(value_of_time), rounds=_NEWTON_STEPS
+            )
     return line
 
 
-def _split(line: Line, purse: Purse, longest: float) -> Line:
+def _split_long_legs(line: Polyline, evaluator: CostEvaluator, longest: float) -> Polyline:
     """Halve the legs longer than that, but not canals."""
-    canal = purse.canal_legs(line.lat, line.lon)
+    canal = evaluator.canal_legs(line.lat, line.lon)
     return line.split(longest, ~canal)
 
 
-def _cut_at_borders(line: Line, purse: Purse) -> Line:
+def _split_at_zone_borders(line: Polyline, evaluator: CostEvaluator) -> Polyline:
     """Return the line with a waypoint where a leg enters or leaves the control areas."""
-    chart = purse.chart
-    if chart is None or not chart.zones.eca or purse.weights.inside == purse.weights.outside:
+    chart = evaluator.chart
+    if (
+        chart is None
+        or not chart.zones.eca
+        or evaluator.weights.inside == evaluator.weights.outside
+    ):
         return line
-    share = chart.eca_share(line.lat[:-1], line.lon[:-1], line.lat[1:], line.lon[1:])
-    crossed = (share > _CROSSED) & (share < 1.0 - _CROSSED)
-    crossed &= ~purse.canal_legs(line.lat, line.lon)
+    share = chart.eca_fraction(line.lat[:-1], line.lon[:-1], line.lat[1:], line.lon[1:])
+    crossed = (share > _MIN_ZONE_SHARE) & (share < 1.0 - _MIN_ZONE_SHARE)
+    crossed &= ~evaluator.canal_legs(line.lat, line.lon)
     legs = np.flatnonzero(crossed)
     if not len(legs):
         return line
@@ -264,28 +293,28 @@ def _cut_at_borders(line: Line, purse: Purse) -> Line:
         line.lat[legs], line.lon[legs], line.lat[legs + 1], line.lon[legs + 1]
     )
     lat, lon = direct(line.lat[legs], line.lon[legs], course, at * length)
-    return Line(
+    return Polyline(
         np.insert(line.lat, legs + 1, lat),
-        unwrapped(np.insert(line.lon, legs + 1, lon)),
+        unwrapped_longitudes(np.insert(line.lon, legs + 1, lon)),
         np.insert(line.leave, legs + 1, -math.inf),
         np.insert(line.setting, legs, line.setting[legs]),
         line.depart,
     )
 
 
-def _in_time(
-    line: Line,
-    purse: Purse,
+def _score_on_time(
+    line: Polyline,
+    evaluator: CostEvaluator,
     latest: float,
     score: Callable[[Track], Route],
     value: Callable[[Route], float],
 ) -> Route:
     """Let the referee score a line, its settings chosen so that it arrives when it should."""
-    target = latest - purse.origin
-    budget, exact = target, _ON_TIME * target
+    target = latest - evaluator.origin
+    budget, exact = target, _ARRIVAL_TOLERANCE * target
     found: list[Route] = []
-    for _ in range(_TIMINGS):
-        route = score(track_of_line(choose_paces(line, purse, budget)[0], purse))
+    for _ in range(_MAX_ARRIVAL_CORRECTIONS):
+        route = score(track_of_polyline(choose_speeds(line, evaluator, budget)[0], evaluator))
         found.append(route)
         late = route.arrive - latest
         if not math.isfinite(late) or -exact <= late <= 0.0:

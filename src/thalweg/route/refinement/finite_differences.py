@@ -12,14 +12,14 @@ from thalweg.kernels.leg import population_sailing
 from thalweg.kernels.leg.population_sailing import LAT, LON
 from thalweg.route.refinement.population import BoolArray, IntArray, Population
 from thalweg.route.refinement.population_evaluator import Evaluator
-from thalweg.route.refinement.time_evaluator import rough_lengths
+from thalweg.route.refinement.time_evaluator import approximate_leg_lengths
 
 METRES_PER_DEGREE = 111_195.0
-_LATE = 0.02  # a probing delay, as a share of the leg's time
+_PROBE_DELAY_SHARE = 0.02  # a probing delay, as a share of the leg's time
 
 
 @dataclass(frozen=True)
-class Lines:
+class ScoredTracks:
     """Tracks that are polished, each for its own price of time.
 
     Attributes
@@ -41,7 +41,7 @@ class Lines:
     arrive: FloatArray
 
     @classmethod
-    def of(cls, evaluator: Evaluator, population: Population, price: FloatArray) -> Lines:
+    def of(cls, evaluator: Evaluator, population: Population, price: FloatArray) -> ScoredTracks:
         """Sail tracks and hold them with their prices."""
         scores, arrive = evaluator.sail(population)
         return cls(evaluator, population, price, scores, arrive)
@@ -52,7 +52,7 @@ class Lines:
     @property
     def value(self) -> FloatArray:
         """What is to become small; +inf where a track is not feasible."""
-        return values(self.scores, self.price)
+        return scalarised_values(self.scores, self.price)
 
     @property
     def legs(self) -> tuple[IntArray, IntArray]:
@@ -66,7 +66,7 @@ class Lines:
         """Which points (R, M) may move: not the ends, via points and ends of canals."""
         genes = self.population.genes
         free = np.arange(self.population.room) < (self.population.count - 1)[:, None]
-        free &= genes[:, :, population_sailing.HELD] == 0.0
+        free &= genes[:, :, population_sailing.IS_REQUIRED] == 0.0
         fixed = ~np.isnan(genes[:, :, population_sailing.FIXED_TIME]) & free
         fixed[:, 0] |= ~np.isnan(genes[:, 0, population_sailing.FIXED_TIME])
         free &= ~fixed
@@ -78,14 +78,14 @@ class Lines:
         """Rough length of every leg (R, M) [m]; 0 after the last."""
         genes = self.population.genes
         out = np.zeros(genes.shape[:2])
-        out[:, :-1] = rough_lengths(genes[:, :, LAT], genes[:, :, LON])
+        out[:, :-1] = approximate_leg_lengths(genes[:, :, LAT], genes[:, :, LON])
         beyond = np.arange(self.population.room) >= (self.population.count - 1)[:, None]
         return np.where(beyond, 0.0, out)
 
-    def chosen(self, other: Population, rows: IntArray) -> Lines:
+    def chosen(self, other: Population, rows: IntArray) -> ScoredTracks:
         """Return the better of these tracks and trials, ``rows`` telling whose trial each is."""
         scores, arrive = self.evaluator.sail(other)
-        told = values(scores, self.price[rows])
+        told = scalarised_values(scores, self.price[rows])
         order = np.lexsort((told, rows))
         first = np.unique(rows[order], return_index=True)[1]
         best = order[first]
@@ -94,7 +94,7 @@ class Lines:
             return self
         population = self.population
         if other.room > population.room:
-            population = population.with_room(other.room)
+            population = population.with_capacity(other.room)
         room = population.room
         count, genes = population.count.copy(), population.genes.copy()
         now, passed = self.scores.copy(), np.full((len(self), room), math.nan)
@@ -107,7 +107,7 @@ class Lines:
 
 
 @dataclass(frozen=True)
-class Delays:
+class DelayEffects:
     """What a second of delay does: at departure of each leg, to the goal.
 
     Attributes
@@ -124,63 +124,65 @@ class Delays:
         return self.cost + price[:, None] * self.time
 
 
-def values(scores: FloatArray, price: FloatArray) -> FloatArray:
+def scalarised_values(scores: FloatArray, price: FloatArray) -> FloatArray:
     """Return cost + price * time; +inf where a track is not feasible."""
     told = scores[:, 1] + price * scores[:, 0]
     return np.where((scores[:, 2] == 0.0) & np.isfinite(told), told, math.inf)
 
 
-def pairs_of(lines: Lines, row: IntArray, place: IntArray) -> tuple[FloatArray, FloatArray]:
+def legs_as_tracks(
+    lines: ScoredTracks, row: IntArray, place: IntArray
+) -> tuple[FloatArray, FloatArray]:
     """Return legs as tracks of two points (L, 2, COLUMNS), and when they are begun [s]."""
     genes = lines.population.genes
     pairs = np.stack([genes[row, place], genes[row, place + 1]], axis=1)
-    depart = lines.arrive[row, place] + pairs[:, 0, population_sailing.WAIT]
-    pairs[:, 0, population_sailing.WAIT] = 0.0
+    depart = lines.arrive[row, place] + pairs[:, 0, population_sailing.WAITING_TIME]
+    pairs[:, 0, population_sailing.WAITING_TIME] = 0.0
     return pairs, depart
 
 
-def with_pieces(evaluator: Evaluator, pairs: FloatArray) -> None:
+def fix_piece_counts(evaluator: Evaluator, pairs: FloatArray) -> None:
     """Fix the number of pieces of legs, so that their probes can be differenced."""
-    spacing = evaluator.world.terms[population_sailing.SPACING]
-    length = rough_lengths(pairs[:, :, LAT], pairs[:, :, LON])[:, 0]
+    spacing = evaluator.world.terms[population_sailing.PIECE_SPACING]
+    length = approximate_leg_lengths(pairs[:, :, LAT], pairs[:, :, LON])[:, 0]
     pairs[:, 0, population_sailing.PIECES] = np.maximum(
-        population_sailing.LEAST_PIECES, np.ceil(length / spacing)
+        population_sailing.MIN_PIECES, np.ceil(length / spacing)
     )
 
 
-def sail_pairs(
+def sail_legs_alone(
     evaluator: Evaluator, pairs: FloatArray, depart: FloatArray, *, blocked: bool = False
 ) -> tuple[FloatArray, FloatArray]:
     """Return (time, cost) of legs alone; +inf where one cannot be sailed.
 
     With ``blocked`` legs that touch land can be sailed too, to difference them.
     """
-    evaluator = without_latest(evaluator)
+    evaluator = without_latest_arrival(evaluator)
     population = Population(np.full(len(pairs), 2), np.ascontiguousarray(pairs))
-    evaluator.look(population)
+    evaluator.look_up_legs(population)
     if blocked:
-        population.genes[:, 0, population_sailing.BLOCKED] = 0.0
+        population.genes[:, 0, population_sailing.IS_BLOCKED] = 0.0
     scores, _ = evaluator.sail(population, depart=depart)
     good = scores[:, 2] == 0.0
     return np.where(good, scores[:, 0], math.inf), np.where(good, scores[:, 1], math.inf)
 
 
-def without_latest(evaluator: Evaluator) -> Evaluator:
+def without_latest_arrival(evaluator: Evaluator) -> Evaluator:
     """Return an evaluator that knows no latest arrival, for legs alone."""
     terms = evaluator.world.terms.copy()
-    terms[population_sailing.LATEST] = math.inf
+    terms[population_sailing.LATEST_ARRIVAL] = math.inf
     return replace(evaluator, world=evaluator.world._replace(terms=terms))
 
 
-def probe_delays(lines: Lines) -> Delays:
+def delay_effects(lines: ScoredTracks) -> DelayEffects:
     """Difference every leg over its departure, and add up from the goal."""
     row, place = lines.legs
-    pairs, depart = pairs_of(lines, row, place)
-    with_pieces(lines.evaluator, pairs)
+    pairs, depart = legs_as_tracks(lines, row, place)
+    fix_piece_counts(lines.evaluator, pairs)
     both = np.concatenate([pairs, pairs])
-    time, _ = sail_pairs(lines.evaluator, pairs, depart, blocked=True)
-    late = np.maximum(_LATE * np.where(np.isfinite(time), time, 1.0), 1e-3)
-    spent, cost = sail_pairs(
+    time, _ = sail_legs_alone(lines.evaluator, pairs, depart, blocked=True)
+    late = np.maximum(_PROBE_DELAY_SHARE * np.where(np.isfinite(time), time, 1.0), 1e-3)
+    spent, cost = sail_legs_alone(
         lines.evaluator, both, np.concatenate([depart, depart + late]), blocked=True
     )
     n = len(row)
@@ -190,14 +192,14 @@ def probe_delays(lines: Lines) -> Delays:
     shape = lines.population.genes.shape[:2]
     slower, more = np.zeros(shape), np.zeros(shape)
     slower[row, place], more[row, place] = np.clip(growth, -0.9, 10.0), dearer
-    delays = Delays(np.ones(shape), np.zeros(shape))
+    delays = DelayEffects(np.ones(shape), np.zeros(shape))
     for p in range(shape[1] - 2, -1, -1):
         delays.time[:, p] = (1.0 + slower[:, p]) * delays.time[:, p + 1]
         delays.cost[:, p] = more[:, p] + (1.0 + slower[:, p]) * delays.cost[:, p + 1]
     return delays
 
 
-def sideways(population: Population) -> tuple[FloatArray, FloatArray]:
+def starboard_vectors_of_tracks(population: Population) -> tuple[FloatArray, FloatArray]:
     """Return (east, north) of the unit vector to starboard at every point (R, M)."""
     lat, lon = population.genes[:, :, LAT], population.genes[:, :, LON]
     last = population.count[:, None] - 1
@@ -213,7 +215,7 @@ def sideways(population: Population) -> tuple[FloatArray, FloatArray]:
     return north / norm, -east / norm
 
 
-def displaced(
+def displaced_positions(
     genes: FloatArray, east: FloatArray, north: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return (lat, lon) of points (..., COLUMNS) displaced in their tangent plane [m]."""

@@ -9,18 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import FloatArray
-from thalweg.route.refinement.cost_evaluator import Purse
-from thalweg.route.refinement.polyline import METRES_PER_DEGREE, Line
-from thalweg.route.refinement.time_evaluator import Bundle, Sailor, rough_lengths
+from thalweg.route.refinement.cost_evaluator import CostEvaluator
+from thalweg.route.refinement.polyline import METRES_PER_DEGREE, Polyline
+from thalweg.route.refinement.time_evaluator import (
+    TimeEvaluator,
+    TrackBatch,
+    approximate_leg_lengths,
+)
 
 BoolArray = NDArray[np.bool_]
 
-_PROBE = 0.02  # sideways probe, as a share of the shorter leg beside a waypoint
+_DIFFERENCE_STEP = 0.02  # sideways probe, as a share of the shorter leg beside a waypoint
 _DAMPING = (0.0, 0.03, 1.0)  # shares of the curvature added to it
-_FACTORS = (1.0, 0.4, 0.12, 0.02)  # of the step
+_STEP_FACTORS = (1.0, 0.4, 0.12, 0.02)  # of the step
 _ATTEMPTS = 4  # with ever more waypoints held at obstacles
 # (shift of the start, shift of the end, shift of time) of the probes of a leg
-_PROBES = (
+_PERTURBATIONS = (
     (0, 0, 0),
     (1, 0, 0),
     (-1, 0, 0),
@@ -33,7 +37,7 @@ _PROBES = (
 
 
 @dataclass(frozen=True)
-class Slopes:
+class CostDerivatives:
     """How the cost of a line answers to sideways shifts of its waypoints.
 
     Attributes
@@ -52,14 +56,20 @@ class Slopes:
     known: BoolArray
 
 
-def bend(line: Line, sailor: Sailor | Purse, *, rounds: int = 12, tolerance: float = 1e-7) -> Line:
+def optimise_lateral_offsets(
+    line: Polyline,
+    evaluator: TimeEvaluator | CostEvaluator,
+    *,
+    rounds: int = 12,
+    tolerance: float = 1e-7,
+) -> Polyline:
     """Return a line with its waypoints shifted sideways to lower the cost.
 
     Parameters
     ----------
     line : Line
         One that can be sailed.
-    sailor : Sailor
+    evaluator : Sailor
     rounds : int
         Newton steps at most.
     tolerance : float
@@ -73,22 +83,22 @@ def bend(line: Line, sailor: Sailor | Purse, *, rounds: int = 12, tolerance: flo
     goal) and is left out of the Hessian. Steps are damped and shortened until the true cost
     falls; waypoints beside legs that would break a limit are held in that step.
     """
-    best = float(sailor.sail(line.bundle())[1][0])
+    best = float(evaluator.sail(line.batch())[1][0])
     if not math.isfinite(best) or len(line) < 3:
         return line
     for _ in range(rounds):
-        after, cost = _newton_step(line, sailor, best)
+        after, cost = _newton_step(line, evaluator, best)
         gain = best - cost
         if gain <= 0.0:
             return line
         line, best = after, cost
-        scale = best if sailor.by_length else best - line.depart
+        scale = best if evaluator.by_length else best - line.depart
         if gain < tolerance * scale:
             return line
     return line
 
 
-def sideways(line: Line) -> tuple[FloatArray, FloatArray]:
+def starboard_vectors(line: Polyline) -> tuple[FloatArray, FloatArray]:
     """Return (east, north) of the unit vector to starboard at every waypoint."""
     north = np.empty(len(line))
     east = np.empty(len(line))
@@ -102,74 +112,76 @@ def sideways(line: Line) -> tuple[FloatArray, FloatArray]:
     return north / norm, -east / norm
 
 
-def shifted(line: Line, shift: FloatArray) -> tuple[FloatArray, FloatArray]:
+def shifted_positions(line: Polyline, shift: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return positions (..., n) with the waypoints shifted to starboard [m]."""
-    east, north = sideways(line)
+    east, north = starboard_vectors(line)
     lat = line.lat + shift * north / METRES_PER_DEGREE
     lon = line.lon + shift * east / (METRES_PER_DEGREE * np.cos(np.radians(line.lat)))
     return lat, lon
 
 
-def _newton_step(line: Line, sailor: Sailor | Purse, best: float) -> tuple[Line, float]:
+def _newton_step(
+    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, best: float
+) -> tuple[Polyline, float]:
     """Return the best of several trial lines, and its cost; the line itself if none is better."""
-    slopes = _slopes(line, sailor)
-    lengths = rough_lengths(line.lat, line.lon)
+    slopes = _cost_derivatives(line, evaluator)
+    lengths = approximate_leg_lengths(line.lat, line.lon)
     largest = np.zeros(len(line))
     largest[1:-1] = 0.5 * np.minimum(lengths[:-1], lengths[1:])
     free = slopes.known.copy()
     for _ in range(_ATTEMPTS):
         if not free.any():
             break
-        steps = [_solve(slopes, free, damping) for damping in _DAMPING]
+        steps = [_solve_newton_step(slopes, free, damping) for damping in _DAMPING]
         trials = [
-            np.clip(f * s, -largest, largest) for s in steps if s is not None for f in _FACTORS
+            np.clip(f * s, -largest, largest) for s in steps if s is not None for f in _STEP_FACTORS
         ]
         if not trials:
             break
-        lat, lon = shifted(line, np.array(trials))
-        arrive, cost = sailor.sail(line.bundle(lat, lon))
+        lat, lon = shifted_positions(line, np.array(trials))
+        arrive, cost = evaluator.sail(line.batch(lat, lon))
         pick = int(np.argmin(cost))
         if cost[pick] < best:
             return line.moved(lat[pick], lon[pick]), float(cost[pick])
-        if isinstance(sailor, Purse):
-            held = _beside(sailor.broken_legs(line.bundle(lat, lon)))
+        if isinstance(evaluator, CostEvaluator):
+            held = _ends_of_infeasible_legs(evaluator.infeasible_legs(line.batch(lat, lon)))
         else:
-            held = _offenders(sailor, lat, lon, arrive)
+            held = _points_at_infeasible_legs(evaluator, lat, lon, arrive)
         if not (held & free).any():
             break
         free &= ~held
     return line, best
 
 
-def _offenders(
-    sailor: Sailor | Purse, lat: FloatArray, lon: FloatArray, arrive: FloatArray
+def _points_at_infeasible_legs(
+    evaluator: TimeEvaluator | CostEvaluator, lat: FloatArray, lon: FloatArray, arrive: FloatArray
 ) -> BoolArray:
     """Return the waypoints at the ends of legs that could not be sailed, in any trial."""
-    blocked, _ = sailor.look(lat, lon)
+    blocked, _ = evaluator.look_up_legs(lat, lon)
     bad = np.isinf(arrive[:, 1:]) & np.isfinite(arrive[:, :-1])
     if blocked is not None:
         bad |= blocked
-    return _beside(bad)
+    return _ends_of_infeasible_legs(bad)
 
 
-def _beside(bad: BoolArray) -> BoolArray:
+def _ends_of_infeasible_legs(bad: BoolArray) -> BoolArray:
     """Return the waypoints at the ends of legs that are bad in any trial."""
     legs = bad.any(axis=0)
     return np.append(legs, False) | np.append(False, legs)
 
 
-def _slopes(line: Line, sailor: Sailor | Purse) -> Slopes:
+def _cost_derivatives(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> CostDerivatives:
     """Difference the cost of every leg over shifts of its ends and its departure."""
     count = len(line)
-    arrive, _ = sailor.sail(line.bundle(), check=False)
+    arrive, _ = evaluator.sail(line.batch(), check=False)
     leave = np.maximum(arrive[0], line.leave)
-    fixed = sailor.fixed_points(line.lat, line.lon)
-    lengths = rough_lengths(line.lat, line.lon)
+    fixed = evaluator.fixed_points(line.lat, line.lon)
+    lengths = approximate_leg_lengths(line.lat, line.lon)
     probe = np.zeros(count)
-    probe[1:-1] = _PROBE * np.minimum(lengths[:-1], lengths[1:])
+    probe[1:-1] = _DIFFERENCE_STEP * np.minimum(lengths[:-1], lengths[1:])
     probe[probe == 0.0] = 1e-3 * max(float(lengths.max()), 1.0)
-    late = np.maximum(_PROBE * np.diff(arrive[0]), 1e-3)
-    found = _probe_legs(line, sailor, probe, leave, late)
+    late = np.maximum(_DIFFERENCE_STEP * np.diff(arrive[0]), 1e-3)
+    found = _perturbed_leg_costs(line, evaluator, probe, leave, late)
     waits = leave[:-1] > arrive[0, :-1] + 1e-9
     base, sp, sm, ep, em, pp, mm, later = found
     a, b = probe[:-1], probe[1:]
@@ -178,7 +190,7 @@ def _slopes(line: Line, sailor: Sailor | Purse) -> Slopes:
         start2, end2 = (sp - 2 * base + sm) / (a * a), (ep - 2 * base + em) / (b * b)
         mixed = (pp + mm - sp - sm - ep - em + 2 * base) / (2 * a * b)
         growth = 1.0 + (later - base) / late
-    weight = _weights(growth, waits, sailor.by_length)
+    weight = _goal_cost_weights(growth, waits, evaluator.by_length)
     gradient, curvature = np.zeros(count), np.zeros(count)
     gradient[:-1] += weight * start
     gradient[1:] += weight * end
@@ -189,43 +201,47 @@ def _slopes(line: Line, sailor: Sailor | Purse) -> Slopes:
     known[:-1] &= np.isfinite(coupling)
     known[1:] &= np.isfinite(coupling)
     known &= ~fixed
-    return Slopes(gradient, curvature, coupling, known)
+    return CostDerivatives(gradient, curvature, coupling, known)
 
 
-def _probe_legs(
-    line: Line, sailor: Sailor | Purse, probe: FloatArray, leave: FloatArray, late: FloatArray
+def _perturbed_leg_costs(
+    line: Polyline,
+    evaluator: TimeEvaluator | CostEvaluator,
+    probe: FloatArray,
+    leave: FloatArray,
+    late: FloatArray,
 ) -> FloatArray:
     """Return the cost of every leg (8, n - 1) under the probes; NaN where it cannot be sailed."""
-    legs, count = len(line) - 1, len(_PROBES)
+    legs, count = len(line) - 1, len(_PERTURBATIONS)
     lat, lon = np.empty((count, legs, 2)), np.empty((count, legs, 2))
     depart = np.empty((count, legs))
-    for k, (first, last, time) in enumerate(_PROBES):
-        a, b = shifted(line, first * probe), shifted(line, last * probe)
+    for k, (first, last, time) in enumerate(_PERTURBATIONS):
+        a, b = shifted_positions(line, first * probe), shifted_positions(line, last * probe)
         lat[k, :, 0], lon[k, :, 0] = a[0][:-1], a[1][:-1]
         lat[k, :, 1], lon[k, :, 1] = b[0][1:], b[1][1:]
         depart[k] = leave[:-1] + time * late
-    pieces = np.tile(sailor.pieces(line.lat, line.lon), count)[:, None]
-    bundle = Bundle(
+    pieces = np.tile(evaluator.pieces(line.lat, line.lon), count)[:, None]
+    batch = TrackBatch(
         lat.reshape(-1, 2),
         lon.reshape(-1, 2),
         np.full((count * legs, 2), -math.inf),
         np.tile(line.setting, count)[:, None],
         depart.reshape(-1),
     )
-    if isinstance(sailor, Purse):
-        arrive, cost, _ = sailor.spend(bundle, pieces=pieces, check=False)
+    if isinstance(evaluator, CostEvaluator):
+        arrive, cost, _ = evaluator.cost_and_time(batch, pieces=pieces, check=False)
         known = np.isfinite(cost)
         spent = np.where(known, cost, math.nan).reshape(count, legs)
-        took = np.where(known, arrive[:, -1] - bundle.depart, math.nan).reshape(count, legs)
+        took = np.where(known, arrive[:, -1] - batch.depart, math.nan).reshape(count, legs)
         waits = np.isfinite(line.leave[1:-1]) & (line.leave[1:-1] >= leave[1:-1] - 1e-9)
-        return spent + took * _costates(spent, took, late, waits, sailor.per_second)
-    arrive, cost = sailor.sail(bundle, pieces=pieces, check=False)
-    spent = cost if sailor.by_length else arrive[:, -1] - bundle.depart
+        return spent + took * _delay_costs(spent, took, late, waits, evaluator.per_second)
+    arrive, cost = evaluator.sail(batch, pieces=pieces, check=False)
+    spent = cost if evaluator.by_length else arrive[:, -1] - batch.depart
     spent = np.where(np.isfinite(cost), spent, math.nan)
     return spent.reshape(count, legs)
 
 
-def _costates(
+def _delay_costs(
     spent: FloatArray, took: FloatArray, late: FloatArray, waits: BoolArray, per_second: float
 ) -> FloatArray:
     """Return what a second of delay at the end of every leg costs until the goal.
@@ -236,13 +252,13 @@ def _costates(
     with np.errstate(invalid="ignore"):
         dearer = np.nan_to_num((spent[-1] - spent[0]) / late)
         growth = np.clip(np.nan_to_num(1.0 + (took[-1] - took[0]) / late, nan=1.0), 0.1, 10.0)
-    worth = np.full(len(late), per_second)
+    value_of_time = np.full(len(late), per_second)
     for k in range(len(late) - 1, 0, -1):
-        worth[k - 1] = 0.0 if waits[k - 1] else dearer[k] + worth[k] * growth[k]
-    return worth
+        value_of_time[k - 1] = 0.0 if waits[k - 1] else dearer[k] + value_of_time[k] * growth[k]
+    return value_of_time
 
 
-def _weights(growth: FloatArray, waits: BoolArray, by_length: bool) -> FloatArray:
+def _goal_cost_weights(growth: FloatArray, waits: BoolArray, by_length: bool) -> FloatArray:
     """Return what a unit of cost on each leg costs at the goal."""
     weight = np.ones(len(growth))
     if by_length:
@@ -254,7 +270,9 @@ def _weights(growth: FloatArray, waits: BoolArray, by_length: bool) -> FloatArra
     return weight
 
 
-def _solve(slopes: Slopes, free: BoolArray, damping: float) -> FloatArray | None:
+def _solve_newton_step(
+    slopes: CostDerivatives, free: BoolArray, damping: float
+) -> FloatArray | None:
     """Return the Newton step of the free waypoints; None if the matrix is not positive definite."""
     gradient = np.where(free, slopes.gradient, 0.0)
     curvature = np.where(free, slopes.curvature + damping * np.abs(slopes.curvature), 1.0)

@@ -8,9 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray, along, wrap_longitude
-from thalweg.route.refinement.cost_evaluator import Purse
-from thalweg.route.refinement.time_evaluator import Bundle, Sailor, rough_lengths
+from thalweg.core.geodesy import FloatArray, positions_along, wrap_longitude
+from thalweg.route.refinement.cost_evaluator import CostEvaluator
+from thalweg.route.refinement.time_evaluator import (
+    TimeEvaluator,
+    TrackBatch,
+    approximate_leg_lengths,
+)
 from thalweg.route.track import Track
 
 IntArray = NDArray[np.int64]
@@ -18,7 +22,7 @@ METRES_PER_DEGREE = 111_195.0
 
 
 @dataclass(frozen=True)
-class Line:
+class Polyline:
     """Waypoints with moments not to leave before.
 
     Attributes
@@ -41,12 +45,12 @@ class Line:
     def __len__(self) -> int:
         return len(self.lat)
 
-    def bundle(self, lat: FloatArray | None = None, lon: FloatArray | None = None) -> Bundle:
+    def batch(self, lat: FloatArray | None = None, lon: FloatArray | None = None) -> TrackBatch:
         """Return this line, or variants of it at other positions (L, n), ready to sail."""
         lat = self.lat[None] if lat is None else lat
         lon = self.lon[None] if lon is None else lon
         count = len(lat)
-        return Bundle(
+        return TrackBatch(
             lat,
             lon,
             np.broadcast_to(self.leave, lat.shape),
@@ -54,13 +58,13 @@ class Line:
             np.full(count, self.depart),
         )
 
-    def moved(self, lat: FloatArray, lon: FloatArray) -> Line:
+    def moved(self, lat: FloatArray, lon: FloatArray) -> Polyline:
         """Return the line with its points elsewhere."""
         return replace(self, lat=lat, lon=lon)
 
-    def kept(self, index: IntArray) -> Line:
+    def kept(self, index: IntArray) -> Polyline:
         """Return the line through some of its points; joined legs keep the first setting."""
-        return Line(
+        return Polyline(
             self.lat[index],
             self.lon[index],
             self.leave[index],
@@ -68,26 +72,28 @@ class Line:
             self.depart,
         )
 
-    def kept_points(self, sailor: Sailor | Purse) -> NDArray[np.bool_]:
+    def required_points(self, evaluator: TimeEvaluator | CostEvaluator) -> NDArray[np.bool_]:
         """Return which points must stay: the ends and where the setting changes.
 
         Sailors that price fuel have settings chosen anew, so those do not bind them; canals do.
         """
-        kept = sailor.fixed_points(self.lat, self.lon)
-        if not sailor.chooses_settings:
+        kept = evaluator.fixed_points(self.lat, self.lon)
+        if not evaluator.chooses_settings:
             kept[1:-1] |= np.diff(self.setting) != 0
         return kept
 
-    def split(self, longest: float, which: NDArray[np.bool_] | None = None) -> Line:
+    def split(self, longest: float, which: NDArray[np.bool_] | None = None) -> Polyline:
         """Return the line with a point in the middle of every leg longer than ``longest`` [m].
 
         Of the legs in ``which`` only, if that is given.
         """
         lat, lon, leave, setting = [self.lat[0]], [self.lon[0]], [self.leave[0]], []
-        longer = rough_lengths(self.lat, self.lon) > longest
+        longer = approximate_leg_lengths(self.lat, self.lon) > longest
         for k, long in enumerate(longer if which is None else longer & which):
             if long:
-                middle = along(self.lat[k], self.lon[k], self.lat[k + 1], self.lon[k + 1], 0.5)
+                middle = positions_along(
+                    self.lat[k], self.lon[k], self.lat[k + 1], self.lon[k + 1], 0.5
+                )
                 lat.append(float(middle[0]))
                 lon.append(float(middle[1]))
                 leave.append(-math.inf)
@@ -96,40 +102,44 @@ class Line:
             lon.append(self.lon[k + 1])
             leave.append(self.leave[k + 1])
             setting.append(self.setting[k])
-        return Line(
-            np.array(lat), unwrapped(np.array(lon)), np.array(leave), np.array(setting), self.depart
+        return Polyline(
+            np.array(lat),
+            unwrapped_longitudes(np.array(lon)),
+            np.array(leave),
+            np.array(setting),
+            self.depart,
         )
 
 
-def line_of(track: Track, sailor: Sailor | Purse) -> Line:
+def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
     """Return a track as a line; its waits become moments of leaving."""
-    line = Line(
+    line = Polyline(
         np.array(track.lat),
-        unwrapped(track.lon),
+        unwrapped_longitudes(track.lon),
         np.full(len(track), -math.inf),
         np.array(track.setting),
-        track.depart - sailor.origin,
+        track.depart - evaluator.origin,
     )
     for index in np.flatnonzero(track.wait):
-        arrive, _ = sailor.sail(line.bundle(), check=False)
+        arrive, _ = evaluator.sail(line.batch(), check=False)
         leave = line.leave.copy()
         leave[index] = arrive[0, index] + track.wait[index]
         line = replace(line, leave=leave)
     return line
 
 
-def track_of_line(line: Line, sailor: Sailor | Purse) -> Track:
+def track_of_polyline(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Track:
     """Return a line as a track, its moments of leaving as waits."""
-    arrive, leave, _ = sailor.sail_and_wait(line.bundle())
+    arrive, leave, _ = evaluator.sail_and_wait(line.batch())
     wait = np.maximum(0.0, leave[0] - arrive[0])
     wait[~np.isfinite(wait)] = 0.0
     wait[-1] = 0.0
     return Track(
-        line.lat, wrap_longitude(line.lon), line.depart + sailor.origin, wait, line.setting
+        line.lat, wrap_longitude(line.lon), line.depart + evaluator.origin, wait, line.setting
     )
 
 
-def unwrapped(lon: FloatArray) -> FloatArray:
+def unwrapped_longitudes(lon: FloatArray) -> FloatArray:
     """Return longitudes without jumps of 360 degrees."""
     result: FloatArray = np.unwrap(np.asarray(lon, float), period=360.0)
     return result

@@ -120,12 +120,12 @@ class Population:
                 "There is no genome.", "A population has at least one.", "Give a track to begin."
             )
         count = np.array([len(genome) for genome in genomes], dtype=np.int64)
-        genes = np.zeros((len(genomes), max(int(count.max()), room), columns.COLUMNS))
+        genes = np.zeros((len(genomes), max(int(count.max()), room), columns.GENE_COLUMNS))
         genes[:, :, columns.FIXED_TIME] = np.nan
         for row, genome in zip(genes, genomes):
             n = len(genome)
             row[:n, columns.LAT], row[:n, columns.LON] = genome.lat, genome.lon
-            row[:n, columns.WAIT], row[:n, columns.HELD] = genome.wait, genome.via
+            row[:n, columns.WAITING_TIME], row[:n, columns.IS_REQUIRED] = genome.wait, genome.via
             row[: n - 1, columns.SETTING] = genome.setting
         return cls(count, genes)
 
@@ -145,8 +145,8 @@ class Population:
             row[:, columns.LAT],
             row[:, columns.LON],
             row[:-1, columns.SETTING].astype(np.int64),
-            row[:, columns.WAIT],
-            row[:, columns.HELD] != 0.0,
+            row[:, columns.WAITING_TIME],
+            row[:, columns.IS_REQUIRED] != 0.0,
         )
 
     def genomes(self) -> list[Genome]:
@@ -158,20 +158,20 @@ class Population:
         chosen = np.asarray(index)
         return Population(self.count[chosen], self.genes[chosen])
 
-    def with_room(self, room: int) -> Population:
+    def with_capacity(self, room: int) -> Population:
         """Return the population with room for exactly so many points (or as many as it needs)."""
         room = max(room, int(self.count.max(initial=0)))
-        genes = np.zeros((len(self), room, columns.COLUMNS))
+        genes = np.zeros((len(self), room, columns.GENE_COLUMNS))
         genes[:, :, columns.FIXED_TIME] = np.nan
         both = min(room, self.room)
         genes[:, :both] = self.genes[:, :both]
         return Population(self.count, genes)
 
 
-def joined(*populations: Population) -> Population:
+def concatenated_populations(*populations: Population) -> Population:
     """Return one population of all the tracks of several."""
     room = max(population.room for population in populations)
-    same = [p if p.room == room else p.with_room(room) for p in populations]
+    same = [p if p.room == room else p.with_capacity(room) for p in populations]
     return Population(
         np.concatenate([p.count for p in same]), np.concatenate([p.genes for p in same])
     )

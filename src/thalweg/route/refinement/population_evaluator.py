@@ -18,23 +18,23 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing as columns
-from thalweg.kernels.leg.population_sailing import FitnessWorld, sail_population
+from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.route.refinement.calm_water_rates import calm_rate, calm_speeds
+from thalweg.route.refinement.calm_water_rates import calm_water_value, calm_water_values
 from thalweg.route.refinement.population import Genome, Population
-from thalweg.route.refinement.time_evaluator import Sailor, make_sailor
+from thalweg.route.refinement.time_evaluator import TimeEvaluator, make_time_evaluator
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable
 
-_PART = 16  # tracks that are worth a thread of their own
-_FINEST = 25.0  # [m] to which legs are cut at borders of control areas
+_MIN_TRACKS_PER_THREAD = 16  # tracks that are worth a thread of their own
+_ZONE_BORDER_RESOLUTION = 25.0  # [m] to which legs are cut at borders of control areas
 
 
 @dataclass(frozen=True)
-class Prices:
+class ObjectivePrices:
     """What time and fuel cost, in one unit (kilograms, money, kilograms of CO2).
 
     Attributes
@@ -64,16 +64,16 @@ class Evaluator:
     ----------
     world : FitnessWorld
         Sea, ship, limits and terms, as the kernel takes them; times are seconds after ``depart``.
-    sailor : Sailor
+    time_evaluator : Sailor
         Looks up land and charted depth.
     prices : Prices
     depart, latest : float
         [s since 1970-01-01T00:00Z]; ``latest`` may be +inf.
     """
 
-    world: FitnessWorld
-    sailor: Sailor
-    prices: Prices
+    world: FitnessArrays
+    time_evaluator: TimeEvaluator
+    prices: ObjectivePrices
     depart: float
     latest: float
 
@@ -85,7 +85,7 @@ class Evaluator:
     @property
     def chart(self) -> Chart | None:
         """The chart that tracks keep clear of."""
-        return self.sailor.chart
+        return self.time_evaluator.chart
 
     @property
     def varies(self) -> bool:
@@ -139,11 +139,11 @@ class Evaluator:
 
         ``depart`` [s after ``self.depart``] may differ from track to track; by default 0.
         """
-        self.look(population)
+        self.look_up_legs(population)
         n, room = len(population), population.room
         start = np.zeros(n) if depart is None else np.ascontiguousarray(depart, float)
-        score, arrive = np.empty((n, columns.SCORES)), np.full((n, room), math.nan)
-        scratch = np.empty((n, columns.SCRATCH))
+        score, arrive = np.empty((n, columns.SCORE_COUNT)), np.full((n, room), math.nan)
+        scratch = np.empty((n, columns.SCRATCH_SIZE))
         count, genes = np.ascontiguousarray(population.count), population.genes
 
         def part(piece: slice) -> None:
@@ -157,29 +157,29 @@ class Evaluator:
                 scratch[piece],
             )
 
-        in_threads(part, n)
+        run_in_threads(part, n)
         return score, arrive
 
-    def look(self, population: Population) -> None:
+    def look_up_legs(self, population: Population) -> None:
         """Look up land, depth, zones and canals of the legs that are not known yet, in place."""
         legs = np.arange(population.room) < (population.count - 1)[:, None]
-        row, place = np.nonzero(legs & (population.genes[:, :, columns.KNOWN] == 0.0))
+        row, place = np.nonzero(legs & (population.genes[:, :, columns.IS_LOOKED_UP] == 0.0))
         if not len(row):
             return
         genes = population.genes
         ends = [genes[row, place + k, c] for k in (0, 1) for c in (columns.LAT, columns.LON)]
-        first, back = _distinct(ends)
-        facts = self._facts(*(end[first] for end in ends))
+        first, back = _unique_legs(ends)
+        facts = self._leg_properties(*(end[first] for end in ends))
         blocked, charted, weight, penalty = (fact[back] for fact in facts)
-        genes[row, place, columns.BLOCKED] = blocked
-        genes[row, place, columns.CHARTED] = charted
-        genes[row, place, columns.WEIGHT] = weight
-        genes[row, place, columns.PENALTY] = penalty
+        genes[row, place, columns.IS_BLOCKED] = blocked
+        genes[row, place, columns.CHARTED_DEPTH] = charted
+        genes[row, place, columns.FUEL_PRICE] = weight
+        genes[row, place, columns.PENALTY_FACTOR] = penalty
         genes[row, place, columns.FIXED_TIME] = math.nan
         self._canals(genes, row, place, ends)
-        genes[row, place, columns.KNOWN] = 1.0
+        genes[row, place, columns.IS_LOOKED_UP] = 1.0
 
-    def _facts(
+    def _leg_properties(
         self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return (blocked, charted depth, weight of fuel, penalty) of legs."""
@@ -193,14 +193,14 @@ class Evaluator:
         required = self.world.limits[codes.LIMIT_REQUIRED_DEPTH]
         if chart.has_depth and math.isfinite(required):
             lines = np.stack([lat1, lat2], axis=1), np.stack([lon1, lon2], axis=1)
-            shut, depth = self.sailor.look(*lines)
+            shut, depth = self.time_evaluator.look_up_legs(*lines)
             if shut is not None and depth is not None:
                 blocked, charted = shut[:, 0].astype(float), depth[:, 0]
         else:
             blocked[:] = chart.legs_blocked(*ends)
         zones: Any = chart.zones
         if prices.inside != prices.outside and len(getattr(zones, "eca", ())):
-            weight = weight + _eca_shares(chart, ends) * (prices.inside - prices.outside)
+            weight = weight + _eca_fractions(chart, ends) * (prices.inside - prices.outside)
         if chart.zones.penalty or chart.zones.price:
             factor, price = chart.zone_factor(*ends)
             penalty, weight = np.asarray(factor), weight * np.asarray(price)
@@ -218,17 +218,17 @@ class Evaluator:
         for k in np.flatnonzero(index >= 0):
             canal, gene = canals[index[k]], genes[row[k], place[k]]
             speed = canal.length / canal.transit_time
-            enough = np.flatnonzero(calm_speeds(self.world.table) >= speed)
+            enough = np.flatnonzero(calm_water_values(self.world.table) >= speed)
             setting = int(enough[0]) if len(enough) else self.settings - 1
-            burnt = calm_rate(self.world.fuel, setting) * canal.transit_time
-            gene[columns.BLOCKED], gene[columns.FIXED_TIME] = 0.0, canal.transit_time
+            burnt = calm_water_value(self.world.fuel, setting) * canal.transit_time
+            gene[columns.IS_BLOCKED], gene[columns.FIXED_TIME] = 0.0, canal.transit_time
             fee = canal.fee if self.prices.fees else 0.0
-            gene[columns.FIXED_COST] = burnt * gene[columns.WEIGHT] + fee
+            gene[columns.FIXED_COST] = burnt * gene[columns.FUEL_PRICE] + fee
 
     def finer(self, times: float) -> Evaluator:
         """Return an evaluator with pieces so many times shorter."""
         terms = self.world.terms.copy()
-        terms[columns.SPACING] /= times
+        terms[columns.PIECE_SPACING] /= times
         return replace(self, world=self.world._replace(terms=terms))
 
 
@@ -290,7 +290,7 @@ def make_evaluator(
     """
     waiting_weight = weight_outside if waiting_weight is None else waiting_weight
     _check_terms(depart, latest, (weight_inside, weight_outside, waiting_weight, time_price))
-    sailor = make_sailor(
+    time_evaluator = make_time_evaluator(
         table=table,
         chart=chart,
         fields=fields,
@@ -300,26 +300,28 @@ def make_evaluator(
         total=total,
     )
     rates = fuel if isinstance(fuel, TableArrays) else fuel.kernel_arrays()
-    if rates.n_settings != sailor.table.n_settings:
+    if rates.n_settings != time_evaluator.table.n_settings:
         raise InputError(
             f"The table of fuel has {rates.n_settings} settings, that of speed "
-            f"{sailor.table.n_settings}.",
+            f"{time_evaluator.table.n_settings}.",
             "Both are of one ship.",
             "Tabulate both for the same speeds.",
         )
-    terms = np.empty(columns.TERMS)
+    terms = np.empty(columns.TERM_COUNT)
     terms[columns.TIME_PRICE] = time_price
     terms[columns.WAITING_PRICE] = waiting_fuel * waiting_weight
-    terms[columns.LATEST] = latest - depart
-    terms[columns.SPACING] = sailor.spacing if spacing is None else spacing
-    index = sailor.raster.channel_index
-    channels = np.zeros(sailor.raster.values.shape[3], dtype=np.int64)
+    terms[columns.LATEST_ARRIVAL] = latest - depart
+    terms[columns.PIECE_SPACING] = time_evaluator.spacing if spacing is None else spacing
+    index = time_evaluator.raster.channel_index
+    channels = np.zeros(time_evaluator.raster.values.shape[3], dtype=np.int64)
     channels[index[index >= 0]] = np.flatnonzero(index >= 0)
-    world = FitnessWorld(sailor.raster, channels, sailor.table, rates, sailor.limits, terms)
-    prices = Prices(
+    world = FitnessArrays(
+        time_evaluator.raster, channels, time_evaluator.table, rates, time_evaluator.limits, terms
+    )
+    prices = ObjectivePrices(
         weight_inside, weight_outside, time_price, float(terms[columns.WAITING_PRICE]), fees
     )
-    return Evaluator(world, sailor, prices, depart, latest)
+    return Evaluator(world, time_evaluator, prices, depart, latest)
 
 
 def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
@@ -337,7 +339,7 @@ def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
         )
 
 
-def _distinct(ends: list[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _unique_legs(ends: list[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the first of every different leg, and which of these each leg is.
 
     A third of the legs that polishing tries are tried more than once.
@@ -351,21 +353,23 @@ def _distinct(ends: list[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp
     return every, every
 
 
-def _eca_shares(chart: Any, ends: tuple[FloatArray, ...]) -> FloatArray:
+def _eca_fractions(chart: Any, ends: tuple[FloatArray, ...]) -> FloatArray:
     """Return the shares of legs inside emission control areas, as closely as evolution needs."""
     share = np.empty(len(ends[0]))
 
     def part(legs: slice) -> None:
-        share[legs] = chart.eca_share(*(end[legs] for end in ends), finest=_FINEST)
+        share[legs] = chart.eca_fraction(
+            *(end[legs] for end in ends), finest=_ZONE_BORDER_RESOLUTION
+        )
 
-    in_threads(part, len(share))
+    run_in_threads(part, len(share))
     return share
 
 
-def in_threads(work, count: int) -> None:  # type: ignore[no-untyped-def]
+def run_in_threads(work, count: int) -> None:  # type: ignore[no-untyped-def]
     """Call ``work(slice)`` for parts of ``range(count)`` on all cores."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    parts = min(max(1, count // _PART), 4 * (cores or 1))
+    parts = min(max(1, count // _MIN_TRACKS_PER_THREAD), 4 * (cores or 1))
     if parts == 1 or cores == 1:
         work(slice(0, count))
         return

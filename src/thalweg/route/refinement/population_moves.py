@@ -10,26 +10,34 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.kernels.leg import population_sailing
 from thalweg.kernels.leg.population_sailing import LAT, LON
 from thalweg.route.refinement.finite_differences import (
-    Delays,
-    Lines,
-    displaced,
-    pairs_of,
-    probe_delays,
-    sail_pairs,
-    with_pieces,
+    DelayEffects,
+    ScoredTracks,
+    delay_effects,
+    displaced_positions,
+    fix_piece_counts,
+    legs_as_tracks,
+    sail_legs_alone,
 )
-from thalweg.route.refinement.population import BoolArray, IntArray, Population, joined
+from thalweg.route.refinement.population import (
+    BoolArray,
+    IntArray,
+    Population,
+    concatenated_populations,
+)
 
 _DIRECTIONS = 8
-_SHARES = (1.0, 0.3)  # of the edits that promise something, the most promising first; then one
+_STEP_FRACTIONS = (
+    1.0,
+    0.3,
+)  # of the edits that promise something, the most promising first; then one
 
 
-def change_speeds(lines: Lines, *, rounds: int = 3) -> Lines:
+def choose_speeds_of_tracks(lines: ScoredTracks, *, rounds: int = 3) -> ScoredTracks:
     """Return tracks with the setting of every leg chosen anew, a delay being priced."""
     for _ in range(rounds):
         before = lines.value
         row, place = lines.legs
-        value = speed_values(lines, probe_delays(lines), row, place)
+        value = leg_values_by_setting(lines, delay_effects(lines), row, place)
         now = lines.population.genes[row, place, population_sailing.SETTING].astype(np.int64)
         best = np.argmin(value, axis=1)
         gain = np.full(lines.population.genes.shape[:2], 0.0)
@@ -39,7 +47,7 @@ def change_speeds(lines: Lines, *, rounds: int = 3) -> Lines:
         wanted = np.zeros(gain.shape)
         wanted[row, place] = best
         trials, rows = [], []
-        for chosen, index in _portions(gain):
+        for chosen, index in _trial_subsets(gain):
             copy = lines.population.take(index)
             setting = copy.genes[:, :, population_sailing.SETTING]
             setting[chosen] = wanted[index][chosen]
@@ -47,32 +55,36 @@ def change_speeds(lines: Lines, *, rounds: int = 3) -> Lines:
             rows.append(index)
         if not trials:
             break
-        lines = lines.chosen(joined(*trials), np.concatenate(rows))
+        lines = lines.chosen(concatenated_populations(*trials), np.concatenate(rows))
         if not (lines.value < before * (1.0 - 1e-7)).any():
             break
     return lines
 
 
 @np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
-def speed_values(lines: Lines, delays: Delays, row: IntArray, place: IntArray) -> FloatArray:
+def leg_values_by_setting(
+    lines: ScoredTracks, delays: DelayEffects, row: IntArray, place: IntArray
+) -> FloatArray:
     """Return the value (L, settings) of every leg at every setting; +inf where it cannot sail."""
-    time, cost = speed_probes(lines, row, place)
+    time, cost = leg_times_and_costs_by_setting(lines, row, place)
     late = delays.priced(lines.price)[row, place + 1]
     return np.where(np.isfinite(time), cost + late[:, None] * time, math.inf)
 
 
-def speed_probes(lines: Lines, row: IntArray, place: IntArray) -> tuple[FloatArray, FloatArray]:
+def leg_times_and_costs_by_setting(
+    lines: ScoredTracks, row: IntArray, place: IntArray
+) -> tuple[FloatArray, FloatArray]:
     """Return (time, cost) (L, settings) of every leg at every setting."""
     settings = lines.evaluator.settings
-    pairs, depart = pairs_of(lines, row, place)
-    with_pieces(lines.evaluator, pairs)
+    pairs, depart = legs_as_tracks(lines, row, place)
+    fix_piece_counts(lines.evaluator, pairs)
     every = np.repeat(pairs, settings, axis=0)
     every[:, 0, population_sailing.SETTING] = np.tile(np.arange(settings), len(row))
-    time, cost = sail_pairs(lines.evaluator, every, np.repeat(depart, settings), blocked=True)
+    time, cost = sail_legs_alone(lines.evaluator, every, np.repeat(depart, settings), blocked=True)
     return time.reshape(-1, settings), cost.reshape(-1, settings)
 
 
-def feel(lines: Lines, *, radius: float) -> Lines:
+def compass_search_of_tracks(lines: ScoredTracks, *, radius: float) -> ScoredTracks:
     """Return tracks whose points were tried in eight directions, alone.
 
     ``radius`` is a share of the mean length of the legs beside. This finds its way along coasts
@@ -85,7 +97,9 @@ def feel(lines: Lines, *, radius: float) -> Lines:
     reach = radius * 0.5 * (lengths[row, place - 1] + lengths[row, place])
     angle = 2.0 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     point = lines.population.genes[row, place][:, None, :]
-    lat, lon = displaced(point, reach[:, None] * np.sin(angle), reach[:, None] * np.cos(angle))
+    lat, lon = displaced_positions(
+        point, reach[:, None] * np.sin(angle), reach[:, None] * np.cos(angle)
+    )
     value, base = _moved_values(lines, row, place, lat, lon)
     best = np.argmin(value, axis=1)
     every = np.arange(len(row))
@@ -95,58 +109,60 @@ def feel(lines: Lines, *, radius: float) -> Lines:
     target = np.zeros((*lengths.shape, 2))
     target[row, place] = np.stack([lat[every, best], lon[every, best]], axis=1)
     trials, rows = [], []
-    for chosen, index in _portions(_apart(gain)):
+    for chosen, index in _trial_subsets(_isolated_maxima(gain)):
         copy = lines.population.take(index)
         copy.genes[:, :, LAT][chosen] = target[index, :, 0][chosen]
         copy.genes[:, :, LON][chosen] = target[index, :, 1][chosen]
         touched = chosen.copy()
         touched[:, :-1] |= chosen[:, 1:]
-        copy.genes[:, :, population_sailing.KNOWN][touched] = 0.0
+        copy.genes[:, :, population_sailing.IS_LOOKED_UP][touched] = 0.0
         trials.append(copy)
         rows.append(index)
-    return lines.chosen(joined(*trials), np.concatenate(rows)) if trials else lines
+    return (
+        lines.chosen(concatenated_populations(*trials), np.concatenate(rows)) if trials else lines
+    )
 
 
 @np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
 def _moved_values(
-    lines: Lines, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
+    lines: ScoredTracks, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the value of the two legs at each point moved to (P, D) places, and unmoved (P,)."""
-    late = probe_delays(lines).priced(lines.price)
+    late = delay_effects(lines).priced(lines.price)
     times = lat.shape[1]
     total, base = np.zeros(lat.shape), np.zeros(len(row))
     for first, end in ((place - 1, 1), (place, 0)):
-        pairs, depart = pairs_of(lines, row, first)
-        still = sail_pairs(lines.evaluator, pairs, depart)
+        pairs, depart = legs_as_tracks(lines, row, first)
+        still = sail_legs_alone(lines.evaluator, pairs, depart)
         base += still[1] + late[row, first + 1] * still[0]
         every = np.repeat(pairs, times, axis=0)
         every[:, end, LAT], every[:, end, LON] = lat.ravel(), lon.ravel()
-        every[:, 0, population_sailing.KNOWN] = 0.0
-        time, cost = sail_pairs(lines.evaluator, every, np.repeat(depart, times))
+        every[:, 0, population_sailing.IS_LOOKED_UP] = 0.0
+        time, cost = sail_legs_alone(lines.evaluator, every, np.repeat(depart, times))
         value = cost + np.repeat(late[row, first + 1], times) * time
         total += value.reshape(lat.shape)
     return total, base
 
 
 @np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
-def drop(lines: Lines, *, allowance: float) -> Lines:
+def remove_points(lines: ScoredTracks, *, allowance: float) -> ScoredTracks:
     """Return tracks without points that bring less than a share of the value each."""
     row, place = np.nonzero(lines.free)
     if not len(row):
         return lines
-    late = probe_delays(lines).priced(lines.price)
-    pairs, depart = pairs_of(lines, row, place - 1)
-    after, later = pairs_of(lines, row, place)
+    late = delay_effects(lines).priced(lines.price)
+    pairs, depart = legs_as_tracks(lines, row, place - 1)
+    after, later = legs_as_tracks(lines, row, place)
     base = np.zeros(len(row))
     for legs, start, q in ((pairs, depart, place - 1), (after, later, place)):
-        time, cost = sail_pairs(lines.evaluator, legs, start)
+        time, cost = sail_legs_alone(lines.evaluator, legs, start)
         base += cost + late[row, q + 1] * time
     joint, setting = np.array(pairs), after[:, 0, population_sailing.SETTING]
-    joint[:, 1], joint[:, 0, population_sailing.KNOWN] = after[:, 1], 0.0
+    joint[:, 1], joint[:, 0, population_sailing.IS_LOOKED_UP] = after[:, 1], 0.0
     other = np.array(joint)
     other[:, 0, population_sailing.SETTING] = setting
     both = np.concatenate([joint, other])
-    time, cost = sail_pairs(lines.evaluator, both, np.tile(depart, 2))
+    time, cost = sail_legs_alone(lines.evaluator, both, np.tile(depart, 2))
     value = (cost + np.tile(late[row, place + 1], 2) * time).reshape(2, -1)
     gain, keep_first = np.zeros(lines.free.shape), np.zeros(lines.free.shape, dtype=bool)
     slack = allowance * np.abs(lines.value[row])
@@ -154,45 +170,47 @@ def drop(lines: Lines, *, allowance: float) -> Lines:
         bring = base - value.min(axis=0) + slack
     gain[row, place] = np.where(np.isfinite(bring), bring, 0.0)
     keep_first[row, place] = value[0] <= value[1]
-    return _without(lines, _apart(gain), keep_first, allowance)
+    return _without_points(lines, _isolated_maxima(gain), keep_first, allowance)
 
 
-def _without(lines: Lines, gain: FloatArray, first: BoolArray, allowance: float) -> Lines:
+def _without_points(
+    lines: ScoredTracks, gain: FloatArray, first: BoolArray, allowance: float
+) -> ScoredTracks:
     """Return tracks without the points that gain, each allowed to lose a little by it."""
     trials, rows = [], []
-    for chosen, index in _portions(gain):
+    for chosen, index in _trial_subsets(gain):
         copy = lines.population.take(index)
         for k, out in enumerate(chosen):
-            _leave_out(copy, k, np.flatnonzero(out), first[index[k]])
+            _remove_in_place(copy, k, np.flatnonzero(out), first[index[k]])
         trials.append(copy)
         rows.append(index)
     if not trials:
         return lines
-    other, whose = joined(*trials), np.concatenate(rows)
+    other, whose = concatenated_populations(*trials), np.concatenate(rows)
     fewer = lines.population.count[whose] - other.count
     lenient = lines.scores.copy()
     most = np.zeros(len(lines))
     np.maximum.at(most, whose, fewer)
     lenient[:, 1] += allowance * most * np.where(np.isfinite(lines.value), np.abs(lines.value), 0.0)
-    kept = Lines(lines.evaluator, lines.population, lines.price, lenient, lines.arrive)
+    kept = ScoredTracks(lines.evaluator, lines.population, lines.price, lenient, lines.arrive)
     after = kept.chosen(other, whose)
     same = (after.scores == lenient).all(axis=1)
     scores = np.where(same[:, None], lines.scores, after.scores)
-    return Lines(lines.evaluator, after.population, lines.price, scores, after.arrive)
+    return ScoredTracks(lines.evaluator, after.population, lines.price, scores, after.arrive)
 
 
-def _leave_out(population: Population, k: int, out: IntArray, first: BoolArray) -> None:
+def _remove_in_place(population: Population, k: int, out: IntArray, first: BoolArray) -> None:
     genes, n = population.genes[k], int(population.count[k])
     for p in out:
         if not first[p]:
             genes[p - 1, population_sailing.SETTING] = genes[p, population_sailing.SETTING]
-        genes[p - 1, population_sailing.KNOWN] = 0.0
+        genes[p - 1, population_sailing.IS_LOOKED_UP] = 0.0
     kept = np.setdiff1d(np.arange(n), out)
     genes[: len(kept)] = genes[kept]
     population.count[k] = len(kept)
 
 
-def halve(lines: Lines, *, legs: int) -> Lines:
+def split_long_legs(lines: ScoredTracks, *, legs: int) -> ScoredTracks:
     """Return tracks with legs above a share 1 / ``legs`` of the length cut in the middle.
 
     The tracks are not better for it, but can be bent more.
@@ -206,15 +224,15 @@ def halve(lines: Lines, *, legs: int) -> Lines:
     more = int(cut.sum(axis=1).max(initial=0))
     if not more:
         return lines
-    wide = population.with_room(max(int((population.count + cut.sum(axis=1)).max()), 2))
+    wide = population.with_capacity(max(int((population.count + cut.sum(axis=1)).max()), 2))
     count, genes = wide.count.copy(), wide.genes.copy()
     for k in np.flatnonzero(cut.any(axis=1)):
         n, places = int(count[k]), np.flatnonzero(cut[k])
         middle = _middles(population.genes[k, places], population.genes[k, places + 1])
         genes[k, : n + len(places)] = np.insert(population.genes[k, :n], places + 1, middle, axis=0)
-        genes[k, places + np.arange(len(places)), population_sailing.KNOWN] = 0.0
+        genes[k, places + np.arange(len(places)), population_sailing.IS_LOOKED_UP] = 0.0
         count[k] = n + len(places)
-    return Lines.of(lines.evaluator, Population(count, genes), lines.price)
+    return ScoredTracks.of(lines.evaluator, Population(count, genes), lines.price)
 
 
 def _middles(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -236,9 +254,9 @@ def points_between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArra
         np.degrees(np.arctan2(y, x)),
     )
     for column in (
-        population_sailing.WAIT,
-        population_sailing.HELD,
-        population_sailing.KNOWN,
+        population_sailing.WAITING_TIME,
+        population_sailing.IS_REQUIRED,
+        population_sailing.IS_LOOKED_UP,
         population_sailing.PIECES,
     ):
         made[:, column] = 0.0
@@ -250,14 +268,14 @@ def _vectors(points: FloatArray) -> FloatArray:
     return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=1)
 
 
-def _apart(gain: FloatArray) -> FloatArray:
+def _isolated_maxima(gain: FloatArray) -> FloatArray:
     """Return the gains with only those left that no neighbour exceeds; two never are neighbours."""
     left, right = np.zeros_like(gain), np.zeros_like(gain)
     left[:, 1:], right[:, :-1] = gain[:, :-1], gain[:, 1:]
     return np.where((gain > 0.0) & (gain > left) & (gain >= right), gain, 0.0)
 
 
-def _portions(gain: FloatArray) -> list[tuple[BoolArray, IntArray]]:
+def _trial_subsets(gain: FloatArray) -> list[tuple[BoolArray, IntArray]]:
     """Return trials: which edits (rows, M), and the rows; all, the best part, the best one."""
     promising = gain > 0.0
     rows = np.flatnonzero(promising.any(axis=1))
@@ -266,7 +284,7 @@ def _portions(gain: FloatArray) -> list[tuple[BoolArray, IntArray]]:
     order = np.argsort(np.argsort(-gain[rows], axis=1, kind="stable"), axis=1)
     number = promising[rows].sum(axis=1)
     out = []
-    for share in _SHARES:
+    for share in _STEP_FRACTIONS:
         out.append((order < np.maximum(1, np.ceil(share * number))[:, None], rows))
     out.append((order < 1, rows))
     return [(chosen & promising[rows], rows) for chosen, rows in out]

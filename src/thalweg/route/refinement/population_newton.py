@@ -10,27 +10,27 @@ from thalweg.core.geodesy import FloatArray
 from thalweg.kernels.leg import population_sailing
 from thalweg.kernels.leg.population_sailing import LAT, LON
 from thalweg.route.refinement.finite_differences import (
-    Delays,
-    Lines,
-    displaced,
-    pairs_of,
-    probe_delays,
-    sail_pairs,
-    sideways,
-    with_pieces,
+    DelayEffects,
+    ScoredTracks,
+    delay_effects,
+    displaced_positions,
+    fix_piece_counts,
+    legs_as_tracks,
+    sail_legs_alone,
+    starboard_vectors_of_tracks,
 )
 from thalweg.route.refinement.population import BoolArray, IntArray, Population
 
-_PROBE = 0.02  # sideways probe, as a share of the shorter leg beside a point
+_DIFFERENCE_STEP = 0.02  # sideways probe, as a share of the shorter leg beside a point
 _DAMPING = (0.0, 0.05, 1.0)  # shares of the curvature added to it
-_FACTORS = (1.0, 0.35, 0.1)  # of the step
+_STEP_FACTORS = (1.0, 0.35, 0.1)  # of the step
 _ATTEMPTS = 4  # with ever more points beside blocked legs held
 # (shift of the start, shift of the end) of the probes of a leg
-_PROBES = ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1))
+_PERTURBATIONS = ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1))
 
 
 @dataclass(frozen=True)
-class Slopes:
+class ScalarisedDerivatives:
     """How the value of tracks answers to sideways shifts.
 
     Attributes
@@ -47,7 +47,7 @@ class Slopes:
     known: BoolArray
 
 
-def bend(lines: Lines, *, rounds: int = 3) -> Lines:
+def optimise_lateral_offsets_of_tracks(lines: ScoredTracks, *, rounds: int = 3) -> ScoredTracks:
     """Return tracks with their points shifted sideways to lower their value.
 
     Notes
@@ -59,57 +59,59 @@ def bend(lines: Lines, *, rounds: int = 3) -> Lines:
     """
     for _ in range(rounds):
         before = lines.value
-        lines = _newton(lines)
+        lines = _newton_step(lines)
         if not (lines.value < before * (1.0 - 1e-7)).any():
             break
     return lines
 
 
-def _newton(lines: Lines) -> Lines:
-    slopes = _slopes(lines, probe_delays(lines))
+def _newton_step(lines: ScoredTracks) -> ScoredTracks:
+    slopes = _value_derivatives(lines, delay_effects(lines))
     lengths = lines.lengths()
     largest = np.zeros_like(lengths)
     largest[:, 1:] = 0.5 * np.minimum(lengths[:, :-1], lengths[:, 1:])
     free = slopes.known
-    east, north = sideways(lines.population)
+    east, north = starboard_vectors_of_tracks(lines.population)
     waiting = np.arange(len(lines))
     for _ in range(_ATTEMPTS):
-        steps = [_solve(slopes, free, damping) for damping in _DAMPING]
-        shifts = [np.clip(f * step, -largest, largest) for step in steps for f in _FACTORS]
-        trials, rows = _shifted(lines, np.stack(shifts)[:, waiting], waiting, east, north)
+        steps = [_solve_newton_step(slopes, free, damping) for damping in _DAMPING]
+        shifts = [np.clip(f * step, -largest, largest) for step in steps for f in _STEP_FACTORS]
+        trials, rows = _shifted_trials(lines, np.stack(shifts)[:, waiting], waiting, east, north)
         before = lines.value
         lines = lines.chosen(trials, rows)
         waiting = np.flatnonzero(lines.value >= before)
-        held = _offenders(trials, rows, free.shape)
+        held = _points_at_infeasible_legs(trials, rows, free.shape)
         if not len(waiting) or not (held[waiting] & free[waiting]).any():
             break
         free = free & ~held
     return lines
 
 
-def _shifted(
-    lines: Lines, shift: FloatArray, rows: IntArray, east: FloatArray, north: FloatArray
+def _shifted_trials(
+    lines: ScoredTracks, shift: FloatArray, rows: IntArray, east: FloatArray, north: FloatArray
 ) -> tuple[Population, IntArray]:
     """Return trials (T * rows) of tracks shifted (T, rows, M) to starboard, and whose they are."""
     times = len(shift)
     population = lines.population.take(np.tile(rows, times))
     moved = shift.reshape(len(population), -1)
     genes = population.genes
-    lat, lon = displaced(genes, moved * np.tile(east[rows], (times, 1)), 0.0 * moved)
-    lat, _ = displaced(genes, 0.0 * moved, moved * np.tile(north[rows], (times, 1)))
+    lat, lon = displaced_positions(genes, moved * np.tile(east[rows], (times, 1)), 0.0 * moved)
+    lat, _ = displaced_positions(genes, 0.0 * moved, moved * np.tile(north[rows], (times, 1)))
     changed = moved != 0.0
     genes[:, :, LAT] = np.where(changed, lat, genes[:, :, LAT])
     genes[:, :, LON] = np.where(changed, lon, genes[:, :, LON])
     touched = changed.copy()
     touched[:, :-1] |= changed[:, 1:]
-    genes[:, :, population_sailing.KNOWN][touched] = 0.0
+    genes[:, :, population_sailing.IS_LOOKED_UP][touched] = 0.0
     return population, np.tile(rows, times)
 
 
-def _offenders(trials: Population, rows: IntArray, shape: tuple[int, ...]) -> BoolArray:
+def _points_at_infeasible_legs(
+    trials: Population, rows: IntArray, shape: tuple[int, ...]
+) -> BoolArray:
     """Return the points (R, M) at the ends of legs that touch land in any trial."""
     held = np.zeros(shape, dtype=bool)
-    bad = trials.genes[:, :, population_sailing.BLOCKED] != 0.0
+    bad = trials.genes[:, :, population_sailing.IS_BLOCKED] != 0.0
     bad &= np.arange(trials.room) < (trials.count - 1)[:, None]
     row, place = np.nonzero(bad)
     held[rows[row], place] = True
@@ -117,14 +119,14 @@ def _offenders(trials: Population, rows: IntArray, shape: tuple[int, ...]) -> Bo
     return held
 
 
-def _slopes(lines: Lines, delays: Delays) -> Slopes:
+def _value_derivatives(lines: ScoredTracks, delays: DelayEffects) -> ScalarisedDerivatives:
     """Difference the value of every leg over shifts of its ends."""
     row, place = lines.legs
     lengths = lines.lengths()
     probe = np.full(lengths.shape, 1.0)
     beside = np.minimum(lengths[:, :-1], lengths[:, 1:])
-    probe[:, 1:] = np.maximum(_PROBE * beside, 1e-3)
-    found = _probe_legs(lines, delays, row, place, probe)
+    probe[:, 1:] = np.maximum(_DIFFERENCE_STEP * beside, 1e-3)
+    found = _perturbed_leg_values(lines, delays, row, place, probe)
     base, sp, sm, ep, em, pp, mm = found
     a, b = probe[row, place], probe[row, place + 1]
     gradient, curvature, coupling = (np.zeros(lengths.shape) for _ in range(3))
@@ -138,38 +140,42 @@ def _slopes(lines: Lines, delays: Delays) -> Slopes:
     finite = np.isfinite(coupling)
     known &= finite
     known[:, 1:] &= finite[:, :-1]
-    return Slopes(gradient, curvature, coupling, known)
+    return ScalarisedDerivatives(gradient, curvature, coupling, known)
 
 
-def _probe_legs(
-    lines: Lines, delays: Delays, row: IntArray, place: IntArray, probe: FloatArray
+def _perturbed_leg_values(
+    lines: ScoredTracks, delays: DelayEffects, row: IntArray, place: IntArray, probe: FloatArray
 ) -> FloatArray:
     """Return the value of every leg (7, L) under the probes; NaN where it cannot be sailed."""
-    pairs, depart = pairs_of(lines, row, place)
-    with_pieces(lines.evaluator, pairs)
-    east, north = sideways(lines.population)
-    every = np.tile(pairs, (len(_PROBES), 1, 1))
+    pairs, depart = legs_as_tracks(lines, row, place)
+    fix_piece_counts(lines.evaluator, pairs)
+    east, north = starboard_vectors_of_tracks(lines.population)
+    every = np.tile(pairs, (len(_PERTURBATIONS), 1, 1))
     n = len(row)
-    for k, shifts in enumerate(_PROBES):
+    for k, shifts in enumerate(_PERTURBATIONS):
         part = every[k * n : (k + 1) * n]
         for end, times in enumerate(shifts):
             if times:
                 shift = times * probe[row, place + end]
-                lat, lon = displaced(
+                lat, lon = displaced_positions(
                     part[:, end],
                     shift * east[row, place + end],
                     shift * north[row, place + end],
                 )
                 part[:, end, LAT], part[:, end, LON] = lat, lon
-                part[:, 0, population_sailing.KNOWN] = 0.0 if lines.evaluator.varies else 1.0
-    time, cost = sail_pairs(lines.evaluator, every, np.tile(depart, len(_PROBES)), blocked=True)
+                part[:, 0, population_sailing.IS_LOOKED_UP] = 0.0 if lines.evaluator.varies else 1.0
+    time, cost = sail_legs_alone(
+        lines.evaluator, every, np.tile(depart, len(_PERTURBATIONS)), blocked=True
+    )
     late = delays.priced(lines.price)[row, place + 1]
     with np.errstate(invalid="ignore"):
-        value = cost + np.tile(late, len(_PROBES)) * time
-    return np.where(np.isfinite(value), value, np.nan).reshape(len(_PROBES), n)
+        value = cost + np.tile(late, len(_PERTURBATIONS)) * time
+    return np.where(np.isfinite(value), value, np.nan).reshape(len(_PERTURBATIONS), n)
 
 
-def _solve(slopes: Slopes, free: BoolArray, damping: float) -> FloatArray:
+def _solve_newton_step(
+    slopes: ScalarisedDerivatives, free: BoolArray, damping: float
+) -> FloatArray:
     """Return the Newton steps (R, M) of the free points; 0 where the matrix is not positive."""
     gradient = np.where(free, slopes.gradient, 0.0)
     raw = np.where(free, slopes.curvature, 1.0)

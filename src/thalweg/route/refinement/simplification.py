@@ -12,13 +12,13 @@ from thalweg.core.geodesy import MEAN_RADIUS, FloatArray
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
-_FEW = 16  # waypoints that nobody minds
+_NOT_SIMPLIFIED_UP_TO = 16  # waypoints that nobody minds
 #: How far the route may move aside, as shares of its length, widest first.
-_ASIDE = (1e-3, 2e-4, 4e-5, 1e-5, 2e-6)
-_LOSS = 6e-5  # share by which the thinned route may cost more
+_OFFSET_TOLERANCES = (1e-3, 2e-4, 4e-5, 1e-5, 2e-6)
+_MAX_COST_INCREASE = 6e-5  # share by which the thinned route may cost more
 
 
-def thinned(
+def simplified_route(
     route: Route,
     score: Callable[[Track], Route],
     cost: Callable[[Route], float],
@@ -48,29 +48,31 @@ def thinned(
         most 6e-5 more. Waypoints where the ship waits or changes its setting stay.
     """
     track = route.track
-    if len(track.lat) <= _FEW or not route.feasible:
+    if len(track.lat) <= _NOT_SIMPLIFIED_UP_TO or not route.feasible:
         return route
-    allowed = min(most, cost(route) * (1.0 + _LOSS))
+    allowed = min(most, cost(route) * (1.0 + _MAX_COST_INCREASE))
     length = float(route.legs["length"].sum())
-    for share in _ASIDE:
-        keep = _outline(track, share * length, held)
+    for share in _OFFSET_TOLERANCES:
+        keep = _douglas_peucker(track, share * length, held)
         if keep.all():
             continue
-        fewer = score(_kept(track, keep))
+        fewer = score(_track_through(track, keep))
         if fewer.feasible and cost(fewer) <= allowed:
             return fewer
     return route
 
 
-def _kept(track: Track, keep: NDArray[np.bool_]) -> Track:
+def _track_through(track: Track, keep: NDArray[np.bool_]) -> Track:
     return Track(
         track.lat[keep], track.lon[keep], track.depart, track.wait[keep], track.setting[keep[:-1]]
     )
 
 
-def _outline(track: Track, aside: float, held: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+def _douglas_peucker(
+    track: Track, aside: float, held: NDArray[np.bool_] | None
+) -> NDArray[np.bool_]:
     """Return which waypoints to keep so that none lies farther [m] aside (Douglas-Peucker)."""
-    points = _vectors(track)
+    points = _unit_vectors(track)
     keep = np.zeros(len(points), bool)
     keep[[0, -1]] = True
     keep[np.flatnonzero(track.wait)] = True
@@ -93,6 +95,6 @@ def _outline(track: Track, aside: float, held: NDArray[np.bool_] | None) -> NDAr
     return keep
 
 
-def _vectors(track: Track) -> FloatArray:
+def _unit_vectors(track: Track) -> FloatArray:
     lat, lon = np.radians(track.lat), np.radians(track.lon)
     return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=1)

@@ -13,13 +13,17 @@ from numpy.typing import ArrayLike
 
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
-from thalweg.route.refinement.compass_search import feel
-from thalweg.route.refinement.corner_cutting import merge_close, tighten
-from thalweg.route.refinement.cost_evaluator import Purse
-from thalweg.route.refinement.newton_offsets import bend
-from thalweg.route.refinement.polyline import Line, line_of, track_of_line
-from thalweg.route.refinement.string_pulling import pull
-from thalweg.route.refinement.time_evaluator import Sailor, make_sailor, rough_lengths
+from thalweg.route.refinement.compass_search import compass_search
+from thalweg.route.refinement.corner_cutting import cut_corners, merge_short_legs
+from thalweg.route.refinement.cost_evaluator import CostEvaluator
+from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
+from thalweg.route.refinement.polyline import Polyline, polyline_of_track, track_of_polyline
+from thalweg.route.refinement.string_pulling import string_pull
+from thalweg.route.refinement.time_evaluator import (
+    TimeEvaluator,
+    approximate_leg_lengths,
+    make_time_evaluator,
+)
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -27,12 +31,18 @@ if TYPE_CHECKING:
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable
 
-FINEST = 160  #: legs are split until they are shorter than the track divided by this at most
-THINNING = 5e-5  #: share of the cost that may be lost by leaving waypoints out at the end
-_SETTLED = 5e-5  # relative gain of a level below which no finer one is tried: a third of it is left
-_HOPEFUL = 1.02  # a coarse resampling is refined too if it costs no more than this times the track
-_WAITS_TRIED = 48
-_SHORTEST = 2e-5  # legs below this share of the track are merged with a neighbour
+MAX_LEGS = 160  #: legs are split until they are shorter than the track divided by this at most
+SIMPLIFICATION_LOSS = (
+    5e-5  #: share of the cost that may be lost by leaving waypoints out at the end
+)
+_LEVEL_GAIN_TOLERANCE = (
+    5e-5  # relative gain of a level below which no finer one is tried: a third of it is left
+)
+_COARSE_START_TOLERANCE = (
+    1.02  # a coarse resampling is refined too if it costs no more than this times the track
+)
+_MAX_WAITS_TRIED = 48
+_MIN_LEG_SHARE = 2e-5  # legs below this share of the track are merged with a neighbour
 
 
 def smooth(
@@ -44,7 +54,7 @@ def smooth(
     chart: Chart | None = None,
     objective: str = "time",
     wait: bool | None = None,
-    finest: int = FINEST,
+    finest: int = MAX_LEGS,
 ) -> Track:
     """Return a better track than a given one, in the same water.
 
@@ -89,8 +99,10 @@ def smooth(
             wait=wait,
             finest=finest,
         )
-        return _between_canals(track, chart, smoothed, _clock(table, fields, limits))
-    sailor = make_sailor(
+        return _smooth_between_canals(
+            track, chart, smoothed, _duration_function(table, fields, limits)
+        )
+    evaluator = make_time_evaluator(
         table=table,
         chart=chart,
         fields=fields,
@@ -100,32 +112,35 @@ def smooth(
         total=float(track.lengths.sum()),
         wait=bool(track.wait.any()) if wait is None else wait,
     )
-    first = line_of(track, sailor)
-    if not math.isfinite(_cost(first, sailor)):
-        first = _made_sailable(first, sailor)
-        if not math.isfinite(_cost(first, sailor)):
+    first = polyline_of_track(track, evaluator)
+    if not math.isfinite(_cost(first, evaluator)):
+        first = _made_feasible(first, evaluator)
+        if not math.isfinite(_cost(first, evaluator)):
             return track
-    line = pull(first, sailor)
-    if _is_bound(line, sailor):
-        line = tighten(line, sailor)
-    line = _settled_waits(line, sailor)
-    if sailor.by_length:  # a taut line cannot be bent any shorter
-        best = _thinned(feel(line, sailor), sailor)
+    line = string_pull(first, evaluator)
+    if _may_be_constrained(line, evaluator):
+        line = cut_corners(line, evaluator)
+    line = _shortened_waits(line, evaluator)
+    if evaluator.by_length:  # a taut line cannot be bent any shorter
+        best = _simplified(compass_search(line, evaluator), evaluator)
     else:
-        lines = [_levels(start, sailor, finest) for start in _starts(first, line, sailor)]
-        best = min(lines, key=lambda item: _cost(item, sailor))
-    if not _cost(best, sailor) <= _cost(first, sailor):
+        lines = [
+            _refine_by_levels(start, evaluator, finest)
+            for start in _initial_polylines(first, line, evaluator)
+        ]
+        best = min(lines, key=lambda item: _cost(item, evaluator))
+    if not _cost(best, evaluator) <= _cost(first, evaluator):
         return track
-    return track_of_line(best, sailor)
+    return track_of_polyline(best, evaluator)
 
 
-def _clock(
+def _duration_function(
     table: PerformanceTable | TableArrays, fields: GridFields, limits: ArrayLike
 ) -> Callable[[Track], float]:
     """Return a function that tells how long a track at sea takes [s]; inf if it cannot sail."""
 
     def duration(track: Track) -> float:
-        sailor = make_sailor(
+        evaluator = make_time_evaluator(
             table=table,
             chart=None,
             fields=fields,
@@ -134,12 +149,12 @@ def _clock(
             by_length=False,
             total=float(track.lengths.sum()),
         )
-        return _cost(line_of(track, sailor), sailor)
+        return _cost(polyline_of_track(track, evaluator), evaluator)
 
     return duration
 
 
-def _between_canals(
+def _smooth_between_canals(
     track: Track,
     chart: Chart | None,
     smoothed: Callable[[Track], Track],
@@ -159,83 +174,97 @@ def _between_canals(
     return track
 
 
-def _made_sailable(line: Line, sailor: Sailor | Purse) -> Line:
+def _made_feasible(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
     """Return the line with longer waits, or with those the quick sailor finds of itself."""
-    longer = _settled_waits(line, sailor, longer=3600.0)
-    if math.isfinite(_cost(longer, sailor)):
+    longer = _shortened_waits(line, evaluator, longer=3600.0)
+    if math.isfinite(_cost(longer, evaluator)):
         return longer
     return replace(line, leave=np.full(len(line), -math.inf))
 
 
-def _starts(first: Line, pulled: Line, sailor: Sailor | Purse) -> list[Line]:
+def _initial_polylines(
+    first: Polyline, pulled: Polyline, evaluator: TimeEvaluator | CostEvaluator
+) -> list[Polyline]:
     """Return the lines to refine: the pulled one, and a coarse resampling if it can be sailed."""
     starts = [pulled]
     one_setting = not np.ptp(first.setting)
     if len(pulled) > 6 and one_setting and not np.isfinite(first.leave).any():
-        coarse = resampled(first, 5)
-        if _spent(coarse, sailor) <= _HOPEFUL * _spent(pulled, sailor):
+        coarse = resampled_polyline(first, 5)
+        if _elapsed_cost(coarse, evaluator) <= _COARSE_START_TOLERANCE * _elapsed_cost(
+            pulled, evaluator
+        ):
             starts.append(coarse)
     return starts
 
 
-def resampled(line: Line, count: int) -> Line:
+def resampled_polyline(line: Polyline, count: int) -> Polyline:
     """Return points at equal shares of the length of a line without waits."""
-    along = np.concatenate([[0.0], np.cumsum(rough_lengths(line.lat, line.lon))])
+    along = np.concatenate([[0.0], np.cumsum(approximate_leg_lengths(line.lat, line.lon))])
     at = np.linspace(0.0, along[-1], count)
     index = np.minimum(np.searchsorted(along, at[:-1], side="right") - 1, len(line.setting) - 1)
     lat, lon = np.interp(at, along, line.lat), np.interp(at, along, line.lon)
-    return Line(lat, lon, np.full(count, -math.inf), line.setting[index], line.depart)
+    return Polyline(lat, lon, np.full(count, -math.inf), line.setting[index], line.depart)
 
 
-def _levels(line: Line, sailor: Sailor | Purse, finest: int) -> Line:
+def _refine_by_levels(
+    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, finest: int
+) -> Polyline:
     """Refine a line level by level, and thin it at the end."""
-    total = float(rough_lengths(line.lat, line.lon).sum())
+    total = float(approximate_leg_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
-    bound = _is_bound(line, sailor)
-    line = _refined(line, sailor, bound)
+    bound = _may_be_constrained(line, evaluator)
+    line = _refined(line, evaluator, bound)
     while longest > total / finest and (idle < 2 or longest > total / 16.0):
-        before = _spent(line, sailor)
+        before = _elapsed_cost(line, evaluator)
         finer = line.split(longest)
         if len(finer) > len(line):
-            finer = _settled_waits(_refined(finer, sailor, False), sailor)
-            if _spent(finer, sailor) < before:
+            finer = _shortened_waits(_refined(finer, evaluator, False), evaluator)
+            if _elapsed_cost(finer, evaluator) < before:
                 line = finer
-            gained = before - _spent(finer, sailor)
-            idle = idle + 1 if gained < _SETTLED * before else 0
+            gained = before - _elapsed_cost(finer, evaluator)
+            idle = idle + 1 if gained < _LEVEL_GAIN_TOLERANCE * before else 0
         longest *= 0.5
     if bound:
-        line = tighten(_refined(line, sailor, True), sailor)
-    return _thinned(line, sailor)
+        line = cut_corners(_refined(line, evaluator, True), evaluator)
+    return _simplified(line, evaluator)
 
 
-def _refined(line: Line, sailor: Sailor | Purse, bound: bool) -> Line:
+def _refined(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, bound: bool) -> Polyline:
     """Bend a line, and feel along obstacles where they may bind."""
-    bent = bend(line, sailor)
+    bent = optimise_lateral_offsets(line, evaluator)
     if not bound:
         return bent
-    smallest = max(1.0, 1e-6 * float(rough_lengths(line.lat, line.lon).sum()))
-    return bend(feel(bent, sailor, smallest=smallest), sailor, rounds=3)
+    smallest = max(1.0, 1e-6 * float(approximate_leg_lengths(line.lat, line.lon).sum()))
+    return optimise_lateral_offsets(
+        compass_search(bent, evaluator, smallest=smallest), evaluator, rounds=3
+    )
 
 
-def _is_bound(line: Line, sailor: Sailor | Purse) -> bool:
+def _may_be_constrained(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> bool:
     """Return whether any obstacle could bind a line: land on the chart, or limits of any kind."""
-    limited = np.isfinite(sailor.limits).any()
-    return bool(limited) or sailor.chart is not None
+    limited = np.isfinite(evaluator.limits).any()
+    return bool(limited) or evaluator.chart is not None
 
 
-def _thinned(line: Line, sailor: Sailor | Purse) -> Line:
+def _simplified(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
     """Leave out waypoints that bring almost nothing, and bend what is left once more."""
-    spent = _spent(line, sailor)
+    spent = _elapsed_cost(line, evaluator)
     if not math.isfinite(spent) or len(line) < 3:
         return line
-    shortest = _SHORTEST * float(rough_lengths(line.lat, line.lon).sum())
-    thin = merge_close(line, sailor, shortest=shortest)
-    thin = pull(thin, sailor, penalty=THINNING * spent / len(line))
-    thin = bend(thin, sailor, rounds=3)
-    return thin if _spent(thin, sailor) <= spent * (1.0 + 2.0 * THINNING) else line
+    shortest = _MIN_LEG_SHARE * float(approximate_leg_lengths(line.lat, line.lon).sum())
+    thin = merge_short_legs(line, evaluator, shortest=shortest)
+    thin = string_pull(thin, evaluator, penalty=SIMPLIFICATION_LOSS * spent / len(line))
+    thin = optimise_lateral_offsets(thin, evaluator, rounds=3)
+    return (
+        thin
+        if _elapsed_cost(thin, evaluator) <= spent * (1.0 + 2.0 * SIMPLIFICATION_LOSS)
+        else line
+    )
 
 
-def _settled_waits(line: Line, sailor: Sailor | Purse, *, longer: float = 0.0) -> Line:
+def _shortened_waits(
+    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, longer: float = 0.0
+) -> Polyline:
     """Return the line with every moment of leaving as early as serves the arrival best.
 
     Parameters
@@ -243,27 +272,27 @@ def _settled_waits(line: Line, sailor: Sailor | Purse, *, longer: float = 0.0) -
     longer : float
         How much longer [s] than now a wait may become.
     """
-    if isinstance(sailor, Purse):
+    if isinstance(evaluator, CostEvaluator):
         return line
-    sailor = replace(sailor, patience=np.zeros(3))
+    evaluator = replace(evaluator, waiting_parameters=np.zeros(3))
     for index in np.flatnonzero(np.isfinite(line.leave)):
-        arrive, _ = sailor.sail(line.bundle(), check=False)
+        arrive, _ = evaluator.sail(line.batch(), check=False)
         low, high = float(arrive[0, index]), float(line.leave[index]) + longer
         if not math.isfinite(low):
             break
         if high <= low:
             continue
         for _ in range(3):
-            tried = np.linspace(low, high, _WAITS_TRIED)
-            bundle = line.bundle(
-                np.repeat(line.lat[None], _WAITS_TRIED, 0),
-                np.repeat(line.lon[None], _WAITS_TRIED, 0),
+            tried = np.linspace(low, high, _MAX_WAITS_TRIED)
+            batch = line.batch(
+                np.repeat(line.lat[None], _MAX_WAITS_TRIED, 0),
+                np.repeat(line.lon[None], _MAX_WAITS_TRIED, 0),
             )
-            leave = np.array(bundle.leave)
+            leave = np.array(batch.leave)
             leave[:, index] = tried
-            ends, cost = sailor.sail(replace(bundle, leave=leave))
+            ends, cost = evaluator.sail(replace(batch, leave=leave))
             score = (
-                ends[:, -1] if not sailor.by_length else np.where(np.isfinite(cost), tried, cost)
+                ends[:, -1] if not evaluator.by_length else np.where(np.isfinite(cost), tried, cost)
             )
             if not np.isfinite(score).any():
                 break
@@ -275,10 +304,10 @@ def _settled_waits(line: Line, sailor: Sailor | Purse, *, longer: float = 0.0) -
     return line
 
 
-def _cost(line: Line, sailor: Sailor | Purse) -> float:
-    return float(sailor.sail(line.bundle())[1][0])
+def _cost(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> float:
+    return float(evaluator.sail(line.batch())[1][0])
 
 
-def _spent(line: Line, sailor: Sailor | Purse) -> float:
+def _elapsed_cost(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> float:
     """Return the cost from departure: seconds or metres."""
-    return _cost(line, sailor) - (0.0 if sailor.by_length else line.depart)
+    return _cost(line, evaluator) - (0.0 if evaluator.by_length else line.depart)

@@ -9,24 +9,26 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.geodesy import FloatArray, direct, inverse
-from thalweg.route.refinement.cost_evaluator import Purse
-from thalweg.route.refinement.polyline import IntArray, Line, unwrapped
-from thalweg.route.refinement.time_evaluator import Bundle
+from thalweg.route.refinement.cost_evaluator import CostEvaluator
+from thalweg.route.refinement.polyline import IntArray, Polyline, unwrapped_longitudes
+from thalweg.route.refinement.time_evaluator import TrackBatch
 
-_ROUNDS = 4  # choices, each at the times of the one before
-_ALIKE = 1e-3  # slopes that differ by less than this share count as one: neighbours go first
-_LEAST_SHARE = 0.02  # of a leg that is worth a waypoint
+_MAX_ROUNDS = 4  # choices, each at the times of the one before
+_SLOPE_TOLERANCE = (
+    1e-3  # slopes that differ by less than this share count as one: neighbours go first
+)
+_MIN_LEG_SHARE = 0.02  # of a leg that is worth a waypoint
 
 
-def choose_paces(
-    line: Line, purse: Purse, latest: float, *, whole: bool = False
-) -> tuple[Line, float]:
+def choose_speeds(
+    line: Polyline, evaluator: CostEvaluator, latest: float, *, whole: bool = False
+) -> tuple[Polyline, float]:
     """Return the line with the cheapest settings that arrive by a time, and the worth of a second.
 
     Parameters
     ----------
     line : Line
-    purse : Purse
+    evaluator : Purse
     latest : float
         [s after the origin].
     whole : bool
@@ -50,49 +52,51 @@ def choose_paces(
     """
     budget, slope = latest, 0.0
     base = line
-    rounds = _ROUNDS // 2 if whole else _ROUNDS
+    rounds = _MAX_ROUNDS // 2 if whole else _MAX_ROUNDS
     for number in range(rounds):
-        times, costs = _options(base, purse)
-        room = budget - _fixed_time(base, purse)
+        times, costs = _times_and_costs_by_setting(base, evaluator)
+        room = budget - _departure_plus_waiting(base, evaluator)
         setting, slope, part = _knapsack(times, costs, room)
         base = replace(base, setting=setting)
         if number == rounds - 1 and not whole:
-            line = _with_part(base, part)
+            line = _with_slower_part(base, part)
         else:
             line = base
-        arrive = float(purse.sail(line.bundle(), check=False)[0][0, -1])
+        arrive = float(evaluator.sail(line.batch(), check=False)[0][0, -1])
         if math.isfinite(arrive) and number >= rounds - 2:
             budget += min(0.0, latest - arrive)
     return line, slope
 
 
-def _fixed_time(line: Line, purse: Purse) -> float:
+def _departure_plus_waiting(line: Polyline, evaluator: CostEvaluator) -> float:
     """Return departure plus the time lain still [s after the origin]."""
-    arrive = purse.sail(line.bundle(), check=False)[0][0]
+    arrive = evaluator.sail(line.batch(), check=False)[0][0]
     waits = np.maximum(line.leave[:-1] - arrive[:-1], 0.0)
     return line.depart + float(waits[np.isfinite(waits)].sum())
 
 
-def _options(line: Line, purse: Purse) -> tuple[FloatArray, FloatArray]:
+def _times_and_costs_by_setting(
+    line: Polyline, evaluator: CostEvaluator
+) -> tuple[FloatArray, FloatArray]:
     """Return (time, cost) of every leg (legs, settings) at the times of passage of the line.
 
     Cost has the price of time in it; both are +inf where a leg cannot be sailed.
     """
-    legs, settings = len(line) - 1, purse.settings
-    arrive = purse.sail(line.bundle(), check=False)[0][0]
+    legs, settings = len(line) - 1, evaluator.settings
+    arrive = evaluator.sail(line.batch(), check=False)[0][0]
     depart = np.maximum(arrive[:-1], line.leave[:-1])
     depart = np.where(np.isfinite(depart), depart, line.depart)
     lat = np.stack([line.lat[:-1], line.lat[1:]], axis=1)
     lon = np.stack([line.lon[:-1], line.lon[1:]], axis=1)
-    bundle = Bundle(
+    batch = TrackBatch(
         np.repeat(lat, settings, axis=0),
         np.repeat(lon, settings, axis=0),
         np.full((legs * settings, 2), -math.inf),
         np.tile(np.arange(settings), legs)[:, None],
         np.repeat(depart, settings),
     )
-    ends, cost, _ = purse.spend(bundle)
-    time = np.where(np.isfinite(cost), ends[:, -1] - bundle.depart, math.inf)
+    ends, cost, _ = evaluator.cost_and_time(batch)
+    time = np.where(np.isfinite(cost), ends[:, -1] - batch.depart, math.inf)
     return time.reshape(legs, settings), cost.reshape(legs, settings)
 
 
@@ -104,7 +108,7 @@ def _knapsack(
     setting = np.zeros(legs, dtype=np.int64)
     steps: list[tuple[float, int, int, int, float]] = []  # slope, leg, from, to, seconds
     for leg in range(legs):
-        hull = _hull(times[leg], costs[leg])
+        hull = _lower_hull(times[leg], costs[leg])
         setting[leg] = hull[0] if hull else int(np.argmin(times[leg]))
         for a, b in itertools.pairwise(hull):
             seconds = float(times[leg, b] - times[leg, a])
@@ -112,7 +116,7 @@ def _knapsack(
     room -= float(times[np.arange(legs), setting].sum())
     if not room > 0.0:
         return setting, (steps and max(steps)[0]) or 0.0, None
-    steps.sort(key=lambda step: (-_rounded(step[0]), step[1]))
+    steps.sort(key=lambda step: (-_rounded_slope(step[0]), step[1]))
     for slope, leg, before, after, seconds in steps:
         if setting[leg] != before:
             continue
@@ -122,12 +126,16 @@ def _knapsack(
     return setting, 0.0, None
 
 
-def _rounded(slope: float) -> float:
+def _rounded_slope(slope: float) -> float:
     """Return a slope rounded on a logarithmic scale, so that like ones are equal."""
-    return math.exp(round(math.log(slope) / _ALIKE) * _ALIKE) if slope > 0.0 else 0.0
+    return (
+        math.exp(round(math.log(slope) / _SLOPE_TOLERANCE) * _SLOPE_TOLERANCE)
+        if slope > 0.0
+        else 0.0
+    )
 
 
-def _hull(time: FloatArray, cost: FloatArray) -> list[int]:
+def _lower_hull(time: FloatArray, cost: FloatArray) -> list[int]:
     """Return the settings on the lower convex hull of cost over time, fastest first."""
     order = [int(k) for k in np.lexsort((cost, time)) if np.isfinite(time[k] + cost[k])]
     hull: list[int] = []
@@ -145,21 +153,21 @@ def _hull(time: FloatArray, cost: FloatArray) -> list[int]:
     return hull
 
 
-def _with_part(line: Line, part: tuple[int, int, float] | None) -> Line:
+def _with_slower_part(line: Polyline, part: tuple[int, int, float] | None) -> Polyline:
     """Return the line with a slower setting on a part of one leg, next to a leg as slow."""
-    if part is None or part[2] < _LEAST_SHARE:
+    if part is None or part[2] < _MIN_LEG_SHARE:
         return line
     leg, slower, share = part
-    share = min(share, 1.0 - _LEAST_SHARE)
+    share = min(share, 1.0 - _MIN_LEG_SHARE)
     first = leg > 0 and line.setting[leg - 1] == slower  # the slower part comes first
     ends = (line.lat[leg], line.lon[leg], line.lat[leg + 1], line.lon[leg + 1])
     length, course, _ = inverse(*ends)
     lat, lon = direct(ends[0], ends[1], course, (share if first else 1.0 - share) * length)
     pair = (slower, line.setting[leg]) if first else (line.setting[leg], slower)
     setting = np.concatenate([line.setting[:leg], pair, line.setting[leg + 1 :]])
-    return Line(
+    return Polyline(
         np.insert(line.lat, leg + 1, lat),
-        unwrapped(np.insert(line.lon, leg + 1, lon)),
+        unwrapped_longitudes(np.insert(line.lon, leg + 1, lon)),
         np.insert(line.leave, leg + 1, -math.inf),
         setting.astype(np.int64),
         line.depart,

@@ -7,21 +7,23 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.route.refinement.cost_evaluator import Purse
-from thalweg.route.refinement.polyline import Line
-from thalweg.route.refinement.time_evaluator import Bundle, Sailor
+from thalweg.route.refinement.cost_evaluator import CostEvaluator
+from thalweg.route.refinement.polyline import Polyline
+from thalweg.route.refinement.time_evaluator import TimeEvaluator, TrackBatch
 
-_REACH = 48  # waypoints a single hop may skip
+_MAX_HOP = 48  # waypoints a single hop may skip
 _PASSES = 4
 
 
-def pull(line: Line, sailor: Sailor | Purse, *, penalty: float = 0.0) -> Line:
+def string_pull(
+    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, penalty: float = 0.0
+) -> Polyline:
     """Return the best line through a subset of the waypoints, in their order.
 
     Parameters
     ----------
     line : Line
-    sailor : Sailor
+    evaluator : Sailor
     penalty : float
         What a waypoint costs [s, or m when tracks compare by length]: a line with fewer waypoints
         may be worse by this much for each that is left out.
@@ -39,29 +41,31 @@ def pull(line: Line, sailor: Sailor | Purse, *, penalty: float = 0.0) -> Line:
     being earlier. Unlike deleting one waypoint after the other it sees shortcuts past many.
     """
     for _ in range(_PASSES):
-        index = _best_subset(line, sailor, penalty)
+        index = _best_subset(line, evaluator, penalty)
         if index is None or len(index) == len(line):
             return line
         before, line = len(line), line.kept(index)
-        if before <= _REACH:
+        if before <= _MAX_HOP:
             return line
     return line
 
 
-def _best_subset(line: Line, sailor: Sailor | Purse, penalty: float) -> NDArray[np.int64] | None:
+def _best_subset(
+    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, penalty: float
+) -> NDArray[np.int64] | None:
     count = len(line)
     arrive, label = np.full(count, math.inf), np.full(count, math.inf)
     came_from = np.full(count, -1, dtype=np.int64)
     arrive[0], label[0] = line.depart, 0.0
-    held = np.flatnonzero(line.kept_points(sailor))
+    held = np.flatnonzero(line.required_points(evaluator))
     for here in range(count - 1):
         if not math.isfinite(label[here]):
             continue
-        there = np.arange(here + 1, min(count, here + 1 + _REACH))
+        there = np.arange(here + 1, min(count, here + 1 + _MAX_HOP))
         leave = max(arrive[here], line.leave[here])
         there = there[: int(np.searchsorted(there, held[held > here][0], side="right"))]
-        ends, cost = sailor.sail(_hops(line, here, there, leave))
-        spent = cost if sailor.by_length else cost - arrive[here]
+        ends, cost = evaluator.sail(_shortcut_batch(line, here, there, leave))
+        spent = cost if evaluator.by_length else cost - arrive[here]
         total = label[here] + spent + penalty
         slack = 1e-9 * np.where(np.isfinite(total), np.abs(total), 0.0)
         better = total + slack < label[there]
@@ -76,10 +80,12 @@ def _best_subset(line: Line, sailor: Sailor | Purse, penalty: float) -> NDArray[
     return np.array(chain[::-1], dtype=np.int64)
 
 
-def _hops(line: Line, here: int, there: NDArray[np.int64], leave: float) -> Bundle:
+def _shortcut_batch(
+    line: Polyline, here: int, there: NDArray[np.int64], leave: float
+) -> TrackBatch:
     shape = (len(there), 2)
     lat, lon = np.empty(shape), np.empty(shape)
     lat[:, 0], lon[:, 0] = line.lat[here], line.lon[here]
     lat[:, 1], lon[:, 1] = line.lat[there], line.lon[there]
     setting = np.full((len(there), 1), line.setting[here])
-    return Bundle(lat, lon, np.full(shape, -math.inf), setting, np.full(len(there), leave))
+    return TrackBatch(lat, lon, np.full(shape, -math.inf), setting, np.full(len(there), leave))

@@ -11,7 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.geodesy import FloatArray, direct, inverse
 from thalweg.kernels import codes
-from thalweg.kernels.leg.polyline_sailing import Lines, Passages, RasterArrays, sail_lines
+from thalweg.kernels.leg.polyline_sailing import (
+    PolylineArrays,
+    PolylineResults,
+    RasterArrays,
+    sail_polylines,
+)
 from thalweg.kernels.leg.table_lookup import TableArrays
 
 if TYPE_CHECKING:
@@ -21,16 +26,16 @@ if TYPE_CHECKING:
 
 IntArray = NDArray[np.int64]
 _METRES_PER_DEGREE = 111_195.0
-_BERTH = 5.0  # metres to each side of a leg where charted depth is looked up
-_DEPTH_PART = 0.5  # degrees of a leg whose charted depth is looked up at once
-_PATIENCE = 13.0 * 3600.0  # longest wait for a leg to open [s]: a tide and a little
-_PAUSES = (30.0, 900.0)  # least and largest time between two looks [s]
-_OPENING = 0.1  # seconds to which an opening is found
-_LONGEST_PIECE = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
+_CORRIDOR_HALF_WIDTH = 5.0  # metres to each side of a leg where charted depth is looked up
+_DEPTH_LOOKUP_SPAN = 0.5  # degrees of a leg whose charted depth is looked up at once
+_MAX_WAIT = 13.0 * 3600.0  # longest wait for a leg to open [s]: a tide and a little
+_WAIT_STEPS = (30.0, 900.0)  # least and largest time between two looks [s]
+_OPENING_TOLERANCE = 0.1  # seconds to which an opening is found
+_MAX_PIECE_LENGTH = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
 
 
 @dataclass(frozen=True)
-class Bundle:
+class TrackBatch:
     """Polylines of one number of points.
 
     Attributes
@@ -52,7 +57,7 @@ class Bundle:
 
 
 @dataclass(frozen=True)
-class Sailor:
+class TimeEvaluator:
     """Everything that stays the same while a track is refined.
 
     Attributes
@@ -68,8 +73,8 @@ class Sailor:
         Whether tracks compare by length instead of time.
     spacing : float
         Longest piece [m].
-    patience : float64 array (3,)
-        How the ship waits of itself (see `thalweg.kernels.leg.polyline_sailing.sail_lines`);
+    waiting_parameters : float64 array (3,)
+        How the ship waits of itself (see `thalweg.kernels.leg.polyline_sailing.sail_polylines`);
         zeros: it does not.
     """
 
@@ -80,7 +85,7 @@ class Sailor:
     origin: float
     by_length: bool
     spacing: float
-    patience: FloatArray
+    waiting_parameters: FloatArray
 
     chooses_settings = False  # settings of a track stay as they are
 
@@ -92,16 +97,18 @@ class Sailor:
 
     def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
         """Return how many pieces each leg of polylines (..., n) is cut into."""
-        return np.maximum(2, np.ceil(rough_lengths(lat, lon) / self.spacing)).astype(np.int64)
+        return np.maximum(2, np.ceil(approximate_leg_lengths(lat, lon) / self.spacing)).astype(
+            np.int64
+        )
 
     def sail(
-        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+        self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
     ) -> tuple[FloatArray, FloatArray]:
         """Sail polylines.
 
         Parameters
         ----------
-        bundle : Bundle
+        batch : Bundle
         pieces : int64 array (L, n - 1), optional
             Pieces of each leg; the same for lines whose times are to be differenced.
         check : bool
@@ -116,35 +123,37 @@ class Sailor:
             What is compared: last arrival [s], or length [m], with what penalty zones add to it;
             +inf if it cannot be sailed.
         """
-        arrive, _, cost = self.sail_and_wait(bundle, pieces=pieces, check=check)
+        arrive, _, cost = self.sail_and_wait(batch, pieces=pieces, check=check)
         return arrive, cost
 
     def sail_and_wait(
-        self, bundle: Bundle, *, pieces: IntArray | None = None, check: bool = True
+        self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Do as `sail` does, and return (arrive, leave, cost): when each point is left, too."""
-        count, size = bundle.lat.shape
+        count, size = batch.lat.shape
         shape = (count, size - 1)
-        pieces = self.pieces(bundle.lat, bundle.lon) if pieces is None else pieces
-        blocked, charted = self.look(bundle.lat, bundle.lon) if check else (None, None)
-        lines = Lines(
+        pieces = self.pieces(batch.lat, batch.lon) if pieces is None else pieces
+        blocked, charted = self.look_up_legs(batch.lat, batch.lon) if check else (None, None)
+        lines = PolylineArrays(
             np.arange(count + 1, dtype=np.int64) * size,
-            _flat(bundle.lat, np.float64),
-            _flat(bundle.lon, np.float64),
-            _flat(bundle.leave, np.float64),
-            _flat(_padded(bundle.setting, shape), np.int64),
+            _flat(batch.lat, np.float64),
+            _flat(batch.lon, np.float64),
+            _flat(batch.leave, np.float64),
+            _flat(_padded(batch.setting, shape), np.int64),
             _flat(_padded(np.broadcast_to(pieces, shape), shape), np.int64),
             _flat(_padded(np.full(shape, math.inf) if charted is None else charted, shape), float),
-            _flat(bundle.depart, np.float64),
+            _flat(batch.depart, np.float64),
         )
-        out = Passages(
+        out = PolylineResults(
             np.empty(count * size),
             np.array(lines.leave),
             np.empty(count),
             np.empty(count, dtype=np.int64),
         )
-        room = np.zeros(codes.CHANNELS), np.zeros(3)
-        sail_lines(lines, self.raster, self.table, self.limits, self.patience, out, *room)
+        room = np.zeros(codes.CHANNEL_COUNT), np.zeros(3)
+        sail_polylines(
+            lines, self.raster, self.table, self.limits, self.waiting_parameters, out, *room
+        )
         arrive = out.arrive.reshape(count, size)
         cost = out.length.copy() if self.by_length else arrive[:, -1].copy()
         cost[out.status != codes.OK] = math.inf
@@ -153,16 +162,16 @@ class Sailor:
             arrive[:, 1:][over] = math.inf
             cost[over[:, -1]] = math.inf
         leave = out.leave.reshape(count, size)
-        return arrive, leave, cost + self._penalty(bundle, arrive, leave, cost) if check else cost
+        return arrive, leave, cost + self._penalty(batch, arrive, leave, cost) if check else cost
 
     def _penalty(
-        self, bundle: Bundle, arrive: FloatArray, leave: FloatArray, cost: FloatArray
+        self, batch: TrackBatch, arrive: FloatArray, leave: FloatArray, cost: FloatArray
     ) -> FloatArray:
         """Return what penalty zones add to the cost of polylines."""
-        factor = penalty_factors(self.chart, bundle.lat, bundle.lon)
+        factor = penalty_factors(self.chart, batch.lat, batch.lon)
         if factor is None:
             return np.zeros(len(cost))
-        spent = rough_lengths(bundle.lat, bundle.lon)
+        spent = approximate_leg_lengths(batch.lat, batch.lon)
         if not self.by_length:
             with np.errstate(invalid="ignore"):
                 spent = arrive[:, 1:] - leave[:, :-1]
@@ -170,7 +179,7 @@ class Sailor:
         added: FloatArray = ((factor - 1.0) * spent).sum(axis=1)
         return added
 
-    def look(
+    def look_up_legs(
         self, lat: FloatArray, lon: FloatArray
     ) -> tuple[NDArray[np.bool_] | None, FloatArray | None]:
         """Return (blocked, least charted depth) of the legs of polylines; None: not known."""
@@ -193,7 +202,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     """Return the least charted depth of legs (n, 4); long ones in short parts, which is quicker."""
     lat1, lon1, lat2, lon2 = legs.T
     span = np.maximum(np.abs(lat2 - lat1), np.abs(lon2 - lon1))
-    count = np.maximum(np.ceil(span / _DEPTH_PART), 1.0).astype(np.int64)
+    count = np.maximum(np.ceil(span / _DEPTH_LOOKUP_SPAN), 1.0).astype(np.int64)
     first = np.cumsum(count) - count
     leg = np.repeat(np.arange(len(legs)), count)
     number = np.arange(len(leg)) - first[leg]
@@ -203,7 +212,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     part, way = (length / count)[leg], course[leg]
     a = direct(lat1[leg], lon1[leg], way, number * part)
     b = direct(lat1[leg], lon1[leg], way, (number + 1) * part)
-    beside = np.minimum(_BERTH, 1e-3 * length)[leg]
+    beside = np.minimum(_CORRIDOR_HALF_WIDTH, 1e-3 * length)[leg]
     depth = np.full(len(leg), math.inf)
     for side in (-0.5 * math.pi, 0.5 * math.pi):  # a lane, so that cutting it otherwise is the same
         ends = *direct(*a, way + side, beside), *direct(*b, way + side, beside)
@@ -212,7 +221,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     return least
 
 
-def make_sailor(
+def make_time_evaluator(
     *,
     table: PerformanceTable | TableArrays,
     chart: Chart | None,
@@ -222,7 +231,7 @@ def make_sailor(
     by_length: bool,
     total: float,
     wait: bool = False,
-) -> Sailor:
+) -> TimeEvaluator:
     """Put a sailor together; ``total`` is the rough length of the track [m], and
     with ``wait`` it waits of itself where a leg is closed for the time being.
 
@@ -235,13 +244,15 @@ def make_sailor(
         np.asarray(fields.channel_index, np.int64),
     )
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
-    spacing = min(max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0), _LONGEST_PIECE)
+    spacing = min(max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0), _MAX_PIECE_LENGTH)
     bounds = np.asarray(limits, np.float64)
-    patience = np.zeros(3)
+    waiting_parameters = np.zeros(3)
     if wait and np.isfinite(bounds).any():
-        pause = float(np.clip(np.median(np.diff(raster.times)), *_PAUSES))
-        patience[:] = _PATIENCE, pause, _OPENING
-    return Sailor(raster, arrays, chart, bounds, origin, by_length, spacing, patience)
+        pause = float(np.clip(np.median(np.diff(raster.times)), *_WAIT_STEPS))
+        waiting_parameters[:] = _MAX_WAIT, pause, _OPENING_TOLERANCE
+    return TimeEvaluator(
+        raster, arrays, chart, bounds, origin, by_length, spacing, waiting_parameters
+    )
 
 
 def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> FloatArray | None:
@@ -253,7 +264,7 @@ def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> Fl
     return np.asarray(chart.zone_factor(*(x.ravel() for x in ends))[0]).reshape(shape)
 
 
-def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
+def approximate_leg_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
     """Return lengths of legs (..., n - 1) on the sphere [m], good to 0.5 %."""
     a, b = np.radians(lat[..., :-1]), np.radians(lat[..., 1:])
     half = 0.5 * np.radians(np.diff(lon, axis=-1))

@@ -19,13 +19,13 @@ from thalweg.core.errors import DatasetError
 from thalweg.sea.files import plausible_values
 from thalweg.sea.frozen_fields import FloatArray
 
-Raw: TypeAlias = NDArray[Any]
+RawArray: TypeAlias = NDArray[Any]
 READ_ERRORS = (OSError, RuntimeError, ValueError, IndexError, KeyError, EOFError, OverflowError)
-LARGEST_LAYERED = 4_000_000  #: values in layers that are read at once
-LARGEST_UNION = 30_000_000  #: values of a block above which old and new are not read together
+MAX_LAYERED_VALUES = 4_000_000  #: values in layers that are read at once
+MAX_UNION_VALUES = 30_000_000  #: values of a block above which old and new are not read together
 
 
-class Window(NamedTuple):
+class GridWindow(NamedTuple):
     """A part of a grid: levels [t0, t1), rows [y0, y1), ``width`` columns from ``x0`` on, round."""
 
     t0: int
@@ -35,7 +35,7 @@ class Window(NamedTuple):
     x0: int
     width: int
 
-    def holds(self, other: Window, columns: int) -> bool:
+    def contains(self, other: GridWindow, columns: int) -> bool:
         """Return whether another window lies within this one."""
         offset = (other.x0 - self.x0) % columns
         return (
@@ -53,7 +53,7 @@ class Window(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class VariableInFile:
     """A variable in one file.
 
     Attributes
@@ -75,7 +75,7 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False)
-class Variable:
+class SourceVariable:
     """A variable of one or more files that follow each other in time.
 
     Attributes
@@ -96,7 +96,7 @@ class Variable:
     """
 
     name: str
-    pieces: tuple[Piece, ...]
+    pieces: tuple[VariableInFile, ...]
     timed: bool
     is_mesh: bool
     source: str
@@ -109,11 +109,11 @@ class Variable:
         stored = array.encoding.get("dtype", array.dtype)
         return "scale_factor" not in array.encoding and np.dtype(stored) == np.float64
 
-    def read(self, window: Window, columns: int) -> Raw:
+    def read(self, window: GridWindow, columns: int) -> RawArray:
         """Return values (levels, rows, columns); a variable without time has one level."""
         try:
             if any(self.shift):
-                return self._centred(window, columns)
+                return self._averaged_to_centres(window, columns)
             return self._levels(window, columns)
         except READ_ERRORS as error:
             raise DatasetError(
@@ -124,25 +124,27 @@ class Variable:
                 variable=self.name,
             ) from error
 
-    def _levels(self, window: Window, columns: int) -> Raw:
+    def _levels(self, window: GridWindow, columns: int) -> RawArray:
         if not self.timed:
-            return self._space(self.pieces[0], slice(None), window, columns)[None]
+            return self._read_rows_and_columns(self.pieces[0], slice(None), window, columns)[None]
         parts, first = [], 0
         for piece in self.pieces:
             begin, end = max(window.t0 - first, 0), min(window.t1 - first, piece.levels)
             if begin < end and piece.has_time:
-                parts.append(self._space(piece, slice(begin, end), window, columns))
+                parts.append(self._read_rows_and_columns(piece, slice(begin, end), window, columns))
             elif begin < end:
-                parts.append(self._space(piece, slice(None), window, columns)[None])
+                parts.append(self._read_rows_and_columns(piece, slice(None), window, columns)[None])
             first += piece.levels
         return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
-    def _space(self, piece: Piece, levels: slice, window: Window, columns: int) -> Raw:
+    def _read_rows_and_columns(
+        self, piece: VariableInFile, levels: slice, window: GridWindow, columns: int
+    ) -> RawArray:
         """Read rows and columns in SI, in two pieces where the window goes round."""
         values = self._stored(piece.array[levels], window, columns)
         return values if piece.factor == 1.0 else np.asarray(values, np.float64) * piece.factor
 
-    def _stored(self, array: Any, window: Window, columns: int) -> Raw:
+    def _stored(self, array: Any, window: GridWindow, columns: int) -> RawArray:
         if self.is_mesh:
             return np.asarray(array.values)[..., None, :]
         rows = array[..., window.y0 : window.y1, :]
@@ -152,7 +154,7 @@ class Variable:
             parts.append(rows[..., : x1 - columns].values)
         return np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
 
-    def _centred(self, window: Window, columns: int) -> Raw:
+    def _averaged_to_centres(self, window: GridWindow, columns: int) -> RawArray:
         """Average a staggered variable with its neighbour behind; the first has none."""
         dy, dx = self.shift
         y0, x0 = max(0, window.y0 - dy), max(0, window.x0 - dx)
@@ -167,7 +169,7 @@ class Variable:
         return 0.5 * (values[..., 1:] + values[..., :-1])
 
 
-Make: TypeAlias = Callable[[Sequence[FloatArray], Window], Sequence[FloatArray]]
+Conversion: TypeAlias = Callable[[Sequence[FloatArray], GridWindow], Sequence[FloatArray]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,15 +191,17 @@ class Quantity:
     """
 
     names: tuple[str, ...]
-    variables: tuple[Variable, ...]
-    make: Make
+    variables: tuple[SourceVariable, ...]
+    make: Conversion
     source: str
     layers: int = 1
 
-    def read(self, window: Window, columns: int) -> dict[str, Raw]:
+    def read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
         """Return arrays (levels, places) by canonical name, checked for sense."""
-        at_once = max(1, LARGEST_LAYERED // max(1, self.layers * window.size // _count(window)))
-        if self.layers == 1 or _count(window) <= at_once:
+        at_once = max(
+            1, MAX_LAYERED_VALUES // max(1, self.layers * window.size // _level_count(window))
+        )
+        if self.layers == 1 or _level_count(window) <= at_once:
             return self._read(window, columns)
         parts = [
             self._read(window._replace(t0=t, t1=min(t + at_once, window.t1)), columns)
@@ -205,7 +209,7 @@ class Quantity:
         ]
         return {name: np.concatenate([part[name] for part in parts]) for name in self.names}
 
-    def _read(self, window: Window, columns: int) -> dict[str, Raw]:
+    def _read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
         raws = [np.asarray(v.read(window, columns), np.float64) for v in self.variables]
         kind = np.float64 if any(v.is_double for v in self.variables) else np.float32
         made = {}
@@ -217,15 +221,15 @@ class Quantity:
         return made
 
 
-def _count(window: Window) -> int:
+def _level_count(window: GridWindow) -> int:
     return max(1, window.t1 - window.t0)
 
 
-class Block(NamedTuple):
+class CachedBlock(NamedTuple):
     """What was read: values (levels, places) by name, for a window."""
 
-    window: Window
-    values: dict[str, Raw]
+    window: GridWindow
+    values: dict[str, RawArray]
 
 
 @dataclass
@@ -242,26 +246,26 @@ class BlockCache:
 
     shape: tuple[int, int, int]
     wraps: bool
-    blocks: dict[tuple[str, ...], Block] = field(default_factory=dict)
+    blocks: dict[tuple[str, ...], CachedBlock] = field(default_factory=dict)
     misses: dict[tuple[str, ...], int] = field(default_factory=dict)
 
-    def block(self, quantity: Quantity, wanted: Window) -> Block:
+    def block(self, quantity: Quantity, wanted: GridWindow) -> CachedBlock:
         """Return a block that holds the wanted window, reading it if need be."""
         key = quantity.names
         kept = self.blocks.get(key)
         columns = self.shape[2]
-        if kept is not None and kept.window.holds(wanted, columns):
+        if kept is not None and kept.window.contains(wanted, columns):
             return kept
         misses = self.misses[key] = self.misses.get(key, -1) + 1
-        window = self._grown(wanted, misses)
+        window = self._window_with_margin(wanted, misses)
         if kept is not None:
             both = self._union(window, kept.window)
-            window = both if both.size <= LARGEST_UNION else window
-        found = Block(window, quantity.read(window, columns))
+            window = both if both.size <= MAX_UNION_VALUES else window
+        found = CachedBlock(window, quantity.read(window, columns))
         self.blocks[key] = found
         return found
 
-    def _grown(self, window: Window, misses: int) -> Window:
+    def _window_with_margin(self, window: GridWindow, misses: int) -> GridWindow:
         """Return the window with a margin: none at first, a quarter of its size per later read."""
         if misses == 0:
             return window
@@ -269,8 +273,8 @@ class BlockCache:
         dt = 1 + (window.t1 - window.t0) // 4
         dy = 2 + (window.y1 - window.y0) // 4
         dx = 2 + window.width // 4
-        x0, width = _columns(window.x0 - dx, window.width + 2 * dx, nx, self.wraps)
-        return Window(
+        x0, width = _columns_in_grid(window.x0 - dx, window.width + 2 * dx, nx, self.wraps)
+        return GridWindow(
             max(0, window.t0 - dt),
             min(nt, window.t1 + dt),
             max(0, window.y0 - dy),
@@ -279,14 +283,16 @@ class BlockCache:
             width,
         )
 
-    def _union(self, a: Window, b: Window) -> Window:
+    def _union(self, a: GridWindow, b: GridWindow) -> GridWindow:
         """Return the least window that holds both."""
         nx = self.shape[2]
-        x0, width = _hull((a.x0, a.width), (b.x0, b.width), nx, self.wraps)
-        return Window(min(a.t0, b.t0), max(a.t1, b.t1), min(a.y0, b.y0), max(a.y1, b.y1), x0, width)
+        x0, width = _column_union((a.x0, a.width), (b.x0, b.width), nx, self.wraps)
+        return GridWindow(
+            min(a.t0, b.t0), max(a.t1, b.t1), min(a.y0, b.y0), max(a.y1, b.y1), x0, width
+        )
 
 
-def _columns(x0: int, width: int, columns: int, wraps: bool) -> tuple[int, int]:
+def _columns_in_grid(x0: int, width: int, columns: int, wraps: bool) -> tuple[int, int]:
     """Return a range of columns brought into the grid."""
     if wraps:
         return (0, columns) if width >= columns else (x0 % columns, width)
@@ -294,7 +300,9 @@ def _columns(x0: int, width: int, columns: int, wraps: bool) -> tuple[int, int]:
     return max(0, x0), end - max(0, x0)
 
 
-def _hull(a: tuple[int, int], b: tuple[int, int], columns: int, wraps: bool) -> tuple[int, int]:
+def _column_union(
+    a: tuple[int, int], b: tuple[int, int], columns: int, wraps: bool
+) -> tuple[int, int]:
     """Return the shortest range of columns that holds two ranges."""
     if not wraps:
         x0 = min(a[0], b[0])

@@ -13,12 +13,16 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.files import coordinates as co
 from thalweg.sea.files import derived_variables, ugrid, vertical_levels
 from thalweg.sea.files import variable_aliases as sp
-from thalweg.sea.files.block_cache import Piece, Quantity, Variable
+from thalweg.sea.files.block_cache import Quantity, SourceVariable, VariableInFile
 from thalweg.sea.files.derived_variables import Combine
-from thalweg.sea.files.grid_detection import NEMO_U, Placement, placement
-from thalweg.sea.files.variable_recognition import Chosen, Ignored, recognise
+from thalweg.sea.files.grid_detection import NEMO_U_COORDINATES, GridPlacement, grid_placement
+from thalweg.sea.files.variable_recognition import (
+    AssignedVariable,
+    IgnoredVariable,
+    recognise_variables,
+)
 from thalweg.sea.frozen_fields import FloatArray
-from thalweg.sea.inspection import Recognised
+from thalweg.sea.inspection import RecognisedVariable
 
 NO_TIMES = np.empty(0)
 CURRENT_ROLES = frozenset((*nm.CURRENT.pair, sp.X_CURRENT, sp.Y_CURRENT))
@@ -51,30 +55,30 @@ class OpenedFile:
 
 
 @dataclass(frozen=True, eq=False)
-class Ingredient:
+class PlacedVariable:
     """A recognised variable, placed in space and time."""
 
-    chosen: Chosen
-    variable: Variable
-    place: Placement
+    chosen: AssignedVariable
+    variable: SourceVariable
+    place: GridPlacement
     times: FloatArray
     rotated: bool
-    layers: vertical_levels.Layers | None = None
+    layers: vertical_levels.VerticalLayers | None = None
 
 
 @dataclass(eq=False)
-class Draft:
+class LayerCandidate:
     """Quantities on one grid and one time axis of one file, before files are joined."""
 
-    place: Placement
+    place: GridPlacement
     times: FloatArray
     file: OpenedFile
     quantities: list[Quantity] = field(default_factory=list)
-    recognised: list[Recognised] = field(default_factory=list)
+    recognised: list[RecognisedVariable] = field(default_factory=list)
 
 
 @dataclass(eq=False)
-class Memo:
+class PlacementCache:
     """Positions worked out before, for files that lie on the same ones (members of an ensemble).
 
     Attributes
@@ -86,13 +90,15 @@ class Memo:
     """
 
     meshes: list[ugrid.MeshLayout] | None = None
-    places: dict[str, Placement] = field(default_factory=dict)
+    places: dict[str, GridPlacement] = field(default_factory=dict)
 
 
-Drafted: TypeAlias = tuple[list[Draft], list[Ignored]]
+FileContents: TypeAlias = tuple[list[LayerCandidate], list[IgnoredVariable]]
 
 
-def drafts_of(file: OpenedFile, mapping: Mapping[str, str], memo: Memo | None = None) -> Drafted:
+def layer_candidates(
+    file: OpenedFile, mapping: Mapping[str, str], placement_cache: PlacementCache | None = None
+) -> FileContents:
     """Return what one file holds, by grid and time axis, and what is ignored in it.
 
     Raises
@@ -101,25 +107,29 @@ def drafts_of(file: OpenedFile, mapping: Mapping[str, str], memo: Memo | None = 
         If nothing in it is recognised, or something recognised cannot be placed.
     """
     skip = _coordinates(file.dataset)
-    chosen, ignored = recognise(file.dataset, mapping=mapping, source=file.source, skip=skip)
+    chosen, ignored = recognise_variables(
+        file.dataset, mapping=mapping, source=file.source, skip=skip
+    )
     if not chosen:
-        raise _nothing(file, ignored)
-    memo = memo or Memo()
-    if memo.meshes is None:
-        memo.meshes = ugrid.mesh_layouts(file.dataset, mapping, file.source)
-    ingredients = {role: _ingredient(file, one, mapping, memo) for role, one in chosen.items()}
-    assembly = Assembly(file, ingredients, ignored)
+        raise _nothing_recognised_error(file, ignored)
+    placement_cache = placement_cache or PlacementCache()
+    if placement_cache.meshes is None:
+        placement_cache.meshes = ugrid.mesh_layouts(file.dataset, mapping, file.source)
+    ingredients = {
+        role: _placed_variable(file, one, mapping, placement_cache) for role, one in chosen.items()
+    }
+    assembly = QuantityAssembler(file, ingredients, ignored)
     assembly.all()
-    if not assembly.drafts:
-        raise _nothing(file, assembly.ignored)
-    return assembly.drafts, assembly.ignored
+    if not assembly.candidates:
+        raise _nothing_recognised_error(file, assembly.ignored)
+    return assembly.candidates, assembly.ignored
 
 
 def _coordinates(dataset: Any) -> frozenset[str]:
     names = {
         str(n) for n in dataset.variables if str(n) in dataset.coords or str(n) in dataset.dims
     }
-    places = ugrid.place_dimensions(dataset)
+    places = ugrid.mesh_dimensions(dataset)
     for n in dataset.variables:
         array = dataset[n]
         if co.is_latitude(array, str(n)) or co.is_longitude(array, str(n)) or co.is_time(array):
@@ -129,10 +139,12 @@ def _coordinates(dataset: Any) -> frozenset[str]:
         for key in ("bounds", "climatology"):
             if key in array.attrs:
                 names.add(str(array.attrs[key]))
-    return frozenset(names) | ugrid.auxiliary(dataset)
+    return frozenset(names) | ugrid.mesh_description_variables(dataset)
 
 
-def _nothing(file: OpenedFile, ignored: Sequence[Ignored]) -> NothingRecognised:
+def _nothing_recognised_error(
+    file: OpenedFile, ignored: Sequence[IgnoredVariable]
+) -> NothingRecognised:
     told = "; ".join(f"{i.variable}: {i.reason}" for i in ignored[:12])
     return NothingRecognised(
         f"{file.source}: no wind, waves, currents, level or depth was recognised in it.",
@@ -142,23 +154,26 @@ def _nothing(file: OpenedFile, ignored: Sequence[Ignored]) -> NothingRecognised:
     )
 
 
-def _ingredient(
-    file: OpenedFile, chosen: Chosen, mapping: Mapping[str, str], memo: Memo
-) -> Ingredient:
+def _placed_variable(
+    file: OpenedFile,
+    chosen: AssignedVariable,
+    mapping: Mapping[str, str],
+    placement_cache: PlacementCache,
+) -> PlacedVariable:
     dataset, source = file.dataset, file.source
     array = dataset[chosen.variable]
-    clock = co.time_of(dataset, array)
+    clock = co.time_coordinate(dataset, array)
     if clock is None:
         _refuse_undated(dataset, array, source)
-    place = memo.places.get(chosen.variable)
+    place = placement_cache.places.get(chosen.variable)
     if place is None:
-        place = placement(dataset, array, mapping, source, memo.meshes or [])
-        memo.places[chosen.variable] = place
+        place = grid_placement(dataset, array, mapping, source, placement_cache.meshes or [])
+        placement_cache.places[chosen.variable] = place
     time_dim = str(clock.dims[0]) if clock is not None else ""
     keep = frozenset((*place.dims, time_dim))
     layers = None
     if file.draught is not None and chosen.role in CURRENT_ROLES:
-        layers = vertical_levels.find_layers(dataset, array, keep, source)
+        layers = vertical_levels.find_vertical_layers(dataset, array, keep, source)
     deep = [] if layers is None else [layers.dim]
     keep = keep | frozenset(deep)
     array = co.pick_surface(dataset, array, keep, chosen.role, source)
@@ -169,18 +184,22 @@ def _ingredient(
     times = NO_TIMES if clock is None else co.read_times(clock, source)
     if clock is not None and not has_time and clock.dims[0] != "one_time":
         times = NO_TIMES
-    piece = Piece(array, max(1, times.size), has_time, chosen.factor)
-    is_c_grid = all(n in dataset.variables for n in NEMO_U) and place.dims and "glamt" in place.key
+    piece = VariableInFile(array, max(1, times.size), has_time, chosen.factor)
+    is_c_grid = (
+        all(n in dataset.variables for n in NEMO_U_COORDINATES)
+        and place.dims
+        and "glamt" in place.key
+    )
     shift = (
         {sp.X_CURRENT: (0, 1), sp.Y_CURRENT: (1, 0)}.get(chosen.role, (0, 0))
         if is_c_grid
         else (0, 0)
     )
-    variable = Variable(
+    variable = SourceVariable(
         chosen.variable, (piece,), times.size > 0, place.mesh is not None, source, shift
     )
     rotated = int(array.attrs.get("GRIB_uvRelativeToGrid", 0)) == 1
-    return Ingredient(chosen, variable, place, times, rotated, layers)
+    return PlacedVariable(chosen, variable, place, times, rotated, layers)
 
 
 def _refuse_undated(dataset: Any, array: Any, source: str) -> None:
@@ -197,14 +216,17 @@ def _refuse_undated(dataset: Any, array: Any, source: str) -> None:
             )
 
 
-class Assembly:
+class QuantityAssembler:
     """Makes quantities of ingredients, each in one way, and tells what is left over."""
 
     def __init__(
-        self, file: OpenedFile, ingredients: dict[str, Ingredient], ignored: list[Ignored]
+        self,
+        file: OpenedFile,
+        ingredients: dict[str, PlacedVariable],
+        ignored: list[IgnoredVariable],
     ) -> None:
         self.file, self.left, self.ignored = file, dict(ingredients), list(ignored)
-        self.drafts: list[Draft] = []
+        self.candidates: list[LayerCandidate] = []
 
     def all(self) -> None:
         """Make everything that can be made."""
@@ -217,53 +239,53 @@ class Assembly:
             told = one.chosen.how
             if one.times.size == 0 and role not in (nm.BED_DEPTH,):
                 told += "; without dates: holds always"
-            self._add((role,), [one], derived_variables.same, told)
+            self._add((role,), [one], derived_variables.identity, told)
 
-    def _vector(self, vector: nm.Vector, along_grid: tuple[str, str]) -> None:
+    def _vector(self, vector: nm.VectorNames, along_grid: tuple[str, str]) -> None:
         """Make a vector of components, of components along the grid, or of speed and direction."""
-        if self._both(vector.pair):
+        if self._both_present(vector.pair):
             pair = [self.left.pop(n) for n in vector.pair]
             turn = pair[0].rotated and pair[0].place.angle is not None
-            self._pair(vector, pair, turn)
-        elif self._both(along_grid):
+            self._add_vector(vector, pair, turn)
+        elif self._both_present(along_grid):
             pair = [self.left.pop(n) for n in along_grid]
-            self._pair(vector, pair, pair[0].place.angle is not None)
-        elif self._both((vector.speed, vector.origin)):
+            self._add_vector(vector, pair, pair[0].place.angle is not None)
+        elif self._both_present((vector.speed, vector.origin)):
             self._polar(vector, vector.origin)
-        elif self._both((vector.speed, vector.towards)):
+        elif self._both_present((vector.speed, vector.towards)):
             self._polar(vector, vector.towards)
         alone = (*vector.pair, *along_grid, vector.origin, vector.towards)
-        made = any(set(vector.pair) <= set(q.names) for d in self.drafts for q in d.quantities)
+        made = any(set(vector.pair) <= set(q.names) for d in self.candidates for q in d.quantities)
         for role in alone if not made else (*alone, vector.speed):
             if role in self.left:
                 reason = "the vector is made of others" if made else "its partner is missing"
                 self._leave(role, f"{reason} ({role})")
 
-    def _both(self, roles: Sequence[str]) -> bool:
+    def _both_present(self, roles: Sequence[str]) -> bool:
         """Return whether both roles are there, on one grid and one time axis."""
         if not all(role in self.left for role in roles):
             return False
         a, b = (self.left[role] for role in roles)
         return a.place.key == b.place.key and np.array_equal(a.times, b.times)
 
-    def _pair(self, vector: nm.Vector, pair: list[Ingredient], turn: bool) -> None:
+    def _add_vector(self, vector: nm.VectorNames, pair: list[PlacedVariable], turn: bool) -> None:
         told = pair[0].chosen.how
         if any(pair[0].variable.shift) or any(pair[1].variable.shift):
             told += "; averaged from cell sides to centres"
         if turn:
             told += "; turned from grid to true east and north"
         if pair[0].layers is None:
-            self._add(vector.pair, pair, derived_variables.same, told, turn=turn)
+            self._add(vector.pair, pair, derived_variables.identity, told, turn=turn)
             return
         draught = self.file.draught or 0.0
         column, depth = self._column(pair)
         told += f"; mean over the upper {draught:g} m of {pair[0].layers.describe()}"
-        combine = vertical_levels.averaging(pair[0].layers, draught, depth)
+        combine = vertical_levels.draught_averaging(pair[0].layers, draught, depth)
         self._add(vector.pair, [*pair, *column], combine, told, turn=turn)
 
     def _column(
-        self, pair: list[Ingredient]
-    ) -> tuple[list[Ingredient], Callable[[Sequence[FloatArray]], FloatArray]]:
+        self, pair: list[PlacedVariable]
+    ) -> tuple[list[PlacedVariable], Callable[[Sequence[FloatArray]], FloatArray]]:
         """Return what tells the water column where a vector lies, and how it is made from it."""
         level, total, bed, height = (
             self._beside(pair[0], role)
@@ -275,41 +297,41 @@ class Assembly:
             return [level], lambda arrays: arrays[2]
         if total is not None:
             return [total], lambda arrays: arrays[2]
-        sign = 1.0 if bed is not None else -1.0 if _points_up(height) else 1.0
+        sign = 1.0 if bed is not None else -1.0 if _is_positive_up(height) else 1.0
         bed = bed or height
         if bed is None:
-            raise vertical_levels.no_depth_of_layers(
+            raise vertical_levels.missing_depth_error(
                 [p.chosen.variable for p in pair], self.file.source
             )
         if level is None:
             return [bed], lambda arrays: sign * arrays[2]
         return [bed, level], lambda arrays: sign * arrays[2] + arrays[3]
 
-    def _beside(self, one: Ingredient, role: str) -> Ingredient | None:
+    def _beside(self, one: PlacedVariable, role: str) -> PlacedVariable | None:
         """Return what plays a role on the grid and at the times of another, or at all times."""
         other = self.left.get(role)
         if other is None or other.place.key != one.place.key:
             return None
         return other if not other.times.size or np.array_equal(other.times, one.times) else None
 
-    def _polar(self, vector: nm.Vector, direction: str) -> None:
+    def _polar(self, vector: nm.VectorNames, direction: str) -> None:
         pair = [self.left.pop(vector.speed), self.left.pop(direction)]
         sign = -1.0 if direction == vector.origin else 1.0
         word = "from" if direction == vector.origin else "to"
         told = f"{pair[0].chosen.how}; speed and direction {word} to components"
-        self._add(vector.pair, pair, derived_variables.polar(sign), told)
+        self._add(vector.pair, pair, derived_variables.polar_to_components(sign), told)
 
     def _waves(self) -> None:
         for role, sign in ((nm.WAVES.origin, -1.0), (nm.WAVES.towards, 1.0)):
             if role not in self.left:
                 continue
-            if any(nm.WAVE_TO_EAST in q.names for d in self.drafts for q in d.quantities):
+            if any(nm.WAVE_TO_EAST in q.names for d in self.candidates for q in d.quantities):
                 self._leave(role, "another wave direction is used")
                 continue
             one = self.left.pop(role)
             word = "from" if sign < 0 else "to"
             told = f"{one.chosen.how}; direction {word} to unit vector towards"
-            self._add(nm.WAVES.pair, [one], derived_variables.unit_vector(sign), told)
+            self._add(nm.WAVES.pair, [one], derived_variables.direction_to_unit_vector(sign), told)
 
     def _bed_and_level(self) -> None:
         """Make bed depth and water level from what there is of depth, bed level and total depth."""
@@ -318,15 +340,15 @@ class Assembly:
         sign = 1.0
         if bed is None and sp.BED_LEVEL in self.left:
             bed = self.left.pop(sp.BED_LEVEL)
-            sign = -1.0 if _points_up(bed) else 1.0
+            sign = -1.0 if _is_positive_up(bed) else 1.0
         elif sp.BED_LEVEL in self.left:
             self._leave(sp.BED_LEVEL, "the bed depth is used")
         if bed is not None:
             self._add(
                 (nm.BED_DEPTH,),
                 [bed],
-                derived_variables.times(sign),
-                bed.chosen.how + _turned(sign),
+                derived_variables.scale_by(sign),
+                bed.chosen.how + _sign_note(sign),
             )
         if total is None:
             return
@@ -336,20 +358,23 @@ class Assembly:
             self._add(
                 (nm.BED_DEPTH,),
                 [self.left.pop(nm.TOTAL_DEPTH)],
-                derived_variables.same,
+                derived_variables.identity,
                 "total depth, no level",
             )
-        elif bed is None and self._both((nm.TOTAL_DEPTH, nm.WATER_LEVEL)):
+        elif bed is None and self._both_present((nm.TOTAL_DEPTH, nm.WATER_LEVEL)):
             pair = [self.left.pop(nm.TOTAL_DEPTH), other]
             self._add(
-                (nm.BED_DEPTH,), pair, derived_variables.minus(1.0), "total depth minus water level"
+                (nm.BED_DEPTH,),
+                pair,
+                derived_variables.subtract(1.0),
+                "total depth minus water level",
             )
         elif level is None and total.place.key == other.place.key:
             pair = [self.left.pop(nm.TOTAL_DEPTH), other]
             self._add(
                 (nm.WATER_LEVEL,),
                 pair,
-                derived_variables.minus(sign),
+                derived_variables.subtract(sign),
                 "total depth minus bed depth",
             )
         elif bed is None:
@@ -360,12 +385,12 @@ class Assembly:
             self._leave(nm.TOTAL_DEPTH, "bed depth and water level are used")
 
     def _leave(self, role: str, reason: str) -> None:
-        self.ignored.append(Ignored(self.left.pop(role).chosen.variable, reason))
+        self.ignored.append(IgnoredVariable(self.left.pop(role).chosen.variable, reason))
 
     def _add(
         self,
         made: tuple[str, ...],
-        parts: list[Ingredient],
+        parts: list[PlacedVariable],
         combine: Combine,
         told: str,
         *,
@@ -374,27 +399,29 @@ class Assembly:
         """Add a quantity to the draft of its grid and time axis."""
         place = parts[0].place
         times = next((p.times for p in parts if p.times.size), NO_TIMES)
-        make = derived_variables.maker(combine, place, turn)
+        make = derived_variables.make_conversion(combine, place, turn)
         layers = max(1 if p.layers is None else p.layers.top.size for p in parts)
         quantity = Quantity(made, tuple(p.variable for p in parts), make, self.file.source, layers)
-        draft = self._draft(place, times)
+        draft = self._candidate_for(place, times)
         draft.quantities.append(quantity)
         units = ", ".join(dict.fromkeys(p.chosen.units or "not said" for p in parts))
         files = tuple(p.chosen.variable for p in parts)
         factors = {p.chosen.factor for p in parts} - {1.0}
         if factors:
             told += f"; times {', '.join(f'{f:g}' for f in sorted(factors))}"
-        draft.recognised += [Recognised(n, files, units, told, self.file.source) for n in made]
+        draft.recognised += [
+            RecognisedVariable(n, files, units, told, self.file.source) for n in made
+        ]
 
-    def _draft(self, place: Placement, times: FloatArray) -> Draft:
-        for draft in self.drafts:
+    def _candidate_for(self, place: GridPlacement, times: FloatArray) -> LayerCandidate:
+        for draft in self.candidates:
             if draft.place.key == place.key and np.array_equal(draft.times, times):
                 return draft
-        self.drafts.append(Draft(place, times, self.file))
-        return self.drafts[-1]
+        self.candidates.append(LayerCandidate(place, times, self.file))
+        return self.candidates[-1]
 
 
-def _points_up(height: Ingredient | None) -> bool:
+def _is_positive_up(height: PlacedVariable | None) -> bool:
     """Return whether a bed level counts upwards, as it does unless its file says otherwise."""
     if height is None:
         return True
@@ -402,5 +429,5 @@ def _points_up(height: Ingredient | None) -> bool:
     return str(told).lower() != "down"
 
 
-def _turned(sign: float) -> str:
+def _sign_note(sign: float) -> str:
     return "; height made depth" if sign < 0 else ""

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError
 from thalweg.sea.files import unit_conversion
-from thalweg.sea.files.vertical_levels import is_sigma, level_coordinate, surface_of
+from thalweg.sea.files.vertical_levels import is_sigma, level_coordinate, surface_index
 from thalweg.sea.frozen_fields import FloatArray
 
-LATITUDES: Final = (
+LATITUDE_NAMES: Final = (
     "latitude",
     "lat",
     "nav_lat",
@@ -24,27 +24,34 @@ LATITUDES: Final = (
     "gphiv",
     "gphif",
 )
-LONGITUDES: Final = (
+LONGITUDE_NAMES: Final = (
     "longitude", "lon", "nav_lon", "glamt", "xlong", "lon_rho", "glamu", "glamv", "glamf",
 )  # fmt: skip
-NORTH: Final = ("degrees_north", "degree_north", "degree_n", "degrees_n", "degreen", "degreesn")
-EAST: Final = ("degrees_east", "degree_east", "degree_e", "degrees_e", "degreee", "degreese")
-VERTICAL: Final = (
+NORTH_UNITS: Final = (
+    "degrees_north",
+    "degree_north",
+    "degree_n",
+    "degrees_n",
+    "degreen",
+    "degreesn",
+)
+EAST_UNITS: Final = ("degrees_east", "degree_east", "degree_e", "degrees_e", "degreee", "degreese")
+VERTICAL_NAMES: Final = (
     "depth", "lev", "level", "height", "sigma", "s_rho", "deptht", "depthu", "depthv", "altitude",
     "isobaric", "pressure", "plev",
 )  # fmt: skip
 WIND_HEIGHT: Final = 10.0  #: [m] height at which wind is used
-CLIMATE: Final = ("month", "season", "dayofyear", "climatology")
+CLIMATOLOGY_NAMES: Final = ("month", "season", "dayofyear", "climatology")
 
 
 def is_latitude(array: Any, name: str) -> bool:
     """Return whether a variable holds latitudes."""
-    return _is_axis(array, name, "latitude", NORTH, LATITUDES)
+    return _is_axis(array, name, "latitude", NORTH_UNITS, LATITUDE_NAMES)
 
 
 def is_longitude(array: Any, name: str) -> bool:
     """Return whether a variable holds longitudes."""
-    return _is_axis(array, name, "longitude", EAST, LONGITUDES)
+    return _is_axis(array, name, "longitude", EAST_UNITS, LONGITUDE_NAMES)
 
 
 def _is_axis(
@@ -112,7 +119,7 @@ def _time_fault(source: str, name: str, fault: str) -> DatasetError:
     )
 
 
-def time_of(dataset: Any, array: Any) -> Any:
+def time_coordinate(dataset: Any, array: Any) -> Any:
     """Return the time coordinate of a variable: along one of its dimensions, or scalar, or None."""
     along = [
         dataset[n]
@@ -149,20 +156,20 @@ def pick_surface(dataset: Any, array: Any, keep: frozenset[str], role: str, sour
             array = array.isel({dim: 0})
             continue
         levels = level_coordinate(dataset, str(dim))
-        array = array.isel({dim: _level(dim, levels, role, str(array.name), source)})
+        array = array.isel({dim: _select_level(dim, levels, role, str(array.name), source)})
     return array
 
 
-def _level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
+def _select_level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
     lower = dim.lower()
-    if any(word in lower for word in CLIMATE):
+    if any(word in lower for word in CLIMATOLOGY_NAMES):
         raise _layout_fault(
             source, name, f"is a climatology along {dim!r}: a mean year has no dates",
             "Make a file with real dates, one for each month you sail in.",
         )  # fmt: skip
     attributes = levels.attrs if levels is not None else {}
     is_vertical = (
-        any(lower.startswith(word) for word in VERTICAL)
+        any(lower.startswith(word) for word in VERTICAL_NAMES)
         or attributes.get("axis") == "Z"
         or "positive" in attributes
         or (levels is not None and is_sigma(levels))
@@ -173,7 +180,7 @@ def _level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
             "Select one entry of it into a file first.",
         )  # fmt: skip
     if "wind" not in role:
-        return surface_of(levels)
+        return surface_index(levels)
     if _is_pressure(levels):
         raise _layout_fault(
             source, name, f"is wind at levels of pressure ({levels.name}), none of them at 10 m",
@@ -211,11 +218,13 @@ def wind_height_fault(dataset: Any, array: Any) -> str | None:
 def _is_pressure(axis: Any) -> bool:
     """Return whether a vertical axis counts in pressure."""
     named = str(axis.name).lower().startswith(("isobaric", "pressure", "plev"))
-    return named or unit_conversion.factor(str(axis.attrs.get("units", "")), "pressure") is not None
+    return (
+        named or unit_conversion.si_factor(str(axis.attrs.get("units", "")), "pressure") is not None
+    )
 
 
 def _is_vertical(axis: Any, name: str) -> bool:
-    known = any(name.lower().startswith(word) for word in VERTICAL)
+    known = any(name.lower().startswith(word) for word in VERTICAL_NAMES)
     return known and axis.ndim <= 1 and axis.dtype.kind in "fiu"
 
 
@@ -229,7 +238,7 @@ def _layout_fault(source: str, name: str, fault: str, remedy: str) -> DatasetErr
     )
 
 
-def crs_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: str) -> Any:
+def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: str) -> Any:
     """Return the projection (pyproj CRS) of a variable or dataset, or None if none is stated."""
     from pyproj import CRS
     from pyproj.exceptions import CRSError

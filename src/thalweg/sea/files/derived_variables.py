@@ -7,29 +7,29 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.sea.files.block_cache import Window
-from thalweg.sea.files.grid_detection import Placement
+from thalweg.sea.files.block_cache import GridWindow
+from thalweg.sea.files.grid_detection import GridPlacement
 from thalweg.sea.frozen_fields import FloatArray
 
 Combine = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
 
 
-def same(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
+def identity(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
     """Return what comes in."""
     return arrays
 
 
-def times(sign: float) -> Combine:
+def scale_by(sign: float) -> Combine:
     """Return what multiplies an array."""
     return lambda arrays: [sign * arrays[0]]
 
 
-def minus(sign: float) -> Combine:
+def subtract(sign: float) -> Combine:
     """Return what takes the second array, of a sign, from the first."""
     return lambda arrays: [arrays[0] - sign * arrays[1]]
 
 
-def polar(sign: float) -> Combine:
+def polar_to_components(sign: float) -> Combine:
     """Return what makes components of a speed and a direction [deg]; -1 where it tells from."""
 
     def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
@@ -39,7 +39,7 @@ def polar(sign: float) -> Combine:
     return combine
 
 
-def unit_vector(sign: float) -> Combine:
+def direction_to_unit_vector(sign: float) -> Combine:
     """Return what makes a unit vector of a direction [deg]; -1 where it tells from."""
 
     def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
@@ -49,22 +49,24 @@ def unit_vector(sign: float) -> Combine:
     return combine
 
 
-def maker(combine: Combine, place: Placement, turn: bool) -> Any:
+def make_conversion(combine: Combine, place: GridPlacement, turn: bool) -> Any:
     """Return what turns arrays of a window, in SI, into canonical ones."""
     angle = place.angle if turn else None
 
-    def make(raws: Sequence[FloatArray], window: Window) -> Sequence[FloatArray]:
+    def make(raws: Sequence[FloatArray], window: GridWindow) -> Sequence[FloatArray]:
         made = combine(raws)
         if angle is not None:
-            made = _rotate(made[0], made[1], _part(angle, window, place.mesh is not None))
+            made = _rotate(
+                made[0], made[1], _angle_in_window(angle, window, place.mesh is not None)
+            )
         if place.mesh is not None and place.mesh.averaging is not None:
-            made = [place.mesh.averaging.with_nodes(value) for value in made]
+            made = [place.mesh.averaging.append_nodes(value) for value in made]
         return made
 
     return make
 
 
-def _part(angle: FloatArray, window: Window, is_mesh: bool) -> FloatArray:
+def _angle_in_window(angle: FloatArray, window: GridWindow, is_mesh: bool) -> FloatArray:
     if is_mesh:
         return angle
     columns = np.arange(window.x0, window.x0 + window.width) % angle.shape[1]

@@ -7,19 +7,25 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from thalweg.core.errors import DatasetError
-from thalweg.sea.ensemble_layer import versions_of
-from thalweg.sea.files.conform import Draft, Drafted, Memo, OpenedFile, drafts_of
+from thalweg.sea.ensemble_layer import combine_member_layers
+from thalweg.sea.files.conform import (
+    FileContents,
+    LayerCandidate,
+    OpenedFile,
+    PlacementCache,
+    layer_candidates,
+)
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.layer import Layer
 
 #: names of the dimension, besides whatever has the standard name "realization"
-MEMBERS: Final = (
+MEMBER_DIMENSIONS: Final = (
     "number", "member", "members", "ensemble", "ensemble_member", "realization", "realisation",
     "ens", "nens",
 )  # fmt: skip
 
 
-def member_file(file: OpenedFile) -> MemberFile | None:
+def ensemble_file(file: OpenedFile) -> EnsembleFile | None:
     """Return the file as an ensemble of two or more members, or None if it holds none.
 
     Raises
@@ -31,7 +37,7 @@ def member_file(file: OpenedFile) -> MemberFile | None:
     found = [
         str(dim)
         for dim, size in dataset.sizes.items()
-        if size > 1 and _names_members(dataset, str(dim)) and _carries_fields(dataset, dim)
+        if size > 1 and _is_member_dimension(dataset, str(dim)) and _has_fields(dataset, dim)
     ]
     if len(found) > 1:
         raise DatasetError(
@@ -40,21 +46,21 @@ def member_file(file: OpenedFile) -> MemberFile | None:
             "Stack them into one dimension, or select along one of them.",
             file=file.source,
         )
-    return MemberFile(file, found[0], Memo(), []) if found else None
+    return EnsembleFile(file, found[0], PlacementCache(), []) if found else None
 
 
-def _names_members(dataset: Any, dim: str) -> bool:
+def _is_member_dimension(dataset: Any, dim: str) -> bool:
     standard = dataset[dim].attrs.get("standard_name") if dim in dataset.variables else None
-    return standard == "realization" or dim.lower() in MEMBERS
+    return standard == "realization" or dim.lower() in MEMBER_DIMENSIONS
 
 
-def _carries_fields(dataset: Any, dim: Any) -> bool:
+def _has_fields(dataset: Any, dim: Any) -> bool:
     """Return whether some variable has other dimensions besides this one."""
     return any(dim in dataset[n].dims and dataset[n].ndim > 1 for n in dataset.data_vars)
 
 
 @dataclass(frozen=True, eq=False)
-class MemberFile:
+class EnsembleFile:
     """A file and the dimension along which it holds an ensemble.
 
     Attributes
@@ -63,7 +69,7 @@ class MemberFile:
         All of it.
     dim : str
         The dimension.
-    memo : Memo
+    placement_cache : Memo
         What is the same for every member: positions and meshes.
     shared : list of Draft
         The drafts of the first member, of which some hold for all.
@@ -71,15 +77,15 @@ class MemberFile:
 
     file: OpenedFile
     dim: str
-    memo: Memo
-    shared: list[Draft]
+    placement_cache: PlacementCache
+    shared: list[LayerCandidate]
 
     @property
     def size(self) -> int:
         """How many members it holds."""
         return int(self.file.dataset.sizes[self.dim])
 
-    def drafts(self, index: int, mapping: Mapping[str, str]) -> Drafted:
+    def candidates(self, index: int, mapping: Mapping[str, str]) -> FileContents:
         """Return what one member holds; what no member has of its own is the same every time."""
         whole = self.file
         one = replace(
@@ -88,19 +94,19 @@ class MemberFile:
             source=f"{whole.source}, member {index}",
             facts={**whole.facts, "member": index},
         )
-        drafts, ignored = drafts_of(one, mapping, self.memo)
+        candidates, ignored = layer_candidates(one, mapping, self.placement_cache)
         if not self.shared:
-            told = [replace(d, file=whole) for d in drafts]
+            told = [replace(d, file=whole) for d in candidates]
             self.shared.extend(told)
-        kept = [d if self._varies(d) else s for d, s in zip(drafts, self.shared)]
+        kept = [d if self._varies(d) else s for d, s in zip(candidates, self.shared)]
         return kept, ignored
 
-    def _varies(self, draft: Draft) -> bool:
+    def _varies(self, draft: LayerCandidate) -> bool:
         names = {v.name for quantity in draft.quantities for v in quantity.variables}
         return any(self.dim in self.file.dataset[name].dims for name in names)
 
 
-def check_sizes(files: Sequence[MemberFile]) -> int:
+def check_member_counts(files: Sequence[EnsembleFile]) -> int:
     """Return how many members the files hold.
 
     Raises
@@ -119,11 +125,11 @@ def check_sizes(files: Sequence[MemberFile]) -> int:
     return sizes.pop()
 
 
-def merged_versions(members: Sequence[Sequence[GridLayer]]) -> list[Layer]:
+def combine_members(members: Sequence[Sequence[GridLayer]]) -> list[Layer]:
     """Return the layers of an ensemble; what is the same for all members is one plain layer."""
     layers: list[Layer] = []
     for group in zip(*members):
         first = group[0].provenance()
         same = all(layer.provenance() == first for layer in group)
-        layers.append(group[0] if same else versions_of(group))
+        layers.append(group[0] if same else combine_member_layers(group))
     return layers

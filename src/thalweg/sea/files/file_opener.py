@@ -15,18 +15,23 @@ import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.sea.files import conform, grib, netcdf3_check, time_concatenation
-from thalweg.sea.files.block_cache import READ_ERRORS, Window
-from thalweg.sea.files.conform import Drafted, OpenedFile
-from thalweg.sea.files.ensemble_members import check_sizes, member_file, merged_versions
-from thalweg.sea.files.variable_recognition import Ignored, check_mapping
+from thalweg.sea.files.block_cache import READ_ERRORS, GridWindow
+from thalweg.sea.files.conform import FileContents, OpenedFile
+from thalweg.sea.files.ensemble_members import check_member_counts, combine_members, ensemble_file
+from thalweg.sea.files.variable_recognition import IgnoredVariable, check_mapping
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.layer import Layer
 
-HDF5: Final = b"\x89HDF\r\n\x1a\n"
-PACKED: Final = {b"PK\x03\x04": "zip", b"\x1f\x8b": "gzip", b"BZh": "bzip2", b"\xfd7zXZ": "xz"}
-UNDATED: Final[dict[str, Any]] = {"decode_times": False, "decode_timedelta": False}
-ZARR_MARKS: Final = (".zgroup", ".zmetadata", "zarr.json", ".zattrs")
-KINDS: Final = "NetCDF (classic and netCDF-4), GRIB 1 and 2, and Zarr can be read."
+HDF5_MAGIC: Final = b"\x89HDF\r\n\x1a\n"
+COMPRESSED_FORMATS: Final = {
+    b"PK\x03\x04": "zip",
+    b"\x1f\x8b": "gzip",
+    b"BZh": "bzip2",
+    b"\xfd7zXZ": "xz",
+}
+WITHOUT_TIME_DECODING: Final[dict[str, Any]] = {"decode_times": False, "decode_timedelta": False}
+ZARR_METADATA_FILES: Final = (".zgroup", ".zmetadata", "zarr.json", ".zattrs")
+READABLE_FORMATS: Final = "NetCDF (classic and netCDF-4), GRIB 1 and 2, and Zarr can be read."
 FIRST_ROWS: Final = (
     5  #: rows of a large grid that are read on opening, to see whether they make sense
 )
@@ -52,27 +57,31 @@ def open_layers(
     mapping = dict(mapping or {})
     files = [part for source in sources for part in open_file(source)]
     if draught is not None:
-        files = [_averaged(file, _checked_draught(draught)) for file in files]
+        files = [_with_draught(file, _checked_draught(draught)) for file in files]
     check_mapping(mapping, frozenset(str(n) for f in files for n in f.dataset.variables))
-    ensembles = {k: found for k, f in enumerate(files) if (found := member_file(f)) is not None}
+    ensembles = {k: found for k, f in enumerate(files) if (found := ensemble_file(f)) is not None}
     if not ensembles:
-        return list(_looked_at(_drafted(files, lambda k: conform.drafts_of(files[k], mapping))))
-    plain: dict[int, Drafted] = {}
+        return list(
+            _checked_layers(
+                _layers_of_files(files, lambda k: conform.layer_candidates(files[k], mapping))
+            )
+        )
+    plain: dict[int, FileContents] = {}
 
-    def draft(k: int, index: int) -> Drafted:
+    def draft(k: int, index: int) -> FileContents:
         if k in ensembles:
-            return ensembles[k].drafts(index, mapping)
+            return ensembles[k].candidates(index, mapping)
         if k not in plain:
-            plain[k] = conform.drafts_of(files[k], mapping)
+            plain[k] = conform.layer_candidates(files[k], mapping)
         return plain[k]
 
-    count = check_sizes(list(ensembles.values()))
-    return merged_versions(
-        [_looked_at(_drafted(files, partial(draft, index=i))) for i in range(count)]
+    count = check_member_counts(list(ensembles.values()))
+    return combine_members(
+        [_checked_layers(_layers_of_files(files, partial(draft, index=i))) for i in range(count)]
     )
 
 
-def _averaged(file: OpenedFile, draught: float) -> OpenedFile:
+def _with_draught(file: OpenedFile, draught: float) -> OpenedFile:
     return replace(file, draught=draught, facts={**file.facts, "draught_m": draught})
 
 
@@ -88,10 +97,12 @@ def _checked_draught(draught: float) -> float:
     return float(draught)
 
 
-def _drafted(files: Sequence[OpenedFile], draft: Callable[[int], Drafted]) -> list[GridLayer]:
+def _layers_of_files(
+    files: Sequence[OpenedFile], draft: Callable[[int], FileContents]
+) -> list[GridLayer]:
     """Return the layers of files; a part of a file may hold nothing if another part does."""
-    drafts: list[conform.Draft] = []
-    ignored: dict[str, list[Ignored]] = {}
+    candidates: list[conform.LayerCandidate] = []
+    ignored: dict[str, list[IgnoredVariable]] = {}
     faults: dict[str, DatasetError] = {}
     useful: set[str] = set()
     for k, file in enumerate(files):
@@ -101,29 +112,29 @@ def _drafted(files: Sequence[OpenedFile], draft: Callable[[int], Drafted]) -> li
             faults.setdefault(file.source, fault)
             continue
         useful.add(file.source)
-        drafts += found
+        candidates += found
         for source in {file.source, *(d.file.source for d in found)}:
             ignored.setdefault(source, []).extend(left)
     for source, nothing in faults.items():
         if source not in useful:
             raise nothing
-    return time_concatenation.layers_of(drafts, ignored)
+    return time_concatenation.join_in_time(candidates, ignored)
 
 
-def _looked_at(layers: list[GridLayer]) -> list[GridLayer]:
+def _checked_layers(layers: list[GridLayer]) -> list[GridLayer]:
     for layer in layers:
-        first_look(layer)
+        check_readable(layer)
     return layers
 
 
-def first_look(layer: GridLayer) -> None:
+def check_readable(layer: GridLayer) -> None:
     """Read a little of the middle of each quantity, so that damage and wrong units show at once."""
     rows, columns = layer.grid.shape
     middle = layer.axis.times.size // 2
     count = rows if rows * columns <= SMALL_LEVEL else min(rows, FIRST_ROWS)
     y0 = (rows - count) // 2
     for quantity in layer.quantities:
-        quantity.read(Window(middle, middle + 1, y0, y0 + count, 0, columns), columns)
+        quantity.read(GridWindow(middle, middle + 1, y0, y0 + count, 0, columns), columns)
 
 
 def open_file(source: Any) -> list[OpenedFile]:
@@ -144,37 +155,39 @@ def open_file(source: Any) -> list[OpenedFile]:
         )
     path = Path(source).expanduser()
     if not path.exists():
-        raise _missing(path)
+        raise _missing_file_error(path)
     if path.is_dir():
         return [_open_zarr(path)]
-    facts = _facts(path)
+    facts = _file_facts(path)
     if facts["size"] == 0:
-        raise not_data(path, "is empty")
-    with _reading(path), path.open("rb") as stream:
+        raise not_data_error(path, "is empty")
+    with _dataset_errors(path), path.open("rb") as stream:
         head = stream.read(1024)
-    if head[:8] == HDF5:
+    if head[:8] == HDF5_MAGIC:
         return [OpenedFile(_open_netcdf(path, ("netcdf4", "h5netcdf")), path.name, facts)]
     if head[:3] == b"CDF" and head[3:4] in (b"\x01", b"\x02", b"\x05"):
-        netcdf3_check.check_whole(path)
+        netcdf3_check.check_complete(path)
         return [OpenedFile(_open_netcdf(path, ("netcdf4", "scipy")), path.name, facts)]
     if b"GRIB" in head:
         return [OpenedFile(d, path.name, facts) for d in grib.open_grib(path)]
-    packed = next((kind for mark, kind in PACKED.items() if head.startswith(mark)), None)
+    packed = next(
+        (kind for mark, kind in COMPRESSED_FORMATS.items() if head.startswith(mark)), None
+    )
     if packed is not None:
-        raise not_data(path, f"is packed ({packed})", "Unpack it first.")
-    raise not_data(path, "does not begin like any file of met-ocean data that is known")
+        raise not_data_error(path, f"is packed ({packed})", "Unpack it first.")
+    raise not_data_error(path, "does not begin like any file of met-ocean data that is known")
 
 
-def _facts(path: Path) -> dict[str, Any]:
+def _file_facts(path: Path) -> dict[str, Any]:
     status = path.stat()
     return {"name": path.name, "size": status.st_size, "mtime_ns": status.st_mtime_ns}
 
 
-def _missing(path: Path) -> InputError:
+def _missing_file_error(path: Path) -> InputError:
     folder = path.parent
-    from thalweg.core.errors import near_matches
+    from thalweg.core.errors import close_matches
 
-    near = near_matches(path.name, [p.name for p in folder.iterdir()]) if folder.is_dir() else []
+    near = close_matches(path.name, [p.name for p in folder.iterdir()]) if folder.is_dir() else []
     return InputError(
         f"There is no file {str(path)!r}.",
         f"Its folder {'exists' if folder.is_dir() else 'does not exist either'}.",
@@ -183,20 +196,20 @@ def _missing(path: Path) -> InputError:
     )
 
 
-def not_data(path: Path, fault: str, remedy: str = "Check the file.") -> DatasetError:
+def not_data_error(path: Path, fault: str, remedy: str = "Check the file.") -> DatasetError:
     """Return the error for a file that is not data."""
-    return DatasetError(f"{path.name} {fault}.", KINDS, remedy, file=str(path))
+    return DatasetError(f"{path.name} {fault}.", READABLE_FORMATS, remedy, file=str(path))
 
 
 @contextmanager
-def _reading(path: Path) -> Iterator[None]:
+def _dataset_errors(path: Path) -> Iterator[None]:
     """Turn system errors on reading a path into `DatasetError`."""
     try:
         yield
     except OSError as error:
         raise DatasetError(
             f"{path.name} cannot be read ({error.strerror or error}).",
-            KINDS,
+            READABLE_FORMATS,
             "Check the rights to the file.",
             file=str(path),
         ) from error
@@ -206,22 +219,22 @@ def _open_netcdf(path: Path, engines: Sequence[str]) -> Any:
     import xarray as xr
 
     def opener(engine: str) -> Any:
-        return xr.open_dataset(path, engine=engine, **UNDATED)
+        return xr.open_dataset(path, engine=engine, **WITHOUT_TIME_DECODING)
 
-    return _opened(path, engines, opener)
+    return _open_with_engine(path, engines, opener)
 
 
 def _open_zarr(path: Path) -> OpenedFile:
-    if not any((path / mark).exists() for mark in ZARR_MARKS):
-        raise not_data(path, "is a folder, but not a Zarr store")
+    if not any((path / mark).exists() for mark in ZARR_METADATA_FILES):
+        raise not_data_error(path, "is a folder, but not a Zarr store")
     import xarray as xr
 
     def opener(engine: str) -> Any:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Failed to open Zarr store with consolidated")
-            return xr.open_dataset(path, engine=engine, chunks=None, **UNDATED)
+            return xr.open_dataset(path, engine=engine, chunks=None, **WITHOUT_TIME_DECODING)
 
-    dataset = _opened(path, ("zarr",), opener)
+    dataset = _open_with_engine(path, ("zarr",), opener)
     stamps = [p.stat() for p in path.rglob("*") if p.is_file()]
     facts = {
         "name": path.name,
@@ -231,7 +244,7 @@ def _open_zarr(path: Path) -> OpenedFile:
     return OpenedFile(dataset, path.name, facts)
 
 
-def _opened(path: Path, engines: Sequence[str], opener: Callable[[str], Any]) -> Any:
+def _open_with_engine(path: Path, engines: Sequence[str], opener: Callable[[str], Any]) -> Any:
     """Return what the first engine that is installed makes of a file."""
     missing: list[str] = []
     for engine in engines:
@@ -245,13 +258,13 @@ def _opened(path: Path, engines: Sequence[str], opener: Callable[[str], Any]) ->
                 continue
             raise DatasetError(
                 f"{path.name} is damaged or incomplete ({str(error).splitlines()[0][:200]}).",
-                KINDS,
+                READABLE_FORMATS,
                 "Fetch the file again.",
                 file=str(path),
             ) from error
     raise DatasetError(
         f"{path.name} needs a package that is not installed ({' or '.join(missing)}).",
-        KINDS,
+        READABLE_FORMATS,
         f"pip install {'thalweg[zarr]' if 'zarr' in missing else missing[0]}",
         file=os.fspath(path),
     )

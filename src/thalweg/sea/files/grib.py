@@ -22,7 +22,7 @@ import numpy as np
 from thalweg.core.errors import DatasetError
 
 WORKER: Final = Path(__file__).with_name("grib_worker.py")
-_SHORTEST: Final = 12  #: [bytes] of a message that has its ends
+_MIN_MESSAGE_LENGTH: Final = 12  #: [bytes] of a message that has its ends
 TIME_LIMIT: Final = 1800.0  #: [s] after which a worker is given up
 
 
@@ -38,14 +38,14 @@ def open_grib(path: Path) -> list[Any]:
     folder = Path(tempfile.mkdtemp(prefix="thalweg-grib-"))
     try:
         listing = _decode(path, folder)
-        keeper = _Keeper(folder)
+        keeper = _TemporaryFolder(folder)
         return [_dataset(folder, part, keeper) for part in listing]
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
 
 
-class _Keeper:
+class _TemporaryFolder:
     """Removes the temporary folder when the last array mapped from it is gone."""
 
     def __init__(self, folder: Path) -> None:
@@ -56,10 +56,10 @@ class _Keeper:
         """Return an array mapped from a file of the folder."""
         array = np.load(path, mmap_mode="r")
         self.users += 1
-        weakref.finalize(array, self._let_go)
+        weakref.finalize(array, self._release)
         return array
 
-    def _let_go(self) -> None:
+    def _release(self) -> None:
         self.users -= 1
         if self.users == 0:
             self._remove()
@@ -78,20 +78,20 @@ def check_messages(path: Path) -> int:
                     break
                 place += skipped
                 continue
-            length = _length(head)
+            length = _message_length(head)
             if length is None:
                 return count + 1
-            whole = _SHORTEST <= length <= size - place
+            whole = _MIN_MESSAGE_LENGTH <= length <= size - place
             stream.seek(place + length - 4 if whole else size)
             if stream.read(4) != b"7777":
-                raise _damaged(path, f"message {count + 1} is cut or damaged")
+                raise _damaged_file_error(path, f"message {count + 1} is cut or damaged")
             place, count = place + length, count + 1
     if count == 0:
-        raise _damaged(path, "it holds no whole message")
+        raise _damaged_file_error(path, "it holds no whole message")
     return count
 
 
-def _length(head: bytes) -> int | None:
+def _message_length(head: bytes) -> int | None:
     """Return the length of a message; None for the over-long edition 1 messages of ECMWF."""
     if len(head) < 16:
         return 1 << 62
@@ -109,7 +109,7 @@ def _decode(path: Path, folder: Path) -> list[dict[str, Any]]:
             command, capture_output=True, text=True, timeout=TIME_LIMIT, check=False, cwd=folder
         )
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise _damaged(path, f"the decoder did not finish ({error})") from error
+        raise _damaged_file_error(path, f"the decoder did not finish ({error})") from error
     answer = folder / "listing.json"
     if answer.exists():  # written last; a crash while the worker exits does not matter
         listing: list[dict[str, Any]] = json.loads(answer.read_text("utf-8"))
@@ -122,10 +122,10 @@ def _decode(path: Path, folder: Path) -> list[dict[str, Any]]:
             "pip install 'thalweg[grib]'",
             file=str(path),
         )
-    raise _damaged(path, f"the decoder failed (exit {done.returncode}: {told})")
+    raise _damaged_file_error(path, f"the decoder failed (exit {done.returncode}: {told})")
 
 
-def _damaged(path: Path, fault: str) -> DatasetError:
+def _damaged_file_error(path: Path, fault: str) -> DatasetError:
     return DatasetError(
         f"{path.name} cannot be decoded: {fault}.",
         "Whole GRIB 1 and GRIB 2 files are read.",
@@ -134,7 +134,7 @@ def _damaged(path: Path, fault: str) -> DatasetError:
     )
 
 
-def _dataset(folder: Path, part: dict[str, Any], keeper: _Keeper) -> Any:
+def _dataset(folder: Path, part: dict[str, Any], keeper: _TemporaryFolder) -> Any:
     """Build a dataset over the arrays the worker left, mapped and not read."""
     import xarray as xr
 

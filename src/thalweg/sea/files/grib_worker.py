@@ -26,15 +26,15 @@ def main(source: str, folder: Path) -> None:
 
     parts = cfgrib.open_datasets(source, backend_kwargs={"indexpath": "", "errors": "raise"})
     parts = [part for part in parts if not UPPER_AIR & set(map(str, part.coords))]
-    listing = [describe(part, k, folder) for k, part in enumerate(parts)]
+    listing = [write_arrays(part, k, folder) for k, part in enumerate(parts)]
     (folder / "listing.tmp").write_text(json.dumps(listing), "utf-8")
     os.replace(folder / "listing.tmp", folder / "listing.json")
 
 
-def describe(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
+def write_arrays(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
     """Write the arrays of a dataset and return what belongs to them."""
-    dataset = dated(dataset)
-    kept: dict[str, Any] = {"fields": {}, "coords": {}, "attrs": plain(dataset.attrs)}
+    dataset = with_valid_time(dataset)
+    kept: dict[str, Any] = {"fields": {}, "coords": {}, "attrs": json_attributes(dataset.attrs)}
     for name, array in dataset.variables.items():
         values = np.asarray(array.values)
         is_time = values.dtype.kind == "M"
@@ -47,14 +47,14 @@ def describe(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
         told = {
             "file": file,
             "dims": [str(d) for d in array.dims],
-            "attrs": plain(array.attrs),
+            "attrs": json_attributes(array.attrs),
             "is_time": is_time,
         }
         kept["coords" if name in dataset.coords else "fields"][str(name)] = told
     return kept
 
 
-def dated(dataset: Any) -> Any:
+def with_valid_time(dataset: Any) -> Any:
     """Return a dataset whose time axis is the time its fields are valid at.
 
     A run of a forecast has one ``time`` and many ``step``: those become ``valid_time``.
@@ -72,7 +72,7 @@ def dated(dataset: Any) -> Any:
     return dataset
 
 
-def plain(attributes: dict[str, Any]) -> dict[str, Any]:
+def json_attributes(attributes: dict[str, Any]) -> dict[str, Any]:
     """Return attributes that JSON can hold."""
     kept = {}
     for key, value in attributes.items():

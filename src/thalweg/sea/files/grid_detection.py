@@ -14,11 +14,11 @@ from thalweg.sea.files.ugrid import MeshLayout
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.grids.point_location import Grid, RectilinearGrid, curvilinear_grid
 
-NEMO_U = ("glamu", "gphiu")
+NEMO_U_COORDINATES = ("glamu", "gphiu")
 
 
 @dataclass(frozen=True, eq=False)
-class Placement:
+class GridPlacement:
     """Where the values of a variable lie.
 
     Attributes
@@ -45,9 +45,9 @@ class Placement:
     mesh: MeshLayout | None = None
 
 
-def placement(
+def grid_placement(
     dataset: Any, array: Any, mapping: Mapping[str, str], source: str, meshes: list[MeshLayout]
-) -> Placement:
+) -> GridPlacement:
     """Return where a variable lies.
 
     Raises
@@ -57,19 +57,21 @@ def placement(
     """
     for mesh in meshes:
         if mesh.dim in array.dims:
-            return Placement(mesh.key, mesh.grid, (mesh.dim,), mesh.angle, mesh=mesh)
-    lat = _position(dataset, array, co.is_latitude, co.LATITUDES)
-    lon = _position(dataset, array, co.is_longitude, co.LONGITUDES)
+            return GridPlacement(mesh.key, mesh.grid, (mesh.dim,), mesh.angle, mesh=mesh)
+    lat = _find_coordinate(dataset, array, co.is_latitude, co.LATITUDE_NAMES)
+    lon = _find_coordinate(dataset, array, co.is_longitude, co.LONGITUDE_NAMES)
     if lat is None or lon is None:
-        return _projected(dataset, array, mapping, source)
+        return _projected_placement(dataset, array, mapping, source)
     if lat.ndim == 2 and lon.ndim == 2 and lat.dims == lon.dims:
-        return _curvilinear(dataset, lat, lon)
+        return _curvilinear_placement(dataset, lat, lon)
     if lat.ndim == 1 and lon.ndim == 1 and lat.dims != lon.dims:
-        return _rectilinear(lat, lon, source)
-    raise _no_field(array, source, "lies at single points, not on a grid, and no mesh joins them")
+        return _rectilinear_grid(lat, lon, source)
+    raise _no_field_error(
+        array, source, "lies at single points, not on a grid, and no mesh joins them"
+    )
 
 
-def _position(dataset: Any, array: Any, test: Any, order: tuple[str, ...]) -> Any:
+def _find_coordinate(dataset: Any, array: Any, test: Any, order: tuple[str, ...]) -> Any:
     """Return the latitude or longitude that fits a variable's dimensions, T points first."""
     fitting = [
         dataset[n]
@@ -78,34 +80,34 @@ def _position(dataset: Any, array: Any, test: Any, order: tuple[str, ...]) -> An
         and set(dataset[n].dims) <= set(array.dims)
         and test(dataset[n], str(n))
     ]
-    return min(fitting, key=lambda a: _rank(a, order), default=None)
+    return min(fitting, key=lambda a: _coordinate_rank(a, order), default=None)
 
 
-def _rank(array: Any, order: tuple[str, ...]) -> tuple[int, int]:
+def _coordinate_rank(array: Any, order: tuple[str, ...]) -> tuple[int, int]:
     name = str(array.name).lower()
     return -array.ndim, order.index(name) if name in order else 3
 
 
-def _rectilinear(lat: Any, lon: Any, source: str) -> Placement:
-    y = _axis(lat, source, "latitude")
-    x = np.unwrap(_axis(lon, source, "longitude"), period=360.0)
+def _rectilinear_grid(lat: Any, lon: Any, source: str) -> GridPlacement:
+    y = _read_axis(lat, source, "latitude")
+    x = np.unwrap(_read_axis(lon, source, "longitude"), period=360.0)
     if np.abs(y).max() > 90.0 + 1e-6:
         raise _axis_fault(source, str(lat.name), f"reaches {y[np.argmax(np.abs(y))]:g} degrees")
     flipped = x.size > 1 and x[1] < x[0]
     x = x[::-1] if flipped else x
-    for axis, name in ((np.sort(y) if _falls(y) else y, lat.name), (x, lon.name)):
+    for axis, name in ((np.sort(y) if _is_decreasing(y) else y, lat.name), (x, lon.name)):
         if (np.diff(axis) <= 0.0).any():
             raise _axis_fault(source, str(name), "neither increases nor decreases all along")
     grid = RectilinearGrid(np.ascontiguousarray(y), np.ascontiguousarray(x))
     dims = (str(lat.dims[0]), str(lon.dims[0]))
-    return Placement((*dims, str(lat.name), str(lon.name)), grid, dims, flipped=bool(flipped))
+    return GridPlacement((*dims, str(lat.name), str(lon.name)), grid, dims, flipped=bool(flipped))
 
 
-def _falls(axis: FloatArray) -> bool:
+def _is_decreasing(axis: FloatArray) -> bool:
     return bool((np.diff(axis) < 0.0).all())
 
 
-def _axis(array: Any, source: str, what: str) -> FloatArray:
+def _read_axis(array: Any, source: str, what: str) -> FloatArray:
     values = np.asarray(array.values, np.float64)
     if str(array.attrs.get("units", "")).lower() in ("radian", "radians"):
         values = np.degrees(values)
@@ -124,7 +126,7 @@ def _axis_fault(source: str, name: str, fault: str) -> DatasetError:
     )
 
 
-def _curvilinear(dataset: Any, lat: Any, lon: Any) -> Placement:
+def _curvilinear_placement(dataset: Any, lat: Any, lon: Any) -> GridPlacement:
     y, x = np.asarray(lat.values, np.float64), np.asarray(lon.values, np.float64)
     dims = (str(lat.dims[0]), str(lat.dims[1]))
     key = (*dims, str(lat.name), str(lon.name))
@@ -133,12 +135,12 @@ def _curvilinear(dataset: Any, lat: Any, lon: Any) -> Placement:
         x, np.broadcast_to(x[0], x.shape)
     )
     rising = is_plain and (np.diff(columns) > 0.0).all()
-    if rising and ((np.diff(rows) > 0.0).all() or _falls(rows)):
-        return Placement(key, RectilinearGrid(rows.copy(), columns), dims)
+    if rising and ((np.diff(rows) > 0.0).all() or _is_decreasing(rows)):
+        return GridPlacement(key, RectilinearGrid(rows.copy(), columns), dims)
     angle = co.grid_angle(y, x)
     if _runs_backwards(dataset, dims[1]):
         angle = angle + np.pi
-    return Placement(key, curvilinear_grid(y, x), dims, angle)
+    return GridPlacement(key, curvilinear_grid(y, x), dims, angle)
 
 
 def _runs_backwards(dataset: Any, dim: str) -> bool:
@@ -149,7 +151,9 @@ def _runs_backwards(dataset: Any, dim: str) -> bool:
     return bool(first[1] < first[0])
 
 
-def _projected(dataset: Any, array: Any, mapping: Mapping[str, str], source: str) -> Placement:
+def _projected_placement(
+    dataset: Any, array: Any, mapping: Mapping[str, str], source: str
+) -> GridPlacement:
     """Place a variable that has only projected x and y axes, by its stated projection."""
     axes = {}
     for name in dataset.variables:
@@ -158,10 +162,10 @@ def _projected(dataset: Any, array: Any, mapping: Mapping[str, str], source: str
         if axis.ndim == 1 and axis.dims[0] in array.dims and standard.startswith("projection_"):
             axes[standard[11]] = axis
     if len(axes) < 2:
-        raise _no_field(array, source, "has no positions: no latitude and longitude along it")
-    crs = co.crs_of(dataset, array, mapping, source)
+        raise _no_field_error(array, source, "has no positions: no latitude and longitude along it")
+    crs = co.projection_of(dataset, array, mapping, source)
     if crs is None:
-        raise no_projection(source)
+        raise no_projection_error(source)
     scale = [1000.0 if axes[k].attrs.get("units") == "km" else 1.0 for k in "xy"]
     x, y = np.meshgrid(
         np.asarray(axes["x"].values, float) * scale[0],
@@ -169,10 +173,10 @@ def _projected(dataset: Any, array: Any, mapping: Mapping[str, str], source: str
     )
     lat, lon = co.to_degrees(crs, x, y)
     dims = (str(axes["y"].dims[0]), str(axes["x"].dims[0]))
-    return Placement(dims, curvilinear_grid(lat, lon), dims, co.meridian_angle(crs, x, y))
+    return GridPlacement(dims, curvilinear_grid(lat, lon), dims, co.meridian_angle(crs, x, y))
 
 
-def no_projection(source: str) -> DatasetError:
+def no_projection_error(source: str) -> DatasetError:
     """Return the error for projected positions without a projection."""
     return DatasetError(
         f"{source}: positions are in metres of a projection that the file does not name.",
@@ -182,7 +186,7 @@ def no_projection(source: str) -> DatasetError:
     )
 
 
-def _no_field(array: Any, source: str, fault: str) -> DatasetError:
+def _no_field_error(array: Any, source: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source}: {array.name!r} {fault} (dimensions {', '.join(map(str, array.dims))}).",
         "A sea needs fields on a grid or mesh; one cannot sail on series at buoys or lines.",

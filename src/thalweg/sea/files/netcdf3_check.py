@@ -13,8 +13,8 @@ from typing import BinaryIO, Final
 
 from thalweg.core.errors import DatasetError
 
-SIZES: Final = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
-STREAMING: Final = {4: 0xFFFFFFFF, 8: 0xFFFFFFFFFFFFFFFF}
+TYPE_SIZES: Final = {1: 1, 2: 1, 3: 2, 4: 4, 5: 4, 6: 8, 7: 1, 8: 2, 9: 4, 10: 8, 11: 8}
+STREAMING_COUNTS: Final = {4: 0xFFFFFFFF, 8: 0xFFFFFFFFFFFFFFFF}
 
 
 class _Header:
@@ -47,10 +47,10 @@ class _Header:
         for _ in range(self.list_length()):
             self.skip(self.count())
             kind = self.whole(4)
-            self.skip(self.count() * SIZES[kind])
+            self.skip(self.count() * TYPE_SIZES[kind])
 
 
-def promised_length(path: Path) -> int:
+def expected_length(path: Path) -> int:
     """Return the least length [bytes] a classic NetCDF file must have for all its data.
 
     Raises
@@ -61,7 +61,7 @@ def promised_length(path: Path) -> int:
     with path.open("rb") as stream:
         header = _Header(stream)
         records = header.count()
-        if records == STREAMING[header.width]:
+        if records == STREAMING_COUNTS[header.width]:
             records = 0
         lengths = []
         for _ in range(header.list_length()):
@@ -81,7 +81,7 @@ def _end_of_data(header: _Header, records: int, lengths: list[int]) -> int:
         kind = header.whole(4)
         header.count()  # the size as written may overflow; it is computed instead
         begin = header.whole(4 if header.version == 1 else 8)
-        size = SIZES[kind]
+        size = TYPE_SIZES[kind]
         is_record = bool(dims) and lengths[dims[0]] == 0
         for dim in dims[1:] if is_record else dims:
             size *= lengths[dim]
@@ -97,18 +97,18 @@ def _end_of_data(header: _Header, records: int, lengths: list[int]) -> int:
     return max(max(fixed), last)
 
 
-def check_whole(path: Path) -> None:
+def check_complete(path: Path) -> None:
     """Raise `DatasetError` if a classic NetCDF file is shorter than its header promises."""
     size = path.stat().st_size
     try:
-        promised = promised_length(path)
+        promised = expected_length(path)
     except (EOFError, KeyError, IndexError) as error:
-        raise _cut(path, f"its header is cut or damaged ({error})") from error
+        raise _truncated_file_error(path, f"its header is cut or damaged ({error})") from error
     if size < promised:
-        raise _cut(path, f"it has {size} of {promised} bytes")
+        raise _truncated_file_error(path, f"it has {size} of {promised} bytes")
 
 
-def _cut(path: Path, fault: str) -> DatasetError:
+def _truncated_file_error(path: Path, fault: str) -> DatasetError:
     return DatasetError(
         f"{path.name} is incomplete: {fault}.",
         "Only whole files are read; the missing part would look like a calm sea.",

@@ -11,7 +11,7 @@ from thalweg.core.errors import DatasetError
 from thalweg.sea import standard_names as nm
 
 #: least and largest value that is believed, SI; generous, to catch units and fill values only
-PLAUSIBLE: Final[dict[str, tuple[float, float]]] = {
+PLAUSIBLE_RANGES: Final[dict[str, tuple[float, float]]] = {
     nm.EASTWARD_WIND: (-120.0, 120.0),
     nm.NORTHWARD_WIND: (-120.0, 120.0),
     "wind_speed": (0.0, 120.0),
@@ -25,15 +25,15 @@ PLAUSIBLE: Final[dict[str, tuple[float, float]]] = {
     nm.PRESSURE: (80000.0, 112000.0),
     nm.ICE: (0.0, 1.01),
 }
-SLACK: Final = 0.01  #: share of the range by which packing may overshoot
+RANGE_TOLERANCE: Final = 0.01  #: share of the range by which packing may overshoot
 
 
 def check_plausible(name: str, value: NDArray[Any], variables: list[str], source: str) -> None:
     """Raise `DatasetError` if values lie outside what can be believed of a variable."""
-    if name not in PLAUSIBLE or value.size == 0:
+    if name not in PLAUSIBLE_RANGES or value.size == 0:
         return
-    low, high = PLAUSIBLE[name]
-    slack = SLACK * (high - low)
+    low, high = PLAUSIBLE_RANGES[name]
+    slack = RANGE_TOLERANCE * (high - low)
     least, largest = _extremes(value)
     if least >= low - slack and largest <= high + slack:
         return

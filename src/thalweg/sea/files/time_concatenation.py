@@ -8,29 +8,31 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.sea.files.block_cache import BlockCache, Quantity
-from thalweg.sea.files.conform import Draft
-from thalweg.sea.files.grid_detection import Placement
-from thalweg.sea.files.variable_recognition import Ignored
-from thalweg.sea.grids.gridded_layer import GridLayer, Record, TimeAxis
+from thalweg.sea.files.conform import LayerCandidate
+from thalweg.sea.files.grid_detection import GridPlacement
+from thalweg.sea.files.variable_recognition import IgnoredVariable
+from thalweg.sea.grids.gridded_layer import GridLayer, RecognitionRecord, TimeAxis
 
 
-def layers_of(drafts: Sequence[Draft], ignored: Mapping[str, list[Ignored]]) -> list[GridLayer]:
+def join_in_time(
+    candidates: Sequence[LayerCandidate], ignored: Mapping[str, list[IgnoredVariable]]
+) -> list[GridLayer]:
     """Return layers, joining files of the same grid and variables that follow in time."""
-    joined: list[list[Draft]] = []
-    for draft in drafts:
-        home = next((group for group in joined if _follows(group, draft)), None)
+    joined: list[list[LayerCandidate]] = []
+    for draft in candidates:
+        home = next((group for group in joined if _continues(group, draft)), None)
         if home is None:
             joined.append([draft])
         else:
             home.append(draft)
-    return [_layer(sorted(group, key=_first_time), ignored) for group in joined]
+    return [_joined_layer(sorted(group, key=_first_time), ignored) for group in joined]
 
 
-def _first_time(draft: Draft) -> float:
+def _first_time(draft: LayerCandidate) -> float:
     return float(draft.times[0]) if draft.times.size else 0.0
 
 
-def _follows(group: list[Draft], draft: Draft) -> bool:
+def _continues(group: list[LayerCandidate], draft: LayerCandidate) -> bool:
     """Return whether a draft has the same layout as a group and times apart from its times."""
     first = group[0]
     if draft.times.size == 0 or first.times.size == 0 or draft.file is first.file:
@@ -41,11 +43,11 @@ def _follows(group: list[Draft], draft: Draft) -> bool:
     return all(d.times[-1] < draft.times[0] or draft.times[-1] < d.times[0] for d in group)
 
 
-def _signature(draft: Draft) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+def _signature(draft: LayerCandidate) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
     return sorted((q.names, tuple(v.name for v in q.variables)) for q in draft.quantities)
 
 
-def _same_grid(a: Placement, b: Placement) -> bool:
+def _same_grid(a: GridPlacement, b: GridPlacement) -> bool:
     mine, other = a.grid, b.grid
     return mine.shape == other.shape and bool(
         np.array_equal(getattr(mine, "lat", 0), getattr(other, "lat", 1), equal_nan=True)
@@ -53,15 +55,19 @@ def _same_grid(a: Placement, b: Placement) -> bool:
     )
 
 
-def _layer(group: list[Draft], ignored: Mapping[str, list[Ignored]]) -> GridLayer:
+def _joined_layer(
+    group: list[LayerCandidate], ignored: Mapping[str, list[IgnoredVariable]]
+) -> GridLayer:
     first = group[0]
     times = np.concatenate([d.times for d in group])
     source = " + ".join(dict.fromkeys(d.file.source for d in group))
     quantities = first.quantities
     for other in group[1:]:
-        quantities = [_joined(q, _named(other, q.names), source) for q in quantities]
+        quantities = [
+            _joined_quantity(q, _quantity_named(other, q.names), source) for q in quantities
+        ]
     shape = (max(1, times.size), *first.place.grid.shape)
-    record = Record(
+    record = RecognitionRecord(
         tuple(first.recognised),
         tuple((d.file.source, i.variable, i.reason) for d in group for i in ignored[d.file.source]),
     )
@@ -72,11 +78,11 @@ def _layer(group: list[Draft], ignored: Mapping[str, list[Ignored]]) -> GridLaye
     )
 
 
-def _named(draft: Draft, made: tuple[str, ...]) -> Quantity:
+def _quantity_named(draft: LayerCandidate, made: tuple[str, ...]) -> Quantity:
     return next(q for q in draft.quantities if q.names == made)
 
 
-def _joined(a: Quantity, b: Quantity, source: str) -> Quantity:
+def _joined_quantity(a: Quantity, b: Quantity, source: str) -> Quantity:
     """Return a quantity whose variables go on into a later file."""
     variables = tuple(
         replace(v, pieces=(*v.pieces, *w.pieces), source=source) if v.timed else v

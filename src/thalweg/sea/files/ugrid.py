@@ -23,7 +23,7 @@ from thalweg.sea.grids.point_location import TriangleGrid
 
 
 @dataclass(frozen=True, eq=False)
-class Averaging:
+class FaceAveraging:
     """How face values become node values: faces around each node, and their weights.
 
     Attributes
@@ -38,7 +38,7 @@ class Averaging:
     face: IntArray
     weight: FloatArray
 
-    def with_nodes(self, values: FloatArray) -> FloatArray:
+    def append_nodes(self, values: FloatArray) -> FloatArray:
         """Return face values (T, 1, F) followed by node values: (T, 1, F + N)."""
         faces = np.ascontiguousarray(values[:, 0, :], np.float64)
         nodes = np.empty((faces.shape[0], self.start.size - 1))
@@ -68,11 +68,11 @@ class MeshLayout:
     dim: str
     grid: TriangleGrid
     angle: FloatArray | None = None
-    averaging: Averaging | None = None
+    averaging: FaceAveraging | None = None
 
 
 @dataclass(frozen=True, eq=False)
-class Topology:
+class MeshTopology:
     """A mesh as the file tells it: node positions and the nodes of each face (-1 = no more)."""
 
     name: str
@@ -84,7 +84,7 @@ class Topology:
 
 
 #: names of connectivity in files that tell no topology (ADCIRC, FVCOM)
-_BARE = ("element", "elements", "nv", "tri")
+_CONNECTIVITY_NAMES = ("element", "elements", "nv", "tri")
 
 
 def topologies(dataset: Any) -> dict[str, Mapping[str, Any]]:
@@ -103,16 +103,16 @@ def topologies(dataset: Any) -> dict[str, Mapping[str, Any]]:
             for name, attributes in told.items()
             if int(attributes.get("topology_dimension", attributes.get("dimension", 2))) == 2
         }
-    return _bare_topology(dataset)
+    return _inferred_topology(dataset)
 
 
-def _bare_topology(dataset: Any) -> dict[str, Mapping[str, Any]]:
+def _inferred_topology(dataset: Any) -> dict[str, Mapping[str, Any]]:
     for name in dataset.variables:
         table = dataset[name]
         role = table.attrs.get("cf_role") == "face_node_connectivity"
-        if table.ndim != 2 or not (role or str(name).lower() in _BARE):
+        if table.ndim != 2 or not (role or str(name).lower() in _CONNECTIVITY_NAMES):
             continue
-        places = _bare_nodes(dataset, frozenset(map(str, table.dims)))
+        places = _inferred_node_coordinates(dataset, frozenset(map(str, table.dims)))
         if places and min(table.shape) in (3, 4):
             face_dim = str(table.dims[int(np.argmax(table.shape))])
             return {
@@ -125,7 +125,7 @@ def _bare_topology(dataset: Any) -> dict[str, Mapping[str, Any]]:
     return {}
 
 
-def _bare_nodes(dataset: Any, not_along: frozenset[str]) -> list[str]:
+def _inferred_node_coordinates(dataset: Any, not_along: frozenset[str]) -> list[str]:
     """Return longitude and latitude of nodes: on one dimension that is not that of the faces."""
     along = [
         (str(n), dataset[n])
@@ -142,11 +142,11 @@ def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[
     return [
         layout
         for name, attributes in topologies(dataset).items()
-        for layout in _layouts(dataset, name, attributes, mapping, source)
+        for layout in _mesh_layouts_of_topology(dataset, name, attributes, mapping, source)
     ]
 
 
-def auxiliary(dataset: Any) -> frozenset[str]:
+def mesh_description_variables(dataset: Any) -> frozenset[str]:
     """Return the variables that describe meshes and carry no field."""
     names: set[str] = set()
     for mesh, attributes in topologies(dataset).items():
@@ -157,7 +157,7 @@ def auxiliary(dataset: Any) -> frozenset[str]:
     return frozenset(names)
 
 
-def place_dimensions(dataset: Any) -> frozenset[str]:
+def mesh_dimensions(dataset: Any) -> frozenset[str]:
     """Return the dimensions of nodes and of faces of every mesh, as far as they are told."""
     dims: set[str] = set()
     for attributes in topologies(dataset).values():
@@ -167,15 +167,15 @@ def place_dimensions(dataset: Any) -> frozenset[str]:
     return frozenset(dims)
 
 
-def _layouts(
+def _mesh_layouts_of_topology(
     dataset: Any,
     name: str,
     attributes: Mapping[str, Any],
     mapping: Mapping[str, str],
     source: str,
 ) -> list[MeshLayout]:
-    connectivity = _needed(dataset, attributes, "face_node_connectivity", source)[0]
-    axes = _needed(dataset, attributes, "node_coordinates", source)
+    connectivity = _required_names(dataset, attributes, "face_node_connectivity", source)[0]
+    axes = _required_names(dataset, attributes, "node_coordinates", source)
     x, y, crs = _node_positions(dataset, axes, mapping, source)
     lat, lon = (y, x) if crs is None else co.to_degrees(crs, x, y)
     _check_positions(lat, lon, source)
@@ -184,12 +184,14 @@ def _layouts(
     face_dim = face_dim if face_dim in table.dims else str(table.dims[0])
     faces = read_faces(table.transpose(face_dim, ...), lat.size, source)
     node_dim = str(dataset[axes[0]].dims[0])
-    topology = Topology(name, lat, lon, faces, node_dim, face_dim)
+    topology = MeshTopology(name, lat, lon, faces, node_dim, face_dim)
     angle = None if crs is None else co.meridian_angle(crs, x, y)
     return [_node_layout(topology, angle), _face_layout(topology, angle)]
 
 
-def _needed(dataset: Any, attributes: Mapping[str, Any], key: str, source: str) -> list[str]:
+def _required_names(
+    dataset: Any, attributes: Mapping[str, Any], key: str, source: str
+) -> list[str]:
     names = str(attributes.get(key, "")).split()
     if names and all(n in dataset.variables for n in names):
         return names
@@ -211,13 +213,13 @@ def _node_positions(
     x, y = np.asarray(first.values, np.float64), np.asarray(second.values, np.float64)
     if co.is_longitude(first, str(first.name)) and co.is_latitude(second, str(second.name)):
         return x, y, None
-    crs = co.crs_of(dataset, first, mapping, source)
+    crs = co.projection_of(dataset, first, mapping, source)
     if crs is not None and crs.is_geographic:
         return x, y, None
     if crs is None:
-        from thalweg.sea.files.grid_detection import no_projection
+        from thalweg.sea.files.grid_detection import no_projection_error
 
-        raise no_projection(source)
+        raise no_projection_error(source)
     return x, y, crs
 
 
@@ -256,7 +258,7 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
     return np.where(np.isnan(raw), -1, raw - start).astype(np.int64)
 
 
-def fan(faces: IntArray) -> IntArray:
+def triangulate_faces(faces: IntArray) -> IntArray:
     """Return triangles of faces, each cut from its first node."""
     pieces = []
     for k in range(1, faces.shape[1] - 1):
@@ -265,16 +267,16 @@ def fan(faces: IntArray) -> IntArray:
     return np.ascontiguousarray(np.concatenate(pieces))
 
 
-def _node_layout(mesh: Topology, angle: FloatArray | None) -> MeshLayout:
-    triangles = fan(mesh.faces)
+def _node_layout(mesh: MeshTopology, angle: FloatArray | None) -> MeshLayout:
+    triangles = triangulate_faces(mesh.faces)
     network = Mesh(mesh.lat, mesh.lon, triangles)
     grid = TriangleGrid(mesh.lat, mesh.lon, triangles, (1, mesh.lat.size), network)
     turned = None if angle is None else angle[None, :]
     return MeshLayout((mesh.name, mesh.node_dim), mesh.node_dim, grid, turned)
 
 
-def _face_layout(mesh: Topology, angle: FloatArray | None) -> MeshLayout:
-    lat, lon = _centres(mesh)
+def _face_layout(mesh: MeshTopology, angle: FloatArray | None) -> MeshLayout:
+    lat, lon = _face_centres(mesh)
     count = lat.size
     used = mesh.faces >= 0
     following = np.roll(mesh.faces, -1, axis=1)
@@ -284,7 +286,7 @@ def _face_layout(mesh: Topology, angle: FloatArray | None) -> MeshLayout:
     triangles = np.stack(
         [row, count + mesh.faces[row, column], count + following[row, column]], axis=1
     )
-    network = Mesh(mesh.lat, mesh.lon, fan(mesh.faces))
+    network = Mesh(mesh.lat, mesh.lon, triangulate_faces(mesh.faces))
     grid = TriangleGrid(
         np.concatenate([lat, mesh.lat]),
         np.concatenate([lon, mesh.lon]),
@@ -296,11 +298,11 @@ def _face_layout(mesh: Topology, angle: FloatArray | None) -> MeshLayout:
     if angle is not None:
         turned = np.where(used, angle[np.maximum(mesh.faces, 0)], 0.0).sum(axis=1) / (last + 1)
         turned = turned[None, :]
-    averaging = _averaging(mesh, lat, lon)
+    averaging = _face_averaging(mesh, lat, lon)
     return MeshLayout((mesh.name, mesh.face_dim), mesh.face_dim, grid, turned, averaging)
 
 
-def _centres(mesh: Topology) -> tuple[FloatArray, FloatArray]:
+def _face_centres(mesh: MeshTopology) -> tuple[FloatArray, FloatArray]:
     """Return the mean position of the nodes of each face, across the antimeridian too."""
     used = mesh.faces >= 0
     number = used.sum(axis=1)
@@ -312,7 +314,7 @@ def _centres(mesh: Topology) -> tuple[FloatArray, FloatArray]:
     return lat, lon
 
 
-def _averaging(mesh: Topology, lat: FloatArray, lon: FloatArray) -> Averaging:
+def _face_averaging(mesh: MeshTopology, lat: FloatArray, lon: FloatArray) -> FaceAveraging:
     row, column = np.nonzero(mesh.faces >= 0)
     node = mesh.faces[row, column]
     order = np.argsort(node, kind="stable")
@@ -320,4 +322,4 @@ def _averaging(mesh: Topology, lat: FloatArray, lon: FloatArray) -> Averaging:
     east = (lon[face] - mesh.lon[node] + 180.0) % 360.0 - 180.0
     distance = np.hypot(east * np.cos(np.radians(mesh.lat[node])), lat[face] - mesh.lat[node])
     start = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=mesh.lat.size))])
-    return Averaging(start.astype(np.int64), face, 1.0 / np.maximum(distance, 1e-12))
+    return FaceAveraging(start.astype(np.int64), face, 1.0 / np.maximum(distance, 1e-12))

@@ -7,8 +7,8 @@ from typing import Final
 
 from thalweg.core.units import KNOT
 
-#: dimension to (spelling, factor to SI); spellings as `plain` writes them
-_TABLE: Final[dict[str, dict[str, float]]] = {
+#: dimension to (spelling, factor to SI); spellings as `normalised_unit` writes them
+_SI_FACTORS: Final[dict[str, dict[str, float]]] = {
     "speed": {
         "m/s": 1.0, "ms-1": 1.0, "cm/s": 0.01, "cms-1": 0.01, "mm/s": 0.001, "mms-1": 0.001,
         "km/h": 1.0 / 3.6, "kmh-1": 1.0 / 3.6, "km/hr": 1.0 / 3.6, "kph": 1.0 / 3.6,
@@ -31,8 +31,8 @@ _TABLE: Final[dict[str, dict[str, float]]] = {
         "radian": 57.29577951308232, "radians": 57.29577951308232,
     },
 }  # fmt: skip
-UNSAID: Final = frozenset({"", "~", "unknown", "none", "nan", "n/a", "nondim"})
-_WORDS: Final = (
+UNSPECIFIED_UNITS: Final = frozenset({"", "~", "unknown", "none", "nan", "n/a", "nondim"})
+_WORD_PATTERNS: Final = (
     (r"met(re|er)s?", "m"),
     (r"centim", "cm"),
     (r"kilom", "km"),
@@ -42,18 +42,18 @@ _WORDS: Final = (
     (r"nautical\s*miles?", "nm"),
     (r"pascals?", "pa"),
 )
-_TRUE: Final = re.compile(r"(_|\s)*(true|t|clockwise.*|from.*|north|\(.*\))$")
+_TRUE_NORTH_SUFFIX: Final = re.compile(r"(_|\s)*(true|t|clockwise.*|from.*|north|\(.*\))$")
 
 
-def plain(text: str) -> str:
+def normalised_unit(text: str) -> str:
     """Return a unit in lower case without spaces, powers and long words."""
     unit = text.strip().lower()
-    for word, short in _WORDS:
+    for word, short in _WORD_PATTERNS:
         unit = re.sub(word, short, unit)
     return re.sub(r"\*\*|\^|[\s.*]", "", unit)
 
 
-def factor(text: str, dimension: str) -> float | None:
+def si_factor(text: str, dimension: str) -> float | None:
     """Return what values in a unit are multiplied with for SI (degrees for directions).
 
     Parameters
@@ -75,12 +75,12 @@ def factor(text: str, dimension: str) -> float | None:
     >>> factor("Degree true", "direction")
     1.0
     """
-    table = _TABLE[dimension]
+    table = _SI_FACTORS[dimension]
     if dimension == "direction":
-        text = _TRUE.sub("", text.strip().lower())
-    return table.get(plain(text))
+        text = _TRUE_NORTH_SUFFIX.sub("", text.strip().lower())
+    return table.get(normalised_unit(text))
 
 
-def is_unsaid(text: str) -> bool:
+def is_unspecified(text: str) -> bool:
     """Return whether a unit says nothing."""
-    return text.strip().lower() in UNSAID
+    return text.strip().lower() in UNSPECIFIED_UNITS

@@ -40,7 +40,7 @@ STANDARD_NAMES: Final[dict[str, str]] = {
 }
 
 #: spellings by source; all in lower case, in order of preference within a role
-SPELLINGS: Final[dict[str, dict[str, str]]] = {
+ALIASES: Final[dict[str, dict[str, str]]] = {
     "ECMWF": {
         "u10": nm.EASTWARD_WIND, "v10": nm.NORTHWARD_WIND, "10u": nm.EASTWARD_WIND,
         "10v": nm.NORTHWARD_WIND, "u10n": nm.EASTWARD_WIND, "v10n": nm.NORTHWARD_WIND,
@@ -101,7 +101,7 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
 }  # fmt: skip
 
 #: standard names used only if no better candidate for the role is there
-SECOND_CHOICE: Final[dict[str, str]] = {
+SECOND_CHOICE_NAMES: Final[dict[str, str]] = {
     "barotropic_sea_water_x_velocity": X_CURRENT,
     "barotropic_sea_water_y_velocity": Y_CURRENT,
     "barotropic_eastward_sea_water_velocity": nm.EASTWARD_CURRENT,
@@ -110,18 +110,20 @@ SECOND_CHOICE: Final[dict[str, str]] = {
 }
 
 #: names too common to insist on: with units that do not fit they are something else
-WEAK: Final = frozenset({"z", "band1", "topo", "elevation", "ff", "dd", "hs", "tp", "ci", "zeta"})
+AMBIGUOUS_ALIASES: Final = frozenset(
+    {"z", "band1", "topo", "elevation", "ff", "dd", "hs", "tp", "ci", "zeta"}
+)
 
 #: names of a depth that changes in time, and so is that of the water, not of the bed
-MOVING_DEPTHS: Final = frozenset({"depth", "water_depth", "waterdepth", "h_water"})
+TIME_VARYING_DEPTHS: Final = frozenset({"depth", "water_depth", "waterdepth", "h_water"})
 
 #: why known variables are not used
-NOT_USED: Final[dict[str, str]] = {
+UNUSED_VARIABLES: Final[dict[str, str]] = {
     "p107": "MET Norway's local parameter 107 is a wave direction, but whether from or to is not "
     "stated; if you know, map it: mapping={'sea_surface_wave_from_direction': 'p107'}",
 }
 
-DIMENSIONS: Final[dict[str, str]] = {
+ROLE_DIMENSIONS: Final[dict[str, str]] = {
     **dict.fromkeys((*nm.WIND.pair, *nm.CURRENT.pair, X_WIND, Y_WIND), "speed"),
     **dict.fromkeys((X_CURRENT, Y_CURRENT, "wind_speed", "sea_water_speed"), "speed"),
     **dict.fromkeys((v.towards for v in nm.VECTORS), "direction"),
@@ -133,25 +135,25 @@ DIMENSIONS: Final[dict[str, str]] = {
     nm.PRESSURE: "pressure",
     nm.ICE: "fraction",
 }
-ROLES: Final = frozenset(DIMENSIONS)
+ROLES: Final = frozenset(ROLE_DIMENSIONS)
 
 
 def role_of_standard_name(name: str) -> tuple[str, int] | None:
     """Return the role of a CF standard name and its rank (0 best), or None."""
     if name in STANDARD_NAMES:
         return STANDARD_NAMES[name], 0
-    if name in SECOND_CHOICE:
-        return SECOND_CHOICE[name], 1
+    if name in SECOND_CHOICE_NAMES:
+        return SECOND_CHOICE_NAMES[name], 1
     if nm.is_bed_level(name):
         return BED_LEVEL, 0
-    kept = nm.canonical(name)
+    kept = nm.canonical_name(name)
     return (kept, 0) if kept in ROLES else None
 
 
-def role_of_spelling(name: str) -> tuple[str, int, str] | None:
+def role_of_alias(name: str) -> tuple[str, int, str] | None:
     """Return the role of a file's own name, its place of preference and whose spelling it is."""
     place = 0
-    for source, table in SPELLINGS.items():
+    for source, table in ALIASES.items():
         for spelling, role in table.items():
             if spelling == name.lower():
                 return role, place, source

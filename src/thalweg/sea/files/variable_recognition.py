@@ -7,16 +7,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from thalweg.core.errors import DatasetError, InputError, near_matches
+from thalweg.core.errors import DatasetError, InputError, close_matches
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files import unit_conversion, variable_aliases
-from thalweg.sea.files.coordinates import time_of, wind_height_fault
+from thalweg.sea.files.coordinates import time_coordinate, wind_height_fault
 
-_BRACKETS = re.compile(r"\[([^\[\]]+)\]\s*$")
+_BRACKETED_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
 
 
 @dataclass(frozen=True)
-class Chosen:
+class AssignedVariable:
     """A variable of a file that plays a role.
 
     Attributes
@@ -41,7 +41,7 @@ class Chosen:
 
 
 @dataclass(frozen=True)
-class Ignored:
+class IgnoredVariable:
     """A variable of a file that is not used.
 
     Attributes
@@ -57,7 +57,7 @@ class Ignored:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class RoleCandidate:
     """A variable that may play a role.
 
     Attributes
@@ -79,9 +79,9 @@ class Candidate:
     how: str
 
 
-def recognise(
+def recognise_variables(
     dataset: Any, *, mapping: Mapping[str, str], source: str, skip: frozenset[str]
-) -> tuple[dict[str, Chosen], list[Ignored]]:
+) -> tuple[dict[str, AssignedVariable], list[IgnoredVariable]]:
     """Return what plays which role in a dataset, and what is not used and why.
 
     Parameters
@@ -102,45 +102,46 @@ def recognise(
     """
     fields = [str(n) for n in dataset.data_vars if str(n) not in skip and dataset[n].ndim > 0]
     fields = [n for n in fields if dataset[n].dtype.kind in "fiu"]
-    mapped = _mapped(dataset, mapping)
-    candidates: dict[str, list[Candidate]] = {}
-    ignored: list[Ignored] = []
+    mapped = _mapped_roles(dataset, mapping)
+    candidates: dict[str, list[RoleCandidate]] = {}
+    ignored: list[IgnoredVariable] = []
     for name in fields:
         if name in mapped.values():
             continue
-        found = _candidate(dataset, name)
+        found = _role_candidate(dataset, name)
         if isinstance(found, tuple) and "wind" in found[0]:
             fault = wind_height_fault(dataset, dataset[name])
-            found = Ignored(name, fault) if fault else found
-        if isinstance(found, Ignored):
+            found = IgnoredVariable(name, fault) if fault else found
+        if isinstance(found, IgnoredVariable):
             ignored.append(found)
         elif found[0] not in mapped:
             candidates.setdefault(found[0], []).append(found[1])
     chosen = {
-        role: _with_unit(dataset, role, name, "mapping", source) for role, name in mapped.items()
+        role: _assign_with_unit(dataset, role, name, "mapping", source)
+        for role, name in mapped.items()
     }
     for role, several in candidates.items():
-        best = _best(several, role, dataset, source)
-        taken = _with_unit(dataset, role, best.variable, best.how, source)
-        if isinstance(taken, Chosen):
+        best = _best_candidate(several, role, dataset, source)
+        taken = _assign_with_unit(dataset, role, best.variable, best.how, source)
+        if isinstance(taken, AssignedVariable):
             chosen[role] = taken
         else:
             ignored.append(taken)
         ignored += [
-            Ignored(c.variable, f"{best.variable} is preferred as {role}")
+            IgnoredVariable(c.variable, f"{best.variable} is preferred as {role}")
             for c in several
             if c is not best
         ]
-    return {role: c for role, c in chosen.items() if isinstance(c, Chosen)}, ignored
+    return {role: c for role, c in chosen.items() if isinstance(c, AssignedVariable)}, ignored
 
 
-def _mapped(dataset: Any, mapping: Mapping[str, str]) -> dict[str, str]:
+def _mapped_roles(dataset: Any, mapping: Mapping[str, str]) -> dict[str, str]:
     """Return role to file variable for what the user mapped and this file has."""
     return {_role_for(name): variable for name, variable in mapping.items() if variable in dataset}
 
 
 def _role_for(name: str) -> str:
-    kept = nm.canonical(name)
+    kept = nm.canonical_name(name)
     if kept in variable_aliases.ROLES:
         return kept
     role = variable_aliases.role_of_standard_name(name)
@@ -151,7 +152,7 @@ def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
     """Raise `InputError` if the mapping names a variable that is in none of the files."""
     for name, variable in mapping.items():
         if name != "crs" and variable not in present:
-            near = near_matches(variable, present)
+            near = close_matches(variable, present)
             raise InputError(
                 f"The mapping wants {name!r} from {variable!r}, which is in none of the files.",
                 f"They hold: {', '.join(sorted(present))}.",
@@ -161,39 +162,41 @@ def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
             )
 
 
-def _candidate(dataset: Any, name: str) -> tuple[str, Candidate] | Ignored:
+def _role_candidate(dataset: Any, name: str) -> tuple[str, RoleCandidate] | IgnoredVariable:
     """Return the role a variable may play, or why none."""
     array = dataset[name]
     standard = "_".join(str(array.attrs.get("standard_name", "")).lower().split())
-    spelled = variable_aliases.role_of_spelling(name)
-    if name.lower() in variable_aliases.NOT_USED:
-        return Ignored(name, variable_aliases.NOT_USED[name.lower()])
+    spelled = variable_aliases.role_of_alias(name)
+    if name.lower() in variable_aliases.UNUSED_VARIABLES:
+        return IgnoredVariable(name, variable_aliases.UNUSED_VARIABLES[name.lower()])
     if standard and standard != "unknown":
         role = variable_aliases.role_of_standard_name(standard)
         if role is None:
-            return Ignored(name, f"standard_name {standard!r} is not one that is used")
+            return IgnoredVariable(name, f"standard_name {standard!r} is not one that is used")
         origin, place = (
             ("", 0) if not spelled or spelled[0] != role[0] else (spelled[2], spelled[1])
         )
-        return role[0], Candidate(name, role[1], origin, place, f"standard_name {standard}")
+        return role[0], RoleCandidate(name, role[1], origin, place, f"standard_name {standard}")
     if (
         spelled is None
-        and name.lower() in variable_aliases.MOVING_DEPTHS
-        and _moves(dataset, array)
+        and name.lower() in variable_aliases.TIME_VARYING_DEPTHS
+        and _varies_in_time(dataset, array)
     ):
         told = f"spelled {name}, and changes in time: depth below the moving surface"
-        return nm.TOTAL_DEPTH, Candidate(name, 2, "", 0, told)
+        return nm.TOTAL_DEPTH, RoleCandidate(name, 2, "", 0, told)
     if spelled is None:
-        return Ignored(name, "no standard_name, and no spelling that is known")
-    return spelled[0], Candidate(name, 2, spelled[2], spelled[1], f"spelled as by {spelled[2]}")
+        return IgnoredVariable(name, "no standard_name, and no spelling that is known")
+    return spelled[0], RoleCandidate(name, 2, spelled[2], spelled[1], f"spelled as by {spelled[2]}")
 
 
-def _moves(dataset: Any, array: Any) -> bool:
-    clock = time_of(dataset, array)
+def _varies_in_time(dataset: Any, array: Any) -> bool:
+    clock = time_coordinate(dataset, array)
     return clock is not None and array.sizes.get(clock.dims[0], 1) > 1
 
 
-def _best(several: list[Candidate], role: str, dataset: Any, source: str) -> Candidate:
+def _best_candidate(
+    several: list[RoleCandidate], role: str, dataset: Any, source: str
+) -> RoleCandidate:
     """Return the candidate of best rank; of equals, the first in its source's order.
 
     Standard names go before spellings. Among equals there is a rule only if all are spellings of
@@ -206,7 +209,7 @@ def _best(several: list[Candidate], role: str, dataset: Any, source: str) -> Can
     raise DatasetError(
         f"{source}: {role} could be any of {', '.join(c.variable for c in tied)}.",
         "Nothing in the file says which one is meant: "
-        + "; ".join(f"{c.variable}: {_title(dataset[c.variable])}" for c in tied)
+        + "; ".join(f"{c.variable}: {_long_name(dataset[c.variable])}" for c in tied)
         + ".",
         f"Choose one: Sea.open(..., mapping={{{role!r}: {tied[0].variable!r}}}).",
         variable=role,
@@ -215,29 +218,31 @@ def _best(several: list[Candidate], role: str, dataset: Any, source: str) -> Can
     )
 
 
-def _title(array: Any) -> str:
+def _long_name(array: Any) -> str:
     return str(array.attrs.get("long_name") or array.attrs.get("standard_name") or "no long_name")
 
 
-def _with_unit(dataset: Any, role: str, name: str, how: str, source: str) -> Chosen | Ignored:
+def _assign_with_unit(
+    dataset: Any, role: str, name: str, how: str, source: str
+) -> AssignedVariable | IgnoredVariable:
     """Return the variable with its factor to SI, or raise if the unit cannot be."""
     attributes = dataset[name].attrs
     unit = str(attributes.get("units", "")).strip()
-    if unit_conversion.is_unsaid(unit):
-        bracketed = _BRACKETS.search(str(attributes.get("long_name", "")))
+    if unit_conversion.is_unspecified(unit):
+        bracketed = _BRACKETED_UNIT.search(str(attributes.get("long_name", "")))
         unit = bracketed[1] if bracketed else ""
-    dimension = variable_aliases.DIMENSIONS.get(role)
+    dimension = variable_aliases.ROLE_DIMENSIONS.get(role)
     if (
         dimension is None
         or not unit
-        or (dimension == "fraction" and unit_conversion.is_unsaid(unit))
+        or (dimension == "fraction" and unit_conversion.is_unspecified(unit))
     ):
-        return Chosen(role, name, 1.0, unit, how)
-    factor = unit_conversion.factor(unit, dimension)
+        return AssignedVariable(role, name, 1.0, unit, how)
+    factor = unit_conversion.si_factor(unit, dimension)
     if factor is not None:
-        return Chosen(role, name, factor, unit, how)
-    if name.lower() in variable_aliases.WEAK and how.startswith("spelled"):
-        return Ignored(name, f"units {unit!r} are not those of {role}")
+        return AssignedVariable(role, name, factor, unit, how)
+    if name.lower() in variable_aliases.AMBIGUOUS_ALIASES and how.startswith("spelled"):
+        return IgnoredVariable(name, f"units {unit!r} are not those of {role}")
     raise DatasetError(
         f"{source}: {name!r} is taken for {role}, but its units are {unit!r}.",
         f"A {dimension} is needed.",

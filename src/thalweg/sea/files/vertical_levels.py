@@ -18,14 +18,14 @@ from thalweg.core.errors import DatasetError
 from thalweg.sea.files import unit_conversion
 from thalweg.sea.frozen_fields import FloatArray
 
-SIGMA: Final = "ocean_sigma_coordinate"
-HEIGHTS: Final = ("altitude", "height", "height_above_mean_sea_level", "height_above_geoid")
-DEPTHS: Final = ("depth", "depth_below_geoid", "depth_below_mean_sea_level")
-_ROUND: Final = 1e-6
+SIGMA_STANDARD_NAME: Final = "ocean_sigma_coordinate"
+HEIGHT_NAMES: Final = ("altitude", "height", "height_above_mean_sea_level", "height_above_geoid")
+DEPTH_NAMES: Final = ("depth", "depth_below_geoid", "depth_below_mean_sea_level")
+_ROUNDING_TOLERANCE: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Layers:
+class VerticalLayers:
     """The layers of a file along one dimension.
 
     Attributes
@@ -81,8 +81,8 @@ class Layers:
         return np.asarray(thick)
 
 
-def averaging(
-    layers: Layers, draught: float, depth: Callable[[Sequence[FloatArray]], FloatArray]
+def draught_averaging(
+    layers: VerticalLayers, draught: float, depth: Callable[[Sequence[FloatArray]], FloatArray]
 ) -> Callable[[Sequence[FloatArray]], Sequence[FloatArray]]:
     """Return what makes the mean over the draught of two components.
 
@@ -92,17 +92,17 @@ def averaging(
     draught : float
         [m].
     depth : callable
-        Of all arrays, the two components (T, L, Y, X) first: what `Layers.shares` needs.
+        Of all arrays, the two components (T, L, Y, X) first: what `VerticalLayers.shares` needs.
     """
 
     def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
         shares = layers.shares(draught, depth(arrays))
-        return [_mean(values, shares) for values in arrays[:2]]
+        return [_weighted_mean(values, shares) for values in arrays[:2]]
 
     return combine
 
 
-def _mean(values: FloatArray, shares: FloatArray) -> FloatArray:
+def _weighted_mean(values: FloatArray, shares: FloatArray) -> FloatArray:
     """Return the weighted mean over layers (axis 1) of what is known."""
     weight = np.where(np.isnan(values), 0.0, np.broadcast_to(shares, values.shape))
     total = weight.sum(axis=1)
@@ -116,7 +116,7 @@ def level_coordinate(dataset: Any, dim: str) -> Any:
     if dim in dataset.variables:
         return dataset[dim]
     along = [dataset[n] for n in dataset.variables if dataset[n].dims == (dim,)]
-    vertical = (a for a in along if is_sigma(a) or "positive" in a.attrs or _is_depth(a))
+    vertical = (a for a in along if is_sigma(a) or "positive" in a.attrs or _depth_sign(a))
     return next(vertical, None)
 
 
@@ -124,30 +124,32 @@ def is_sigma(coordinate: Any) -> bool:
     """Return whether a coordinate is a share of the water depth."""
     standard = str(coordinate.attrs.get("standard_name", ""))
     if standard:
-        return standard == SIGMA
+        return standard == SIGMA_STANDARD_NAME
     return "sigma" in str(coordinate.name).lower()
 
 
-def _is_depth(coordinate: Any) -> float | None:
+def _depth_sign(coordinate: Any) -> float | None:
     """Return the sign that makes a coordinate a depth below datum, or None if it is none."""
     standard = str(coordinate.attrs.get("standard_name", ""))
     positive = str(coordinate.attrs.get("positive", "")).lower()
     unit = str(coordinate.attrs.get("units", ""))
     if (
         unit
-        and not unit_conversion.is_unsaid(unit)
-        and unit_conversion.factor(unit, "length") is None
+        and not unit_conversion.is_unspecified(unit)
+        and unit_conversion.si_factor(unit, "length") is None
     ):
         return None
     if positive in ("up", "down"):
         return 1.0 if positive == "down" else -1.0
-    if standard in HEIGHTS:
+    if standard in HEIGHT_NAMES:
         return -1.0
     named = str(coordinate.name).lower().startswith("depth")
-    return 1.0 if standard in DEPTHS or (named and not standard) else None
+    return 1.0 if standard in DEPTH_NAMES or (named and not standard) else None
 
 
-def find_layers(dataset: Any, array: Any, keep: frozenset[str], source: str) -> Layers | None:
+def find_vertical_layers(
+    dataset: Any, array: Any, keep: frozenset[str], source: str
+) -> VerticalLayers | None:
     """Return the layers of a variable, None if it has none.
 
     Parameters
@@ -169,47 +171,51 @@ def find_layers(dataset: Any, array: Any, keep: frozenset[str], source: str) -> 
         return None
     coordinate = level_coordinate(dataset, dims[0])
     if coordinate is None:
-        raise _unknown_layers(array, dims[0], "have no coordinate", source)
+        raise _unknown_layers_error(array, dims[0], "have no coordinate", source)
     values = np.asarray(coordinate.values, float)
     if is_sigma(coordinate):
-        return _sigma(dataset, coordinate, dims[0], values)
-    sign = _is_depth(coordinate)
+        return _sigma_layers(dataset, coordinate, dims[0], values)
+    sign = _depth_sign(coordinate)
     if sign is None:
         what = coordinate.attrs.get("standard_name") or coordinate.name
-        raise _unknown_layers(array, dims[0], f"are those of {what!r}", source)
+        raise _unknown_layers_error(array, dims[0], f"are those of {what!r}", source)
     unit = str(coordinate.attrs.get("units", ""))
     scale = (
-        1.0 if unit_conversion.is_unsaid(unit) else unit_conversion.factor(unit, "length") or 1.0
+        1.0
+        if unit_conversion.is_unspecified(unit)
+        else unit_conversion.si_factor(unit, "length") or 1.0
     )
-    top, bottom = _edges(dataset, coordinate, sign * scale, sign * scale * values)
-    return Layers(dims[0], False, top, bottom)
+    top, bottom = _layer_edges(dataset, coordinate, sign * scale, sign * scale * values)
+    return VerticalLayers(dims[0], False, top, bottom)
 
 
-def _sigma(dataset: Any, coordinate: Any, dim: str, values: FloatArray) -> Layers:
+def _sigma_layers(dataset: Any, coordinate: Any, dim: str, values: FloatArray) -> VerticalLayers:
     """Return layers at shares of the depth, told downwards or upwards, from 0 or from -1."""
-    sign, offset = _sigma_sense(coordinate, values)
-    top, bottom = _edges(dataset, coordinate, sign, sign * values + offset, offset, (0.0, 1.0))
-    return Layers(dim, True, top, bottom)
+    sign, offset = _sigma_sign_and_offset(coordinate, values)
+    top, bottom = _layer_edges(
+        dataset, coordinate, sign, sign * values + offset, offset, (0.0, 1.0)
+    )
+    return VerticalLayers(dim, True, top, bottom)
 
 
-def _sigma_sense(coordinate: Any, values: FloatArray) -> tuple[float, float]:
+def _sigma_sign_and_offset(coordinate: Any, values: FloatArray) -> tuple[float, float]:
     """Return the sign and offset that make sigma a share of the depth, 0 at the surface."""
-    if values.min() < -_ROUND:  # the convention: 0 at the surface, -1 at the bed
+    if values.min() < -_ROUNDING_TOLERANCE:  # the convention: 0 at the surface, -1 at the bed
         return -1.0, 0.0
     down = str(coordinate.attrs.get("positive", "up")).lower() == "down"
     return (1.0, 0.0) if down else (-1.0, 1.0)
 
 
-def surface_of(coordinate: Any) -> int:
+def surface_index(coordinate: Any) -> int:
     """Return the place of the level nearest to the surface."""
     values = np.asarray(coordinate.values, float)
     if is_sigma(coordinate):
-        sign, offset = _sigma_sense(coordinate, values)
+        sign, offset = _sigma_sign_and_offset(coordinate, values)
         return int(np.argmin(sign * values + offset))
     return int(np.argmin(np.abs(values)))
 
 
-def _edges(
+def _layer_edges(
     dataset: Any,
     coordinate: Any,
     sign: float,
@@ -218,7 +224,7 @@ def _edges(
     ends: tuple[float, float] | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return upper and lower edges: as told, else half-way between the layers' middles."""
-    told = _told_edges(dataset, coordinate)
+    told = _stated_edges(dataset, coordinate)
     if told is not None:
         edges = sign * told + offset
         return edges.min(axis=1), edges.max(axis=1)
@@ -232,7 +238,7 @@ def _edges(
     return top, bottom
 
 
-def _told_edges(dataset: Any, coordinate: Any) -> FloatArray | None:
+def _stated_edges(dataset: Any, coordinate: Any) -> FloatArray | None:
     """Return edges (L, 2) from bounds, or from the interfaces that belong to the layers."""
     bounds = str(coordinate.attrs.get("bounds", ""))
     if bounds in dataset.variables and dataset[bounds].shape == (coordinate.size, 2):
@@ -246,7 +252,7 @@ def _told_edges(dataset: Any, coordinate: Any) -> FloatArray | None:
     return None
 
 
-def _unknown_layers(array: Any, dim: str, fault: str, source: str) -> DatasetError:
+def _unknown_layers_error(array: Any, dim: str, fault: str, source: str) -> DatasetError:
     return DatasetError(
         f"{source}: the layers of {array.name!r} along {dim!r} {fault}; they cannot be averaged.",
         "Sigma layers (ocean_sigma_coordinate, 0 at the surface to -1) and depths or heights with "
@@ -257,7 +263,7 @@ def _unknown_layers(array: Any, dim: str, fault: str, source: str) -> DatasetErr
     )
 
 
-def no_depth_of_layers(names: Sequence[str], source: str) -> DatasetError:
+def missing_depth_error(names: Sequence[str], source: str) -> DatasetError:
     """Return the error for sigma layers in water whose depth the file does not tell."""
     return DatasetError(
         f"{source}: {' and '.join(names)} lie in sigma layers, and no depth on the same grid tells "

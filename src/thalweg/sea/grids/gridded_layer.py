@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea import standard_names as nm
-from thalweg.sea.files.block_cache import BlockCache, Quantity, Window
+from thalweg.sea.files.block_cache import BlockCache, GridWindow, Quantity
 from thalweg.sea.frozen_fields import Area, Coverage, FloatArray, IntArray, Mesh
-from thalweg.sea.grids.point_location import Grid, Located
-from thalweg.sea.inspection import Recognised
+from thalweg.sea.grids.point_location import Grid, GridLocation
+from thalweg.sea.inspection import RecognisedVariable
 from thalweg.sea.layer import Samples, nan_pairs
 
-HOLE = 2.5  #: a step this many times its neighbours' is a hole in the data, not a step
+GAP_FACTOR = 2.5  #: a step this many times its neighbours' is a hole in the data, not a step
 
 
-class Moments(NamedTuple):
+class TimeLocation(NamedTuple):
     """Where times lie on an axis: level before (-1 if unknown) and way to the next."""
 
     level: IntArray
@@ -62,23 +62,23 @@ class TimeAxis:
         if step.size < 2:
             return np.zeros(step.size, bool)
         neighbour = np.maximum(np.append(0.0, step[:-1]), np.append(step[1:], 0.0))
-        return np.asarray(step > HOLE * neighbour)
+        return np.asarray(step > GAP_FACTOR * neighbour)
 
-    def locate(self, time: FloatArray) -> Moments:
+    def locate(self, time: FloatArray) -> TimeLocation:
         """Return level and fraction of each time."""
         if self.is_static:
             level = np.where(np.isnan(time), -1, 0)
-            return Moments(level, np.zeros(time.shape))
+            return TimeLocation(level, np.zeros(time.shape))
         last = self.times.size - 1
         level = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, max(last - 1, 0))
         if last == 0:
-            return Moments(np.where(time == self.times[0], 0, -1), np.zeros(time.shape))
+            return TimeLocation(np.where(time == self.times[0], 0, -1), np.zeros(time.shape))
         fraction = (time - self.times[level]) / (self.times[level + 1] - self.times[level])
         known = (fraction >= 0.0) & (fraction <= 1.0)
         known &= ~(self.holes[level] & (fraction > 0.0) & (fraction < 1.0))
         whole = fraction == 1.0  # the level itself, so that the next one need not be known
         level = np.where(whole, level + 1, level)
-        return Moments(np.where(known, level, -1), np.where(known & ~whole, fraction, 0.0))
+        return TimeLocation(np.where(known, level, -1), np.where(known & ~whole, fraction, 0.0))
 
     def within(self, start: float, end: float) -> FloatArray:
         """Return times in [start, end], one beyond each side, and the rims of holes."""
@@ -94,10 +94,10 @@ class TimeAxis:
 
 
 @dataclass(frozen=True)
-class Record:
+class RecognitionRecord:
     """What was recognised in the files of a layer, and what was ignored: (file, name, reason)."""
 
-    recognised: tuple[Recognised, ...] = ()
+    recognised: tuple[RecognisedVariable, ...] = ()
     ignored: tuple[tuple[str, str, str], ...] = ()
 
 
@@ -129,7 +129,7 @@ class GridLayer:
     cache: BlockCache
     source: str
     facts: Mapping[str, Any]
-    record: Record = Record()
+    record: RecognitionRecord = RecognitionRecord()
 
     @cached_property
     def variables(self) -> frozenset[str]:
@@ -156,8 +156,8 @@ class GridLayer:
         if not known.any():
             return samples
         wanted = self._window(located, moments, known)
-        for window, blocks in self._blocks(names, wanted):
-            corner = _local(located.corner, window, self.grid.shape[1])
+        for window, blocks in self._read_blocks(names, wanted):
+            corner = _places_in_window(located.corner, window, self.grid.shape[1])
             level = np.where(moments.level >= 0, moments.level - window.t0, -1)
             for name, values in blocks.items():
                 field_sampling.gather_points(
@@ -176,8 +176,8 @@ class GridLayer:
             return {name: np.full(shape, np.nan) for name in names}
         wanted = self._window(located, moments, inside, when)
         samples = {}
-        for window, blocks in self._blocks(names, wanted):
-            corner = _local(located.corner, window, self.grid.shape[1])
+        for window, blocks in self._read_blocks(names, wanted):
+            corner = _places_in_window(located.corner, window, self.grid.shape[1])
             level = np.where(when, moments.level - window.t0, -1)
             for name, values in blocks.items():
                 samples[name] = np.empty(shape)
@@ -214,11 +214,11 @@ class GridLayer:
         made = {" ".join(q.names): [v.name for v in q.variables] for q in self.quantities}
         return {"kind": "files", "variables": made, **self.facts}
 
-    def _blocks(
-        self, names: Sequence[str], wanted: Window
-    ) -> list[tuple[Window, dict[str, NDArray[Any]]]]:
+    def _read_blocks(
+        self, names: Sequence[str], wanted: GridWindow
+    ) -> list[tuple[GridWindow, dict[str, NDArray[Any]]]]:
         """Return the values that are needed, by the window they were read for."""
-        found: dict[Window, dict[str, NDArray[Any]]] = {}
+        found: dict[GridWindow, dict[str, NDArray[Any]]] = {}
         for quantity in self.quantities:
             mine = [name for name in quantity.names if name in names]
             if mine:
@@ -229,22 +229,22 @@ class GridLayer:
 
     def _window(
         self,
-        located: Located,
-        moments: Moments,
+        located: GridLocation,
+        moments: TimeLocation,
         inside: NDArray[np.bool_],
         when: NDArray[np.bool_] | None = None,
-    ) -> Window:
+    ) -> GridWindow:
         """Return the least window that answers for the points that are inside."""
         level = moments.level[inside if when is None else when]
         fraction = moments.fraction[inside if when is None else when]
         t0, t1 = int(level.min()), int((level + (fraction > 0.0)).max()) + 1
         rows, columns = self.grid.shape
         if rows == 1:
-            return Window(t0, t1, 0, 1, 0, columns)
+            return GridWindow(t0, t1, 0, 1, 0, columns)
         used = located.corner[inside][located.weight[inside] != 0.0]
         y0, y1 = int(used.min()) // columns, int(used.max()) // columns + 1
         x0, width = _column_range(used % columns, columns, self.grid.wraps)
-        return Window(t0, t1, y0, y1, x0, width)
+        return GridWindow(t0, t1, y0, y1, x0, width)
 
 
 def _column_range(used: IntArray, columns: int, wraps: bool) -> tuple[int, int]:
@@ -258,7 +258,7 @@ def _column_range(used: IntArray, columns: int, wraps: bool) -> tuple[int, int]:
     return int(present[(k + 1) % present.size]), int(columns - gaps[k] + 1)
 
 
-def _local(corner: IntArray, window: Window, columns: int) -> IntArray:
+def _places_in_window(corner: IntArray, window: GridWindow, columns: int) -> IntArray:
     """Return flat places within a window; corners outside it have weight 0 and get place 0."""
     if window.width == columns and window.x0 == 0 and window.y0 == 0:
         return corner

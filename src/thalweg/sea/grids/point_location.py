@@ -16,12 +16,17 @@ from numpy.typing import NDArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.frozen_fields import Area, FloatArray, IntArray, Mesh
 
-CROWD = 12.0  #: triangles in a typical bin above which bins are made smaller ...
-MOST_BINS, MOST_ITEMS = 1500, 20.0  #: ... up to so many a side, or entries for each triangle
-RIM = 2e-5  #: [deg] how far outside a point may lie and still count: float32 rounding of axes
+MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin above which bins are made smaller ...
+MAX_BINS, MAX_ITEMS_PER_TRIANGLE = (
+    1500,
+    20.0,
+)  #: ... up to so many a side, or entries for each triangle
+EDGE_TOLERANCE = (
+    2e-5  #: [deg] how far outside a point may lie and still count: float32 rounding of axes
+)
 
 
-class Located(NamedTuple):
+class GridLocation(NamedTuple):
     """Corners around points: flat places (N, C), -1 first where outside; weights (N, C)."""
 
     corner: IntArray
@@ -51,7 +56,7 @@ class Grid(Protocol):
         """Typical spacing [deg]."""
         ...
 
-    def locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+    def locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
         """Return corners and weights for points [deg]."""
         ...
 
@@ -105,14 +110,16 @@ class RectilinearGrid:
         """A grid of axes is no mesh."""
         return None
 
-    def locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+    def locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
         """Return the four corners of each point's cell and the bilinear weights."""
-        row, fy, inside_y = _on_axis(self._rows, lat)
+        row, fy, inside_y = _locate_on_axis(self._rows, lat)
         if self.lat.size > 1 and self.lat[1] < self.lat[0]:
             row, step = self.lat.size - 1 - row, -1
         else:
             step = 1
-        column, fx, inside_x = _on_axis(self._columns, (lon - self._west) % 360.0 + self._west)
+        column, fx, inside_x = _locate_on_axis(
+            self._columns, (lon - self._west) % 360.0 + self._west
+        )
         below = np.clip(row + step, 0, self.lat.size - 1)
         right = (
             (column + 1) % self.lon.size
@@ -131,7 +138,7 @@ class RectilinearGrid:
         weight[:, 2] = fy * (1.0 - fx)
         weight[:, 3] = fy * fx
         index[~(inside_y & inside_x), 0] = -1
-        return Located(index, weight)
+        return GridLocation(index, weight)
 
     @cached_property
     def _rows(self) -> FloatArray:
@@ -143,12 +150,14 @@ class RectilinearGrid:
 
     @property
     def _west(self) -> float:
-        return float(self.lon[0]) - RIM
+        return float(self.lon[0]) - EDGE_TOLERANCE
 
 
-def _on_axis(axis: FloatArray, value: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
+def _locate_on_axis(
+    axis: FloatArray, value: FloatArray
+) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
     """Return the place before each value on an increasing axis, the way to the next, and inside."""
-    inside = (value >= axis[0] - RIM) & (value <= axis[-1] + RIM)
+    inside = (value >= axis[0] - EDGE_TOLERANCE) & (value <= axis[-1] + EDGE_TOLERANCE)
     if axis.size == 1:
         return np.zeros(value.shape, np.int64), np.zeros(value.shape), inside
     place = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
@@ -186,7 +195,7 @@ class TriangleGrid:
         """The box around all places."""
         known = np.isfinite(self.lat) & np.isfinite(self.lon)
         south, north = float(self.lat[known].min()), float(self.lat[known].max())
-        west, width = _narrowest(self.lon[known])
+        west, width = _narrowest_range(self.lon[known])
         return Area(south, north, west, west + width)
 
     @cached_property
@@ -203,7 +212,7 @@ class TriangleGrid:
         """Return nodes and triangles, if the grid is a mesh."""
         return self.network
 
-    def locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+    def locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
         """Return the three corners of each point's triangle and the barycentric weights."""
         last = self._last.get("points")
         if last and np.array_equal(last[0], lat) and np.array_equal(last[1], lon):
@@ -213,11 +222,11 @@ class TriangleGrid:
         return found
 
     @cached_property
-    def _last(self) -> dict[str, tuple[FloatArray, FloatArray, Located]]:
+    def _last(self) -> dict[str, tuple[FloatArray, FloatArray, GridLocation]]:
         """What was asked last: several layers lie on one mesh and are asked for the same points."""
         return {}
 
-    def _locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+    def _locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
         x, y = self._plane.of(lat, lon)
         triangle = np.empty(lat.size, np.int64)
         weight = np.zeros((lat.size, 3))
@@ -227,24 +236,24 @@ class TriangleGrid:
         )
         index = bins.corners[np.maximum(triangle, 0)]
         index[triangle < 0, 0] = -1
-        return Located(index, weight)
+        return GridLocation(index, weight)
 
     @cached_property
-    def _plane(self) -> Plane:
+    def _plane(self) -> MapPlane:
         known = np.isfinite(self.lat)
         largest, least = float(self.lat[known].max()), float(self.lat[known].min())
         if largest > 85.0 and least > 0.0:
-            return Plane(1, 0.0)
+            return MapPlane(1, 0.0)
         if least < -85.0 and largest < 0.0:
-            return Plane(-1, 0.0)
-        return Plane(0, self.area.west)
+            return MapPlane(-1, 0.0)
+        return MapPlane(0, self.area.west)
 
     @cached_property
-    def _bins(self) -> Bins:
-        return make_bins(self._plane, self.lat, self.lon, self.triangles)
+    def _bins(self) -> TriangleBins:
+        return make_triangle_bins(self._plane, self.lat, self.lon, self.triangles)
 
 
-class Plane(NamedTuple):
+class MapPlane(NamedTuple):
     """A flat map: pole 0 is plain lon and lat from a west edge, +-1 polar stereographic."""
 
     pole: int
@@ -253,12 +262,12 @@ class Plane(NamedTuple):
     def of(self, lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return x and y of positions [deg]."""
         if self.pole == 0:
-            return (lon - self.west + RIM) % 360.0 + self.west - RIM, lat
+            return (lon - self.west + EDGE_TOLERANCE) % 360.0 + self.west - EDGE_TOLERANCE, lat
         radius = 2.0 * np.degrees(np.tan(0.5 * np.radians(90.0 - self.pole * lat)))
         return radius * np.sin(np.radians(lon)), -radius * np.cos(np.radians(lon))
 
 
-class Bins(NamedTuple):
+class TriangleBins(NamedTuple):
     """Triangles sorted into square bins of the plane."""
 
     x: FloatArray
@@ -270,7 +279,9 @@ class Bins(NamedTuple):
     items: IntArray
 
 
-def make_bins(plane: Plane, lat: FloatArray, lon: FloatArray, triangles: IntArray) -> Bins:
+def make_triangle_bins(
+    plane: MapPlane, lat: FloatArray, lon: FloatArray, triangles: IntArray
+) -> TriangleBins:
     """Sort triangles into bins; those with unknown corners or around a pole are left out."""
     x, y = plane.of(lat[triangles], lon[triangles])
     if plane.pole == 0:
@@ -281,16 +292,16 @@ def make_bins(plane: Plane, lat: FloatArray, lon: FloatArray, triangles: IntArra
         x, y, whole = np.zeros_like(x), np.zeros_like(y), np.arange(len(x)) == 0
     x, y, corners = x[whole], y[whole], triangles[whole]
     if plane.pole == 0:
-        x, y, corners = _over_the_seam(plane, x, y, corners)
-    frame, counts = _fine_enough(x, y)
+        x, y, corners = _repeat_across_seam(plane, x, y, corners)
+    frame, counts = _refined_bins(x, y)
     n = len(counts)
     start = np.concatenate([[0], np.cumsum(counts.ravel())]).astype(np.int64)
     items = np.empty(start[-1], np.int64)
     field_sampling.fill_bins(x, y, frame, (n, n), start[:-1].copy(), items)
-    return Bins(x, y, np.ascontiguousarray(corners), frame, (n, n), start, items)
+    return TriangleBins(x, y, np.ascontiguousarray(corners), frame, (n, n), start, items)
 
 
-def _fine_enough(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
+def _refined_bins(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
     """Return bins, as many as triangles or more where these crowd in some, and their counts.
 
     Coastal meshes have small triangles in a bay and large ones off it: what counts is how many
@@ -305,17 +316,21 @@ def _fine_enough(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
         field_sampling.count_bins(x, y, frame, counts)
         total = float(counts.sum())
         crowd = float((counts.astype(np.float64) ** 2).sum()) / total
-        if crowd <= CROWD or n >= MOST_BINS or total > MOST_ITEMS * max(len(x), 1000):
+        if (
+            crowd <= MAX_TRIANGLES_PER_BIN
+            or n >= MAX_BINS
+            or total > MAX_ITEMS_PER_TRIANGLE * max(len(x), 1000)
+        ):
             return frame, counts
         n *= 2
 
 
-def _over_the_seam(
-    plane: Plane, x: FloatArray, y: FloatArray, corners: IntArray
+def _repeat_across_seam(
+    plane: MapPlane, x: FloatArray, y: FloatArray, corners: IntArray
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Repeat triangles that stick out over either edge of the map on its other side."""
-    right = x.max(axis=1) > plane.west + 360.0 - 2.0 * RIM
-    left = x.min(axis=1) < plane.west - RIM + 1e-9  # points begin a rim before the edge
+    right = x.max(axis=1) > plane.west + 360.0 - 2.0 * EDGE_TOLERANCE
+    left = x.min(axis=1) < plane.west - EDGE_TOLERANCE + 1e-9  # points begin a rim before the edge
     return (
         np.concatenate([x, x[right] - 360.0, x[left] + 360.0]),
         np.concatenate([y, y[right], y[left]]),
@@ -327,7 +342,7 @@ def _wrap(lon: FloatArray) -> FloatArray:
     return (lon + 180.0) % 360.0 - 180.0
 
 
-def _narrowest(lon: FloatArray) -> tuple[float, float]:
+def _narrowest_range(lon: FloatArray) -> tuple[float, float]:
     """Return west edge in [-180, 180) and width of the narrowest range that holds longitudes."""
     ordered = np.unique(lon % 360.0)
     gaps = np.diff(np.append(ordered, ordered[0] + 360.0))

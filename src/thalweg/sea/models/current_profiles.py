@@ -24,11 +24,11 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, ModelRangeError
 from thalweg.sea.frozen_fields import FloatArray
 
-Complex: TypeAlias = NDArray[np.complex128]
+ComplexArray: TypeAlias = NDArray[np.complex128]
 
 GRAVITY: Final = 9.81  #: [m/s2]
-LEAST_ROTATION: Final = 1e-6  #: of the tide's frequency: how near f may come to it
-DEEPEST_IN_EKMAN: Final = 300.0  #: largest ``a`` before the functions of Heaps overflow
+MIN_ROTATION: Final = 1e-6  #: of the tide's frequency: how near f may come to it
+MAX_HEAPS_DEPTH_RATIO: Final = 300.0  #: largest ``a`` before the functions of Heaps overflow
 
 
 @dataclass(frozen=True)
@@ -84,14 +84,14 @@ class WaterColumn:
     @property
     def rotations(self) -> tuple[complex, complex]:
         """``alpha`` [1/m] of the anticlockwise and the clockwise part, real parts positive."""
-        least = LEAST_ROTATION * self.frequency
+        least = MIN_ROTATION * self.frequency
         rates = [self.coriolis + s * self.frequency for s in (1.0, -1.0)]
         safe = [r if abs(r) > least else least for r in rates]
         plus, minus = (np.sqrt(1j * r / self.viscosity) for r in safe)
         return complex(plus), complex(minus)
 
 
-def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[Complex, Complex]:
+def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray, ComplexArray]:
     """Return the profiles of the anticlockwise and the clockwise tide, over their depth means.
 
     Parameters
@@ -107,14 +107,16 @@ def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[Complex, Comp
         ``u + i v = W+ plus exp(i w t) + W- minus exp(-i w t)`` with the phasors W of the
         depth-mean current (Prandle, 1982; Schless, 2023, eq. 2.26).
     """
-    z = _within(height, column.depth)
-    plus, minus = (_share(a, z, column) / _total(a, column) for a in column.rotations)
+    z = _checked_height(height, column.depth)
+    plus, minus = (
+        _unscaled_profile(a, z, column) / _unscaled_mean(a, column) for a in column.rotations
+    )
     return plus, minus
 
 
 def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
     """Return the mean of `tidal_profile` from the surface down to a draught [m], in closed form."""
-    d = float(_within(draught, column.depth))
+    d = float(_checked_height(draught, column.depth))
     if d == 0.0:
         plus, minus = tidal_profile(column.depth, column)
         return complex(plus), complex(minus)
@@ -124,23 +126,23 @@ def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
         if not np.isfinite(upper):  # so deep that the bed's share at the surface is nothing
             upper = np.exp(alpha * (d - column.depth)) / (alpha * d)
         base = 1.0 + alpha / column.slip * np.tanh(alpha * column.depth)
-        means.append(complex((base - upper) / _total(alpha, column)))
+        means.append(complex((base - upper) / _unscaled_mean(alpha, column)))
     return means[0], means[1]
 
 
-def _share(alpha: complex, z: FloatArray, column: WaterColumn) -> Complex:
+def _unscaled_profile(alpha: complex, z: FloatArray, column: WaterColumn) -> ComplexArray:
     """Return the profile without its scale, over cosh(alpha D) so that nothing overflows."""
     base = 1.0 + alpha / column.slip * np.tanh(alpha * column.depth)
     return np.asarray(base - _cosh_ratio(alpha, z - column.depth, column.depth))
 
 
-def _total(alpha: complex, column: WaterColumn) -> complex:
-    """Return the depth mean of `_share`."""
+def _unscaled_mean(alpha: complex, column: WaterColumn) -> complex:
+    """Return the depth mean of `_unscaled_profile`."""
     depth = column.depth
     return complex(1.0 + (alpha / column.slip - 1.0 / (alpha * depth)) * np.tanh(alpha * depth))
 
 
-def _cosh_ratio(alpha: complex, x: ArrayLike, depth: float) -> Complex:
+def _cosh_ratio(alpha: complex, x: ArrayLike, depth: float) -> ComplexArray:
     """Return cosh(alpha x) / cosh(alpha depth) for |x| <= depth."""
     far = np.abs(np.asarray(x, float))
     top = np.exp(alpha * (far - depth)) * (1.0 + np.exp(-2.0 * alpha * far))
@@ -181,7 +183,7 @@ def density_profile(
     ModelRangeError
         Near the equator or in water so deep that the solution has no scale.
     """
-    share = _within(eta, 1.0)
+    share = _checked_height(eta, 1.0)
     height = column.depth + rise
     if not column.coriolis > 0.0:
         raise ModelRangeError(
@@ -191,10 +193,10 @@ def density_profile(
         )
     a = height * np.sqrt(column.coriolis / (2.0 * column.viscosity))
     b = column.friction * height / column.viscosity
-    if a > DEEPEST_IN_EKMAN:
+    if a > MAX_HEAPS_DEPTH_RATIO:
         raise ModelRangeError(
             f"The water is {a / np.pi:.0f} Ekman depths deep.",
-            f"Heaps' solution is used up to {DEEPEST_IN_EKMAN / np.pi:.0f}.",
+            f"Heaps' solution is used up to {MAX_HEAPS_DEPTH_RATIO / np.pi:.0f}.",
             "Check viscosity and depth.",
         )
     scale = GRAVITY * height / column.coriolis * density_gradient / density
@@ -228,13 +230,13 @@ def density_mean(draught: float, column: WaterColumn, **density: float) -> tuple
     Gauss-Legendre quadrature with 48 points, exact to rounding for the smooth profile.
     """
     height = column.depth + density.get("rise", 0.2)
-    d = float(_within(draught, column.depth))
+    d = float(_checked_height(draught, column.depth))
     node, weight = np.polynomial.legendre.leggauss(48)
     u, v = density_profile(0.5 * (node + 1.0) * d / height, column, **density)
     return float(0.5 * weight @ u), float(0.5 * weight @ v)
 
 
-def _within(value: ArrayLike, largest: float) -> FloatArray:
+def _checked_height(value: ArrayLike, largest: float) -> FloatArray:
     numbers = np.asarray(value, np.float64)
     if not ((numbers >= -1e-9 * largest) & (numbers <= largest * (1.0 + 1e-9))).all():
         raise InputError(

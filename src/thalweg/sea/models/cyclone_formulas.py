@@ -25,8 +25,11 @@ TEN_MINUTE_FACTOR: Final = (
 TRANSLATION_FACTOR: Final = 0.55  #: Lin and Chavas (2012)
 TRANSLATION_TURN_DEG: Final = 20.0  #: counter-clockwise in the north, Lin and Chavas (2012)
 B_RANGE: Final = (1.0, 2.5)  #: Holland (1980), page 1215
-FETCH_WIND: Final = (15.0, 60.0)  #: [m/s] range of maximum wind we use the fetch relation for
-FETCH_SPEED: Final = (0.0, 10.0)  #: [m/s] range of forward speed we use the fetch relation for
+FETCH_WIND_RANGE: Final = (15.0, 60.0)  #: [m/s] range of maximum wind we use the fetch relation for
+FETCH_SPEED_RANGE: Final = (
+    0.0,
+    10.0,
+)  #: [m/s] range of forward speed we use the fetch relation for
 
 
 def coriolis_parameter(lat_deg: ArrayLike) -> FloatArray:
@@ -114,8 +117,8 @@ def equivalent_fetch_young2013(
     Atmosphere 8, 194. Wind and speed [m/s] are kept within 15-60 and 0-10: beyond, the quadratic
     turns over and would give no waves at all under a fast, wide storm.
     """
-    v = np.clip(maximum_wind, *FETCH_WIND)
-    s = np.clip(forward_speed, *FETCH_SPEED)
+    v = np.clip(maximum_wind, *FETCH_WIND_RANGE)
+    s = np.clip(forward_speed, *FETCH_SPEED_RANGE)
     shape = -2.175e-3 * v**2 + 1.506e-2 * v * s - 1.223e-1 * s**2 + 8.76e-2 * v + 1.516 * s + 1.756
     spatial = 22.5e3 * np.log10(np.maximum(radius_of_maximum, 1.5e4)) - 70.8e3
     return np.asarray(np.maximum(shape, 0.0) * spatial)

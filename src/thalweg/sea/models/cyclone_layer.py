@@ -11,28 +11,32 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import unknown_name
+from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import KNOT
 from thalweg.sea import standard_names as nm
-from thalweg.sea.argument_checks import step_of
+from thalweg.sea.argument_checks import parse_time_step
 from thalweg.sea.frozen_fields import WORLD, Area, Coverage, FloatArray, Mesh
 from thalweg.sea.layer import Samples
 from thalweg.sea.models import cyclone_formulas as models
 
-TRACKS: Final = {"danielle-1998": "danielle_1998.csv"}
+BEST_TRACK_FILES: Final = {"danielle-1998": "danielle_1998.csv"}
 DEFAULT_STORM: Final = "danielle-1998"
 TIME_STEP: Final = 3600.0  #: [s] step at which the moving storm is frozen
 FULL_RADIUS: Final = 600e3  #: [m] the vortex is whole to here ...
 OUTER_RADIUS: Final = 1200e3  #: [m] ... and faded smoothly into the ambient sea here
-WIDEST: Final = 150e3  #: [m] largest radius of maximum wind of a storm turning extratropical
-DRIFT_STEP: Final = 3.0 * 3600.0  #: [s] half the base over which forward velocity is taken
-PRESENT: Final = frozenset({*nm.WIND.pair, *nm.WAVES.pair, nm.WAVE_HEIGHT, nm.WAVE_PERIOD})
+MAX_WIND_RADIUS: Final = (
+    150e3  #: [m] largest radius of maximum wind of a storm turning extratropical
+)
+HALF_VELOCITY_INTERVAL: Final = (
+    3.0 * 3600.0
+)  #: [s] half the base over which forward velocity is taken
+STORM_VARIABLES: Final = frozenset({*nm.WIND.pair, *nm.WAVES.pair, nm.WAVE_HEIGHT, nm.WAVE_PERIOD})
 
 
 @dataclass(frozen=True, eq=False)
-class Ambient:
+class AmbientSea:
     """The calm-ish sea a storm is set in, the same everywhere: an assumption, not data.
 
     Attributes
@@ -53,7 +57,7 @@ class Ambient:
     wave_period: float = 8.0
 
 
-class State(NamedTuple):
+class VortexState(NamedTuple):
     """The vortex at some times; all arrays of one shape, SI."""
 
     centre: FloatArray  # unit vectors, last axis 3
@@ -65,10 +69,10 @@ class State(NamedTuple):
     added: tuple[FloatArray, FloatArray]  # wind from translation
     fetch: FloatArray
 
-    def at(self, pick: Any) -> State:
+    def at(self, pick: Any) -> VortexState:
         """Return the state at some of the times."""
         added = (self.added[0][pick], self.added[1][pick])
-        return State(
+        return VortexState(
             self.centre[pick],
             self.coriolis[pick],
             self.radius[pick],
@@ -81,7 +85,7 @@ class State(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class BestTrack:
     """A best track.
 
     Attributes
@@ -111,8 +115,8 @@ class Track:
 
     def velocity(self, time: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the forward velocity (east, north) [m/s] over six hours around each time."""
-        before = np.maximum(time - DRIFT_STEP, self.time[0])
-        after = np.minimum(time + DRIFT_STEP, self.time[-1])
+        before = np.maximum(time - HALF_VELOCITY_INTERVAL, self.time[0])
+        after = np.minimum(time + HALF_VELOCITY_INTERVAL, self.time[-1])
         lat1, lon1 = self.position(before)
         lat2, lon2 = self.position(after)
         scale = np.radians(1.0) * MEAN_RADIUS / (after - before)
@@ -134,14 +138,14 @@ class StormLayer:
         Step [s] at which it is frozen.
     """
 
-    track: Track
-    ambient: Ambient = Ambient()
+    track: BestTrack
+    ambient: AmbientSea = AmbientSea()
     time_step: float = TIME_STEP
 
     @property
     def variables(self) -> frozenset[str]:
         """Wind and waves."""
-        return PRESENT
+        return STORM_VARIABLES
 
     @property
     def area(self) -> Area:
@@ -157,8 +161,8 @@ class StormLayer:
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values at points (N,); NaN outside the life of the track."""
-        here, east, north = _frames(lat, lon)
-        state = vortex(self.track, time)
+        here, east, north = _local_axes(lat, lon)
+        state = vortex_state(self.track, time)
         dot = np.einsum("ij,ij->i", here, state.centre)
         into_east = np.einsum("ij,ij->i", east, state.centre)
         into_north = np.einsum("ij,ij->i", north, state.centre)
@@ -170,8 +174,8 @@ class StormLayer:
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values (S, T) at stations for all times."""
-        here, east, north = _frames(lat, lon)
-        state = vortex(self.track, times)
+        here, east, north = _local_axes(lat, lon)
+        state = vortex_state(self.track, times)
         dot = here @ state.centre.T
         column = np.broadcast_to(np.arange(times.size), dot.shape)
         values = self._fields(dot, (east @ state.centre.T, north @ state.centre.T), state, column)
@@ -218,7 +222,7 @@ class StormLayer:
         }
 
     def _fields(
-        self, dot: FloatArray, into: tuple[FloatArray, FloatArray], state: State, column: Any
+        self, dot: FloatArray, into: tuple[FloatArray, FloatArray], state: VortexState, column: Any
     ) -> Samples:
         """Return all fields: the ambient sea, and the vortex where it reaches.
 
@@ -285,26 +289,26 @@ def storm_layer(
     name: str = DEFAULT_STORM,
     *,
     start: TimeLike | None = None,
-    ambient: Ambient | None = None,
+    ambient: AmbientSea | None = None,
     time_step: float = TIME_STEP,
 ) -> StormLayer:
     """Return the layer of an embedded storm (see `Sea.storm`)."""
-    step = step_of(time_step, least=1.0) or TIME_STEP
-    track = load_track(name)
+    step = parse_time_step(time_step, least=1.0) or TIME_STEP
+    track = load_best_track(name)
     if start is not None:
         moved = track.time - track.time[0] + parse_time(start)
-        track = Track(track.name, moved, track.lat, track.lon, track.wind, track.pressure)
-    return StormLayer(track, ambient or Ambient(), step)
+        track = BestTrack(track.name, moved, track.lat, track.lon, track.wind, track.pressure)
+    return StormLayer(track, ambient or AmbientSea(), step)
 
 
-def load_track(name: str) -> Track:
+def load_best_track(name: str) -> BestTrack:
     """Return an embedded best track; winds become 10-min means (Harper et al. 2010)."""
-    if name not in TRACKS:
-        raise unknown_name("storm", name, TRACKS)
-    text = (resources.files("thalweg.sea") / "data" / TRACKS[name]).read_text("utf-8")
+    if name not in BEST_TRACK_FILES:
+        raise unknown_name_error("storm", name, BEST_TRACK_FILES)
+    text = (resources.files("thalweg.sea") / "data" / BEST_TRACK_FILES[name]).read_text("utf-8")
     rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
     column = {key: np.array([float(r[key]) for r in rows]) for key in rows[0] if key != "time"}
-    return Track(
+    return BestTrack(
         name,
         np.array([parse_time(row["time"]) for row in rows]),
         column["lat"],
@@ -314,7 +318,7 @@ def load_track(name: str) -> Track:
     )
 
 
-def vortex(track: Track, time: FloatArray) -> State:
+def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
     """Return the parameters of the vortex at times.
 
     Storms that turn extratropical have a deep centre and moderate wind: Holland's B would fall
@@ -334,15 +338,17 @@ def vortex(track: Track, time: FloatArray) -> State:
     coriolis = models.coriolis_parameter(lat)
     turning = np.abs(coriolis) * np.maximum(symmetric, 1.0)
     surplus = b * deficit / (models.AIR_DENSITY * np.e) - symmetric**2
-    radius = np.clip(surplus / np.maximum(turning, 1e-9), radius, np.maximum(radius, WIDEST))
+    radius = np.clip(
+        surplus / np.maximum(turning, 1e-9), radius, np.maximum(radius, MAX_WIND_RADIUS)
+    )
     fitted = models.AIR_DENSITY * np.e * (symmetric**2 + turning * radius) / b
     fetch = models.equivalent_fetch_young2013(wind, np.hypot(east, north), radius)
-    centre = _frames(lat, lon)[0]
-    return State(centre, coriolis, radius, fitted, b, symmetric, added, fetch)
+    centre = _local_axes(lat, lon)[0]
+    return VortexState(centre, coriolis, radius, fitted, b, symmetric, added, fetch)
 
 
 def vortex_wind(
-    radius: FloatArray, inward: tuple[FloatArray, FloatArray], state: State
+    radius: FloatArray, inward: tuple[FloatArray, FloatArray], state: VortexState
 ) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
     """Return the storm's part of the 10 m wind.
 
@@ -369,7 +375,7 @@ def vortex_wind(
         b=state.b,
         coriolis=state.coriolis,
     )
-    gradient = gradient * _fade(radius)
+    gradient = gradient * _taper(radius)
     share = np.clip(gradient / np.maximum(state.maximum, 1e-6), 0.0, 1.0)
     angle = models.inflow_angle(radius, state.radius)
     spin = np.where(state.coriolis >= 0.0, 1.0, -1.0)  # counter-clockwise in the north
@@ -380,13 +386,13 @@ def vortex_wind(
     return (u, v), share
 
 
-def _fade(radius: FloatArray) -> FloatArray:
+def _taper(radius: FloatArray) -> FloatArray:
     """Return 1 within the full radius, falling smoothly to 0 at the outer radius."""
     x = np.clip((radius - FULL_RADIUS) / (OUTER_RADIUS - FULL_RADIUS), 0.0, 1.0)
     return 1.0 - x * x * (3.0 - 2.0 * x)
 
 
-def _frames(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _local_axes(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return unit vectors (N, 3) up, east and north at positions [deg]."""
     a, o = np.radians(lat), np.radians(lon)
     zero = np.zeros_like(a)

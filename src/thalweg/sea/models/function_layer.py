@@ -17,13 +17,13 @@ from thalweg.sea.layer import Samples, nan_pairs
 FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]
 Evaluate: TypeAlias = Callable[[Sequence[str], FloatArray, FloatArray, FloatArray], Samples]
 
-LONGEST_STEP = 600.0  #: [s] longest automatic step when a formula is frozen
-FEWEST_STEPS = 200  #: automatic steps across a short window
-MOST_STEPS = 2000  #: automatic steps across a long window
+MAX_STEP = 600.0  #: [s] longest automatic step when a formula is frozen
+MIN_STEPS = 200  #: automatic steps across a short window
+MAX_STEPS = 2000  #: automatic steps across a long window
 
 
 @dataclass(frozen=True, eq=False)
-class FunctionLayer:
+class FormulaLayer:
     """A layer whose values are computed when asked for.
 
     Attributes
@@ -133,12 +133,12 @@ def automatic_times(start: float, end: float, time_step: float | None = None) ->
     """
     window = end - start
     if time_step is None:
-        time_step = max(min(LONGEST_STEP, window / FEWEST_STEPS), window / MOST_STEPS)
+        time_step = max(min(MAX_STEP, window / MIN_STEPS), window / MAX_STEPS)
     steps = max(1, int(np.ceil(window / time_step - 1e-9)))
     return np.linspace(start, end, steps + 1)
 
 
-def constant_layer(values: Mapping[str, float], label: str) -> FunctionLayer:
+def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
     """Return a layer with the same values everywhere and always."""
 
     def evaluate(
@@ -147,7 +147,7 @@ def constant_layer(values: Mapping[str, float], label: str) -> FunctionLayer:
         return {name: np.full(time.shape, values[name]) for name in names}
 
     facts = {"values": dict(values)}
-    return FunctionLayer(frozenset(values), evaluate, label, time_step=0.0, facts=facts)
+    return FormulaLayer(frozenset(values), evaluate, label, time_step=0.0, facts=facts)
 
 
 def layer_of_functions(
@@ -156,9 +156,9 @@ def layer_of_functions(
     area: Area = WORLD,
     period: tuple[float, float] | None = None,
     time_step: float | None = None,
-) -> FunctionLayer:
+) -> FormulaLayer:
     """Return a layer for functions by name, with speeds and directions turned to components."""
-    makers = _makers(functions)
+    makers = _variable_functions(functions)
 
     def evaluate(
         names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
@@ -169,29 +169,29 @@ def layer_of_functions(
                 done.update(makers[name](time, lat, lon))
         return {name: done[name] for name in names}
 
-    return FunctionLayer(frozenset(makers), evaluate, "formula", area, period, time_step)
+    return FormulaLayer(frozenset(makers), evaluate, "formula", area, period, time_step)
 
 
-Maker: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], Samples]
+VariableFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], Samples]
 
 
-def _makers(functions: Mapping[str, FieldFunction]) -> dict[str, Maker]:
+def _variable_functions(functions: Mapping[str, FieldFunction]) -> dict[str, VariableFunction]:
     """Return, for each canonical variable, what computes it (and its partner)."""
     given = {name: _checked(name, function) for name, function in functions.items()}
-    makers: dict[str, Maker] = {}
+    makers: dict[str, VariableFunction] = {}
     for vector in nm.VECTORS:
-        _take_vector(vector, given, makers)
-    _take_bed(given, makers)
+        _convert_vector(vector, given, makers)
+    _convert_bed(given, makers)
     for name, function in given.items():
-        kept = nm.canonical(name)
+        kept = nm.canonical_name(name)
         if kept in makers:
-            raise _twice(kept, name)
-        makers[kept] = _single(kept, function)
+            raise _given_twice_error(kept, name)
+        makers[kept] = _single_variable(kept, function)
     return makers
 
 
-def _take_vector(
-    vector: nm.Vector, given: dict[str, FieldFunction], makers: dict[str, Maker]
+def _convert_vector(
+    vector: nm.VectorNames, given: dict[str, FieldFunction], makers: dict[str, VariableFunction]
 ) -> None:
     """Move what belongs to one vector from ``given`` to ``makers``."""
     have = [name for name in vector.pair if name in given]
@@ -207,15 +207,15 @@ def _take_vector(
     if len(have) == 2:
         again = [*directions, *(s for s in (vector.speed,) if s in given)]
         if again:
-            raise _twice(have[0], again[0])
+            raise _given_twice_error(have[0], again[0])
         for name in vector.pair:
-            makers[name] = _single(name, given.pop(name))
+            makers[name] = _single_variable(name, given.pop(name))
         return
     if not directions:
         return
     if len(directions) == 2:
-        raise _twice(directions[0], directions[1])
-    speed = given.pop(vector.speed, None) if vector.speed else _unit
+        raise _given_twice_error(directions[0], directions[1])
+    speed = given.pop(vector.speed, None) if vector.speed else _constant_one
     if speed is None:
         raise InputError(
             f"The sea is given {directions[0]!r} without {vector.speed!r}.",
@@ -223,27 +223,33 @@ def _take_vector(
             f"Add a function for {vector.speed!r}.",
             missing=vector.speed,
         )
-    maker = _polar(vector, speed, given.pop(directions[0]), directions[0] == vector.origin)
+    maker = _components_of_polar(
+        vector, speed, given.pop(directions[0]), directions[0] == vector.origin
+    )
     makers[vector.east] = makers[vector.north] = maker
 
 
-def _take_bed(given: dict[str, FieldFunction], makers: dict[str, Maker]) -> None:
+def _convert_bed(given: dict[str, FieldFunction], makers: dict[str, VariableFunction]) -> None:
     """Turn bed levels (positive up) and depths below the moving surface into bed depths."""
     for name in [n for n in given if nm.is_bed_level(n)]:
         if nm.BED_DEPTH in makers:
-            raise _twice(nm.BED_DEPTH, name)
-        makers[nm.BED_DEPTH] = _single(nm.BED_DEPTH, _difference(_zero, given.pop(name)))
+            raise _given_twice_error(nm.BED_DEPTH, name)
+        makers[nm.BED_DEPTH] = _single_variable(
+            nm.BED_DEPTH, _difference(_constant_zero, given.pop(name))
+        )
     total = given.pop(nm.TOTAL_DEPTH, None)
     if total is None:
         return
-    if any(nm.canonical(name) == nm.BED_DEPTH for name in given) or nm.BED_DEPTH in makers:
-        raise _twice(nm.BED_DEPTH, nm.TOTAL_DEPTH)
-    level = next((f for name, f in given.items() if nm.canonical(name) == nm.WATER_LEVEL), None)
+    if any(nm.canonical_name(name) == nm.BED_DEPTH for name in given) or nm.BED_DEPTH in makers:
+        raise _given_twice_error(nm.BED_DEPTH, nm.TOTAL_DEPTH)
+    level = next(
+        (f for name, f in given.items() if nm.canonical_name(name) == nm.WATER_LEVEL), None
+    )
     bed = total if level is None else _difference(total, level)
-    makers[nm.BED_DEPTH] = _single(nm.BED_DEPTH, bed)
+    makers[nm.BED_DEPTH] = _single_variable(nm.BED_DEPTH, bed)
 
 
-def _single(name: str, function: FieldFunction) -> Maker:
+def _single_variable(name: str, function: FieldFunction) -> VariableFunction:
     return lambda time, lat, lon: {name: np.asarray(function(time, lat, lon))}
 
 
@@ -251,9 +257,9 @@ def _difference(first: FieldFunction, second: FieldFunction) -> FieldFunction:
     return lambda time, lat, lon: np.subtract(first(time, lat, lon), second(time, lat, lon))
 
 
-def _polar(
-    vector: nm.Vector, speed: FieldFunction, direction: FieldFunction, is_origin: bool
-) -> Maker:
+def _components_of_polar(
+    vector: nm.VectorNames, speed: FieldFunction, direction: FieldFunction, is_origin: bool
+) -> VariableFunction:
     sign = -1.0 if is_origin else 1.0
 
     def make(time: FloatArray, lat: FloatArray, lon: FloatArray) -> Samples:
@@ -267,11 +273,11 @@ def _polar(
     return make
 
 
-def _unit(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+def _constant_one(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
     return np.ones(time.shape)
 
 
-def _zero(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
+def _constant_zero(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
     return np.zeros(time.shape)
 
 
@@ -307,7 +313,7 @@ def _describe(result: object) -> str:
     return f"an array of shape {shape}" if shape is not None else f"a {type(result).__name__}"
 
 
-def _twice(name: str, other: str) -> InputError:
+def _given_twice_error(name: str, other: str) -> InputError:
     return InputError(
         f"The sea is given {name!r} twice: {other!r} is another spelling of it.",
         "Each variable can be given once.",

@@ -15,21 +15,21 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.sea import standard_names as nm
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.models.current_profiles import WaterColumn, density_mean, tidal_mean, tidal_profile
 
-Field: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+CurrentFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 
-EARTH: Final = 6371008.8  #: [m] mean radius
+EARTH_RADIUS: Final = 6371008.8  #: [m] mean radius
 M2_PERIOD: Final = 44700.0  #: [s] the period of Schless (2023), sec. 4.3.1
-DECAY: Final = 50e3  #: [m] offshore distance over which currents fall to 1/e (eq. 3.73)
+DECAY_LENGTH: Final = 50e3  #: [m] offshore distance over which currents fall to 1/e (eq. 3.73)
 
 
 @dataclass(frozen=True)
-class Scenario:
+class TidalEllipse:
     """A tidal ellipse at the surface, long axis along the coast (Schless, 2023, Table 4.9).
 
     Attributes
@@ -47,16 +47,16 @@ class Scenario:
         return self.cross_shore / self.alongshore
 
 
-SCENARIOS: Final[dict[str, Scenario]] = {
-    "neap": Scenario(0.7, 0.35),
-    "neap-to-mean": Scenario(0.8, 0.2),
-    "mean-to-spring": Scenario(0.9, 0.1125),
-    "spring": Scenario(1.0, 0.0625),
+TIDAL_ELLIPSES: Final[dict[str, TidalEllipse]] = {
+    "neap": TidalEllipse(0.7, 0.35),
+    "neap-to-mean": TidalEllipse(0.8, 0.2),
+    "mean-to-spring": TidalEllipse(0.9, 0.1125),
+    "spring": TidalEllipse(1.0, 0.0625),
 }
 
 
-def north_sea_current(
-    scenario: str | Scenario = "neap",
+def stratified_coast_current(
+    scenario: str | TidalEllipse = "neap",
     *,
     coast: tuple[float, float],
     onshore_deg: float,
@@ -64,8 +64,8 @@ def north_sea_current(
     draught: float = 0.0,
     column: WaterColumn | None = None,
     density_gradient: float = -2e-4,
-    decay: float = DECAY,
-) -> dict[str, Field]:
+    decay: float = DECAY_LENGTH,
+) -> dict[str, CurrentFunction]:
     """Return functions of the current for `Sea.from_functions`.
 
     Parameters
@@ -116,7 +116,7 @@ def north_sea_current(
             "The distance is positive (infinite for none), the direction in degrees.",
             "Correct it.",
         )
-    plus, minus = phasors(scenario, water, draught)
+    plus, minus = ellipse_phasors(scenario, water, draught)
     steady = (
         complex(*density_mean(draught, water, density_gradient=density_gradient))
         if density_gradient
@@ -129,7 +129,7 @@ def north_sea_current(
     def current(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatArray:
         angle = water.frequency * (time - start)
         turned = plus * np.exp(1j * angle) + minus * np.exp(-1j * angle) + steady
-        offshore = np.maximum(0.0, -_along(lat, lon, coast, onshore))
+        offshore = np.maximum(0.0, -_distance_from_coast(lat, lon, coast, onshore))
         return np.asarray(turned * onshore * np.exp(-offshore / decay))
 
     return {
@@ -138,8 +138,8 @@ def north_sea_current(
     }
 
 
-def phasors(
-    scenario: str | Scenario, column: WaterColumn, draught: float = 0.0
+def ellipse_phasors(
+    scenario: str | TidalEllipse, column: WaterColumn, draught: float = 0.0
 ) -> tuple[complex, complex]:
     """Return the anticlockwise and clockwise phasors [m/s] of the tide over a draught.
 
@@ -147,7 +147,7 @@ def phasors(
     surface: with the x axis onshore and y along the coast, ``i (M + m) / 2`` and ``i (M - m) / 2``
     with M along the coast and m = - cross-shore amplitude (clockwise).
     """
-    ellipse = _scenario(scenario)
+    ellipse = _tidal_ellipse(scenario)
     long, short = ellipse.alongshore, -ellipse.cross_shore
     surface = tidal_profile(column.depth, column)
     hull = tidal_mean(draught, column)
@@ -156,11 +156,11 @@ def phasors(
     return plus, minus
 
 
-def _scenario(scenario: str | Scenario) -> Scenario:
+def _tidal_ellipse(scenario: str | TidalEllipse) -> TidalEllipse:
     if isinstance(scenario, str):
-        if scenario not in SCENARIOS:
-            raise unknown_name("North Sea scenario", scenario, SCENARIOS)
-        return SCENARIOS[scenario]
+        if scenario not in TIDAL_ELLIPSES:
+            raise unknown_name_error("North Sea scenario", scenario, TIDAL_ELLIPSES)
+        return TIDAL_ELLIPSES[scenario]
     if not (scenario.alongshore > 0.0 and 0.0 <= scenario.cross_shore <= scenario.alongshore):
         raise InputError(
             f"{scenario} is no ellipse along the coast.",
@@ -170,10 +170,10 @@ def _scenario(scenario: str | Scenario) -> Scenario:
     return scenario
 
 
-def _along(
+def _distance_from_coast(
     lat: FloatArray, lon: FloatArray, coast: tuple[float, float], onshore: complex
 ) -> FloatArray:
     """Return the distance [m] from the coast along the onshore axis; negative at sea."""
     north = np.radians(lat - coast[0])
     east = np.radians((lon - coast[1] + 180.0) % 360.0 - 180.0) * np.cos(np.radians(coast[0]))
-    return np.asarray(EARTH * (east * onshore.real + north * onshore.imag))
+    return np.asarray(EARTH_RADIUS * (east * onshore.real + north * onshore.imag))

@@ -17,13 +17,13 @@ from thalweg.sea.layer import Samples
 if TYPE_CHECKING:
     from thalweg.sea.sea import Sea
 
-FETCH = 500_000.0  #: [m] over which the wind is taken to have blown
-DURATION = 24.0 * 3600.0  #: [s] for which it is taken to have blown
+DEFAULT_FETCH = 500_000.0  #: [m] over which the wind is taken to have blown
+DEFAULT_DURATION = 24.0 * 3600.0  #: [s] for which it is taken to have blown
 _VARIABLES = frozenset({nm.WAVE_HEIGHT, *nm.WAVES.pair, nm.WAVE_PERIOD})
 
 
 def carter_1982(
-    wind_speed: ArrayLike, *, fetch: float = FETCH, duration: float = DURATION
+    wind_speed: ArrayLike, *, fetch: float = DEFAULT_FETCH, duration: float = DEFAULT_DURATION
 ) -> tuple[FloatArray, FloatArray]:
     """Return significant height [m] and peak period [s] of the waves that a steady wind raises.
 
@@ -100,13 +100,13 @@ class WindSeaLayer:
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values at points; NaN where the wind is unknown."""
-        return _waves(names, self.sea.sample(list(nm.WIND.pair), time, lat, lon))
+        return _waves_from_wind(names, self.sea.sample(list(nm.WIND.pair), time, lat, lon))
 
     def series(
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values (S, T) at stations for all times."""
-        return _waves(names, self.sea.series(list(nm.WIND.pair), times, lat, lon))
+        return _waves_from_wind(names, self.sea.series(list(nm.WIND.pair), times, lat, lon))
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return the times of the wind."""
@@ -132,11 +132,11 @@ class WindSeaLayer:
 
     def provenance(self) -> Mapping[str, Any]:
         """Return how the waves were made."""
-        return {"kind": "waves from wind", "method": "Carter (1982)", "fetch_m": FETCH,
-                "duration_s": DURATION}  # fmt: skip
+        return {"kind": "waves from wind", "method": "Carter (1982)", "fetch_m": DEFAULT_FETCH,
+                "duration_s": DEFAULT_DURATION}  # fmt: skip
 
 
-def _waves(names: Sequence[str], wind: Mapping[str, FloatArray]) -> Samples:
+def _waves_from_wind(names: Sequence[str], wind: Mapping[str, FloatArray]) -> Samples:
     east, north = (np.asarray(wind[name], float) for name in nm.WIND.pair)
     speed = np.hypot(east, north)
     height, period = carter_1982(speed)

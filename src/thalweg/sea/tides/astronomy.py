@@ -17,7 +17,7 @@ HOUR: Final = 3600.0
 EPOCH: Final = -2209032000.0  #: [s since 1970] 1899-12-31T12:00Z, where the polynomials start
 
 # degrees; per day, per (10^4 day)^2, per (10^4 day)^3 from the epoch
-_LONGITUDES: Final = np.array(
+_LONGITUDE_POLYNOMIALS: Final = np.array(
     [
         [270.434164, 13.1763965268, -0.0000850, 0.000000039],  # s, the moon
         [279.696678, 0.9856473354, 0.00002267, 0.0],  # h, the sun
@@ -45,13 +45,13 @@ def mean_longitudes(times: FloatArray) -> FloatArray:
     day = (times - EPOCH) / DAY
     scaled = day / 1e4
     powers = np.stack([np.ones_like(day), day, scaled**2, scaled**3])
-    longitude = (_LONGITUDES @ powers / 360.0) % 1.0
+    longitude = (_LONGITUDE_POLYNOMIALS @ powers / 360.0) % 1.0
     return np.vstack([(times / DAY) % 1.0, longitude])
 
 
-def rates() -> FloatArray:
+def argument_rates() -> FloatArray:
     """Return the rates of the six arguments of `mean_longitudes` [cycles per hour] (about 2000)."""
     day = (946684800.0 - EPOCH) / DAY
-    c = _LONGITUDES
+    c = _LONGITUDE_POLYNOMIALS
     daily = c[:, 1] + 2e-4 * c[:, 2] * day / 1e4 + 3e-4 * c[:, 3] * (day / 1e4) ** 2
     return np.append(1.0, daily / 360.0) / 24.0

@@ -20,15 +20,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from thalweg.core.errors import DatasetError, InputError, ThalwegWarning, unknown_name
+from thalweg.core.errors import DatasetError, InputError, ThalwegWarning, unknown_name_error
 from thalweg.core.units import KNOT
 from thalweg.sea import standard_names as nm
 from thalweg.sea.tides import schureman
 from thalweg.sea.tides.constituents import Constituents
-from thalweg.sea.tides.noos_dia_series import LENGTHS, MET
+from thalweg.sea.tides.noos_dia_series import LENGTH_UNITS, MET_OFFSET_HOURS
 
-FORMAT: Final = "thalweg-constituents-1"
-_PATIENCE = 1e-4  #: [deg/h] how far a printed speed may lie from that of its name
+FILE_FORMAT: Final = "thalweg-constituents-1"
+_SPEED_TOLERANCE = 1e-4  #: [deg/h] how far a printed speed may lie from that of its name
 
 
 def read_constituents(path: str | Path, *, station: str | None = None) -> Constituents:
@@ -48,20 +48,20 @@ def read_constituents(path: str | Path, *, station: str | None = None) -> Consti
     InputError
         If the station is not in the file, or none is named where there are many.
     """
-    text = _text(Path(path))
+    text = _read_text(Path(path))
     source = Path(path).name
     if not text.lstrip().startswith(("[", "{")):
-        return _only(_hatyan(text, source), station, source)
+        return _check_station(_read_hatyan(text, source), station, source)
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:
-        raise _fault(source, f"is broken JSON ({error})") from error
+        raise _constituent_file_error(source, f"is broken JSON ({error})") from error
     if isinstance(data, list):
-        return station_of(data, station, source)
-    return _only(from_dict(data, source), station, source)
+        return select_station(data, station, source)
+    return _check_station(from_dict(data, source), station, source)
 
 
-def _only(constants: Constituents, station: str | None, source: str) -> Constituents:
+def _check_station(constants: Constituents, station: str | None, source: str) -> Constituents:
     """Return constants of a file that is no set of stations, if they are those asked for."""
     told = [str(constants.facts[k]) for k in ("station", "name") if constants.facts.get(k)]
     if station is None or station in told:
@@ -83,16 +83,16 @@ def write_constituents(constituents: Constituents, path: str | Path) -> None:
 def as_dict(constituents: Constituents) -> dict[str, Any]:
     """Return constituents as plain data; what is unknown is null."""
     return {
-        "format": FORMAT,
+        "format": FILE_FORMAT,
         "convention": constituents.convention,
         "names": list(constituents.names),
-        "lat": _plain(constituents.lat),
-        "lon": _plain(constituents.lon),
+        "lat": _json_numbers(constituents.lat),
+        "lon": _json_numbers(constituents.lon),
         "variables": {
             name: {
-                "amplitude": [_plain(row) for row in constituents.amplitude[name]],
-                "phase_deg": [_plain(row) for row in constituents.phase[name]],
-                "mean": _plain(constituents.mean[name]),
+                "amplitude": [_json_numbers(row) for row in constituents.amplitude[name]],
+                "phase_deg": [_json_numbers(row) for row in constituents.phase[name]],
+                "mean": _json_numbers(constituents.mean[name]),
             }
             for name in sorted(constituents.variables)
         },
@@ -102,12 +102,12 @@ def as_dict(constituents: Constituents) -> dict[str, Any]:
 
 def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constituents:
     """Return constituents from the plain data of `as_dict`."""
-    if data.get("format") != FORMAT:
-        raise _fault(source, f"is not of the format {FORMAT}")
+    if data.get("format") != FILE_FORMAT:
+        raise _constituent_file_error(source, f"is not of the format {FILE_FORMAT}")
     try:
         nodes, parts = len(data["lat"]), data["variables"]
         if not (parts and data["names"]):
-            raise _fault(source, "holds no constituents")
+            raise _constituent_file_error(source, "holds no constituents")
         shape = (len(data["names"]), nodes)
         return Constituents(
             tuple(str(n) for n in data["names"]),
@@ -120,14 +120,14 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
             dict(data.get("facts", {})),
         )
     except (KeyError, TypeError, AttributeError) as error:
-        raise _fault(source, f"lacks a part ({error})") from error
+        raise _constituent_file_error(source, f"lacks a part ({error})") from error
     except ValueError as error:
         if isinstance(error, InputError):
             raise
-        raise _fault(source, f"holds arrays that do not fit ({error})") from error
+        raise _constituent_file_error(source, f"holds arrays that do not fit ({error})") from error
 
 
-def station_of(
+def select_station(
     stations: Sequence[Mapping[str, Any]], wanted: str | None, source: str = "stations"
 ) -> Constituents:
     """Return the constituents of one station of a JSON set (see the module)."""
@@ -136,9 +136,11 @@ def station_of(
         for s in stations:
             names.setdefault(str(s.get("name", "")), s)
     except (KeyError, TypeError, AttributeError) as error:
-        raise _fault(source, f"is a list, but not of stations with an id ({error!r})") from error
+        raise _constituent_file_error(
+            source, f"is a list, but not of stations with an id ({error!r})"
+        ) from error
     if not names:
-        raise _fault(source, "holds no station")
+        raise _constituent_file_error(source, "holds no station")
     if wanted is None and len(stations) != 1:
         raise InputError(
             f"{source} holds {len(stations)} stations and none is named.",
@@ -147,29 +149,33 @@ def station_of(
             file=source,
         )
     if wanted is not None and wanted not in names:
-        raise unknown_name("station", wanted, names)
+        raise unknown_name_error("station", wanted, names)
     one = names[wanted] if wanted is not None else stations[0]
     try:
-        return _station(one, source)
+        return _read_station(one, source)
     except InputError:
         raise
     except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise _fault(source, f"holds a broken station {one['id']!r} ({error!r})") from error
+        raise _constituent_file_error(
+            source, f"holds a broken station {one['id']!r} ({error!r})"
+        ) from error
 
 
-def _station(data: Mapping[str, Any], source: str) -> Constituents:
+def _read_station(data: Mapping[str, Any], source: str) -> Constituents:
     is_current = data.get("kind") == "current" or "current" in data
     table: dict[str, tuple[float, float]] = {}
     left_out: dict[str, float] = {}
     for name, size, lag in data["constituents"]:
         if not size:
             continue
-        if _known(str(name)):
-            table[schureman.species(str(name)).name] = (float(size), float(lag))
+        if _is_known_constituent(str(name)):
+            table[schureman.constituent_definition(str(name)).name] = (float(size), float(lag))
         else:
             left_out[str(name)] = float(size)
     if not table:
-        raise _fault(source, f"holds no constituents for the station {data['id']!r}")
+        raise _constituent_file_error(
+            source, f"holds no constituents for the station {data['id']!r}"
+        )
     if left_out:
         told = ", ".join(f"{n} ({a:g})" for n, a in left_out.items())
         warnings.warn(
@@ -186,11 +192,11 @@ def _station(data: Mapping[str, Any], source: str) -> Constituents:
     }
     lat, lon = float(data["lat"]), float(data["lon"])
     if is_current:
-        return _current(data["current"], table, facts, (lat, lon))
+        return _current_components(data["current"], table, facts, (lat, lon))
     return Constituents.single(nm.WATER_LEVEL, table, lat=lat, lon=lon, facts=facts)
 
 
-def _current(
+def _current_components(
     current: Mapping[str, Any],
     table: Mapping[str, tuple[float, float]],
     facts: Mapping[str, Any],
@@ -214,47 +220,51 @@ def _current(
     )
 
 
-def _hatyan(text: str, source: str) -> Constituents:
+def _read_hatyan(text: str, source: str) -> Constituents:
     """Read a component file; only water levels are known in this form."""
     header = dict(re.findall(r"^(STAT|MIDD|NCOM)\s+(.*?)\s*$", text, re.M))
     rows = re.findall(r"^COMP\s+\d+\s+([\d.]+)\s+(\S+)\s+(\S+)\s+(\S+)\s*$", text, re.M)
     station = header.get("STAT", "").split()
     if not rows or len(station) < 4:
-        raise _fault(source, "has no STAT line or no components")
+        raise _constituent_file_error(source, "has no STAT line or no components")
     unit = station[3]
-    if unit not in LENGTHS:
-        raise _fault(source, f"gives heights in {unit!r}")
+    if unit not in LENGTH_UNITS:
+        raise _constituent_file_error(source, f"gives heights in {unit!r}")
     try:
         count, mean = int(header.get("NCOM", len(rows))), float(header.get("MIDD", 0.0))
         numbers = [(name, float(v), float(size), float(lag)) for v, size, lag, name in rows]
     except ValueError as error:
-        raise _fault(source, f"holds a constant that is no number ({error})") from error
+        raise _constituent_file_error(
+            source, f"holds a constant that is no number ({error})"
+        ) from error
     if len(rows) != count:
-        raise _fault(source, f"tells of {count} components and has {len(rows)}")
+        raise _constituent_file_error(source, f"tells of {count} components and has {len(rows)}")
     table = {}
     for name, speed, size, lag in numbers:
         hourly = schureman.frequency(name) * 360.0
-        if abs(hourly - speed) > _PATIENCE:
-            raise _fault(source, f"gives {name} a speed of {speed:g}, not {hourly:.6f} deg/h")
-        table[name] = (size * LENGTHS[unit], (lag - hourly * MET) % 360.0)
+        if abs(hourly - speed) > _SPEED_TOLERANCE:
+            raise _constituent_file_error(
+                source, f"gives {name} a speed of {speed:g}, not {hourly:.6f} deg/h"
+            )
+        table[name] = (size * LENGTH_UNITS[unit], (lag - hourly * MET_OFFSET_HOURS) % 360.0)
     return Constituents.single(
         nm.WATER_LEVEL,
         table,
-        mean=mean * LENGTHS[unit],
+        mean=mean * LENGTH_UNITS[unit],
         convention="rws",
         facts={"source": source, "station": station[0], "datum": station[2]},
     )
 
 
-def _known(name: str) -> bool:
+def _is_known_constituent(name: str) -> bool:
     try:
-        schureman.species(name)
+        schureman.constituent_definition(name)
     except InputError:
         return False
     return True
 
 
-def _text(path: Path) -> str:
+def _read_text(path: Path) -> str:
     try:
         raw = path.read_bytes()
         raw = gzip.decompress(raw) if raw[:2] == b"\x1f\x8b" else raw
@@ -268,11 +278,11 @@ def _text(path: Path) -> str:
         ) from error
 
 
-def _plain(values: Any) -> list[float | None]:
+def _json_numbers(values: Any) -> list[float | None]:
     return [float(v) if np.isfinite(v) else None for v in np.asarray(values, float)]
 
 
-def _fault(source: str, fault: str) -> DatasetError:
+def _constituent_file_error(source: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source} {fault}.",
         "Constituents can be read from hatyan component files, JSON sets of stations and "

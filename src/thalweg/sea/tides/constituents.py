@@ -9,16 +9,16 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.tides import foreman, schureman
 from thalweg.sea.tides.astronomy import DAY
 
-Complex = NDArray[np.complex128]
+ComplexArray = NDArray[np.complex128]
 
 CONVENTIONS: Final = ("foreman", "schureman", "rws")
-CHUNK: Final = 1 << 14  #: times for which arguments are made at once
-STEADY: Final = DAY  #: [s] nodal corrections are made at this step and are linear between
+TIMES_PER_CHUNK: Final = 1 << 14  #: times for which arguments are made at once
+NODAL_STEP: Final = DAY  #: [s] nodal corrections are made at this step and are linear between
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class Constituents:
 
     def __post_init__(self) -> None:
         if self.convention not in CONVENTIONS:
-            raise unknown_name("tidal convention", self.convention, CONVENTIONS)
+            raise unknown_name_error("tidal convention", self.convention, CONVENTIONS)
         nodes = self.lat.size
         for name in self.amplitude:
             shapes = (self.amplitude[name].shape, self.phase[name].shape, self.mean[name].shape)
@@ -136,7 +136,7 @@ class Constituents:
         foremanlike = self.convention == "foreman"
         return foreman.frequency(name) if foremanlike else schureman.frequency(name)
 
-    def coefficients(self, variable: str) -> Complex:
+    def coefficients(self, variable: str) -> ComplexArray:
         """Return ``A exp(-i g)`` (C, N) of a variable."""
         phase = np.radians(self.phase[variable])
         return np.asarray(self.amplitude[variable] * np.exp(-1j * phase))
@@ -169,24 +169,24 @@ class Constituents:
             Mean included.
         """
         if variable not in self.amplitude:
-            raise unknown_name("tidal variable", variable, self.amplitude)
+            raise unknown_name_error("tidal variable", variable, self.amplitude)
         moments = np.asarray(times, np.float64).ravel()
         chosen = self if only is None else self.picked(only)
         coefficient = chosen.coefficients(variable)
         result = np.empty((self.lat.size, moments.size))
-        for first in range(0, moments.size, CHUNK):
-            part = slice(first, first + CHUNK)
-            wave = phasors(
+        for first in range(0, moments.size, TIMES_PER_CHUNK):
+            part = slice(first, first + TIMES_PER_CHUNK)
+            wave = unit_phasors(
                 chosen.names, moments[part], chosen.latitude, chosen.convention, nodal_time
             )
-            result[:, part] = chosen.mean[variable][:, None] + tide(coefficient.T, wave.T)
+            result[:, part] = chosen.mean[variable][:, None] + tidal_signal(coefficient.T, wave.T)
         return result
 
     def picked(self, only: Sequence[str]) -> Constituents:
         """Return the constants of some constituents."""
         missing = [n for n in only if n not in self.names]
         if missing:
-            raise unknown_name("constituent here", missing[0], self.names)
+            raise unknown_name_error("constituent here", missing[0], self.names)
         rows = [self.names.index(n) for n in only]
         amplitude = {v: a[rows] for v, a in self.amplitude.items()}
         phase = {v: g[rows] for v, g in self.phase.items()}
@@ -207,40 +207,45 @@ class Constituents:
         return sorted(rows, key=lambda r: -float(r["amplitude"]))
 
 
-def tide(coefficient: Complex, wave: Complex) -> FloatArray:
+def tidal_signal(coefficient: ComplexArray, wave: ComplexArray) -> FloatArray:
     """Return the real part of a product of complex matrices (N, C) and (C, T), as one real one."""
     left = np.concatenate([coefficient.real, -coefficient.imag], axis=1)
     right = np.concatenate([wave.real, wave.imag], axis=0)
     return np.asarray(left @ right, np.float64)
 
 
-def phasors(
+def unit_phasors(
     names: tuple[str, ...],
     times: FloatArray,
     latitude: float,
     convention: str,
     nodal_time: float | None = None,
-) -> Complex:
+) -> ComplexArray:
     """Return ``f exp(i (V + u))`` (T, C): the tide of unit constants.
 
     The argument V is exact; f and u, which move by less than a degree a day, are made once a day
     and are linear between.
     """
     if convention == "foreman":
-        angle = foreman.arguments(names, times)
+        angle = foreman.equilibrium_arguments(names, times)
     else:
-        angle = schureman.arguments(names, times)
+        angle = schureman.equilibrium_arguments(names, times)
     when = times if nodal_time is None else np.full(1, float(nodal_time))
-    return np.asarray(np.exp(2j * np.pi * angle) * _nodal(names, when, latitude, convention))
+    return np.asarray(
+        np.exp(2j * np.pi * angle)
+        * _interpolated_nodal_corrections(names, when, latitude, convention)
+    )
 
 
-def _nodal(names: tuple[str, ...], times: FloatArray, latitude: float, convention: str) -> Complex:
-    day = np.floor(times / STEADY)
+def _interpolated_nodal_corrections(
+    names: tuple[str, ...], times: FloatArray, latitude: float, convention: str
+) -> ComplexArray:
+    day = np.floor(times / NODAL_STEP)
     days, place = np.unique(np.concatenate([day, day + 1.0]), return_inverse=True)
     if convention == "foreman":
-        factor = foreman.nodal(names, days * STEADY, latitude)
+        factor = foreman.nodal_corrections(names, days * NODAL_STEP, latitude)
     else:
-        factor = schureman.nodal(names, days * STEADY, rws=convention == "rws")
+        factor = schureman.nodal_corrections(names, days * NODAL_STEP, rws=convention == "rws")
     before, after = factor[place[: times.size]], factor[place[times.size :]]
-    way = (times / STEADY - day)[:, None]
+    way = (times / NODAL_STEP - day)[:, None]
     return np.asarray((1.0 - way) * before + way * after)

@@ -13,15 +13,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.sea.frozen_fields import FloatArray, IntArray
 from thalweg.sea.tides.astronomy import mean_longitudes
 
-Complex = NDArray[np.complex128]
+ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
-class Tables:
+class ConstituentTable:
     """What UTide knows of each constituent.
 
     Attributes
@@ -49,7 +49,7 @@ class Tables:
 
 
 @lru_cache(maxsize=1)
-def tables() -> Tables:
+def constituent_table() -> ConstituentTable:
     """Return the tables of UTide.
 
     Raises
@@ -57,7 +57,7 @@ def tables() -> Tables:
     InputError
         If ``utide`` is not installed.
     """
-    data = _constants()
+    data = _utide_constants()
     const, sat, shallow = data.const, data.sat, data.shallow
     names = [str(n) for n in const.name]
     first = np.asarray(const.ishallow, float)
@@ -69,7 +69,7 @@ def tables() -> Tables:
             np.asarray(shallow.iname)[rows].astype(np.int64) - 1,
             np.asarray(shallow.coef, float)[rows],
         )
-    return Tables(
+    return ConstituentTable(
         {name: k for k, name in enumerate(names)},
         np.asarray(const.freq, float),
         np.asarray(const.df, float),
@@ -85,7 +85,7 @@ def tables() -> Tables:
     )
 
 
-def _constants() -> Any:
+def _utide_constants() -> Any:
     try:
         from utide._ut_constants import ut_constants  # type: ignore[import-untyped]
     except ImportError:
@@ -99,27 +99,27 @@ def _constants() -> Any:
     return ut_constants
 
 
-def row(name: str) -> int:
+def constituent_row(name: str) -> int:
     """Return the row of a constituent in the tables."""
-    index = tables().index
+    index = constituent_table().index
     plain = name.strip().upper()
     if plain not in index:
-        raise unknown_name("tidal constituent", name, index)
+        raise unknown_name_error("tidal constituent", name, index)
     return index[plain]
 
 
 def frequency(name: str) -> float:
     """Return the frequency [cycles per hour] of a constituent."""
-    return float(tables().frequency[row(name)])
+    return float(constituent_table().frequency[constituent_row(name)])
 
 
-def arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
+def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
     """Return the equilibrium arguments V [cycles] (T, C) at times [s since epoch]."""
-    table, longitude = tables(), mean_longitudes(times)
+    table, longitude = constituent_table(), mean_longitudes(times)
     longitude[0] = longitude[0] + longitude[2] - longitude[1]
     columns = []
     for name in names:
-        k = row(name)
+        k = constituent_row(name)
         members, multiples = table.compounds.get(k, (np.array([k]), np.ones(1)))
         value = np.zeros(times.size)
         for member, multiple in zip(members, multiples):
@@ -129,24 +129,24 @@ def arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
     return np.stack(columns, axis=1) if columns else np.empty((times.size, 0))
 
 
-def nodal(names: tuple[str, ...], times: FloatArray, latitude: float) -> Complex:
+def nodal_corrections(names: tuple[str, ...], times: FloatArray, latitude: float) -> ComplexArray:
     """Return the nodal corrections F exp(i U) (T, C) at a latitude [deg]."""
-    table = tables()
+    table = constituent_table()
     columns = []
     for name in names:
-        k = row(name)
+        k = constituent_row(name)
         members, multiples = table.compounds.get(k, (np.array([k]), np.ones(1)))
         value = np.ones(times.size, np.complex128)
         for member, multiple in zip(members, multiples):
-            factor = _satellites(int(member), times, latitude)
+            factor = _satellite_correction(int(member), times, latitude)
             turn = np.exp(1j * multiple * np.angle(factor))
             value *= np.abs(factor) ** abs(multiple) * turn
         columns.append(value)
     return np.stack(columns, axis=1) if columns else np.empty((times.size, 0), np.complex128)
 
 
-def _satellites(k: int, times: FloatArray, latitude: float) -> Complex:
-    constituent, multiples, phase, ratio, rule = tables().satellites
+def _satellite_correction(k: int, times: FloatArray, latitude: float) -> ComplexArray:
+    constituent, multiples, phase, ratio, rule = constituent_table().satellites
     mine = constituent == k
     if not mine.any():
         return np.ones(times.size, np.complex128)

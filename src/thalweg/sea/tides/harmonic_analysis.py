@@ -1,9 +1,9 @@
 """Harmonic analysis: from a record, or a model run at every node, to tidal constituents.
 
-The tide of unit constants (`thalweg.sea.tides.constituents.phasors`, with UTide's arguments and
-nodal corrections at exact times) is fitted to the record by least squares, together with a mean and
-without trend: what ``utide.solve(..., method="ols", trend=False)`` solves for one series, here for
-all nodes at once, because nodes that are known at the same times share their equations.
+The tide of unit constants (`thalweg.sea.tides.constituents.unit_phasors`, with UTide's arguments
+and nodal corrections at exact times) is fitted to the record by least squares, together with a
+mean and without trend: what ``utide.solve(..., method="ols", trend=False)`` solves for one series,
+here for all nodes at once, because nodes that are known at the same times share their equations.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from thalweg.core.errors import InputError
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.tides import foreman
 from thalweg.sea.tides.astronomy import HOUR
-from thalweg.sea.tides.constituents import Constituents, phasors
+from thalweg.sea.tides.constituents import Constituents, unit_phasors
 
 BoolArray = NDArray[np.bool_]
-Progress = Callable[[int, int], None]
+ProgressCallback = Callable[[int, int], None]
 
 RAYLEIGH: Final = 1.0  #: separation of two constituents [cycles over the record]
-LEAST_KNOWN: Final = 0.5  #: share of the record that must be known at a node
-NODES_AT_ONCE: Final = 1024  #: nodes whose series are in memory as float64 at a time
-WORST_CONDITION: Final = 1e5  #: of the equations, above which the constants mean nothing
+MIN_KNOWN_FRACTION: Final = 0.5  #: share of the record that must be known at a node
+NODES_PER_BLOCK: Final = 1024  #: nodes whose series are in memory as float64 at a time
+MAX_CONDITION_NUMBER: Final = 1e5  #: of the equations, above which the constants mean nothing
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +72,8 @@ def analyse(
     lon: ArrayLike = np.nan,
     constituents: Sequence[str] | None = None,
     rayleigh: float = RAYLEIGH,
-    least_known: float = LEAST_KNOWN,
-    progress: Progress | None = None,
+    least_known: float = MIN_KNOWN_FRACTION,
+    progress: ProgressCallback | None = None,
 ) -> TideAnalysis:
     """Return the tidal constituents of records.
 
@@ -108,12 +108,12 @@ def analyse(
     moments = np.asarray(times, np.float64).ravel()
     records = {n: np.atleast_2d(np.asarray(v)) for n, v in series.items()}
     _check_record(moments, records)
-    names = chosen_constituents(moments, constituents, rayleigh)
+    names = select_constituents(moments, constituents, rayleigh)
     nodes = max((v.shape[0] for v in records.values()), default=0)
     place = [np.broadcast_to(np.asarray(a, np.float64), (nodes,)).copy() for a in (lat, lon)]
     blank: dict[str, FloatArray] = {}
     empty = Constituents(names, blank, blank, blank, place[0], place[1], "foreman")
-    wave = phasors(names, moments, empty.latitude, "foreman")
+    wave = unit_phasors(names, moments, empty.latitude, "foreman")
     design = np.column_stack([np.ones(moments.size), wave.real, -wave.imag])
     done, total = 0, nodes * len(records)
     found = {}
@@ -164,12 +164,12 @@ def _fit(
     _check_condition(whole)
     needed = max(least_known * design.shape[0], design.shape[1] + 1)
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        for first in range(0, nodes, NODES_AT_ONCE):
-            part = slice(first, min(first + NODES_AT_ONCE, nodes))
+        for first in range(0, nodes, NODES_PER_BLOCK):
+            part = slice(first, min(first + NODES_PER_BLOCK, nodes))
             block = np.asarray(values[part], np.float64)
             known = np.isfinite(block)
-            groups = list(_groups(known, needed))
-            squares = list(pool.map(partial(_square, design, whole, known), groups))
+            groups = list(_rows_by_gaps(known, needed))
+            squares = list(pool.map(partial(_normal_matrix, design, whole, known), groups))
             good = [(g, q) for g, q in zip(groups, squares) if q is not None]
             solved = _solve(design, block, known, good)
             solution[part], share[part], variance[part] = solved
@@ -177,7 +177,7 @@ def _fit(
     return solution.T, share, variance
 
 
-def _groups(known: BoolArray, needed: float) -> Iterator[NDArray[np.int64]]:
+def _rows_by_gaps(known: BoolArray, needed: float) -> Iterator[NDArray[np.int64]]:
     """Return rows that are known at the same times, leaving out those known too little."""
     enough = np.flatnonzero(known.sum(axis=1) >= needed)
     packed = np.packbits(known[enough], axis=1)
@@ -187,7 +187,7 @@ def _groups(known: BoolArray, needed: float) -> Iterator[NDArray[np.int64]]:
     yield from (enough[rows] for rows in np.split(order, ends) if rows.size)
 
 
-def _square(
+def _normal_matrix(
     design: FloatArray, whole: FloatArray, known: BoolArray, rows: NDArray[np.int64]
 ) -> FloatArray | None:
     """Return the normal matrix of rows that share their gaps; None if it tells nothing."""
@@ -201,7 +201,7 @@ def _square(
         kept = design[there]
         square = kept.T @ kept
     spread = np.linalg.eigvalsh(square)
-    return square if spread[0] * WORST_CONDITION**2 > spread[-1] else None
+    return square if spread[0] * MAX_CONDITION_NUMBER**2 > spread[-1] else None
 
 
 def _solve(
@@ -237,7 +237,7 @@ def _solve(
     return x, share, variance
 
 
-def chosen_constituents(
+def select_constituents(
     times: FloatArray, wanted: Sequence[str] | None, rayleigh: float = RAYLEIGH
 ) -> tuple[str, ...]:
     """Return the constituents a record can tell apart, or check those that are wanted."""
@@ -250,7 +250,7 @@ def chosen_constituents(
     step = float(np.median(np.diff(times))) / HOUR
     length = float(times[-1] - times[0]) / HOUR + step
     fastest = 0.5 / step
-    table = foreman.tables()
+    table = foreman.constituent_table()
     if wanted is None:
         fits = (table.separation * length >= rayleigh) & (table.frequency < fastest)
         names = tuple(n for n, k in table.index.items() if fits[k] and n != "Z0")
@@ -330,7 +330,7 @@ def _check_record(times: FloatArray, records: Mapping[str, NDArray[np.floating]]
 
 def _check_condition(square: FloatArray) -> None:
     worst = float(np.sqrt(np.linalg.cond(square)))
-    if not worst < WORST_CONDITION:
+    if not worst < MAX_CONDITION_NUMBER:
         raise InputError(
             "The record cannot tell the constituents apart at its time steps "
             f"(condition {worst:.1e}).",

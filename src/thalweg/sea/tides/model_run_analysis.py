@@ -16,7 +16,7 @@ import numpy as np
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.sea import standard_names as nm
-from thalweg.sea.files.block_cache import Window
+from thalweg.sea.files.block_cache import GridWindow
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.point_location import RectilinearGrid
@@ -27,15 +27,15 @@ from thalweg.sea.tides.constituents import Constituents
 if TYPE_CHECKING:
     from thalweg.sea.sea import Sea
 
-TIDAL: Final = (nm.EASTWARD_CURRENT, nm.NORTHWARD_CURRENT, nm.WATER_LEVEL)
-VERSION: Final = 1  #: of the cached analyses
+TIDAL_VARIABLES: Final = (nm.EASTWARD_CURRENT, nm.NORTHWARD_CURRENT, nm.WATER_LEVEL)
+CACHE_VERSION: Final = 1  #: of the cached analyses
 
 
 def has_tides(layer: Layer) -> bool:
     """Return whether a layer holds currents or water levels over time at nodes."""
     if not isinstance(layer, GridLayer) or layer.period is None:
         return False
-    return bool(set(TIDAL) & layer.variables)
+    return bool(set(TIDAL_VARIABLES) & layer.variables)
 
 
 def tidal_analysis(
@@ -43,7 +43,7 @@ def tidal_analysis(
     *,
     constituents: Sequence[str] | None = None,
     rayleigh: float = harmonic_analysis.RAYLEIGH,
-    progress: harmonic_analysis.Progress | None = None,
+    progress: harmonic_analysis.ProgressCallback | None = None,
     cache: bool = True,
 ) -> harmonic_analysis.TideAnalysis:
     """Return the tides of the first layer of a sea that has any; as `analyse_layer`.
@@ -56,9 +56,9 @@ def tidal_analysis(
     sea.check_single()
     tidal = [x for x in sea.layers if isinstance(x, GridLayer) and has_tides(x)]
     if not tidal:
-        raise no_tides()
+        raise no_tides_error()
     layer = tidal[0]
-    left = sorted(set(TIDAL) & {name for other in tidal[1:] for name in other.variables})
+    left = sorted(set(TIDAL_VARIABLES) & {name for other in tidal[1:] for name in other.variables})
     if left:
         warnings.warn(
             f"{', '.join(left)} on another grid or at other times is not analysed; Sea.from_tides "
@@ -71,7 +71,7 @@ def tidal_analysis(
     )
 
 
-def no_tides() -> InputError:
+def no_tides_error() -> InputError:
     """Return the error for a sea without anything to analyse."""
     return InputError(
         "The sea holds no currents or water levels on a grid or mesh over time.",
@@ -85,24 +85,24 @@ def analyse_layer(
     *,
     constituents: Sequence[str] | None = None,
     rayleigh: float = harmonic_analysis.RAYLEIGH,
-    progress: harmonic_analysis.Progress | None = None,
+    progress: harmonic_analysis.ProgressCallback | None = None,
     cache: bool = True,
 ) -> harmonic_analysis.TideAnalysis:
     """Return the tides of currents and water level at every place of a layer, kept on disk."""
     times = layer.axis.times
-    names = harmonic_analysis.chosen_constituents(times, constituents, rayleigh)
+    names = harmonic_analysis.select_constituents(times, constituents, rayleigh)
     rows, columns = layer.grid.shape
-    lat, lon = _positions(layer.grid)
+    lat, lon = _grid_positions(layer.grid)
     path = _cache_path(layer, names) if cache else None
     kept = _read_cache(path, lat, lon) if path else None
     if kept is not None:
         return kept
-    window = Window(0, times.size, 0, rows, 0, columns)
+    window = GridWindow(0, times.size, 0, rows, 0, columns)
     series: dict[str, Any] = {}
     for quantity in layer.quantities:
-        if set(quantity.names) & set(TIDAL):
+        if set(quantity.names) & set(TIDAL_VARIABLES):
             values = quantity.read(window, columns)
-            series.update({n: values[n].T for n in quantity.names if n in TIDAL})
+            series.update({n: values[n].T for n in quantity.names if n in TIDAL_VARIABLES})
     analysis = harmonic_analysis.analyse(
         times, series, lat=lat, lon=lon, constituents=names, rayleigh=rayleigh, progress=progress
     )
@@ -111,7 +111,7 @@ def analyse_layer(
     return analysis
 
 
-def _positions(grid: Any) -> tuple[FloatArray, FloatArray]:
+def _grid_positions(grid: Any) -> tuple[FloatArray, FloatArray]:
     """Return the position of every place, flat."""
     lat, lon = np.array(grid.lat, np.float64), np.array(grid.lon, np.float64)
     rows, columns = grid.shape
@@ -122,24 +122,24 @@ def _positions(grid: Any) -> tuple[FloatArray, FloatArray]:
 
 def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:
     key = [
-        VERSION,
+        CACHE_VERSION,
         dict(layer.provenance()),
         list(names),
-        harmonic_analysis.LEAST_KNOWN,
-        _glance(layer),
+        harmonic_analysis.MIN_KNOWN_FRACTION,
+        _sample_digest(layer),
     ]
     text = json.dumps(key, sort_keys=True, default=str)
     return cache_folder("tides") / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
 
 
-def _glance(layer: GridLayer) -> str:
+def _sample_digest(layer: GridLayer) -> str:
     """Return a digest of the middle time: files may share name, size and time of change."""
     rows, columns = layer.grid.shape
     middle = layer.axis.times.size // 2
     digest = hashlib.sha256(np.ascontiguousarray(layer.axis.times).tobytes())
     for quantity in layer.quantities:
-        if set(quantity.names) & set(TIDAL):
-            values = quantity.read(Window(middle, middle + 1, 0, rows, 0, columns), columns)
+        if set(quantity.names) & set(TIDAL_VARIABLES):
+            values = quantity.read(GridWindow(middle, middle + 1, 0, rows, 0, columns), columns)
             for name in quantity.names:
                 digest.update(np.ascontiguousarray(values[name]).tobytes())
     return digest.hexdigest()

@@ -17,16 +17,23 @@ from thalweg.core.errors import DatasetError
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.tides.astronomy import HOUR
 
-LENGTHS: Final[dict[str, float]] = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
-MET: Final = 1.0  #: [h] Middle European Time ahead of UTC
-ZONES: Final = {"GMT": 0.0, "UTC": 0.0, "UT": 0.0, "Z": 0.0, "MET": MET, "CET": MET}
-HOLE: Final = 99  #: quality of a DIA value that is none
+LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
+MET_OFFSET_HOURS: Final = 1.0  #: [h] Middle European Time ahead of UTC
+TIME_ZONES: Final = {
+    "GMT": 0.0,
+    "UTC": 0.0,
+    "UT": 0.0,
+    "Z": 0.0,
+    "MET": MET_OFFSET_HOURS,
+    "CET": MET_OFFSET_HOURS,
+}
+MISSING_VALUE_QUALITY: Final = 99  #: quality of a DIA value that is none
 #: coordinate systems of DIA files: EPSG code and what one unit is in it
-SYSTEMS: Final = {"RD": (28992, 0.01), "W84": (4326, 1e-6), "E50": (4230, 1e-6)}
+COORDINATE_SYSTEMS: Final = {"RD": (28992, 0.01), "W84": (4326, 1e-6), "E50": (4230, 1e-6)}
 _NOOS_ROW: Final = re.compile(r"^\s*(\d{12}|\d{14})\s+(\S+)\s*$")
 
 
-class Series(NamedTuple):
+class WaterLevelSeries(NamedTuple):
     """Times [s since epoch], levels [m above datum], position (lat, lon) if told, and words."""
 
     times: FloatArray
@@ -46,7 +53,7 @@ def is_dia(text: str) -> bool:
     return text.lstrip().startswith("[IDT;")
 
 
-def read_noos(text: str, source: str) -> Series:
+def read_noos(text: str, source: str) -> WaterLevelSeries:
     """Return the water level of a NOOS file.
 
     Raises
@@ -60,22 +67,28 @@ def read_noos(text: str, source: str) -> Series:
         key, _, value = line.lstrip().lstrip("#").partition(":")
         if line.lstrip().startswith("#"):
             if rows:
-                raise _fault(source, f"holds several series (another header in line {number})")
+                raise _series_file_error(
+                    source, f"holds several series (another header in line {number})"
+                )
             header[key.strip().lower()] = value.strip()
         elif line.strip():
             found = _NOOS_ROW.match(line)
             if found is None:
-                raise _fault(source, f"has a broken row in line {number}: {line.strip()[:40]!r}")
+                raise _series_file_error(
+                    source, f"has a broken row in line {number}: {line.strip()[:40]!r}"
+                )
             rows.append((found[1], found[2]))
     unit, zone = header.get("unit", "waterlevel"), header.get("timezone", "GMT").upper()
     if not unit.lower().startswith("waterlevel"):
-        raise _fault(source, f"holds {unit!r}, not a water level")
-    if zone not in ZONES:
-        raise _fault(source, f"keeps the clock of {zone!r}; known are {', '.join(ZONES)}")
-    times = _noos_times([stamp for stamp, _ in rows], source) - ZONES[zone] * HOUR
+        raise _series_file_error(source, f"holds  {unit!r}, not a water level")
+    if zone not in TIME_ZONES:
+        raise _series_file_error(
+            source, f"keeps the clock of {zone!r}; known are {', '.join(TIME_ZONES)}"
+        )
+    times = _noos_times([stamp for stamp, _ in rows], source) - TIME_ZONES[zone] * HOUR
     told = [header[k] for k in ("location", "source") if header.get(k)]
-    level = _numbers([value for _, value in rows], source)
-    return Series(times, level, _noos_position(header), ", ".join(["NOOS series", *told]))
+    level = _parse_levels([value for _, value in rows], source)
+    return WaterLevelSeries(times, level, _noos_position(header), ", ".join(["NOOS series", *told]))
 
 
 def _noos_times(stamps: list[str], source: str) -> FloatArray:
@@ -83,7 +96,7 @@ def _noos_times(stamps: list[str], source: str) -> FloatArray:
     try:
         return np.array(iso, "datetime64[s]").astype(np.float64)
     except ValueError as error:
-        raise _fault(source, f"holds a date that is none ({error})") from error
+        raise _series_file_error(source, f"holds  a date that is none ({error})") from error
 
 
 def _noos_position(header: dict[str, str]) -> tuple[float, float] | None:
@@ -95,14 +108,14 @@ def _noos_position(header: dict[str, str]) -> tuple[float, float] | None:
     return (lat, lon) if abs(lat) <= 90.0 and abs(lon) <= 360.0 else None
 
 
-def _numbers(words: list[str], source: str) -> FloatArray:
+def _parse_levels(words: list[str], source: str) -> FloatArray:
     try:
         return np.array(words, np.float64)
     except ValueError as error:
-        raise _fault(source, f"holds a level that is no number ({error})") from error
+        raise _series_file_error(source, f"holds  a level that is no number ({error})") from error
 
 
-def read_dia(text: str, source: str) -> Series:
+def read_dia(text: str, source: str) -> WaterLevelSeries:
     """Return the water level of a DIA file with one series at equal steps.
 
     Raises
@@ -112,34 +125,37 @@ def read_dia(text: str, source: str) -> Series:
     """
     heads, *bodies = text.split("[WRD]")
     if len(bodies) != 1:
-        raise _fault(source, f"holds {len(bodies)} series; one can be read")
+        raise _series_file_error(source, f"holds  {len(bodies)} series; one can be read")
     keys = {line.split(";")[0]: line.strip().split(";")[1:] for line in heads.splitlines()}
     told = keys.get("PAR") or keys.get("GHD") or [""]
     if not told[0].startswith("WATH"):
-        raise _fault(source, f"holds {' '.join(told[:2]).strip() or 'no named quantity'!r}, "
+        raise _series_file_error(source, "holds "
+            f" {' '.join(told[:2]).strip() or 'no named quantity'!r}, "
                      "not a water level at equal steps")  # fmt: skip
     unit = keys.get("EHD", ["", ""])[1:2]
-    if unit[:1] == [] or unit[0] not in LENGTHS:
-        raise _fault(source, f"gives levels in {unit[0] if unit else 'no unit'!r}")
+    if unit[:1] == [] or unit[0] not in LENGTH_UNITS:
+        raise _series_file_error(source, f"gives levels in {unit[0] if unit else 'no unit'!r}")
     times = _dia_times(keys.get("TYD", []), source)
-    level = _dia_levels(bodies[0], source) * LENGTHS[unit[0]]
+    level = _dia_levels(bodies[0], source) * LENGTH_UNITS[unit[0]]
     if times.size != level.size:
-        raise _fault(source, f"tells of {times.size} values and has {level.size}")
+        raise _series_file_error(source, f"tells of {times.size} values and has {level.size}")
     place = keys.get("LOC", [])
     words = ["DIA series", *place[1:2], *told[1:2]]
-    return Series(times, level, _dia_position(place), ", ".join(w for w in words if w))
+    return WaterLevelSeries(times, level, _dia_position(place), ", ".join(w for w in words if w))
 
 
 def _dia_times(span: list[str], source: str) -> FloatArray:
     """Return times of start, end and step: date, time, date, time, minutes, 'min'."""
     if len(span) != 6 or span[5] != "min" or not all(x.isdigit() for x in span[:5]):
-        raise _fault(
+        raise _series_file_error(
             source, f"has the times {';'.join(span) or 'none'}, not equal steps of minutes"
         )
-    start, end = _noos_times([span[0] + span[1], span[2] + span[3]], source) - MET * HOUR
+    start, end = (
+        _noos_times([span[0] + span[1], span[2] + span[3]], source) - MET_OFFSET_HOURS * HOUR
+    )
     step = 60.0 * int(span[4])
     if not (step > 0.0 and end >= start):
-        raise _fault(source, f"has the times {';'.join(span)}, which are no series")
+        raise _series_file_error(source, f"has the times {';'.join(span)}, which are no series")
     return np.asarray(np.arange(start, end + 0.5 * step, step), np.float64)
 
 
@@ -149,17 +165,17 @@ def _dia_levels(body: str, source: str) -> FloatArray:
     try:
         value, quality = np.array(pairs, np.float64).T
     except ValueError as error:
-        raise _fault(source, f"holds values that are no numbers ({error})") from error
-    return np.where(quality == HOLE, np.nan, value)
+        raise _series_file_error(source, f"holds  values that are no numbers ({error})") from error
+    return np.where(quality == MISSING_VALUE_QUALITY, np.nan, value)
 
 
 def _dia_position(place: list[str]) -> tuple[float, float] | None:
     """Return (lat, lon) of a location: code, name, kind, system, x, y."""
-    if len(place) < 6 or place[3] not in SYSTEMS:
+    if len(place) < 6 or place[3] not in COORDINATE_SYSTEMS:
         return None
     from thalweg.sea.files.coordinates import to_degrees
 
-    code, size = SYSTEMS[place[3]]
+    code, size = COORDINATE_SYSTEMS[place[3]]
     try:
         x, y = (np.array([float(v) * size]) for v in place[4:6])
     except ValueError:
@@ -168,7 +184,7 @@ def _dia_position(place: list[str]) -> tuple[float, float] | None:
     return (float(lat[0]), float(lon[0])) if np.isfinite([lat[0], lon[0]]).all() else None
 
 
-def _fault(source: str, fault: str) -> DatasetError:
+def _series_file_error(source: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source} {fault}.",
         "One series of water level can be read from a NOOS or DIA file.",

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 FORTNIGHT_H: Final = 360.0  #: 30 S2; M2 is 5.7 degrees early
 MONTH_H: Final = 707.974  #: 57 M2; S2 is 0.8 degrees early
-LARGEST_DRIFT: Final = 10.0  #: [deg] phase by which M2 or S2 may be off after one period
+MAX_DRIFT: Final = 10.0  #: [deg] phase by which M2 or S2 may be off after one period
 
 
 def drift_deg(period_h: float, name: str) -> float:
@@ -131,7 +131,7 @@ class RepeatedLayer:
         }
 
 
-def repeated(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> Sea:
+def repeat_in_time(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> Sea:
     """Return a sea whose fields over one period come again for ever.
 
     Parameters
@@ -154,7 +154,7 @@ def repeated(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> Sea:
 
     off = {n: drift_deg(period_h, n) for n in ("M2", "S2")}
     worst = max(abs(x) for x in off.values())
-    if not (np.isfinite(period_h) and period_h > 24.0 and worst <= LARGEST_DRIFT):
+    if not (np.isfinite(period_h) and period_h > 24.0 and worst <= MAX_DRIFT):
         raise InputError(
             f"After {period_h:g} h the tide is not back: M2 is {off['M2']:.0f} and S2 "
             f"{off['S2']:.0f} degrees off.",

@@ -21,21 +21,21 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import unknown_name
+from thalweg.core.errors import unknown_name_error
 from thalweg.sea.frozen_fields import FloatArray
-from thalweg.sea.tides.astronomy import mean_longitudes, rates
+from thalweg.sea.tides.astronomy import argument_rates, mean_longitudes
 
-Complex = NDArray[np.complex128]
+ComplexArray = NDArray[np.complex128]
 
 #: Share of the nodal factor that acts, for stations in the Netherlands (Rijkswaterstaat). The
 #: factor is 1 + share * (f - 1); S2, which has none of its own, takes the one of M2.
-RWS_SHARES: Final[dict[str, float]] = {
+RWS_NODAL_FRACTIONS: Final[dict[str, float]] = {
     "MU2": 0.0, "N2": 0.0, "NU2": 0.8, "M2": 0.53, "2MN2": 0.2, "S2": -0.82, "M4": 0.7,
     "MS4": 0.0, "M6": 0.75, "2MS6": 0.2, "M8": 0.7, "3MS8": 0.6,
 }  # fmt: skip
 
 # name: multiples of T s h p p1, phase [deg] (T counted from midnight), nodal family
-_BASICS: Final[dict[str, tuple[int, int, int, int, int, float, str]]] = {
+_BASIC_CONSTITUENTS: Final[dict[str, tuple[int, int, int, int, int, float, str]]] = {
     "SA": (0, 0, 1, 0, 0, 0.0, ""),
     "SSA": (0, 0, 2, 0, 0, 0.0, ""),
     "MSM": (0, 1, -2, 1, 0, 0.0, "MM"),
@@ -90,7 +90,7 @@ _ALIASES: Final[dict[str, str]] = {
 }  # fmt: skip
 
 # Compounds whose names do not follow the rule.
-_IRREGULAR: Final[dict[str, dict[str, int]]] = {
+_IRREGULAR_COMPOUNDS: Final[dict[str, dict[str, int]]] = {
     "SM": {"S2": 1, "M2": -1},
     "SNU2": {"S2": 1, "NU2": -1},
     "SN": {"S2": 1, "N2": -1},
@@ -102,17 +102,17 @@ _IRREGULAR: Final[dict[str, dict[str, int]]] = {
     "M(SK)2": {"M2": 1, "S1": 1, "K1": -1},
     "M(KS)2": {"M2": 1, "K1": 1, "S1": -1},
 }
-_LETTERS: Final[dict[str, tuple[str, ...]]] = {
+_CONSTITUENTS_BY_LETTER: Final[dict[str, tuple[str, ...]]] = {
     "M": ("M2",), "S": ("S2", "S1"), "N": ("N2",), "K": ("K2", "K1"), "L": ("L2",), "O": ("O1",),
     "P": ("P1",), "Q": ("Q1",), "J": ("J1",), "T": ("T2",), "R": ("R2",), "NU": ("NU2",),
     "LABDA": ("LAMBDA2",), "MU": ("MU2",),
 }  # fmt: skip
-_TERM = re.compile(r"(\d*)(\((?:[A-Z]+)\)|LABDA|NU|MU|[A-Z])")
-_UNIT = re.compile(r"LABDA|NU|MU|[A-Z]")
+_TERM_PATTERN = re.compile(r"(\d*)(\((?:[A-Z]+)\)|LABDA|NU|MU|[A-Z])")
+_UNIT_PATTERN = re.compile(r"LABDA|NU|MU|[A-Z]")
 
 
 @dataclass(frozen=True)
-class Species:
+class ConstituentDefinition:
     """One constituent: how its argument and its nodal factor are made.
 
     Attributes
@@ -131,13 +131,13 @@ class Species:
         """Multiples of (T, s, h, p, N', p1) and of the whole turn (7,)."""
         total = np.zeros(7)
         for name, count in self.parts:
-            t, s, h, p, p1, phase, _ = _BASICS[name]
+            t, s, h, p, p1, phase, _ = _BASIC_CONSTITUENTS[name]
             total += count * np.array([t, s, h, p, 0.0, p1, phase / 360.0])
         return total
 
 
 @lru_cache(maxsize=1024)
-def species(name: str) -> Species:
+def constituent_definition(name: str) -> ConstituentDefinition:
     """Return the constituent of a name, in any usual spelling.
 
     Raises
@@ -147,17 +147,19 @@ def species(name: str) -> Species:
     """
     plain = name.strip().upper().removesuffix("_KV")
     plain = _ALIASES.get(plain, plain)
-    if plain in _BASICS:
-        return Species(plain, ((plain, 1),))
-    if plain in _IRREGULAR:
-        return Species(plain, tuple(_IRREGULAR[plain].items()))
-    parts = _compound(plain)
+    if plain in _BASIC_CONSTITUENTS:
+        return ConstituentDefinition(plain, ((plain, 1),))
+    if plain in _IRREGULAR_COMPOUNDS:
+        return ConstituentDefinition(plain, tuple(_IRREGULAR_COMPOUNDS[plain].items()))
+    parts = _compound_parts(plain)
     if parts is None:
-        raise unknown_name("tidal constituent", name, [*_BASICS, "M4", "MS4", "2MS6", "3MS8"])
-    return Species(plain, parts)
+        raise unknown_name_error(
+            "tidal constituent", name, [*_BASIC_CONSTITUENTS, "M4", "MS4", "2MS6", "3MS8"]
+        )
+    return ConstituentDefinition(plain, parts)
 
 
-def _compound(name: str) -> tuple[tuple[str, int], ...] | None:
+def _compound_parts(name: str) -> tuple[tuple[str, int], ...] | None:
     """Read the name of a compound tide; None if it is not one."""
     found = re.fullmatch(r"(.*?[A-Z)])(\d+)", name)
     if found is None:
@@ -167,27 +169,27 @@ def _compound(name: str) -> tuple[tuple[str, int], ...] | None:
         return None
     terms = [
         (unit, int(count or 1))
-        for count, group in _TERM.findall(body)
-        for unit in _UNIT.findall(group)
+        for count, group in _TERM_PATTERN.findall(body)
+        for unit in _UNIT_PATTERN.findall(group)
     ]
-    if any(unit not in _LETTERS for unit, _ in terms) or body == "ST":
+    if any(unit not in _CONSTITUENTS_BY_LETTER for unit, _ in terms) or body == "ST":
         return None
     if len(terms) == 1:
-        whole = _LETTERS[terms[0][0]][0]
+        whole = _CONSTITUENTS_BY_LETTER[terms[0][0]][0]
         if terms[0][1] > 1 or cycles % 2 or not whole.endswith("2"):
             return None
         return ((whole, cycles // 2),)
-    return _balanced(terms, cycles) or _balanced([*terms[:-1], (terms[-1][0], 2)], cycles)
+    return _signed_terms(terms, cycles) or _signed_terms([*terms[:-1], (terms[-1][0], 2)], cycles)
 
 
-def _balanced(terms: list[tuple[str, int]], cycles: int) -> tuple[tuple[str, int], ...] | None:
+def _signed_terms(terms: list[tuple[str, int]], cycles: int) -> tuple[tuple[str, int], ...] | None:
     """Return the terms with signs such that the cycles per day add up.
 
     Semidiurnal meanings go before diurnal ones, few minus signs before many, and minus signs stand
     last.
     """
     best: tuple[tuple[int, ...], tuple[tuple[str, int], ...]] | None = None
-    meanings = itertools.product(*(_LETTERS[unit] for unit, _ in terms))
+    meanings = itertools.product(*(_CONSTITUENTS_BY_LETTER[unit] for unit, _ in terms))
     signings = list(itertools.product((1, -1), repeat=len(terms) - 1))
     for meaning in meanings:
         diurnal = sum(m in ("S1", "K1") for m in meaning)
@@ -195,7 +197,7 @@ def _balanced(terms: list[tuple[str, int]], cycles: int) -> tuple[tuple[str, int
         for rest in signings:
             signs = (1, *rest)
             parts = tuple((m, s * c) for m, s, (_, c) in zip(meaning, signs, terms))
-            if sum(n * _BASICS[m][0] for m, n in parts) != cycles:
+            if sum(n * _BASIC_CONSTITUENTS[m][0] for m, n in parts) != cycles:
                 continue
             rank = (odd, diurnal, sum(s < 0 for s in signs), *(s < 0 for s in signs))
             if best is None or rank < best[0]:
@@ -205,16 +207,18 @@ def _balanced(terms: list[tuple[str, int]], cycles: int) -> tuple[tuple[str, int
 
 def frequency(name: str) -> float:
     """Return the frequency [cycles per hour] of a constituent."""
-    return float(species(name).argument[:6] @ rates())
+    return float(constituent_definition(name).argument[:6] @ argument_rates())
 
 
-def arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
+def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
     """Return the equilibrium arguments V [cycles] (T, C) at times [s since epoch]."""
-    matrix = np.array([species(n).argument for n in names]).reshape(-1, 7)
+    matrix = np.array([constituent_definition(n).argument for n in names]).reshape(-1, 7)
     return (mean_longitudes(times).T @ matrix[:, :6].T + matrix[:, 6]) % 1.0
 
 
-def nodal(names: tuple[str, ...], times: FloatArray, *, rws: bool = False) -> Complex:
+def nodal_corrections(
+    names: tuple[str, ...], times: FloatArray, *, rws: bool = False
+) -> ComplexArray:
     """Return the nodal corrections f exp(i u) (T, C).
 
     Parameters
@@ -224,17 +228,17 @@ def nodal(names: tuple[str, ...], times: FloatArray, *, rws: bool = False) -> Co
     times : float64 array (T,)
         Seconds since 1970-01-01T00:00Z.
     rws : bool
-        Whether the factors act only by the shares `RWS_SHARES`.
+        Whether the factors act only by the shares `RWS_NODAL_FRACTIONS`.
     """
-    family = _families(times)
+    family = _nodal_families(times)
     one = np.ones(times.size, np.complex128)
     columns = []
     for name in names:
-        kind, value = species(name), one
+        kind, value = constituent_definition(name), one
         for part, count in kind.parts:
-            factor = family[_BASICS[part][6]]
+            factor = family[_BASIC_CONSTITUENTS[part][6]]
             value = value * np.abs(factor) ** abs(count) * np.exp(1j * count * np.angle(factor))
-        share = RWS_SHARES.get(kind.name) if rws else None
+        share = RWS_NODAL_FRACTIONS.get(kind.name) if rws else None
         if share is not None:
             source = family["M2"] if kind.name == "S2" else value
             size = 1.0 + share * (np.abs(source) - 1.0)
@@ -243,7 +247,7 @@ def nodal(names: tuple[str, ...], times: FloatArray, *, rws: bool = False) -> Co
     return np.stack(columns, axis=1) if columns else np.empty((times.size, 0), np.complex128)
 
 
-def _families(times: FloatArray) -> dict[str, Complex]:
+def _nodal_families(times: FloatArray) -> dict[str, ComplexArray]:
     """Return f exp(i u) of each nodal family (eqs. 73-79, 144, 191-197, 207-215, 227, 235)."""
     longitude = mean_longitudes(times) * 2.0 * np.pi
     node, perigee = -longitude[4], longitude[3]

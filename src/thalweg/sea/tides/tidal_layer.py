@@ -15,18 +15,18 @@ from thalweg.core.errors import InputError
 from thalweg.sea import standard_names as nm
 from thalweg.sea.frozen_fields import WORLD, Area, Coverage, FloatArray, Mesh
 from thalweg.sea.grids.gridded_layer import GridLayer
-from thalweg.sea.grids.point_location import Grid, Located, TriangleGrid
+from thalweg.sea.grids.point_location import Grid, GridLocation, TriangleGrid
 from thalweg.sea.layer import Samples, nan_pairs
 from thalweg.sea.models.function_layer import automatic_times
 from thalweg.sea.tides import harmonic_analysis
-from thalweg.sea.tides.constituents import Complex, Constituents, phasors, tide
-from thalweg.sea.tides.model_run_analysis import analyse_layer, has_tides, no_tides
+from thalweg.sea.tides.constituents import ComplexArray, Constituents, tidal_signal, unit_phasors
+from thalweg.sea.tides.model_run_analysis import analyse_layer, has_tides, no_tides_error
 
 if TYPE_CHECKING:
     from thalweg.sea.sea import Sea
 
 TIME_STEP: Final = 600.0  #: [s] step at which kernels get the tide
-BLOCK: Final = 1 << 13  #: points predicted at once
+POINTS_PER_BLOCK: Final = 1 << 13  #: points predicted at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class TidalLayer:
         return None
 
     @cached_property
-    def _waves(self) -> dict[str, Complex]:
+    def _waves(self) -> dict[str, ComplexArray]:
         """Coefficients (N, C) by variable."""
         return {
             n: np.ascontiguousarray(self.constituents.coefficients(n).T) for n in self.variables
@@ -83,8 +83,8 @@ class TidalLayer:
     ) -> Samples:
         """Return values at points (N,); NaN outside the grid and where nodes have no tide."""
         result = {name: np.full(time.shape, np.nan) for name in names}
-        for first in range(0, time.size, BLOCK):
-            part = slice(first, first + BLOCK)
+        for first in range(0, time.size, POINTS_PER_BLOCK):
+            part = slice(first, first + POINTS_PER_BLOCK)
             moments, which = np.unique(time[part], return_inverse=True)
             wave = self._phasors(moments)[which.ravel()]
             located = self._locate(lat[part], lon[part])
@@ -101,11 +101,11 @@ class TidalLayer:
         result = {name: np.empty((lat.size, times.size)) for name in names}
         located = self._locate(lat, lon)
         held = {name: self._at(name, located) for name in names}
-        for first in range(0, times.size, BLOCK):
-            part = slice(first, first + BLOCK)
+        for first in range(0, times.size, POINTS_PER_BLOCK):
+            part = slice(first, first + POINTS_PER_BLOCK)
             wave = self._phasors(times[part]).T
             for name, (mean, coefficient) in held.items():
-                result[name][:, part] = mean[:, None] + tide(coefficient, wave)
+                result[name][:, part] = mean[:, None] + tidal_signal(coefficient, wave)
         return nan_pairs(result, [v.pair for v in nm.VECTORS])
 
     def times(self, start: float, end: float) -> FloatArray:
@@ -147,23 +147,23 @@ class TidalLayer:
             **self.facts,
         }
 
-    def _phasors(self, times: FloatArray) -> Complex:
+    def _phasors(self, times: FloatArray) -> ComplexArray:
         known = np.where(np.isfinite(times), times, 0.0)
         constants = self.constituents
-        wave = _kept_phasors(
+        wave = _cached_phasors(
             constants.names, known.tobytes(), constants.latitude, constants.convention
         )
         if not np.isfinite(times).all():
             wave = np.where(np.isfinite(times)[:, None], wave, np.nan)
         return wave
 
-    def _locate(self, lat: FloatArray, lon: FloatArray) -> Located:
+    def _locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
         if self.grid is not None:
             return self.grid.locate(lat, lon)
         inside = np.where(self.box.covers(lat, lon), 0, -1).astype(np.int64)
-        return Located(inside[:, None], np.ones((lat.size, 1)))
+        return GridLocation(inside[:, None], np.ones((lat.size, 1)))
 
-    def _at(self, name: str, located: Located) -> tuple[FloatArray, Complex]:
+    def _at(self, name: str, located: GridLocation) -> tuple[FloatArray, ComplexArray]:
         """Return mean (N,) and coefficients (N, C) at located points; NaN outside."""
         corner, weight = located.corner, located.weight
         mean, wave = self.constituents.mean[name], self._waves[name]
@@ -179,11 +179,11 @@ class TidalLayer:
 
 
 @lru_cache(maxsize=8)
-def _kept_phasors(
+def _cached_phasors(
     names: tuple[str, ...], times: bytes, latitude: float, convention: str
-) -> Complex:
+) -> ComplexArray:
     """Return phasors for times given as bytes, kept for the next stations with the same times."""
-    wave = phasors(names, np.frombuffer(times), latitude, convention)
+    wave = unit_phasors(names, np.frombuffer(times), latitude, convention)
     wave.flags.writeable = False
     return wave
 
@@ -194,7 +194,7 @@ def tidal_sea(
     constituents: Sequence[str] | None = None,
     area: Area | None = None,
     rayleigh: float = harmonic_analysis.RAYLEIGH,
-    progress: harmonic_analysis.Progress | None = None,
+    progress: harmonic_analysis.ProgressCallback | None = None,
     cache: bool = True,
 ) -> Sea:
     """Return a sea of tides; see `Sea.from_tides`."""
@@ -204,26 +204,26 @@ def tidal_sea(
         source = source.constituents
     if isinstance(source, Constituents):
         chosen = source if constituents is None else source.picked(constituents)
-        return SeaClass((_of_constituents(chosen, area),))
+        return SeaClass((_layer_from_constituents(chosen, area),))
     if area is not None:
-        raise _own_places()
+        raise _area_not_allowed_error()
     source.check_single()
     layers: list[Any] = []
     for layer in source.layers:
         if isinstance(layer, GridLayer) and has_tides(layer):
-            layers.append(_of_layer(layer, constituents, rayleigh, progress, cache))
+            layers.append(_layer_from_model_run(layer, constituents, rayleigh, progress, cache))
         elif layer.period is None:
             layers.append(layer)
     if not any(isinstance(layer, TidalLayer) for layer in layers):
-        raise no_tides()
+        raise no_tides_error()
     return SeaClass(tuple(layers), source.assumptions)
 
 
-def _of_layer(
+def _layer_from_model_run(
     layer: GridLayer,
     constituents: Sequence[str] | None,
     rayleigh: float,
-    progress: harmonic_analysis.Progress | None,
+    progress: harmonic_analysis.ProgressCallback | None,
     cache: bool,
 ) -> TidalLayer:
     analysis = analyse_layer(
@@ -240,7 +240,7 @@ def _of_layer(
     )
 
 
-def _of_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
+def _layer_from_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
     facts = dict(constants.facts)
     source = str(facts.get("source", "tidal constituents"))
     pair = nm.CURRENT.pair
@@ -259,12 +259,12 @@ def _of_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
             )
         return TidalLayer(constants, None, area, source=source, facts=facts)
     if area is not None:
-        raise _own_places()
-    grid = _triangulated(constants.lat, constants.lon)
+        raise _area_not_allowed_error()
+    grid = _triangulated_grid(constants.lat, constants.lon)
     return TidalLayer(constants, grid, source=source, facts=facts)
 
 
-def _own_places() -> InputError:
+def _area_not_allowed_error() -> InputError:
     return InputError(
         "An area is given for tides that have places of their own.",
         "It tells where the tide of a single station holds.",
@@ -272,7 +272,7 @@ def _own_places() -> InputError:
     )
 
 
-def _triangulated(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
+def _triangulated_grid(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
     """Return a mesh over scattered nodes."""
     from scipy.spatial import Delaunay, QhullError
 

@@ -22,10 +22,17 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.files import plausible_values
 from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.tides.astronomy import DAY
-from thalweg.sea.tides.noos_dia_series import LENGTHS, Series, is_dia, is_noos, read_dia, read_noos
+from thalweg.sea.tides.noos_dia_series import (
+    LENGTH_UNITS,
+    WaterLevelSeries,
+    is_dia,
+    is_noos,
+    read_dia,
+    read_noos,
+)
 
 #: Columns of a record, lower case, and what they are (metres above datum, m/s towards).
-COLUMNS: Final[dict[str, str]] = {
+COLUMN_NAMES: Final[dict[str, str]] = {
     **dict.fromkeys(("water_level", "water_level_m", "level", "level_m"), nm.WATER_LEVEL),
     nm.WATER_LEVEL: nm.WATER_LEVEL,
     **dict.fromkeys(("current_east", "current_east_m_s", nm.EASTWARD_CURRENT), nm.EASTWARD_CURRENT),
@@ -33,13 +40,13 @@ COLUMNS: Final[dict[str, str]] = {
         ("current_north", "current_north_m_s", nm.NORTHWARD_CURRENT), nm.NORTHWARD_CURRENT
     ),
 }
-TIMES: Final = ("time", "time_utc", "datetime")
-GZIP: Final = b"\x1f\x8b"
-BINARY: Final = (b"CDF", b"\x89HDF", b"GRIB")  #: how files begin that are opened as a sea
-_CONSTITUENTS: Final = re.compile(r"\A\s*[\[{]|^COMP\s+\d", re.M)
+TIME_COLUMNS: Final = ("time", "time_utc", "datetime")
+GZIP_MAGIC: Final = b"\x1f\x8b"
+BINARY_MAGIC: Final = (b"CDF", b"\x89HDF", b"GRIB")  #: how files begin that are opened as a sea
+_CONSTITUENT_FILE_PATTERN: Final = re.compile(r"\A\s*[\[{]|^COMP\s+\d", re.M)
 #: first days that bare day numbers are counted from
-FIRST_DAYS: Final = ("1700-01-01", "1858-11-17", "1899-12-30", "1900-01-01", "1970-01-01")
-EPOCH_YEARS: Final = (1850, 2100)  #: years a record is likely to be of, for hints only
+DAY_COUNT_EPOCHS: Final = ("1700-01-01", "1858-11-17", "1899-12-30", "1900-01-01", "1970-01-01")
+PLAUSIBLE_YEARS: Final = (1850, 2100)  #: years a record is likely to be of, for hints only
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,13 +71,13 @@ class TideRecord:
     told: str
 
 
-def is_record(path: str | Path) -> bool:
+def is_text_record(path: str | Path) -> bool:
     """Return whether a path is a file of text (a record), not one to open as a sea."""
     path = Path(path)
     if not path.is_file():
         return False
-    head = _read(path, 1024)
-    return not (head.startswith(BINARY[:2]) or BINARY[2] in head or b"\0" in head)
+    head = _read_bytes(path, 1024)
+    return not (head.startswith(BINARY_MAGIC[:2]) or BINARY_MAGIC[2] in head or b"\0" in head)
 
 
 def read_record(
@@ -101,10 +108,10 @@ def read_record(
     """
     path = Path(path)
     source = path.name
-    text = _read(path).decode("utf-8", errors="replace")
-    table = _bare_columns(text)
+    text = _read_bytes(path).decode("utf-8", errors="replace")
+    table = _headerless_columns(text)
     if table is not None:
-        record = _bare(table, source, unit, days_since)
+        record = _headerless_record(table, source, unit, days_since)
     elif unit is not None or days_since is not None:
         raise InputError(
             f"{source} tells its own unit and times, and others are given.",
@@ -112,10 +119,10 @@ def read_record(
             "Leave them out.",
         )
     elif is_dia(text):
-        record = _of_series(read_dia(text, source))
+        record = _record_from_series(read_dia(text, source))
     elif is_noos(text):
-        record = _of_series(read_noos(text, source))
-    elif _CONSTITUENTS.search(text):
+        record = _record_from_series(read_noos(text, source))
+    elif _CONSTITUENT_FILE_PATTERN.search(text):
         raise DatasetError(
             f"{source} holds tidal constituents, not a record.",
             "They are what an analysis finds.",
@@ -123,26 +130,26 @@ def read_record(
             file=source,
         )
     else:
-        record = _csv(text, source)
+        record = _read_csv(text, source)
     for name, values in record.series.items():
-        plausible_values.check_plausible(name, values, [told_name(name)], source)
+        plausible_values.check_plausible(name, values, [readable_name(name)], source)
     return record
 
 
-def told_name(name: str) -> str:
+def readable_name(name: str) -> str:
     """Return a canonical name in words."""
     return name.split("_above_")[0].replace("_", " ")
 
 
-def _of_series(series: Series) -> TideRecord:
+def _record_from_series(series: WaterLevelSeries) -> TideRecord:
     return TideRecord(series.times, {nm.WATER_LEVEL: series.level}, series.position, series.told)
 
 
-def _read(path: Path, most: int = -1) -> bytes:
+def _read_bytes(path: Path, most: int = -1) -> bytes:
     """Return the first bytes of a file, unpacked."""
     try:
         with path.open("rb") as stream:
-            packed = stream.read(2) == GZIP
+            packed = stream.read(2) == GZIP_MAGIC
         with gzip.open(path) if packed else path.open("rb") as stream:
             return stream.read(most)
     except (OSError, EOFError, zlib.error) as error:
@@ -154,7 +161,7 @@ def _read(path: Path, most: int = -1) -> bytes:
         ) from error
 
 
-def _bare_columns(text: str) -> FloatArray | None:
+def _headerless_columns(text: str) -> FloatArray | None:
     """Return two columns of numbers (T, 2), NaN where one is not given; None for other text."""
     lines = [line for line in text.splitlines() if line.strip()]
     if len(lines) < 3:
@@ -169,65 +176,73 @@ def _bare_columns(text: str) -> FloatArray | None:
     return None if (numbers[:, 0] >= 1e11).all() else numbers  # those are dates: 201801010000
 
 
-def _bare(
+def _headerless_record(
     table: FloatArray, source: str, unit: str | None, days_since: TimeLike | None
 ) -> TideRecord:
     if unit is None or days_since is None:
-        raise _untold(table, source)
-    if unit not in LENGTHS:
+        raise _missing_unit_and_epoch_error(table, source)
+    if unit not in LENGTH_UNITS:
         raise InputError(
-            f"Levels in {unit!r} cannot be read.", f"Units are {', '.join(LENGTHS)}.", "Choose one."
+            f"Levels in {unit!r} cannot be read.",
+            f"Units are {', '.join(LENGTH_UNITS)}.",
+            "Choose one.",
         )
     day = parse_time(days_since)
     times = day + np.round(table[:, 0] * DAY, 0)
     told = f"two columns: days since {format_time(day)[:10]}, water level in {unit}"
-    return TideRecord(times, {nm.WATER_LEVEL: table[:, 1] * LENGTHS[unit]}, None, told)
+    return TideRecord(times, {nm.WATER_LEVEL: table[:, 1] * LENGTH_UNITS[unit]}, None, told)
 
 
-def _untold(table: FloatArray, source: str) -> InputError:
+def _missing_unit_and_epoch_error(table: FloatArray, source: str) -> InputError:
     """Return the error for bare columns, with the dates that the usual first days would give."""
     first = float(table[0, 0])
     near = []
-    for day in FIRST_DAYS:
+    for day in DAY_COUNT_EPOCHS:
         start = parse_time(day) + first * DAY
-        if parse_time(f"{EPOCH_YEARS[0]}-01-01") <= start < parse_time(f"{EPOCH_YEARS[1]}-01-01"):
+        if (
+            parse_time(f"{PLAUSIBLE_YEARS[0]}-01-01")
+            <= start
+            < parse_time(f"{PLAUSIBLE_YEARS[1]}-01-01")
+        ):
             near.append(f"{format_time(start)[:10]} since {day}")
     return InputError(
         f"{source} holds two columns of numbers and does not tell what they are.",
-        f"Day {first:g} is {', or '.join(near)}; levels may be in {', '.join(LENGTHS)}."
+        f"Day {first:g} is {', or '.join(near)}; levels may be in {', '.join(LENGTH_UNITS)}."
         if near
-        else f"Days are counted from some date; levels may be in {', '.join(LENGTHS)}.",
+        else f"Days are counted from some date; levels may be in {', '.join(LENGTH_UNITS)}.",
         "Say both, for example --days-since 1700-01-01 --unit mm, or write CSV with a header.",
         file=source,
     )
 
 
-def _csv(text: str, source: str) -> TideRecord:
+def _read_csv(text: str, source: str) -> TideRecord:
     import pandas as pd
 
     try:
         table = pd.read_csv(io.StringIO(text), comment="#", skipinitialspace=True)
     except (ValueError, pd.errors.ParserError) as error:
-        raise _fault(source, f"cannot be read ({error})") from error
+        raise _record_file_error(source, f"cannot be read ({error})") from error
     by_name = {str(c).strip().lower(): c for c in table.columns}
-    when = next((by_name[n] for n in TIMES if n in by_name), None)
-    found = {kept: by_name[n] for n, kept in COLUMNS.items() if n in by_name}
+    when = next((by_name[n] for n in TIME_COLUMNS if n in by_name), None)
+    found = {kept: by_name[n] for n, kept in COLUMN_NAMES.items() if n in by_name}
     if when is None or not found:
         named = [n[:30] for n in by_name]
         more = f" and {len(named) - 8} more" if len(named) > 8 else ""
-        raise _fault(source, f"has the columns {', '.join(named[:8]) or 'none'}{more}")
+        raise _record_file_error(source, f"has the columns {', '.join(named[:8]) or 'none'}{more}")
     try:
         times = pd.to_datetime(table[when], utc=True, format="ISO8601")
         series = {n: table[c].to_numpy(np.float64, na_value=np.nan) for n, c in found.items()}
     except ValueError as error:
-        raise _fault(source, f"holds a cell that is no time or number ({error})") from error
+        raise _record_file_error(
+            source, f"holds a cell that is no time or number ({error})"
+        ) from error
     moments = times.dt.tz_localize(None).to_numpy("datetime64[ns]")
     if np.isnat(moments).any():
-        raise _fault(source, "has a row without a time")
+        raise _record_file_error(source, "has a row without a time")
     return TideRecord(moments.astype(np.int64) / 1e9, series, None, "CSV")
 
 
-def _fault(source: str, fault: str) -> DatasetError:
+def _record_file_error(source: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source} {fault}.",
         "A record is CSV with a column time (ISO 8601) and water_level [m], or current_east and "

@@ -9,11 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.kernels.codes import COUNT
-from thalweg.kernels.pareto.edge_tables import Blocks, sail_departures
-from thalweg.kernels.pareto.time_expanded_labels import COUNTS as AGENDA_COUNTS
-from thalweg.kernels.pareto.time_expanded_labels import Agenda, BinLabels, Clock, Target
-from thalweg.search.pareto.front_problem import Bounds, Gathered, Request, new_work
+from thalweg.kernels.codes import STATUS_COUNT
+from thalweg.kernels.pareto.edge_tables import EdgeTables, sail_departures
+from thalweg.kernels.pareto.time_expanded_labels import COUNTER_COUNT as AGENDA_COUNTS
+from thalweg.kernels.pareto.time_expanded_labels import (
+    ActiveNodes,
+    BinLabels,
+    LabelTarget,
+    TimeBins,
+)
+from thalweg.search.pareto.front_problem import (
+    BoundsToGoal,
+    FrontProblem,
+    FrontRequest,
+    new_edge_workspace,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -21,19 +31,39 @@ IntArray = NDArray[np.int64]
 #: What the tables of edges may be off from the legs, as a share of their duration or cost.
 TABLE_TOLERANCE = 1e-3
 _FINE, _CHEAP = 0.02 * TABLE_TOLERANCE, 3e7  # [bytes]
-_MOST_BINS = 2000
-_COARSEST_BINS = 250
-_MOST_RELAXED = 4e9  # that bins chosen here may allow for; a good third of them come about
-_AMPLE = 1e9  # tables are not made larger than that for the sake of finer slices [bytes]
-_AT_THE_END = 0.05  # of the horizon: longer than edges take
-_WORTH = 0.4  # of the error left by halving steps, at most, if the sea is smooth: a quarter is due
-_SAMPLED = 400  # edges looked at to choose the slices
+_MAX_BINS = 2000
+_MIN_BINS = 250
+_MAX_RELAXATIONS = 4e9  # that bins chosen here may allow for; a good third of them come about
+_MAX_BYTES_OF_FINER_SLICES = (
+    1e9  # tables are not made larger than that for the sake of finer slices [bytes]
+)
+_END_SHARE = 0.05  # of the horizon: longer than edges take
+_MAX_ERROR_RATIO = (
+    0.4  # of the error left by halving steps, at most, if the sea is smooth: a quarter is due
+)
+_SAMPLED_EDGES = 400  # edges looked at to choose the slices
 _LABEL_BYTES = 20
-_NICE = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0, 90.0, 120.0, 180.0, 240.0]
-_NICE += [300.0, 450.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0]
+_ROUND_BIN_WIDTHS = [
+    0.1,
+    0.2,
+    0.5,
+    1.0,
+    2.0,
+    5.0,
+    10.0,
+    15.0,
+    20.0,
+    30.0,
+    60.0,
+    90.0,
+    120.0,
+    180.0,
+    240.0,
+]
+_ROUND_BIN_WIDTHS += [300.0, 450.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0]
 
 
-class Windows(NamedTuple):
+class BinWindows(NamedTuple):
     """Bins of every state between which a label may be of use; none when last < first."""
 
     first: NDArray[np.int32]
@@ -45,7 +75,7 @@ class Windows(NamedTuple):
         return int(np.maximum(self.last.astype(np.int64) - self.first + 1, 0).sum())
 
 
-class Plan(NamedTuple):
+class Discretisation(NamedTuple):
     """A division of time that fits the memory.
 
     Attributes
@@ -60,27 +90,27 @@ class Plan(NamedTuple):
         [bytes]
     """
 
-    clock: Clock
-    windows: Windows
+    clock: TimeBins
+    windows: BinWindows
     slices: FloatArray
     table_error: float
     memory: int
 
 
-def make_plan(
-    got: Gathered,
-    request: Request,
-    bounds: Bounds,
+def choose_discretisation(
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    bounds: BoundsToGoal,
     earliest: FloatArray,
     *,
     bin_s: float | None,
     memory_limit: float,
-) -> Plan:
+) -> Discretisation:
     """Choose bins and slices within the memory.
 
     Parameters
     ----------
-    got : Gathered
+    front_problem : Gathered
     request : Request
     bounds : Bounds
     earliest : float64[N]
@@ -96,62 +126,75 @@ def make_plan(
     InputError
         If the bins do not fit the memory; it says what they would take.
     """
-    width = _nice(request.horizon / _MOST_BINS) if bin_s is None else float(bin_s)
+    width = _round_bin_width(request.horizon / _MAX_BINS) if bin_s is None else float(bin_s)
     while True:
         clock = _clock(request, width)
         windows = _windows(clock, bounds, earliest - request.depart)
-        coarsest = clock.count <= _COARSEST_BINS
-        if bin_s is None and not coarsest and _relaxations(got, windows) > _MOST_RELAXED:
-            width = _nice(width * 1.5)
+        coarsest = clock.count <= _MIN_BINS
+        if (
+            bin_s is None
+            and not coarsest
+            and _relaxations(front_problem, windows) > _MAX_RELAXATIONS
+        ):
+            width = _round_bin_width(width * 1.5)
             continue
-        slices, error, memory = _slices(got, request, clock, windows, memory_limit)
+        slices, error, memory = _slices(front_problem, request, clock, windows, memory_limit)
         if memory <= memory_limit:
-            return Plan(clock, windows, slices, error, memory)
+            return Discretisation(clock, windows, slices, error, memory)
         if bin_s is not None or coarsest:
-            raise _too_much(got, clock, memory, memory_limit)
-        width = _nice(width * 1.5)
+            raise _memory_error(front_problem, clock, memory, memory_limit)
+        width = _round_bin_width(width * 1.5)
 
 
-def _nice(width: float) -> float:
-    fitting = [nice for nice in _NICE if nice >= width * (1 - 1e-9)]
+def _round_bin_width(width: float) -> float:
+    fitting = [nice for nice in _ROUND_BIN_WIDTHS if nice >= width * (1 - 1e-9)]
     return fitting[0] if fitting else math.ceil(width / 3600.0) * 3600.0
 
 
-def _clock(request: Request, width: float) -> Clock:
+def _clock(request: FrontRequest, width: float) -> TimeBins:
     count = int(request.horizon / width) + 1
-    return Clock(width, request.horizon, count, max(1, round(math.sqrt(count / 2))), request.wait)
+    return TimeBins(
+        width, request.horizon, count, max(1, round(math.sqrt(count / 2))), request.wait
+    )
 
 
-def _windows(clock: Clock, bounds: Bounds, soonest: FloatArray) -> Windows:
+def _windows(clock: TimeBins, bounds: BoundsToGoal, soonest: FloatArray) -> BinWindows:
     """Return the bins of each state; the tables may be early by a little."""
     early = np.maximum(0.995 * soonest - 0.5 * clock.width, 0.0)
     late = clock.latest - bounds.time
     known = np.isfinite(early) & np.isfinite(late) & (late >= early)
     first = np.where(known, np.where(known, early, 0.0) // clock.width, 1).astype(np.int32)
     last = np.where(known, np.where(known, late, 0.0) // clock.width, 0).astype(np.int32)
-    return Windows(first, np.minimum(last, clock.count - 1))
+    return BinWindows(first, np.minimum(last, clock.count - 1))
 
 
 def _slices(
-    got: Gathered, request: Request, clock: Clock, windows: Windows, memory_limit: float
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    clock: TimeBins,
+    windows: BinWindows,
+    memory_limit: float,
 ) -> tuple[FloatArray, float, int]:
     """Return the coarsest slices that are exact enough, finer ones where they cost little.
 
     If none that fit the memory and take a bearable time are exact enough, the finest that do, or
     the sea's own times where finer ones help little: jumps are not known better for them.
     """
-    ladder = _ladder(got.world.sea.times - request.depart, clock.latest)
-    most, own = min(memory_limit, _AMPLE), len(got.world.sea.times) + 2
+    ladder = _slice_candidates(front_problem.world.sea.times - request.depart, clock.latest)
+    most, own = (
+        min(memory_limit, _MAX_BYTES_OF_FINER_SLICES),
+        len(front_problem.world.sea.times) + 2,
+    )
     chosen, error, memory, fine = ladder[0], math.inf, 0, False
     for slices in ladder:
-        needed = _memory(got, clock, windows, slices)
+        needed = _memory(front_problem, clock, windows, slices)
         if error <= TABLE_TOLERANCE and (fine or needed > _CHEAP):
             break
         if error < math.inf and needed > most:
             break
         before = error
-        error, shut = _table_error(got, request, windows, clock, slices)
-        if len(slices) > own and error > _WORTH * before and needed > _CHEAP:
+        error, shut = _table_error(front_problem, request, windows, clock, slices)
+        if len(slices) > own and error > _MAX_ERROR_RATIO * before and needed > _CHEAP:
             error = before
             break
         chosen, memory = slices, needed
@@ -159,11 +202,11 @@ def _slices(
     return chosen, error, memory
 
 
-def _ladder(times: FloatArray, horizon: float) -> list[FloatArray]:
+def _slice_candidates(times: FloatArray, horizon: float) -> list[FloatArray]:
     """Return slices from coarse to fine: every n-th time of the sea, then parts of its steps."""
     inside = times[(times > 0.0) & (times < horizon)]
     # edges left at the end of the data cannot be sailed; those before are not judged by them
-    own = np.unique(np.concatenate(([0.0], inside, [(1.0 - _AT_THE_END) * horizon, horizon])))
+    own = np.unique(np.concatenate(([0.0], inside, [(1.0 - _END_SHARE) * horizon, horizon])))
     rungs = []
     stride = 1 << max(0, int(math.log2(max(len(own) / 8.0, 1.0))))
     while stride > 1:
@@ -176,13 +219,17 @@ def _ladder(times: FloatArray, horizon: float) -> list[FloatArray]:
     return rungs
 
 
-def _relaxations(got: Gathered, windows: Windows) -> float:
+def _relaxations(front_problem: FrontProblem, windows: BinWindows) -> float:
     """Return how many relaxations the windows allow for."""
     bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
-    return float((bins * np.diff(got.world.network.indptr)).sum()) * len(got.world.ship.settings)
+    return float((bins * np.diff(front_problem.world.network.indptr)).sum()) * len(
+        front_problem.world.ship.settings
+    )
 
 
-def slice_windows(clock: Clock, windows: Windows, slices: FloatArray) -> tuple[IntArray, IntArray]:
+def slice_windows(
+    clock: TimeBins, windows: BinWindows, slices: FloatArray
+) -> tuple[IntArray, IntArray]:
     """Return the first slice of each state and how many it has."""
     begin = np.minimum(windows.first * clock.width, clock.latest)
     end = np.minimum((windows.last + 1) * clock.width, clock.latest)
@@ -193,16 +240,22 @@ def slice_windows(clock: Clock, windows: Windows, slices: FloatArray) -> tuple[I
     return first.astype(np.int64), count.astype(np.int64)
 
 
-def _memory(got: Gathered, clock: Clock, windows: Windows, slices: FloatArray) -> int:
+def _memory(
+    front_problem: FrontProblem, clock: TimeBins, windows: BinWindows, slices: FloatArray
+) -> int:
     _, count = slice_windows(clock, windows, slices)
-    degree = np.diff(got.world.network.indptr)
-    values = int((count * degree).sum()) * 2 * len(got.world.ship.settings) * 4
+    degree = np.diff(front_problem.world.network.indptr)
+    values = int((count * degree).sum()) * 2 * len(front_problem.world.ship.settings) * 4
     slack = int((count * degree).sum()) * 13
     return values + slack + int(count.sum()) * 2 + windows.bins * _LABEL_BYTES + 200 * len(degree)
 
 
 def _table_error(
-    got: Gathered, request: Request, windows: Windows, clock: Clock, slices: FloatArray
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    windows: BinWindows,
+    clock: TimeBins,
+    slices: FloatArray,
 ) -> tuple[float, bool]:
     """Return how far legs amid two slices are from the mean of the two, as a share.
 
@@ -210,24 +263,26 @@ def _table_error(
     """
     rng = np.random.default_rng(0)
     usable = windows.last >= windows.first
-    usable &= np.diff(got.world.network.indptr) > 0
+    usable &= np.diff(front_problem.world.network.indptr) > 0
     nodes = np.flatnonzero(usable)
     if len(nodes) == 0:
         return 0.0, False
-    nodes = rng.choice(nodes, _SAMPLED)
-    net = got.world.network
+    nodes = rng.choice(nodes, _SAMPLED_EDGES)
+    net = front_problem.world.network
     degree = np.diff(net.indptr)[nodes]
     edges = net.indptr[nodes] + rng.integers(0, degree)
-    choices = rng.integers(0, len(got.world.ship.settings), _SAMPLED)
+    choices = rng.integers(0, len(front_problem.world.ship.settings), _SAMPLED_EDGES)
     span = (windows.last - windows.first + 1)[nodes]
-    when = (windows.first[nodes] + rng.random(_SAMPLED) * span) * clock.width
+    when = (windows.first[nodes] + rng.random(_SAMPLED_EDGES) * span) * clock.width
     k = np.clip(np.searchsorted(slices, when, side="right") - 1, 0, len(slices) - 2)
     begin, end = slices[k], slices[k + 1]
     found = []
     for t in (begin, 0.5 * (begin + end), end):
-        out = np.empty((_SAMPLED, 2))
+        out = np.empty((_SAMPLED_EDGES, 2))
         departures = np.ascontiguousarray(request.depart + t)
-        sail_departures(got.world, edges, nodes, choices, departures, out, new_work())
+        sail_departures(
+            front_problem.world, edges, nodes, choices, departures, out, new_edge_workspace()
+        )
         found.append(out)
     with np.errstate(divide="ignore", invalid="ignore"):
         off = np.abs(0.5 * (found[0] + found[2]) / found[1] - 1.0)
@@ -237,11 +292,14 @@ def _table_error(
     return (float(np.quantile(off, 0.95)) if off.size else 0.0), shut
 
 
-def _too_much(got: Gathered, clock: Clock, memory: int, limit: float) -> InputError:
-    net = got.world.network
+def _memory_error(
+    front_problem: FrontProblem, clock: TimeBins, memory: int, limit: float
+) -> InputError:
+    net = front_problem.world.network
     return InputError(
         f"A front over {len(net.station):,} nodes and {len(net.target):,} edges with "
-        f"{len(got.world.ship.settings)} settings in bins of {clock.width:g} s would take "
+        f"{len(front_problem.world.ship.settings)} settings in bins of {clock.width:g} s "
+        "would take "
         f"{memory / 1e9:.3g} GB of memory.",
         f"At most {limit / 1e9:.3g} GB may be taken.",
         "Take a coarser network, fewer settings, a wider bin_s or an earlier latest arrival, or "
@@ -251,12 +309,12 @@ def _too_much(got: Gathered, clock: Clock, memory: int, limit: float) -> InputEr
     )
 
 
-def new_blocks(got: Gathered, plan: Plan) -> Blocks:
+def new_edge_tables(front_problem: FrontProblem, plan: Discretisation) -> EdgeTables:
     """Return tables of edges, not filled yet."""
     first, count = slice_windows(plan.clock, plan.windows, plan.slices)
-    degree = np.diff(got.world.network.indptr)
-    size = count * degree * 2 * len(got.world.ship.settings)
-    return Blocks(
+    degree = np.diff(front_problem.world.network.indptr)
+    size = count * degree * 2 * len(front_problem.world.ship.settings)
+    return EdgeTables(
         times=plan.slices,
         first=first,
         count=count,
@@ -264,12 +322,12 @@ def new_blocks(got: Gathered, plan: Plan) -> Blocks:
         offset=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),
         state=np.zeros(int(count.sum()), np.uint8),
         values=np.empty(int(size.sum()), np.float32),
-        refused=np.zeros(COUNT, np.int64),
+        refused=np.zeros(STATUS_COUNT, np.int64),
         sailed=np.zeros(1, np.int64),
     )
 
 
-def new_bin_labels(windows: Windows) -> BinLabels:
+def new_bin_labels(windows: BinWindows) -> BinLabels:
     """Return labels of which none is set."""
     bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
     total, count = int(bins.sum()), len(bins)
@@ -286,16 +344,16 @@ def new_bin_labels(windows: Windows) -> BinLabels:
     )
 
 
-def new_target(goal: int, bounds: Bounds, clock: Clock) -> Target:
+def new_target(goal: int, bounds: BoundsToGoal, clock: TimeBins) -> LabelTarget:
     """Return the goal with nothing known of arriving there."""
-    return Target(
+    return LabelTarget(
         goal, np.full(clock.count + 1, np.inf), bounds.time, bounds.rates,
         np.ascontiguousarray(bounds.floor),
     )  # fmt: skip
 
 
-def new_agenda(windows: Windows) -> Agenda:
+def new_agenda(windows: BinWindows) -> ActiveNodes:
     """Return the nodes in the order in which their bins begin."""
     used = np.flatnonzero(windows.last >= windows.first)
     order = used[np.argsort(windows.first[used], kind="stable")].astype(np.int32)
-    return Agenda(order, np.empty(len(order), np.int32), np.zeros(AGENDA_COUNTS, np.int64))
+    return ActiveNodes(order, np.empty(len(order), np.int32), np.zeros(AGENDA_COUNTS, np.int64))

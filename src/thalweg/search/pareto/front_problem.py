@@ -11,21 +11,37 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.kernels.codes import (
-    AXES,
+    AXIS_COUNT,
     AXIS_DEPTH,
-    CHANNELS,
+    CHANNEL_COUNT,
     CURRENT_EAST,
     CURRENT_NORTH,
     SPEED_FIELD,
 )
 from thalweg.kernels.leg.edge_sailing import ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, axes_needed, table_value
-from thalweg.kernels.network.graph_building import static_distances
-from thalweg.kernels.pareto.edge_tables import PricedShip, Prices, World, fastest_flow
-from thalweg.kernels.search.label_setting import Query, label_setting, new_labels, new_workspace
-from thalweg.search.search_problem import SHRINK, Problem, plain, problem, ship_arrays
+from thalweg.kernels.network.graph_building import static_dijkstra
+from thalweg.kernels.pareto.edge_tables import (
+    EdgePrices,
+    FrontArrays,
+    MultiSettingShip,
+    largest_edge_currents,
+)
+from thalweg.kernels.search.label_setting import (
+    SearchQuery,
+    label_setting,
+    new_labels,
+    new_search_workspace,
+)
+from thalweg.search.search_problem import (
+    ROUNDING_FACTOR,
+    SearchProblem,
+    contiguous_array,
+    make_search_problem,
+    ship_arrays,
+)
 from thalweg.search.tidal_states import tidal_states
-from thalweg.ship.tables.table_bounds import extreme
+from thalweg.ship.tables.table_bounds import table_bounds
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
@@ -35,11 +51,11 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-_MOST_RATES = 10
+_MAX_TIME_PRICES = 10
 
 
-class Request(NamedTuple):
-    """What was asked, as `thalweg.search.front` takes it; times in seconds since epoch."""
+class FrontRequest(NamedTuple):
+    """What was asked, as `thalweg.search.pareto_front` takes it; times in seconds since epoch."""
 
     start: int
     goal: int
@@ -57,7 +73,7 @@ class Request(NamedTuple):
         return self.latest - self.depart
 
 
-class Gathered(NamedTuple):
+class FrontProblem(NamedTuple):
     """The world of a front with its bounds.
 
     Attributes
@@ -75,25 +91,25 @@ class Gathered(NamedTuple):
         Greatest speed through water [m/s] and least fuel rate [kg/s] of each setting.
     """
 
-    world: World
-    given: Problem
-    whole: Problem
+    world: FrontArrays
+    given: SearchProblem
+    whole: SearchProblem
     origin: IntArray
     tails: IntArray
     fastest: FloatArray
     thriftiest: FloatArray
 
 
-def gather(
+def make_front_problem(
     network: Network,
     fields: StationFields,
     table: PerformanceTable | TableArrays,
     fuel: PerformanceTable | TableArrays,
     *,
-    request: Request,
+    request: FrontRequest,
     limits: ArrayLike,
     top_speed: float | None,
-) -> Gathered:
+) -> FrontProblem:
     """Gather the arrays that a front is searched with."""
     ship = ship_arrays(table, int(request.settings[-1]), limits)
     burning = ship_arrays(fuel, int(request.settings[-1]), limits).table
@@ -104,10 +120,10 @@ def gather(
             "The two are tables of one ship.",
             "Make them with tabulate and tabulate_fuel of the same ship.",
         )
-    fastest = extreme(ship.table, np.fmax)[request.settings]
-    thriftiest = np.maximum(extreme(burning, np.fmin)[request.settings], 0.0)
+    fastest = table_bounds(ship.table, np.fmax)[request.settings]
+    thriftiest = np.maximum(table_bounds(burning, np.fmin)[request.settings], 0.0)
     top = float(np.nanmax(fastest)) if top_speed is None else float(top_speed)
-    whole = problem(
+    whole = make_search_problem(
         network, fields, table, setting=int(request.settings[-1]), limits=limits, top_speed=top
     )
     given, origin = _with_states(whole, request)
@@ -116,17 +132,17 @@ def gather(
     if given.sea.channel_index[SPEED_FIELD] >= 0:
         fastest = np.full(len(fastest), given.top_speed)
     net = given.network
-    priced = PricedShip(
-        ship.table, burning, plain(request.settings, np.int64), ship.limits, ship.needs,
+    priced = MultiSettingShip(
+        ship.table, burning, contiguous_array(request.settings, np.int64), ship.limits, ship.needs,
         int(axes_needed(burning)),
     )  # fmt: skip
     prices = _prices(network, origin, priced, request)
     tails = np.repeat(np.arange(len(net.station)), np.diff(net.indptr))
-    world = World(net, given.sea, priced, prices, request.depart)
-    return Gathered(world, given, whole, origin, tails, fastest, thriftiest)
+    world = FrontArrays(net, given.sea, priced, prices, request.depart)
+    return FrontProblem(world, given, whole, origin, tails, fastest, thriftiest)
 
 
-def _with_states(given: Problem, request: Request) -> tuple[Problem, IntArray]:
+def _with_states(given: SearchProblem, request: FrontRequest) -> tuple[SearchProblem, IntArray]:
     """Split nodes that fall dry into states; return where each edge comes from as well."""
     net = given.network
     numbered = net._replace(factor=np.arange(len(net.target), dtype=np.float64))
@@ -138,30 +154,32 @@ def _with_states(given: Problem, request: Request) -> tuple[Problem, IntArray]:
     return given._replace(network=net), origin
 
 
-def _prices(network: Network, origin: IntArray, ship: PricedShip, request: Request) -> Prices:
+def _prices(
+    network: Network, origin: IntArray, ship: MultiSettingShip, request: FrontRequest
+) -> EdgePrices:
     fixed_time, fee = np.asarray(network.fixed_time), np.asarray(network.fee)
     fuel, choice = np.zeros(len(origin)), np.zeros(len(origin), np.int64)
     fixed = fixed_time[origin]
     if not np.isnan(fixed).all():
-        speeds, rates = still_water(ship.table, ship), still_water(ship.fuel, ship)
+        speeds, rates = still_water_values(ship.table, ship), still_water_values(ship.fuel, ship)
         for e in np.flatnonzero(~np.isnan(fixed)):
             enough = np.flatnonzero(speeds >= network.length[origin[e]] / fixed[e])
             choice[e] = enough[0] if len(enough) else int(np.nanargmax(speeds))
             fuel[e] = rates[choice[e]] * fixed[e]
-    return Prices(
+    return EdgePrices(
         weight=np.ascontiguousarray(request.weight[origin], float),
         fee=np.ascontiguousarray(fee[origin], float),
         fixed_time=np.ascontiguousarray(fixed, float),
         fixed_fuel=fuel,
         fixed_choice=choice,
         time_price=request.time_price,
-        wait_rate=request.time_price + request.waiting_rate,
+        waiting_cost_rate=request.time_price + request.waiting_rate,
     )
 
 
-def still_water(table: TableArrays, ship: PricedShip) -> FloatArray:
+def still_water_values(table: TableArrays, ship: MultiSettingShip) -> FloatArray:
     """Return the values of a table in still, deep water, by chosen setting."""
-    where = np.zeros(AXES)
+    where = np.zeros(AXIS_COUNT)
     for axes, start, step, size in zip(
         table.part_axes, table.axis_start, table.axis_inv_step, table.axis_size
     ):
@@ -174,7 +192,7 @@ def still_water(table: TableArrays, ship: PricedShip) -> FloatArray:
     return np.array([value if ok else math.nan for value, ok in found])
 
 
-class Bounds(NamedTuple):
+class BoundsToGoal(NamedTuple):
     """What the way from a state to the goal takes at least.
 
     Attributes
@@ -192,10 +210,10 @@ class Bounds(NamedTuple):
     time: FloatArray
     rates: FloatArray
     floor: FloatArray
-    to_goal: ToGoal
+    to_goal: BackwardSearch
 
 
-class ToGoal:
+class BackwardSearch:
     """Edges in the most favourable currents and weather, walked backwards from the goal.
 
     Each edge is taken at the largest current along it in the fields, at the greatest speed and the
@@ -207,25 +225,28 @@ class ToGoal:
         Largest current along every edge in the fields [m/s].
     """
 
-    def __init__(self, got: Gathered, goal: int) -> None:
-        net, self._got, self._goal = got.world.network, got, goal
+    def __init__(self, front_problem: FrontProblem, goal: int) -> None:
+        net, self._got, self._goal = front_problem.world.network, front_problem, goal
         self.along = np.zeros(len(net.target))
-        if min(got.world.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
-            fastest_flow(net, got.world.sea, self.along)
-        over_ground = got.fastest[:, None] + self.along[None, :]
+        if min(front_problem.world.sea.channel_index[[CURRENT_EAST, CURRENT_NORTH]]) >= 0:
+            largest_edge_currents(net, front_problem.world.sea, self.along)
+        over_ground = front_problem.fastest[:, None] + self.along[None, :]
         with np.errstate(divide="ignore", invalid="ignore"):
             pace = np.where(over_ground > 0.0, net.length / over_ground, math.inf)
-        pace[~(got.fastest > 0.0)] = math.inf
+        pace[~(front_problem.fastest > 0.0)] = math.inf
         self._quickest = pace  # (S, E) [s]
         self._order = np.argsort(net.target, kind="stable")
         nodes = np.arange(len(net.station) + 1)
         self._indptr = np.searchsorted(net.target[self._order], nodes).astype(np.int64)
-        self._target = got.tails[self._order].astype(np.int32)
+        self._target = front_problem.tails[self._order].astype(np.int32)
 
     def time(self) -> FloatArray:
         """Return the least time to the goal [s]."""
         fixed = self._got.world.prices.fixed_time
-        return self._least(np.where(np.isnan(fixed), self._quickest.min(axis=0), fixed)) * SHRINK
+        return (
+            self._least(np.where(np.isnan(fixed), self._quickest.min(axis=0), fixed))
+            * ROUNDING_FACTOR
+        )
 
     def floor(self, rate: float) -> FloatArray:
         """Return the least cost plus price of time to the goal."""
@@ -260,47 +281,49 @@ class ToGoal:
         distance = np.empty(count)
         parent = np.empty(count, np.int64) if parent is None else parent
         given = np.ascontiguousarray(weights[self._order])
-        static_distances(self._indptr, self._target, given, self._goal, -1, distance, parent)
+        static_dijkstra(self._indptr, self._target, given, self._goal, -1, distance, parent)
         return distance
 
 
-def bounds_to_goal(got: Gathered, goal: int) -> Bounds:
+def bounds_to_goal(front_problem: FrontProblem, goal: int) -> BoundsToGoal:
     """Bound time and cost from every state to the goal."""
-    to_goal = ToGoal(got, goal)
-    weight = got.world.prices.weight
-    rates = _rates(got, float(np.median(weight)) if len(weight) else 1.0)
+    to_goal = BackwardSearch(front_problem, goal)
+    weight = front_problem.world.prices.weight
+    rates = _time_prices(front_problem, float(np.median(weight)) if len(weight) else 1.0)
     floor = np.stack([to_goal.floor(rate) for rate in rates], axis=1)
-    return Bounds(to_goal.time(), rates, floor, to_goal)
+    return BoundsToGoal(to_goal.time(), rates, floor, to_goal)
 
 
-def _rates(got: Gathered, weight: float) -> FloatArray:
+def _time_prices(front_problem: FrontProblem, weight: float) -> FloatArray:
     """Return prices of time at which the thriftiest setting in still water changes, and 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        pace = 1.0 / got.fastest
-        spent = got.thriftiest * pace * weight
+        pace = 1.0 / front_problem.fastest
+        spent = front_problem.thriftiest * pace * weight
     known = np.isfinite(pace) & np.isfinite(spent)
     hull: list[tuple[float, float]] = []
     for point in sorted(zip(pace[known].tolist(), spent[known].tolist())):
         if hull and point[1] >= hull[-1][1]:
             continue
-        while len(hull) > 1 and _above(hull[-2], hull[-1], point):
+        while len(hull) > 1 and _on_or_above_line(hull[-2], hull[-1], point):
             hull.pop()
         hull.append(point)
-    price = got.world.prices.time_price
+    price = front_problem.world.prices.time_price
     slopes = [(a[1] - b[1]) / (b[0] - a[0]) - price for a, b in pairwise(hull)]
     slopes = sorted(slope for slope in slopes if slope > 0.0)
-    if len(slopes) > _MOST_RATES:
-        picked = np.unique(np.linspace(0, len(slopes) - 1, _MOST_RATES).round().astype(int))
+    if len(slopes) > _MAX_TIME_PRICES:
+        picked = np.unique(np.linspace(0, len(slopes) - 1, _MAX_TIME_PRICES).round().astype(int))
         slopes = [slopes[i] for i in picked]
     return np.array([0.0, *slopes])
 
 
-def _above(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
+def _on_or_above_line(
+    a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]
+) -> bool:
     """Return whether b lies on or above the line from a to c."""
     return (b[1] - a[1]) * (c[0] - a[0]) >= (c[1] - a[1]) * (b[0] - a[0])
 
 
-class Arrivals(NamedTuple):
+class EarliestArrivals(NamedTuple):
     """Earliest arrivals at one setting, with the tree they came by."""
 
     time: FloatArray
@@ -309,12 +332,12 @@ class Arrivals(NamedTuple):
     refused: NDArray[np.int64]
 
 
-def at_setting(ship: ShipArrays, setting: int) -> ShipArrays:
+def ship_at_setting(ship: ShipArrays, setting: int) -> ShipArrays:
     """Return a ship at another of its settings."""
     return ship._replace(setting=int(setting))
 
 
-def heedless(ship: ShipArrays) -> ShipArrays:
+def without_wave_limits(ship: ShipArrays) -> ShipArrays:
     """Return a ship that nothing is forbidden in waves: never slower than itself."""
     none = np.empty(0), np.empty((0, 0, 0), np.float32), np.empty((0, 0))
     table = ship.table._replace(safety=none[0], motions=none[1], motion_grid=none[2])
@@ -322,34 +345,34 @@ def heedless(ship: ShipArrays) -> ShipArrays:
 
 
 def earliest_arrivals(
-    got: Gathered, request: Request, *, everywhere: bool, choice: int = -1
-) -> Arrivals:
+    front_problem: FrontProblem, request: FrontRequest, *, everywhere: bool, choice: int = -1
+) -> EarliestArrivals:
     """Search the earliest arrival at every state at one of the chosen settings.
 
     ``everywhere`` lets the ship wait at any and pass what is forbidden in waves: at the highest
     setting no choice of settings is sooner.
     """
-    given = got.given
-    net, ship = given.network, at_setting(given.ship, int(request.settings[choice]))
+    given = front_problem.given
+    net, ship = given.network, ship_at_setting(given.ship, int(request.settings[choice]))
     if everywhere:
-        net, ship = net._replace(can_wait=np.ones_like(net.can_wait)), heedless(ship)
+        net, ship = net._replace(can_wait=np.ones_like(net.can_wait)), without_wave_limits(ship)
     count = len(net.station)
-    query = Query(
+    query = SearchQuery(
         start=request.start,
         goal=-1,
         depart=request.depart,
         horizon=request.latest if everywhere else math.inf,
         by_distance=False,
         wait=everywhere or request.wait,
-        slowness=SHRINK / given.fastest,
+        slowness=ROUNDING_FACTOR / given.fastest,
         per_metre=0.0,
     )
-    labels, memory = new_labels(count), new_workspace(count)
+    labels, memory = new_labels(count), new_search_workspace(count)
     label_setting(net, given.sea, ship, query, np.zeros(count), labels, memory)
     time = np.where(labels.settled, labels.time, math.inf)
-    return Arrivals(time, labels.before, labels.departed, memory.refused)
+    return EarliestArrivals(time, labels.before, labels.departed, memory.refused)
 
 
-def new_work() -> FloatArray:
+def new_edge_workspace() -> FloatArray:
     """Return work space for sailing edges."""
-    return np.full((4, CHANNELS), np.nan)
+    return np.full((4, CHANNEL_COUNT), np.nan)

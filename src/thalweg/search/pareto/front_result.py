@@ -85,7 +85,7 @@ class FrontWork:
 
 
 @dataclass(frozen=True, eq=False)
-class Front:
+class NetworkFront:
     """Ways none of which is dominated in time and cost, and what no way can be below.
 
     Attributes
@@ -166,7 +166,7 @@ class Front:
         return tuple(self.points[i] for i in chosen)
 
 
-def cheapest(front: Front, arrive_by: float | None = None) -> FrontPoint:
+def cheapest(front: NetworkFront, arrive_by: float | None = None) -> FrontPoint:
     """Return the point of least cost among those that arrive in time.
 
     Parameters

@@ -9,26 +9,31 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.kernels.pareto.edge_tables import Blocks
+from thalweg.kernels.pareto.edge_tables import EdgeTables
 from thalweg.kernels.pareto.lower_labels import (
+    InterpolationBounds,
     LowerLabels,
-    Slack,
-    advance_lower,
+    process_bins_lower,
 )
-from thalweg.kernels.pareto.lower_scalarised import TimePriced, advance_priced
+from thalweg.kernels.pareto.lower_scalarised import ScalarisedLabelTarget, process_bins_scalarised
 from thalweg.kernels.pareto.time_expanded_labels import PRUNED, RELAXED, VISITED
-from thalweg.search.pareto.discretisation import Plan, new_agenda, new_target
-from thalweg.search.pareto.front_problem import Bounds, Gathered, Request, new_work
+from thalweg.search.pareto.discretisation import Discretisation, new_agenda, new_target
+from thalweg.search.pareto.front_problem import (
+    BoundsToGoal,
+    FrontProblem,
+    FrontRequest,
+    new_edge_workspace,
+)
 from thalweg.search.pareto.front_result import FrontPoint
-from thalweg.search.pareto.seed_paths import know
+from thalweg.search.pareto.seed_paths import tighten_target
 
 FloatArray = NDArray[np.float64]
 
-_SHRINK = 1.0 - 2e-6  # for sums in single precision
-_LINES = 6
+_ROUNDING_MARGIN = 1.0 - 2e-6  # for sums in single precision
+_MAX_TIME_PRICES = 6
 
 
-class Lower(NamedTuple):
+class LowerFront(NamedTuple):
     """The lower front, by ascending time and falling cost, and the work it was."""
 
     time: FloatArray
@@ -39,20 +44,20 @@ class Lower(NamedTuple):
 
 
 def lower_front(
-    got: Gathered,
-    request: Request,
-    bounds: Bounds,
-    plan: Plan,
-    blocks: Blocks,
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    bounds: BoundsToGoal,
+    plan: Discretisation,
+    blocks: EdgeTables,
     points: tuple[FrontPoint, ...],
     tell: Callable[[float], None],
     chunks: int,
-) -> Lower:
+) -> LowerFront:
     """Search the lower front below the points of a front.
 
     Parameters
     ----------
-    got : Gathered
+    front_problem : Gathered
     request : Request
     bounds : Bounds
     plan : Plan
@@ -64,58 +69,71 @@ def lower_front(
         Called with the share done, ``chunks`` times.
     chunks : int
     """
-    got = _waiting_no_dearer_than_sailing(got)
-    slack = _new_slack(got, bounds, blocks)
-    halves = _by_bins(got, request, bounds, plan, blocks, slack, points, tell, chunks)
-    lines, priced = _by_prices(got, request, bounds, plan, blocks, slack, points)
-    time, cost = _together(plan, points, halves.time, halves.cost, lines)
-    return Lower(time, cost, halves.labels + priced[0], halves.relaxed + priced[1], halves.pruned)
+    front_problem = _waiting_price_capped(front_problem)
+    slack = _new_slack(front_problem, bounds, blocks)
+    halves = _lower_by_bins(
+        front_problem, request, bounds, plan, blocks, slack, points, tell, chunks
+    )
+    lines, priced = _lower_by_time_prices(
+        front_problem, request, bounds, plan, blocks, slack, points
+    )
+    time, cost = _larger_bound(plan, points, halves.time, halves.cost, lines)
+    return LowerFront(
+        time, cost, halves.labels + priced[0], halves.relaxed + priced[1], halves.pruned
+    )
 
 
-def _waiting_no_dearer_than_sailing(got: Gathered) -> Gathered:
+def _waiting_price_capped(front_problem: FrontProblem) -> FrontProblem:
     """Return a world whose price of waiting is at most that of sailing at its cheapest.
 
     Sailing then never gains on waiting, so that no circle within a bin can fall without end.
     """
-    prices = got.world.prices
+    prices = front_problem.world.prices
     spent = (prices.fixed_fuel * prices.weight + prices.fee) / prices.fixed_time
-    sailed = np.nanmin(got.thriftiest, initial=np.inf) * prices.weight
+    sailed = np.nanmin(front_problem.thriftiest, initial=np.inf) * prices.weight
     least = float(np.where(np.isnan(prices.fixed_time), sailed, spent).min(initial=np.inf))
-    rate = min(prices.wait_rate, prices.time_price + least)
-    return got._replace(world=got.world._replace(prices=prices._replace(wait_rate=rate)))
+    rate = min(prices.waiting_cost_rate, prices.time_price + least)
+    return front_problem._replace(
+        world=front_problem.world._replace(prices=prices._replace(waiting_cost_rate=rate))
+    )
 
 
-def _by_bins(
-    got: Gathered,
-    request: Request,
-    bounds: Bounds,
-    plan: Plan,
-    blocks: Blocks,
-    slack: Slack,
+def _lower_by_bins(
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    bounds: BoundsToGoal,
+    plan: Discretisation,
+    blocks: EdgeTables,
+    slack: InterpolationBounds,
     points: tuple[FrontPoint, ...],
     tell: Callable[[float], None],
     chunks: int,
-) -> Lower:
+) -> LowerFront:
     """Let every arrival count for the start of its bin."""
     clock = plan.clock
     target = new_target(request.goal, bounds, clock)
     for point in points:
-        know(target, clock, point)
+        tighten_target(target, clock, point)
     labels = _new_labels(plan)
     labels.cost[labels.place[request.start]] = 0.0
-    agenda, work = new_agenda(plan.windows), new_work()
+    agenda, work = new_agenda(plan.windows), new_edge_workspace()
     edges = np.unique(np.linspace(0, clock.count, chunks + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
-        advance_lower(got.world, labels, target, clock, blocks, slack, agenda, a, b, work)
+        process_bins_lower(
+            front_problem.world, labels, target, clock, blocks, slack, agenda, a, b, work
+        )
         tell(b / clock.count)
     first, last = int(labels.first[request.goal]), int(labels.last[request.goal])
     begin = int(labels.place[request.goal])
     time = np.arange(first, last + 1) * clock.width
-    cost = labels.cost[begin : begin + last - first + 1] + got.world.prices.wait_rate * time
+    cost = (
+        labels.cost[begin : begin + last - first + 1]
+        + front_problem.world.prices.waiting_cost_rate * time
+    )
     time = np.append(time, [point.time for point in points])
-    cost = np.append(_SHRINK * cost, [point.cost for point in points])
+    cost = np.append(_ROUNDING_MARGIN * cost, [point.cost for point in points])
     counts = agenda.counts
-    return Lower(
+    return LowerFront(
         *_staircase(time.astype(float), cost.astype(float)),
         int(counts[VISITED]),
         int(counts[RELAXED]),
@@ -123,13 +141,13 @@ def _by_bins(
     )
 
 
-def _by_prices(
-    got: Gathered,
-    request: Request,
-    bounds: Bounds,
-    plan: Plan,
-    blocks: Blocks,
-    slack: Slack,
+def _lower_by_time_prices(
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    bounds: BoundsToGoal,
+    plan: Discretisation,
+    blocks: EdgeTables,
+    slack: InterpolationBounds,
     points: tuple[FrontPoint, ...],
 ) -> tuple[list[tuple[float, float]], tuple[int, int]]:
     """Return (price of time, least cost plus priced time) for some prices, and the work it was."""
@@ -140,13 +158,22 @@ def _by_prices(
         labels.cost[labels.place[request.start]] = 0.0
         known = float(np.min(cost + rate * time))
         floor = bounds.to_goal.floor(rate)
-        target = TimePriced(request.goal, rate, known, bounds.time, floor)
+        target = ScalarisedLabelTarget(request.goal, rate, known, bounds.time, floor)
         agenda = new_agenda(plan.windows)
-        advance_priced(got.world, labels, target, plan.clock, blocks, slack, agenda, new_work())
+        process_bins_scalarised(
+            front_problem.world,
+            labels,
+            target,
+            plan.clock,
+            blocks,
+            slack,
+            agenda,
+            new_edge_workspace(),
+        )
         begin = int(labels.place[request.goal])
         bins = int(labels.last[request.goal]) - int(labels.first[request.goal]) + 1
         found = float(labels.cost[begin : begin + bins].min())
-        lines.append((rate, min(known, _SHRINK * found)))
+        lines.append((rate, min(known, _ROUNDING_MARGIN * found)))
         labelled += int(agenda.counts[VISITED])
         relaxed += int(agenda.counts[RELAXED])
     return lines, (labelled, relaxed)
@@ -156,26 +183,26 @@ def _prices_of_time(time: FloatArray, cost: FloatArray) -> list[float]:
     """Return the slopes of the front's lower hull, thinned evenly in time."""
     hull: list[int] = []
     for i in range(len(time)):
-        while len(hull) > 1 and _above(time, cost, hull[-2], hull[-1], i):
+        while len(hull) > 1 and _on_or_above_line(time, cost, hull[-2], hull[-1], i):
             hull.pop()
         hull.append(i)
     if len(hull) < 2:
         return []
     slopes = -np.diff(cost[hull]) / np.diff(time[hull])
     middle = 0.5 * (time[hull][1:] + time[hull][:-1])
-    wanted = np.linspace(time[0], time[-1], 2 * _LINES + 1)[1::2]
+    wanted = np.linspace(time[0], time[-1], 2 * _MAX_TIME_PRICES + 1)[1::2]
     chosen = np.abs(middle[:, None] - wanted).argmin(axis=0)
     return sorted({float(slopes[i]) for i in chosen if slopes[i] > 0.0})
 
 
-def _above(time: FloatArray, cost: FloatArray, a: int, b: int, c: int) -> bool:
+def _on_or_above_line(time: FloatArray, cost: FloatArray, a: int, b: int, c: int) -> bool:
     """Return whether point b lies on or above the line from a to c."""
     rise = (cost[b] - cost[a]) * (time[c] - time[a])
     return bool(rise >= (cost[c] - cost[a]) * (time[b] - time[a]))
 
 
-def _together(
-    plan: Plan,
+def _larger_bound(
+    plan: Discretisation,
     points: tuple[FrontPoint, ...],
     time: FloatArray,
     cost: FloatArray,
@@ -203,7 +230,7 @@ def _staircase(time: FloatArray, cost: FloatArray) -> tuple[FloatArray, FloatArr
     return time[falls], cost[falls]
 
 
-def _new_labels(plan: Plan) -> LowerLabels:
+def _new_labels(plan: Discretisation) -> LowerLabels:
     windows = plan.windows
     bins = np.maximum(windows.last.astype(np.int64) - windows.first + 1, 0)
     return LowerLabels(
@@ -216,15 +243,17 @@ def _new_labels(plan: Plan) -> LowerLabels:
     )
 
 
-def _new_slack(got: Gathered, bounds: Bounds, blocks: Blocks) -> Slack:
-    size = blocks.count * np.diff(got.world.network.indptr)
+def _new_slack(
+    front_problem: FrontProblem, bounds: BoundsToGoal, blocks: EdgeTables
+) -> InterpolationBounds:
+    size = blocks.count * np.diff(front_problem.world.network.indptr)
     total = int(size.sum())
-    return Slack(
+    return InterpolationBounds(
         start=np.concatenate(([0], np.cumsum(size)[:-1])).astype(np.int64),
         state=np.zeros(len(blocks.state), np.uint8),
         off=np.empty((total, 3), np.float32),
         gains=np.empty(total, np.uint8),
         along=bounds.to_goal.along,
-        fastest=got.fastest,
-        thriftiest=got.thriftiest,
+        fastest=front_problem.fastest,
+        thriftiest=front_problem.thriftiest,
     )

@@ -13,37 +13,46 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.kernels.pareto.edge_tables import Blocks
-from thalweg.kernels.pareto.time_expanded_labels import PRUNED, RELAXED, VISITED, WAITED, advance
-from thalweg.search.limited_waiting import berths_matter, earliest_from_berths
+from thalweg.kernels.pareto.edge_tables import EdgeTables
+from thalweg.kernels.pareto.time_expanded_labels import (
+    PRUNED,
+    RELAXED,
+    VISITED,
+    WAITED,
+    process_bins,
+)
+from thalweg.search.limited_waiting import (
+    earliest_arrival_with_restricted_waiting,
+    waiting_is_restricted,
+)
 from thalweg.search.pareto.discretisation import (
-    Plan,
-    make_plan,
+    Discretisation,
+    choose_discretisation,
     new_agenda,
     new_bin_labels,
-    new_blocks,
+    new_edge_tables,
     new_target,
 )
 from thalweg.search.pareto.front_problem import (
-    Bounds,
-    Gathered,
-    Request,
-    at_setting,
+    BoundsToGoal,
+    FrontProblem,
+    FrontRequest,
     bounds_to_goal,
     earliest_arrivals,
-    gather,
-    new_work,
+    make_front_problem,
+    new_edge_workspace,
+    ship_at_setting,
 )
-from thalweg.search.pareto.front_result import Front, FrontPoint, FrontWork
-from thalweg.search.pareto.lower_front import Lower, lower_front
+from thalweg.search.pareto.front_result import FrontPoint, FrontWork, NetworkFront
+from thalweg.search.pareto.lower_front import LowerFront, lower_front
 from thalweg.search.pareto.seed_paths import (
-    Way,
-    fastest_way,
-    know,
-    not_dominated,
-    seeds,
-    way_found,
-    ways_found,
+    PlannedPath,
+    earliest_arrival_path,
+    non_dominated_points,
+    path_of_search_result,
+    paths_of_goal_labels,
+    seed_paths,
+    tighten_target,
 )
 from thalweg.search.search_problem import distance_bounds
 
@@ -54,11 +63,11 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-_CHUNKS = 50
+_PROGRESS_CHUNKS = 50
 MEMORY_LIMIT = 3e9  # [bytes]
 
 
-def front(
+def pareto_front(
     network: Network,
     fields: StationFields,
     table: PerformanceTable | TableArrays,
@@ -80,7 +89,7 @@ def front(
     lower: bool = True,
     top_speed: float | None = None,
     progress: Callable[[float], None] | None = None,
-) -> Front:
+) -> NetworkFront:
     """Find the ways between two nodes that no other beats in both time and cost.
 
     The cost of a way is the sum over its edges of fuel times weight and fee, plus the price of
@@ -180,39 +189,52 @@ def front(
         start=start, goal=goal, depart=depart, latest=latest, settings=settings, weight=weight,
         time_price=time_price, waiting_rate=waiting_fuel * waiting_weight, wait=wait, bin_s=bin_s,
     )  # fmt: skip
-    got = gather(network, fields, table, fuel, request=request, limits=limits, top_speed=top_speed)
-    bounds = bounds_to_goal(got, request.goal)
-    soonest = earliest_arrivals(got, request, everywhere=True)
-    first = _first_ways(network, got, request, bounds)
-    plan = make_plan(got, request, bounds, soonest.time, bin_s=bin_s, memory_limit=memory_limit)
-    return _search(got, request, bounds, plan, first, lower=lower, progress=progress)
+    front_problem = make_front_problem(
+        network, fields, table, fuel, request=request, limits=limits, top_speed=top_speed
+    )
+    bounds = bounds_to_goal(front_problem, request.goal)
+    soonest = earliest_arrivals(front_problem, request, everywhere=True)
+    first = _find_seed_paths(network, front_problem, request, bounds)
+    plan = choose_discretisation(
+        front_problem, request, bounds, soonest.time, bin_s=bin_s, memory_limit=memory_limit
+    )
+    return _search(front_problem, request, bounds, plan, first, lower=lower, progress=progress)
 
 
 def _search(
-    got: Gathered,
-    request: Request,
-    bounds: Bounds,
-    plan: Plan,
-    first: _First,
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    bounds: BoundsToGoal,
+    plan: Discretisation,
+    first: _SeedPaths,
     *,
     lower: bool,
     progress: Callable[[float], None] | None,
-) -> Front:
+) -> NetworkFront:
     parts = 2 if lower else 1
 
     def tell(share: float, part: int) -> None:
         if progress is not None:
             progress((part + share) / parts)
 
-    blocks = new_blocks(got, plan)
-    found, dropped, counts = _labelled(got, request, bounds, plan, first.points, blocks, tell)
-    points = not_dominated([*first.points, *found])
+    blocks = new_edge_tables(front_problem, plan)
+    found, dropped, counts = _set_labels(
+        front_problem, request, bounds, plan, first.points, blocks, tell
+    )
+    points = non_dominated_points([*first.points, *found])
     if not points and first.refusal is not None:
         raise first.refusal
-    below = Lower(np.empty(0), np.empty(0), 0, 0, 0)
+    below = LowerFront(np.empty(0), np.empty(0), 0, 0, 0)
     if lower:
         below = lower_front(
-            got, request, bounds, plan, blocks, points, lambda share: tell(share, 1), _CHUNKS
+            front_problem,
+            request,
+            bounds,
+            plan,
+            blocks,
+            points,
+            lambda share: tell(share, 1),
+            _PROGRESS_CHUNKS,
         )
     work = FrontWork(
         labels=int(counts[VISITED]) + below.labels,
@@ -225,55 +247,59 @@ def _search(
         memory=plan.memory,
     )
     refused = {REASONS[c]: int(n) for c, n in enumerate(blocks.refused) if n > 0 and c > 0}
-    return Front(points, below.time, below.cost, plan.clock.width, work, refused)
+    return NetworkFront(points, below.time, below.cost, plan.clock.width, work, refused)
 
 
-def _labelled(
-    got: Gathered,
-    request: Request,
-    bounds: Bounds,
-    plan: Plan,
+def _set_labels(
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    bounds: BoundsToGoal,
+    plan: Discretisation,
     known: list[FrontPoint],
-    blocks: Blocks,
+    blocks: EdgeTables,
     tell: Callable[[float, int], None],
 ) -> tuple[list[FrontPoint], int, NDArray[np.int64]]:
     """Label all nodes bin by bin; return the goal's ways, how many are shut, and counts."""
     target, labels = new_target(request.goal, bounds, plan.clock), new_bin_labels(plan.windows)
     for point in known:
-        know(target, plan.clock, point)
+        tighten_target(target, plan.clock, point)
     begin = int(labels.place[request.start])
     labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
-    agenda, work = new_agenda(plan.windows), new_work()
+    agenda, work = new_agenda(plan.windows), new_edge_workspace()
     spare = np.empty(2 * len(request.settings), np.float32)
-    edges = np.unique(np.linspace(0, plan.clock.count, _CHUNKS + 1).astype(int))
+    edges = np.unique(np.linspace(0, plan.clock.count, _PROGRESS_CHUNKS + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
-        advance(got.world, labels, target, plan.clock, blocks, agenda, a, b, work, spare)
+        process_bins(
+            front_problem.world, labels, target, plan.clock, blocks, agenda, a, b, work, spare
+        )
         tell(b / plan.clock.count, 0)
-    found, dropped = ways_found(got, request, labels)
+    found, dropped = paths_of_goal_labels(front_problem, request, labels)
     return found, dropped, agenda.counts
 
 
-class _First(NamedTuple):
+class _SeedPaths(NamedTuple):
     """Ways to begin with, and what to raise if there are none in the end."""
 
     points: list[FrontPoint]
     refusal: InputError | NoRouteError | None
 
 
-def _first_ways(network: Network, got: Gathered, request: Request, bounds: Bounds) -> _First:
+def _find_seed_paths(
+    network: Network, front_problem: FrontProblem, request: FrontRequest, bounds: BoundsToGoal
+) -> _SeedPaths:
     """Return the ways to begin with; raise if even the fastest is too late.
 
     What is forbidden in waves may be allowed at a lower setting: then the search has the last word.
     """
-    table, arrive, fastest = got.world.ship.table, math.inf, None
+    table, arrive, fastest = front_problem.world.ship.table, math.inf, None
     heeds = len(table.safety) > 0 or len(table.motions) > 0
     for choice in range(len(request.settings))[::-1]:
-        arrive, fastest = _fastest(network, got, request, choice)
+        arrive, fastest = _fastest_path(network, front_problem, request, choice)
         if fastest is not None or not heeds:
             break
     refusal: InputError | NoRouteError | None = None
     if fastest is None:
-        refusal = _no_route(network, got, request)
+        refusal = _no_route(network, front_problem, request)
     elif arrive > request.latest:
         refusal = InputError(
             f"No way arrives by {request.latest:.0f} s.",
@@ -284,29 +310,34 @@ def _first_ways(network: Network, got: Gathered, request: Request, bounds: Bound
         )
     if refusal is not None and not heeds:
         raise refusal
-    return _First([] if fastest is None else seeds(got, request, fastest, bounds), refusal)
+    return _SeedPaths(
+        [] if fastest is None else seed_paths(front_problem, request, fastest, bounds), refusal
+    )
 
 
-def _fastest(
-    network: Network, got: Gathered, request: Request, choice: int
-) -> tuple[float, Way | None]:
+def _fastest_path(
+    network: Network, front_problem: FrontProblem, request: FrontRequest, choice: int
+) -> tuple[float, PlannedPath | None]:
     """Return the earliest arrival at one of the chosen settings [s], and its way."""
-    if request.wait and berths_matter(network):
-        ship = at_setting(got.whole.ship, int(request.settings[choice]))
-        found = earliest_from_berths(
-            network, got.whole._replace(ship=ship), start=request.start, goal=request.goal,
+    if request.wait and waiting_is_restricted(network):
+        ship = ship_at_setting(front_problem.whole.ship, int(request.settings[choice]))
+        found = earliest_arrival_with_restricted_waiting(
+            network, front_problem.whole._replace(ship=ship), start=request.start,
+        goal=request.goal,
             depart=request.depart, limits=ship.limits,
         )  # fmt: skip
-        return found.arrive, way_found(got, found) if found.found else None
-    arrivals = earliest_arrivals(got, request, everywhere=False, choice=choice)
+        return found.arrive, path_of_search_result(front_problem, found) if found.found else None
+    arrivals = earliest_arrivals(front_problem, request, everywhere=False, choice=choice)
     arrive = float(arrivals.time[request.goal])
-    return arrive, fastest_way(got, request, arrivals) if math.isfinite(arrive) else None
+    return arrive, earliest_arrival_path(front_problem, request, arrivals) if math.isfinite(
+        arrive
+    ) else None
 
 
-def _no_route(network: Network, got: Gathered, request: Request) -> NoRouteError:
-    arrivals = earliest_arrivals(got, request, everywhere=False)
+def _no_route(network: Network, front_problem: FrontProblem, request: FrontRequest) -> NoRouteError:
+    arrivals = earliest_arrivals(front_problem, request, everywhere=False)
     reasons = {REASONS[c]: int(n) for c, n in enumerate(arrivals.refused) if n > 0 and c > 0}
-    reached = got.world.network.station[np.isfinite(arrivals.time)]
+    reached = front_problem.world.network.station[np.isfinite(arrivals.time)]
     lat, lon = network.lat, network.lon
     to = float(lat[request.goal]), float(lon[request.goal])
     off = distance_bounds(lat[reached], lon[reached], *to)
@@ -335,7 +366,7 @@ def _request(
     waiting_rate: float,
     wait: bool,
     bin_s: float | None,
-) -> Request:
+) -> FrontRequest:
     raw = table if isinstance(table, TableArrays) else table.kernel_arrays()
     count = int(raw.n_settings)
     chosen = np.arange(count) if settings is None else np.unique(np.asarray(settings, np.int64))
@@ -375,7 +406,7 @@ def _request(
             raise InputError(
                 f"The {name} is {value}.", "It is at least 0 per second.", "Check the prices."
             )
-    return Request(
+    return FrontRequest(
         int(start), int(goal), float(depart), float(latest), chosen, weights,
         float(time_price), float(waiting_rate), bool(wait),
     )  # fmt: skip

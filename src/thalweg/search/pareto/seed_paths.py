@@ -11,18 +11,29 @@ from numpy.typing import NDArray
 
 from thalweg.kernels.codes import OK
 from thalweg.kernels.pareto.edge_tables import sail_path
-from thalweg.kernels.pareto.time_expanded_labels import BinLabels, Clock, Target, trace
-from thalweg.search.pareto.front_problem import Arrivals, Bounds, Gathered, Request, new_work
+from thalweg.kernels.pareto.time_expanded_labels import (
+    BinLabels,
+    LabelTarget,
+    TimeBins,
+    trace_labels,
+)
+from thalweg.search.pareto.front_problem import (
+    BoundsToGoal,
+    EarliestArrivals,
+    FrontProblem,
+    FrontRequest,
+    new_edge_workspace,
+)
 from thalweg.search.pareto.front_result import FrontPoint
 from thalweg.search.search_result import SearchResult
 
-_SWITCHES = 24  # places at most where a seed changes from one setting to the next
+_SETTING_SWITCHES = 24  # places at most where a seed changes from one setting to the next
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-class Way(NamedTuple):
+class PlannedPath(NamedTuple):
     """A way as planned: states, edges, choices of setting, and when nodes are left at the earliest.
 
     ``leave`` is -inf where the ship does not wait [s].
@@ -34,26 +45,37 @@ class Way(NamedTuple):
     leave: FloatArray
 
 
-def sail_way(got: Gathered, request: Request, way: Way) -> FrontPoint | None:
+def sail_planned_path(
+    front_problem: FrontProblem, request: FrontRequest, way: PlannedPath
+) -> FrontPoint | None:
     """Sail a way exactly; None if it is shut."""
     arrive, depart = np.empty(len(way.states)), np.empty(len(way.states))
     arrive[0] = request.depart
     cost, status = sail_path(
-        got.world, way.states, way.edges, way.choices, way.leave, arrive, depart, new_work()
+        front_problem.world,
+        way.states,
+        way.edges,
+        way.choices,
+        way.leave,
+        arrive,
+        depart,
+        new_edge_workspace(),
     )
     if status != OK:
         return None
     return FrontPoint(
         time=float(arrive[-1] - request.depart),
         cost=float(cost),
-        path=got.world.network.station[way.states].astype(np.int64),
+        path=front_problem.world.network.station[way.states].astype(np.int64),
         path_arrive=arrive,
         path_depart=depart,
-        setting=got.world.ship.settings[way.choices],
+        setting=front_problem.world.ship.settings[way.choices],
     )
 
 
-def seeds(got: Gathered, request: Request, fastest: Way, bounds: Bounds) -> list[FrontPoint]:
+def seed_paths(
+    front_problem: FrontProblem, request: FrontRequest, fastest: PlannedPath, bounds: BoundsToGoal
+) -> list[FrontPoint]:
     """Return ways that are likely to lie near the front; the fastest at the highest setting first.
 
     They are the fastest way, and the best for each price of time in the most favourable weather, at
@@ -66,34 +88,38 @@ def seeds(got: Gathered, request: Request, fastest: Way, bounds: Bounds) -> list
         states = bounds.to_goal.way(request.start, float(rate))
         if len(states) > 1 and states.tobytes() not in known:
             known.add(states.tobytes())
-            ways.append(_way_through(got, states))
+            ways.append(_path_through(front_problem, states))
     sailed = [
-        sail_way(got, request, way._replace(choices=choices))
+        sail_planned_path(front_problem, request, way._replace(choices=choices))
         for way in ways
-        for choices in _choices(got, way, len(request.settings))
+        for choices in _setting_choices(front_problem, way, len(request.settings))
     ]
     return [point for point in sailed if point is not None and point.time <= request.horizon]
 
 
-def _choices(got: Gathered, way: Way, count: int) -> list[IntArray]:
+def _setting_choices(front_problem: FrontProblem, way: PlannedPath, count: int) -> list[IntArray]:
     """Return settings for the edges of a way: one throughout, or two neighbours in turn."""
-    same = [_allowed(got, way.edges, choice) for choice in range(count)][::-1]
+    same = [_edge_settings(front_problem, way.edges, choice) for choice in range(count)][::-1]
     legs = len(way.edges)
-    switches = np.unique(np.linspace(1, legs - 1, min(_SWITCHES, max(legs - 1, 0))).astype(int))
+    switches = np.unique(
+        np.linspace(1, legs - 1, min(_SETTING_SWITCHES, max(legs - 1, 0))).astype(int)
+    )
     turns = [
         np.where(np.arange(legs) < k, fast, slow) for fast, slow in pairwise(same) for k in switches
     ]
     return same + turns
 
 
-def _allowed(got: Gathered, edges: IntArray, choice: int) -> IntArray:
+def _edge_settings(front_problem: FrontProblem, edges: IntArray, choice: int) -> IntArray:
     """Return a setting for every edge; those of fixed time have their own."""
-    prices = got.world.prices
+    prices = front_problem.world.prices
     sailed = np.isnan(prices.fixed_time[edges])
     return np.where(sailed, choice, prices.fixed_choice[edges]).astype(np.int64)
 
 
-def fastest_way(got: Gathered, request: Request, arrivals: Arrivals) -> Way:
+def earliest_arrival_path(
+    front_problem: FrontProblem, request: FrontRequest, arrivals: EarliestArrivals
+) -> PlannedPath:
     """Return the way of the earliest arrival at the goal."""
     states = [request.goal]
     while states[-1] != request.start:
@@ -101,13 +127,13 @@ def fastest_way(got: Gathered, request: Request, arrivals: Arrivals) -> Way:
     path = np.array(states[::-1], np.int64)
     departed = arrivals.departed[path[1:]]
     waited = departed > arrivals.time[path[:-1]]
-    way = _way_through(got, path)
+    way = _path_through(front_problem, path)
     return way._replace(leave=np.where(waited, departed, -math.inf))
 
 
-def way_found(got: Gathered, found: SearchResult) -> Way:
+def path_of_search_result(front_problem: FrontProblem, found: SearchResult) -> PlannedPath:
     """Return the way of a search on a network with one state for each node."""
-    net = got.world.network
+    net = front_problem.world.network
     states = [int(found.path[0])]
     for node, time in zip(found.path[1:].tolist(), found.path_arrive[1:].tolist()):
         leaving = np.arange(net.indptr[states[-1]], net.indptr[states[-1] + 1])
@@ -117,29 +143,31 @@ def way_found(got: Gathered, found: SearchResult) -> Way:
         )
         states.append(int(heads[there][0]))
     waited = found.path_depart[:-1] > found.path_arrive[:-1]
-    way = _way_through(got, np.array(states, np.int64))
+    way = _path_through(front_problem, np.array(states, np.int64))
     return way._replace(leave=np.where(waited, found.path_depart[:-1], -math.inf))
 
 
-def _way_through(got: Gathered, path: IntArray) -> Way:
+def _path_through(front_problem: FrontProblem, path: IntArray) -> PlannedPath:
     """Return the way through states, without waiting."""
-    net = got.world.network
+    net = front_problem.world.network
     edges = []
     for a, b in pairwise(path.tolist()):
         leaving = np.arange(net.indptr[a], net.indptr[a + 1])
         joining = leaving[net.target[leaving] == b]
         edges.append(joining[np.argmin(net.length[joining])])
     still = np.full(len(edges), -math.inf)
-    return Way(path, np.array(edges, np.int64), np.zeros(len(edges), np.int64), still)
+    return PlannedPath(path, np.array(edges, np.int64), np.zeros(len(edges), np.int64), still)
 
 
-def know(target: Target, clock: Clock, point: FrontPoint) -> None:
+def tighten_target(target: LabelTarget, clock: TimeBins, point: FrontPoint) -> None:
     """Lower what is known of arriving at the goal by a point."""
     b = int(point.time / clock.width) + 1
     np.minimum(target.upper[b:], point.cost, out=target.upper[b:])
 
 
-def ways_found(got: Gathered, request: Request, labels: BinLabels) -> tuple[list[FrontPoint], int]:
+def paths_of_goal_labels(
+    front_problem: FrontProblem, request: FrontRequest, labels: BinLabels
+) -> tuple[list[FrontPoint], int]:
     """Return the ways of the goal's labels that no earlier label dominates, and how many are shut.
 
     Every way is sailed again, leg by leg.
@@ -149,15 +177,15 @@ def ways_found(got: Gathered, request: Request, labels: BinLabels) -> tuple[list
     start = int(labels.place[goal])
     cost = labels.cost[start : start + last - first + 1]
     best = np.minimum.accumulate(np.concatenate(([np.inf], cost[:-1])))
-    slots = np.empty(len(got.world.network.station) * 4 + 16, np.int64)
+    slots = np.empty(len(front_problem.world.network.station) * 4 + 16, np.int64)
     found, dropped = [], 0
     for slot in start + np.flatnonzero(cost < best):
-        n = int(trace(labels, int(slot), slots))
+        n = int(trace_labels(labels, int(slot), slots))
         while n < 0:  # ships that may not wait can circle
             slots = np.empty(2 * len(slots), np.int64)
-            n = int(trace(labels, int(slot), slots))
-        way = _way_of(got, request, labels, slots[:n][::-1], count)
-        point = sail_way(got, request, way)
+            n = int(trace_labels(labels, int(slot), slots))
+        way = _path_of_label(front_problem, request, labels, slots[:n][::-1], count)
+        point = sail_planned_path(front_problem, request, way)
         if point is None:
             dropped += 1
         elif point.time <= request.horizon * (1.0 + 1e-12):
@@ -165,16 +193,24 @@ def ways_found(got: Gathered, request: Request, labels: BinLabels) -> tuple[list
     return found, dropped
 
 
-def _way_of(got: Gathered, request: Request, labels: BinLabels, slots: IntArray, count: int) -> Way:
+def _path_of_label(
+    front_problem: FrontProblem,
+    request: FrontRequest,
+    labels: BinLabels,
+    slots: IntArray,
+    count: int,
+) -> PlannedPath:
     code = labels.source[slots[1:], 1].astype(np.int64)
     left = labels.when[slots[1:], 1].astype(float)
     edges = code // count
-    states = np.append(got.tails[edges], got.world.network.target[edges[-1]]).astype(np.int64)
+    states = np.append(
+        front_problem.tails[edges], front_problem.world.network.target[edges[-1]]
+    ).astype(np.int64)
     leave = np.where(np.isnan(left), -math.inf, request.depart + left)
-    return Way(states, edges, code % count, leave)
+    return PlannedPath(states, edges, code % count, leave)
 
 
-def not_dominated(points: list[FrontPoint]) -> tuple[FrontPoint, ...]:
+def non_dominated_points(points: list[FrontPoint]) -> tuple[FrontPoint, ...]:
     """Return the points that no other dominates, by ascending time."""
     kept: list[FrontPoint] = []
     for point in sorted(points, key=lambda p: (p.time, p.cost)):

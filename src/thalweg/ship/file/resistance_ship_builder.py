@@ -9,29 +9,34 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import GRAVITY, KNOT
-from thalweg.ship.file.ship_builder import FORCES, build_limits, build_loss, lightship
-from thalweg.ship.hull.hull import Hull, require
-from thalweg.ship.hull.hull_estimates import estimate, hull_at
+from thalweg.ship.file.ship_builder import (
+    RESISTANCE_MODEL_KEYS,
+    build_limits,
+    build_speed_loss,
+    lightship_estimate,
+)
+from thalweg.ship.hull.hull import Hull, required_particulars
+from thalweg.ship.hull.hull_estimates import estimate_particulars, hull_at_load_factor
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model_protocol import Estimate
-from thalweg.ship.models.added_resistance_model import build_waves, build_wind
-from thalweg.ship.models.calm_water_model import CALM_WATER, build_calm_water
-from thalweg.ship.models.engine_plant import Plant, build_plant
-from thalweg.ship.models.force_balance import Balance
-from thalweg.ship.models.kwon_resistance_model import KwonOnResistance
+from thalweg.ship.models.added_resistance_model import build_wave_resistance, build_wind_resistance
+from thalweg.ship.models.calm_water_model import CALM_WATER_METHODS, build_calm_water
+from thalweg.ship.models.engine_plant import EnginePlant, build_engine_plant
+from thalweg.ship.models.force_balance import ForceBalance
+from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import build_propulsion
-from thalweg.ship.models.resistance_model import Orders, ResistanceModel
-from thalweg.ship.models.squat_model import build_squat
+from thalweg.ship.models.resistance_model import EngineOrders, ResistanceModel
+from thalweg.ship.models.squat_model import build_squat_model
 
-RUDDER = ("none", "schless_2023")
-_FACTS = ("hull", "propulsion", "engine", "loading", "models", "water")
+RUDDER_METHODS = ("none", "schless_2023")
+_MODEL_SECTIONS = ("hull", "propulsion", "engine", "loading", "models", "water")
 
 
-def compose_model(
+def build_resistance_model(
     data: Mapping[str, Any], hull: Hull, loading: Loading
-) -> ResistanceModel | KwonOnResistance:
+) -> ResistanceModel | KwonResistanceModel:
     """Return the model of a ship file that chooses a calm-water resistance.
 
     Parameters
@@ -48,25 +53,27 @@ def compose_model(
     """
     models = data.get("models", {})
     calm = models.get("calm_water", "none")
-    if calm in CALM_WATER:
-        return _resistance_model(data, hull, loading)
+    if calm in CALM_WATER_METHODS:
+        return _assemble_resistance_model(data, hull, loading)
     if calm not in ("none", "cubic", "table"):
-        raise unknown_name("calm-water model", calm, ("none", "cubic", "table", *CALM_WATER))
-    idle = [name for name in FORCES if models.get(name, "none") != "none"]
+        raise unknown_name_error(
+            "calm-water model", calm, ("none", "cubic", "table", *CALM_WATER_METHODS)
+        )
+    idle = [name for name in RESISTANCE_MODEL_KEYS if models.get(name, "none") != "none"]
     raise InputError(
         f"The ship file chooses {', '.join(f'models.{name}' for name in idle)}, but has no "
         "resistance they could act on.",
-        f"They go with models.calm_water among {', '.join(CALM_WATER)}.",
+        f"They go with models.calm_water among {', '.join(CALM_WATER_METHODS)}.",
         "Choose one of those, or speed_loss: kwon_2008 for a ship with known speeds.",
         key=f"models.{idle[0]}",
     )
 
 
-def _resistance_model(
+def _assemble_resistance_model(
     data: Mapping[str, Any], hull: Hull, loading: Loading
-) -> ResistanceModel | KwonOnResistance:
+) -> ResistanceModel | KwonResistanceModel:
     models = data.get("models", {})
-    loss = build_loss(data, hull, loading)
+    loss = build_speed_loss(data, hull, loading)
     twice = [name for name in ("waves", "wind") if models.get(name, "none") != "none"]
     if loss is not None and twice:
         raise InputError(
@@ -76,50 +83,52 @@ def _resistance_model(
             "Leave out the one or the other.",
             key="models.speed_loss",
         )
-    if build_squat(data, hull, loading) is not None:
+    if build_squat_model(data, hull, loading) is not None:
         raise InputError(
             f"squat: {models['squat']} is for ships with known calm-water speeds.",
             "Ships with a resistance feel the bed by models.shallow_water.",
             "Leave squat out; the sinkage is shown for every ship whose particulars are known.",
             key="models.squat",
         )
-    if models.get("rudder", "none") not in RUDDER:
-        raise unknown_name("rudder method", models["rudder"], RUDDER)
-    _check_afloat(loading)
-    full = estimate(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
+    if models.get("rudder", "none") not in RUDDER_METHODS:
+        raise unknown_name_error("rudder method", models["rudder"], RUDDER_METHODS)
+    _check_draught(loading)
+    full = estimate_particulars(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
     if full.number("draught_m") is None:
         deep = loading.draught_full
         ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
         full = Hull({**full.values, **ends}, full.estimated)
-    full = _displaced(full, loading)
+    full = _with_loading_displacement(full, loading)
     draughts = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
 
-    def balance_at(load_factor: float) -> Balance:
+    def balance_at(load_factor: float) -> ForceBalance:
         floated = full
         with np.errstate(all="ignore"):
             if len(draughts) > 1:
                 wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
-                floated = hull_at(estimate(full, wanted), loading, load_factor)
-            balance = _balance(data, floated)
-        _check_answers(balance, _usual_speed(balance), load_factor)
+                floated = hull_at_load_factor(
+                    estimate_particulars(full, wanted), loading, load_factor
+                )
+            balance = _build_force_balance(data, floated)
+        _check_calm_water_power(balance, _moderate_speed(balance), load_factor)
         return balance
 
-    plant = build_plant(data)
-    orders, guessed = _orders(data, balance_at(1.0), plant)
-    light = hull_at(full, loading, 0.0).number("displacement_m3")
-    guessed = (*guessed, *lightship(data, light or np.nan))
+    plant = build_engine_plant(data)
+    orders, guessed = _build_engine_orders(data, balance_at(1.0), plant)
+    light = hull_at_load_factor(full, loading, 0.0).number("displacement_m3")
+    guessed = (*guessed, *lightship_estimate(data, light or np.nan))
     plant = replace(plant, estimated=(*plant.estimated, *guessed))
-    facts = {name: data[name] for name in _FACTS if name in data}
+    facts = {name: data[name] for name in _MODEL_SECTIONS if name in data}
     model = ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
     with np.errstate(all="ignore"):
         speeds = model.speeds(1.0)
-    _check_answers(model.balance(1.0), speeds, 1.0)
+    _check_calm_water_power(model.balance(1.0), speeds, 1.0)
     if orders.kind == "speed":
         model.with_speeds(model.speeds(1.0), 1.0)  # refuses speeds beyond the engines
-    return model if loss is None else KwonOnResistance(model, loss)
+    return model if loss is None else KwonResistanceModel(model, loss)
 
 
-def _check_afloat(loading: Loading) -> None:
+def _check_draught(loading: Loading) -> None:
     """Refuse a hull that lies on the water.
 
     Raises
@@ -135,13 +144,15 @@ def _check_afloat(loading: Loading) -> None:
         )
 
 
-def _usual_speed(balance: Balance) -> NDArray[np.float64]:
+def _moderate_speed(balance: ForceBalance) -> NDArray[np.float64]:
     """A speed [m/s] that every method has a number for: a Froude number of 0.18."""
     length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
     return np.array([0.18 * np.sqrt(GRAVITY * length)])
 
 
-def _check_answers(balance: Balance, speeds: NDArray[np.float64], load_factor: float) -> None:
+def _check_calm_water_power(
+    balance: ForceBalance, speeds: NDArray[np.float64], load_factor: float
+) -> None:
     """Refuse a hull for which the chosen methods have no number in calm water.
 
     Raises
@@ -166,35 +177,35 @@ def _check_answers(balance: Balance, speeds: NDArray[np.float64], load_factor: f
     )
 
 
-def _displaced(hull: Hull, loading: Loading) -> Hull:
+def _with_loading_displacement(hull: Hull, loading: Loading) -> Hull:
     """The hull with the full displacement of the loading, when it gives none itself."""
     volume = loading.displacement_full
     if hull.number("displacement_m3") is not None or not np.isfinite(volume):
-        return estimate(hull, ("displacement_m3", "block_coefficient"))
+        return estimate_particulars(hull, ("displacement_m3", "block_coefficient"))
     deeper = loading.draught_full - float(hull.values["draught_m"])
     values = {**hull.values, "displacement_m3": volume}
     for key in ("draught_m", "draught_fore_m", "draught_aft_m"):
         values[key] = float(hull.values[key]) + deeper
-    return estimate(Hull(values, hull.estimated), ("block_coefficient",))
+    return estimate_particulars(Hull(values, hull.estimated), ("block_coefficient",))
 
 
-def _balance(data: Mapping[str, Any], hull: Hull) -> Balance:
+def _build_force_balance(data: Mapping[str, Any], hull: Hull) -> ForceBalance:
     calm = build_calm_water(data, hull)
     rudder = data.get("models", {}).get("rudder", "none")
     if rudder != "none":
-        require(hull, ("rudder_area_m2",), rudder, instead="rudder: none")
-    return Balance(
+        required_particulars(hull, ("rudder_area_m2",), rudder, instead="rudder: none")
+    return ForceBalance(
         calm=calm,
         propulsion=build_propulsion(data, calm.hull),
-        waves=build_waves(data, calm.hull),
-        wind=build_wind(data, calm.hull),
+        waves=build_wave_resistance(data, calm.hull),
+        wind=build_wind_resistance(data, calm.hull),
         rudder_area=(hull.number("rudder_area_m2") or 0.0) if rudder != "none" else 0.0,
     )
 
 
-def _orders(
-    data: Mapping[str, Any], balance: Balance, plant: Plant
-) -> tuple[Orders, tuple[Estimate, ...]]:
+def _build_engine_orders(
+    data: Mapping[str, Any], balance: ForceBalance, plant: EnginePlant
+) -> tuple[EngineOrders, tuple[Estimate, ...]]:
     """Powers or speeds that can be ordered, and whether they were our guess."""
     powers, speeds = data.get("powers_kw"), data.get("speeds_kn")
     if powers is not None and speeds is not None:
@@ -206,21 +217,23 @@ def _orders(
         )
     if powers is not None:
         _check_powers(powers, plant)
-        return Orders("power", tuple(sorted(p * 1000.0 for p in powers))), ()
+        return EngineOrders("power", tuple(sorted(p * 1000.0 for p in powers))), ()
     if speeds is not None:
-        _check_once(speeds, "speeds_kn", "speed")
-        return Orders("speed", tuple(sorted(s * KNOT for s in speeds))), ()
+        _check_distinct(speeds, "speeds_kn", "speed")
+        return EngineOrders("speed", tuple(sorted(s * KNOT for s in speeds))), ()
     if np.isfinite(plant.largest_power):
         least = plant.loads[0] * plant.rating / plant.largest_power
         shares = [share for share in (0.25, 0.4, 0.55, 0.7, 0.85) if share >= least] or [1.0]
         powers = tuple(share * plant.largest_power for share in shares)
         words = f"{100 * shares[0]:g} to {100 * shares[-1]:g} % of what the engines give"
-        return Orders("power", powers), (Estimate("powers_kw", powers[-1] / 1e3, words),)
-    usual = float(_usual_speed(balance)[0])
-    return Orders("speed", (usual,)), (Estimate("speeds_kn", usual / KNOT, "Froude number 0.18"),)
+        return EngineOrders("power", powers), (Estimate("powers_kw", powers[-1] / 1e3, words),)
+    usual = float(_moderate_speed(balance)[0])
+    return EngineOrders("speed", (usual,)), (
+        Estimate("speeds_kn", usual / KNOT, "Froude number 0.18"),
+    )
 
 
-def _check_once(values: tuple[float, ...], key: str, words: str) -> None:
+def _check_distinct(values: tuple[float, ...], key: str, words: str) -> None:
     """Refuse settings that are the same.
 
     Raises
@@ -236,8 +249,8 @@ def _check_once(values: tuple[float, ...], key: str, words: str) -> None:
         )
 
 
-def _check_powers(powers: tuple[float, ...], plant: Plant) -> None:
-    _check_once(powers, "powers_kw", "power")
+def _check_powers(powers: tuple[float, ...], plant: EnginePlant) -> None:
+    _check_distinct(powers, "powers_kw", "power")
     least = plant.loads[0] * plant.rating
     if np.isfinite(least) and min(powers) * 1000.0 < least * (1 - 1e-9):
         raise InputError(

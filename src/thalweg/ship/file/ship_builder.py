@@ -10,33 +10,38 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
 from thalweg.ship.fuel_prices import fuel_terms
-from thalweg.ship.hull.hull import Hull, require, volume_at
+from thalweg.ship.hull.hull import Hull, required_particulars, volume_at
 from thalweg.ship.hull.hull_checks import check_depth
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model_protocol import Estimate, ShipModel
-from thalweg.ship.models.fuel_from_power import fuel_estimates, fuel_of_power
-from thalweg.ship.models.known_speed_model import KwonLoss, Law, NominalModel, check_rising
+from thalweg.ship.models.fuel_from_power import fuel_estimates, fuel_rate_of_power
+from thalweg.ship.models.known_speed_model import (
+    KnownSpeedModel,
+    KwonSpeedLoss,
+    SpeedPowerLaw,
+    check_table_rises,
+)
 from thalweg.ship.models.speed_power_laws import (
-    LAWS,
+    SPEED_POWER_LAWS,
     calm_speeds,
     check_table,
-    law_of,
+    speed_power_law_name,
     with_settings,
 )
-from thalweg.ship.models.squat_model import build_squat
+from thalweg.ship.models.squat_model import build_squat_model
 from thalweg.ship.ship_limits import ShipLimits
 
 FloatArray = NDArray[np.float64]
-Data = Mapping[str, Any]
+ShipData = Mapping[str, Any]
 SAFETY_KEYS: Final = frozenset(
     {"msc_circ_1228", "max_vertical_acceleration_m_s2", "max_motion_sickness_percent"}
 )
 
 
-def simple_data(*, name: str, speeds_kn: list[float], **sections: Data) -> dict[str, Any]:
+def simple_data(*, name: str, speeds_kn: list[float], **sections: ShipData) -> dict[str, Any]:
     """Return the data of a ship file from sections in which None means not given."""
     given = {
         section: {key: value for key, value in values.items() if value is not None}
@@ -45,7 +50,7 @@ def simple_data(*, name: str, speeds_kn: list[float], **sections: Data) -> dict[
     return {"name": name, "speeds_kn": speeds_kn, **given}
 
 
-def build_limits(data: Data) -> ShipLimits:
+def build_limits(data: ShipData) -> ShipLimits:
     """Return the limits of weather in a ship file."""
     given = data.get("limits", {})
     wind = given.get("max_wind_speed_m_s", given.get("max_wind_speed_kn", math.inf))
@@ -61,7 +66,9 @@ def build_limits(data: Data) -> ShipLimits:
     return ShipLimits(wave_height=waves, wind_speed=wind * factor)
 
 
-def with_safety(limits: ShipLimits, data: Data, hull: Hull, loading: Loading) -> ShipLimits:
+def with_safety_limits(
+    limits: ShipLimits, data: ShipData, hull: Hull, loading: Loading
+) -> ShipLimits:
     """Return limits with those of safety and comfort in a ship file.
 
     Raises
@@ -70,12 +77,14 @@ def with_safety(limits: ShipLimits, data: Data, hull: Hull, loading: Loading) ->
     """
     if not SAFETY_KEYS & data.get("limits", {}).keys():
         return limits
-    from thalweg.ship.models.seaway_limits import build_safety  # reads the methods of motions
+    from thalweg.ship.models.seaway_limits import (
+        build_safety_limits,  # reads the methods of motions
+    )
 
-    return replace(limits, safety=build_safety(data, hull, loading))
+    return replace(limits, safety=build_safety_limits(data, hull, loading))
 
 
-def build_loading(data: Data, hull: Hull) -> Loading:
+def build_loading(data: ShipData, hull: Hull) -> Loading:
     """Return the loading of a ship file.
 
     Raises
@@ -86,13 +95,13 @@ def build_loading(data: Data, hull: Hull) -> Loading:
     given = data.get("loading", {})
     full = given.get("draught_full_m", hull.number("draught_m"))
     if full is None:
-        raise _no_draught(data, hull)
+        raise _missing_draught_error(data, hull)
     check_depth(hull, full, "loading.draught_full_m")
     empty, own = given.get("draught_empty_m", full), hull.number("draught_m") or full
     volume = hull.number("displacement_m3")
     if volume is not None and own != full:
         volume = volume_at(hull, volume, at=own, draught=full)
-    displaced = _volume(given, "full", volume)
+    displaced = _displaced_volume(given, "full", volume)
     if volume is not None and not 0.9 < displaced / volume < 1.1:
         raise InputError(
             f"The full ship displaces {displaced:.6g} m3 by 'loading' and {volume:.6g} by 'hull'.",
@@ -107,14 +116,14 @@ def build_loading(data: Data, hull: Hull) -> Loading:
         draught_full=full,
         draught_empty=empty,
         displacement_full=displaced,
-        displacement_empty=_volume(given, "empty", light),
+        displacement_empty=_displaced_volume(given, "empty", light),
         load_factor=given.get("load_factor", 1.0),
         condition=given.get("condition", "loaded"),
         capacity=given.get("capacity_m3", math.nan),
     )
 
 
-def lightship(data: Data, volume: float) -> tuple[Estimate, ...]:
+def lightship_estimate(data: ShipData, volume: float) -> tuple[Estimate, ...]:
     """Tell the displacement of the empty ship [m3] where the ship file does not."""
     given = data.get("loading", {})
     told = {"displacement_empty_m3", "weight_empty_t"} & given.keys()
@@ -124,11 +133,11 @@ def lightship(data: Data, volume: float) -> tuple[Estimate, ...]:
     return (Estimate("loading.displacement_empty_m3", volume, how),)
 
 
-def _no_draught(data: Data, hull: Hull) -> InputError:
+def _missing_draught_error(data: ShipData, hull: Hull) -> InputError:
     """The error for a ship without draught; it names what else a resistance would need."""
     missing = ["hull.draught_m"]
     method = data.get("models", {}).get("calm_water", "none")
-    if method not in LAWS:
+    if method not in SPEED_POWER_LAWS:
         lengths = ("length_between_perpendiculars_m", "length_waterline_m", "length_overall_m")
         volumes = ("displacement_m3", "displacement_t", "block_coefficient")
         for keys in (lengths, ("breadth_m",), volumes):
@@ -144,7 +153,7 @@ def _no_draught(data: Data, hull: Hull) -> InputError:
     )
 
 
-def _volume(given: Data, state: str, hull_volume: float | None) -> float:
+def _displaced_volume(given: ShipData, state: str, hull_volume: float | None) -> float:
     """Displaced volume [m3] from a volume, or from a weight in sea water."""
     if f"displacement_{state}_m3" in given:
         return float(given[f"displacement_{state}_m3"])
@@ -153,7 +162,7 @@ def _volume(given: Data, state: str, hull_volume: float | None) -> float:
     return math.nan if hull_volume is None else hull_volume
 
 
-def build_model(data: Data, hull: Hull, loading: Loading) -> ShipModel:
+def build_model(data: ShipData, hull: Hull, loading: Loading) -> ShipModel:
     """Return the model a ship file asks for.
 
     Raises
@@ -163,17 +172,17 @@ def build_model(data: Data, hull: Hull, loading: Loading) -> ShipModel:
     """
     fuel_terms(data)  # refuses unknown fuels and two prices for one thing
     models = data.get("models", {})
-    acting = [name for name in FORCES if models.get(name, "none") != "none"]
-    if models.get("calm_water", "none") in LAWS and not acting:
-        return build_nominal(data, hull, loading)
+    acting = [name for name in RESISTANCE_MODEL_KEYS if models.get(name, "none") != "none"]
+    if models.get("calm_water", "none") in SPEED_POWER_LAWS and not acting:
+        return build_known_speed_model(data, hull, loading)
     from thalweg.ship.file.resistance_ship_builder import (
-        compose_model,  # the physics is needed from here on
+        build_resistance_model,  # the physics is needed from here on
     )
 
-    return compose_model(data, hull, loading)
+    return build_resistance_model(data, hull, loading)
 
 
-def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
+def build_known_speed_model(data: ShipData, hull: Hull, loading: Loading) -> KnownSpeedModel:
     """Return the model of a ship that gives its calm-water speeds.
 
     Raises
@@ -181,22 +190,24 @@ def build_nominal(data: Data, hull: Hull, loading: Loading) -> NominalModel:
     InputError
         If there are no speeds, several kinds of them, or they contradict each other.
     """
-    law = law_of(data)
-    _check_margin(data)
+    law = speed_power_law_name(data)
+    _check_sea_margin(data)
     if law == "table":
         check_table(data)
     full, empty = calm_speeds(data, law)
-    fuel, power = LAWS[law](data, full)
-    burn = None if law == "none" else fuel_of_power(data)
-    if burn is not None:
-        fuel = burn(power)
-    check_rising(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
-    loss, squat = build_loss(data, hull, loading), build_squat(data, hull, loading)
-    model = NominalModel(full, empty, fuel, power, Law(law, burn), loss, squat)
+    fuel, power = SPEED_POWER_LAWS[law](data, full)
+    power_to_fuel_rate = None if law == "none" else fuel_rate_of_power(data)
+    if power_to_fuel_rate is not None:
+        fuel = power_to_fuel_rate(power)
+    check_table_rises(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
+    loss, squat = build_speed_loss(data, hull, loading), build_squat_model(data, hull, loading)
+    model = KnownSpeedModel(
+        full, empty, fuel, power, SpeedPowerLaw(law, power_to_fuel_rate), loss, squat
+    )
     return with_settings(model, data)
 
 
-def _check_margin(data: Data) -> None:
+def _check_sea_margin(data: ShipData) -> None:
     """Refuse a sea margin where there is no power that it could raise.
 
     Raises
@@ -212,19 +223,21 @@ def _check_margin(data: Data) -> None:
         )
 
 
-def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
+def build_speed_loss(data: ShipData, hull: Hull, loading: Loading) -> KwonSpeedLoss | None:
     """Return the speed loss chosen under ``models.speed_loss``."""
     models = data.get("models", {})
     name = models.get("speed_loss", "none")
     if name not in SPEED_LOSSES:
-        raise unknown_name("speed loss", name, SPEED_LOSSES)
+        raise unknown_name_error("speed loss", name, SPEED_LOSSES)
     if name == "none":
         return None
     hull = _hull_for_kwon(hull, loading)
-    length, block = require(hull, _KWON_NEEDS, "kwon_2008", instead="speed_loss: none")
+    length, block = required_particulars(
+        hull, _KWON_PARTICULARS, "kwon_2008", instead="speed_loss: none"
+    )
     if math.isnan(loading.displacement_full):
-        require(hull, ("displacement_m3",), "kwon_2008", instead="speed_loss: none")
-    return KwonLoss(
+        required_particulars(hull, ("displacement_m3",), "kwon_2008", instead="speed_loss: none")
+    return KwonSpeedLoss(
         length=length,
         block_coefficient=block,
         loading=loading,
@@ -234,7 +247,7 @@ def build_loss(data: Data, hull: Hull, loading: Loading) -> KwonLoss | None:
     )
 
 
-_KWON_NEEDS: Final = ("length_between_perpendiculars_m", "block_coefficient")
+_KWON_PARTICULARS: Final = ("length_between_perpendiculars_m", "block_coefficient")
 
 
 def _hull_for_kwon(hull: Hull, loading: Loading) -> Hull:
@@ -242,21 +255,28 @@ def _hull_for_kwon(hull: Hull, loading: Loading) -> Hull:
     if hull.number("displacement_m3") is None and not math.isnan(loading.displacement_full):
         deep = {"displacement_m3": loading.displacement_full, "draught_m": loading.draught_full}
         hull = Hull({**hull.values, **deep}, hull.estimated)
-    if any(hull.number(key) is None for key in _KWON_NEEDS):
-        from thalweg.ship.hull.hull_estimates import estimate  # reads many regressions
+    if any(hull.number(key) is None for key in _KWON_PARTICULARS):
+        from thalweg.ship.hull.hull_estimates import estimate_particulars  # reads many regressions
 
-        hull = estimate(hull, _KWON_NEEDS)
+        hull = estimate_particulars(hull, _KWON_PARTICULARS)
     return hull
 
 
-def estimates_of_known_speeds(data: Data, hull: Hull, loading: Loading) -> tuple[Estimate, ...]:
+def estimates_of_known_speeds(data: ShipData, hull: Hull, loading: Loading) -> tuple[Estimate, ...]:
     """What was estimated of a ship that gives its speeds."""
     if data.get("models", {}).get("speed_loss", "none") != "none":
         hull = _hull_for_kwon(hull, loading)
-    light = lightship(data, loading.displacement_empty)
+    light = lightship_estimate(data, loading.displacement_empty)
     return (*hull.estimated, *light, *fuel_estimates(data))
 
 
 #: models that act on a resistance
-FORCES: Final = ("waves", "wind", "shallow_water", "friction", "propulsion", "rudder")
+RESISTANCE_MODEL_KEYS: Final = (
+    "waves",
+    "wind",
+    "shallow_water",
+    "friction",
+    "propulsion",
+    "rudder",
+)
 SPEED_LOSSES: Final = ("none", "kwon_2008")

@@ -6,7 +6,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
-from thalweg.core.errors import InputError, near_matches
+from thalweg.core.errors import InputError, close_matches
 from thalweg.ship.plugins import plugin_names
 
 LARGEST_FILE: Final = 256 * 1024  #: bytes; a ship file has a few thousand
@@ -39,7 +39,7 @@ def read_ship(name_or_path: str | Path) -> tuple[Any, str]:
     if _is_file(path):
         return _read_file(path)
     names = [*library_names(), *plugin_names()]
-    near = near_matches(text, names)
+    near = close_matches(text, names)
     raise InputError(
         f"There is no ship named {text!r}, and no file of that name.",
         f"Ships with a name: {', '.join(names)}.",

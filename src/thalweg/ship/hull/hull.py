@@ -20,7 +20,7 @@ from thalweg.ship.model_protocol import Estimate
 
 #: how keys of a hull end; a regression from anything else cannot be fed by a ship file
 _UNITS = ("_m", "_m2", "_m3", "_t", "_coefficient", "_percent")
-_DENSITY = SEA_WATER_DENSITY / TONNE  # t/m3
+_DENSITY_TONNE_PER_M3 = SEA_WATER_DENSITY / TONNE  # t/m3
 
 
 @dataclass(frozen=True)
@@ -64,15 +64,15 @@ def complete_hull(given: Mapping[str, float | str]) -> Hull:
         contradict each other.
     """
     values = dict(given)
-    _draughts(values)
-    _volume(values)
-    hull = _length(Hull(values))
-    hull = _fullness(hull)
-    _check_possible(hull)
+    _complete_draughts(values)
+    _complete_displacement(values)
+    hull = _complete_lengths(Hull(values))
+    hull = _complete_block_coefficient(hull)
+    _check_feasible(hull)
     return hull
 
 
-def _draughts(values: dict[str, float | str]) -> None:
+def _complete_draughts(values: dict[str, float | str]) -> None:
     """Mean, fore and aft draught from each other: two of them give the third."""
     if "draught_m" in values and not {"draught_fore_m", "draught_aft_m"} & values.keys():
         values["draught_fore_m"] = values["draught_m"]
@@ -94,23 +94,23 @@ def _draughts(values: dict[str, float | str]) -> None:
         )
 
 
-def _volume(values: dict[str, float | str]) -> None:
+def _complete_displacement(values: dict[str, float | str]) -> None:
     """Displaced volume from the weight in sea water; both must agree within the water's density."""
     if "displacement_t" not in values:
         return
     weight = float(values["displacement_t"])
-    volume = weight / _DENSITY
+    volume = weight / _DENSITY_TONNE_PER_M3
     given = float(values.setdefault("displacement_m3", volume))
     if not 0.95 < given / volume < 1.05:
         raise InputError(
             f"displacement_m3 {given:g} and displacement_t {weight:g} do not fit.",
-            f"A tonne of sea water is {1.0 / _DENSITY:.4f} m3.",
+            f"A tonne of sea water is {1.0 / _DENSITY_TONNE_PER_M3:.4f} m3.",
             "Correct or leave out one of them.",
             key="hull.displacement_t",
         )
 
 
-def _length(hull: Hull) -> Hull:
+def _complete_lengths(hull: Hull) -> Hull:
     """Lengths from the length overall, when it is the only one."""
     lpp, lwl = (hull.number(f"length_{k}_m") for k in ("between_perpendiculars", "waterline"))
     overall = hull.number("length_overall_m")
@@ -122,7 +122,7 @@ def _length(hull: Hull) -> Hull:
     )
 
 
-def _fullness(hull: Hull) -> Hull:
+def _complete_block_coefficient(hull: Hull) -> Hull:
     """Block coefficient from displacement or C_P C_M, displacement from block coefficient."""
     keys = ("length_between_perpendiculars_m", "breadth_m", "draught_m")
     box = [hull.number(key) for key in keys]
@@ -139,7 +139,7 @@ def _fullness(hull: Hull) -> Hull:
         return hull
     if block is None and volume is not None:
         block = volume / brick
-        _check_block(block)
+        _check_block_coefficient(block)
         made = Estimate("block_coefficient", block, "displacement over L_PP B T")
         return hull.with_estimates(made)
     if volume is None and block is not None:
@@ -148,7 +148,7 @@ def _fullness(hull: Hull) -> Hull:
     return hull
 
 
-def _check_block(block: float) -> None:
+def _check_block_coefficient(block: float) -> None:
     if not 0.0 < block <= 1.0:
         raise InputError(
             f"The displacement is {block:.3g} times the box around the hull.",
@@ -158,16 +158,16 @@ def _check_block(block: float) -> None:
         )
 
 
-def _check_possible(hull: Hull) -> None:
+def _check_feasible(hull: Hull) -> None:
     check_lengths(hull)
-    _check_box(hull)
+    _check_displacement(hull)
     for key in ("draught_m", "draught_fore_m", "draught_aft_m"):
         check_depth(hull, hull.number(key), f"hull.{key}")
     _check_coefficients(hull)
     check_ends_and_surface(hull)
 
 
-def _check_box(hull: Hull) -> None:
+def _check_displacement(hull: Hull) -> None:
     """The volume must fit a box, and the given block coefficient within ten per cent."""
     lwl, lpp = hull.number("length_waterline_m"), hull.number("length_between_perpendiculars_m")
     sides = (max(lwl or 0.0, lpp or 0.0), hull.number("breadth_m"), hull.number("draught_m"))
@@ -176,7 +176,7 @@ def _check_box(hull: Hull) -> None:
     if not (length and breadth and draught and volume):
         return
     ratio = volume / (length * breadth * draught)
-    _check_block(ratio)
+    _check_block_coefficient(ratio)
     if block is not None and not 0.85 < ratio / block < 1.10:
         raise InputError(
             f"block_coefficient {block:g} does not fit displacement_m3 {volume:g}: with length "
@@ -234,7 +234,9 @@ def volume_at(hull: Hull, volume: float, *, at: float, draught: float) -> float:
     return found * area * draught
 
 
-def require(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> list[float]:
+def required_particulars(
+    hull: Hull, keys: tuple[str, ...], method: str, *, instead: str
+) -> list[float]:
     """Return the numbers a method needs, or raise an error that names those missing.
 
     Raises
@@ -245,14 +247,14 @@ def require(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> 
     if missing:
         raise InputError(
             f"{method} needs {', '.join(missing)} under 'hull', not given and not estimated.",
-            f"It needs {', '.join(keys)}.{_regressions(missing)}",
+            f"It needs {', '.join(keys)}.{_available_regressions(missing)}",
             f"Add them, or choose {instead}.",
             missing=missing,
         )
     return [float(hull.values[key]) for key in keys]
 
 
-def _regressions(missing: list[str]) -> str:
+def _available_regressions(missing: list[str]) -> str:
     """Say which regressions could supply missing particulars, and from what."""
     from thalweg.ship.hull.particulars_regressions import ESTIMATORS  # many formulas, seldom needed
 

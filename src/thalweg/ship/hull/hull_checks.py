@@ -8,19 +8,19 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 
-_LENGTHS: Final = {
+_LENGTH_WORDS: Final = {
     "length_waterline_m": "waterline",
     "length_over_surface_m": "surface under water",
 }
-_FEW_PER_CENT: Final = (0.75, 1.3)  #: shares of the length between perpendiculars
-_WRINKLED: Final = 1.5  #: most wetted surface, as a share of that of a box
+_LENGTH_RATIO_RANGE: Final = (0.75, 1.3)  #: shares of the length between perpendiculars
+_LARGEST_SURFACE_RATIO: Final = 1.5  #: most wetted surface, as a share of that of a box
 
 
-class _Numbers(Protocol):
+class _HullNumbers(Protocol):
     def number(self, key: str) -> float | None: ...
 
 
-def check_lengths(hull: _Numbers) -> None:
+def check_lengths(hull: _HullNumbers) -> None:
     """Refuse lengths that differ by a third from that between perpendiculars, or less than broad.
 
     Raises
@@ -35,9 +35,13 @@ def check_lengths(hull: _Numbers) -> None:
             "Correct them: are they swapped?",
             key="hull.breadth_m",
         )
-    for key, words in _LENGTHS.items():
+    for key, words in _LENGTH_WORDS.items():
         other = hull.number(key)
-        if lpp is None or other is None or _FEW_PER_CENT[0] < other / lpp < _FEW_PER_CENT[1]:
+        if (
+            lpp is None
+            or other is None
+            or _LENGTH_RATIO_RANGE[0] < other / lpp < _LENGTH_RATIO_RANGE[1]
+        ):
             continue
         raise InputError(
             f"The {words} is {other:g} m long and the length between perpendiculars {lpp:g} m.",
@@ -47,7 +51,7 @@ def check_lengths(hull: _Numbers) -> None:
         )
 
 
-def check_depth(hull: _Numbers, draught: float | None, key: str) -> None:
+def check_depth(hull: _HullNumbers, draught: float | None, key: str) -> None:
     """Refuse a draught [m] that is more than the depth of the hull.
 
     Raises
@@ -64,7 +68,7 @@ def check_depth(hull: _Numbers, draught: float | None, key: str) -> None:
         )
 
 
-def check_prismatic(hull: _Numbers) -> None:
+def check_prismatic(hull: _HullNumbers) -> None:
     """Refuse a prismatic coefficient that is not C_B / C_M within a few per cent.
 
     It is often told on the length of the waterline, and the block coefficient on that between
@@ -90,7 +94,7 @@ def check_prismatic(hull: _Numbers) -> None:
     )
 
 
-def check_ends_and_surface(hull: _Numbers) -> None:
+def check_ends_and_surface(hull: _HullNumbers) -> None:
     """Refuse a bulb or transom larger than the midship section, and impossible wetted surfaces.
 
     Raises
@@ -118,10 +122,10 @@ def check_ends_and_surface(hull: _Numbers) -> None:
             "Correct bulb_centre_height_m or draught_fore_m.",
             key="hull.bulb_centre_height_m",
         )
-    _check_surface(hull, breadth, draught)
+    _check_wetted_surface(hull, breadth, draught)
 
 
-def _check_surface(hull: _Numbers, breadth: float, draught: float) -> None:
+def _check_wetted_surface(hull: _HullNumbers, breadth: float, draught: float) -> None:
     """The skin of a body under water: more than a hemisphere's, less than a wrinkled box's."""
     surface, volume = hull.number("wetted_surface_m2"), hull.number("displacement_m3")
     lengths = (hull.number("length_waterline_m"), hull.number("length_between_perpendiculars_m"))
@@ -129,7 +133,7 @@ def _check_surface(hull: _Numbers, breadth: float, draught: float) -> None:
     if surface is None or volume is None or not length:
         return
     least = (18.0 * np.pi) ** (1.0 / 3.0) * volume ** (2.0 / 3.0)
-    most = _WRINKLED * (length * (breadth + 2.0 * draught) + 2.0 * breadth * draught)
+    most = _LARGEST_SURFACE_RATIO * (length * (breadth + 2.0 * draught) + 2.0 * breadth * draught)
     if not least <= surface <= most:
         raise InputError(
             f"A wetted surface of {surface:g} m2 is not that of a hull of {volume:g} m3, "

@@ -7,24 +7,24 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.ship.hull.hull import Hull, require, volume_at
+from thalweg.ship.hull.hull import Hull, required_particulars, volume_at
 from thalweg.ship.hull.particulars_regressions import ESTIMATORS, ESTIMATORS_IF_FITTED, Estimator
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model_protocol import Estimate
 
-_OWN_MIDSHIP: Final = Estimator(
+_MIDSHIP_FROM_PRISMATIC: Final = Estimator(
     lambda block, prismatic: np.minimum(block / prismatic, 1.0),
     ("block_coefficient", "prismatic_coefficient"),
     "C_B over C_P",
     0.01,
 )
 #: who names the one has the other
-_FITTED: Final = {
+_PAIRED_KEYS: Final = {
     "bulb_area_m2": "bulb_centre_height_m",
     "bulb_centre_height_m": "bulb_area_m2",
 }
 #: what a calm-water method without a regression of its own may take as zero, and says so
-_ABSENT: Final = {
+_ZERO_WHEN_ABSENT: Final = {
     "bulb_area_m2": "taken as no bulb",
     "bulb_centre_height_m": "no bulb",
     "transom_area_m2": "taken as no immersed transom",
@@ -32,7 +32,7 @@ _ABSENT: Final = {
 }
 
 
-def estimate(hull: Hull, keys: tuple[str, ...]) -> Hull:
+def estimate_particulars(hull: Hull, keys: tuple[str, ...]) -> Hull:
     """Return the hull with missing particulars filled by regressions where one exists.
 
     Parameters
@@ -47,20 +47,20 @@ def estimate(hull: Hull, keys: tuple[str, ...]) -> Hull:
         Its ``estimated`` tells what was filled, by what.
     """
     for key in keys:
-        hull = _estimate_one(hull, key, ())
+        hull = _estimate_particular(hull, key, ())
     return hull
 
 
-def _estimate_one(hull: Hull, key: str, above: tuple[str, ...]) -> Hull:
+def _estimate_particular(hull: Hull, key: str, above: tuple[str, ...]) -> Hull:
     if hull.number(key) is not None or key in above:
         return hull
-    fitted = bool(hull.number(_FITTED.get(key, "")))
-    if key in _ABSENT and not fitted:
-        return hull.with_estimates(Estimate(key, 0.0, _ABSENT[key]))
-    for estimator in _estimators(key):
+    fitted = bool(hull.number(_PAIRED_KEYS.get(key, "")))
+    if key in _ZERO_WHEN_ABSENT and not fitted:
+        return hull.with_estimates(Estimate(key, 0.0, _ZERO_WHEN_ABSENT[key]))
+    for estimator in _estimators_for(key):
         filled = hull
         for name in estimator.inputs:
-            filled = _estimate_one(filled, name, (*above, key))
+            filled = _estimate_particular(filled, name, (*above, key))
         inputs = [filled.number(name) for name in estimator.inputs]
         if all(value is not None for value in inputs):
             value = float(estimator.function(*inputs))
@@ -69,25 +69,25 @@ def _estimate_one(hull: Hull, key: str, above: tuple[str, ...]) -> Hull:
     return hull
 
 
-def _estimators(key: str) -> tuple[Estimator, ...]:
+def _estimators_for(key: str) -> tuple[Estimator, ...]:
     """The regressions for a particular, best first."""
-    own = (_OWN_MIDSHIP,) if key == "midship_coefficient" else ()
+    own = (_MIDSHIP_FROM_PRISMATIC,) if key == "midship_coefficient" else ()
     return (*own, *ESTIMATORS.get(key, ()), *ESTIMATORS_IF_FITTED.get(key, ()))
 
 
-def estimated_or_error(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> Hull:
+def estimate_or_raise(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> Hull:
     """Return the hull with all keys known, or raise an error that names those that are not.
 
     Raises
     ------
     InputError
     """
-    filled = estimate(hull, keys)
-    require(filled, keys, method, instead=instead)
+    filled = estimate_particulars(hull, keys)
+    required_particulars(filled, keys, method, instead=instead)
     return filled
 
 
-def hull_at(hull: Hull, loading: Loading, load_factor: float) -> Hull:
+def hull_at_load_factor(hull: Hull, loading: Loading, load_factor: float) -> Hull:
     """Return the hull floated at the draught of a load factor.
 
     Parameters
@@ -138,5 +138,7 @@ def _volume_at(hull: Hull, loading: Loading, load_factor: float, draught: float)
     known = float(loading.displacement_at(load_factor))
     if np.isfinite(known):
         return known
-    (volume,) = require(hull, ("displacement_m3",), "another draught", instead="one draught")
+    (volume,) = required_particulars(
+        hull, ("displacement_m3",), "another draught", instead="one draught"
+    )
     return volume_at(hull, volume, at=float(hull.values["draught_m"]), draught=draught)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 from thalweg.ship.methods.displacement import block_coefficient_of, displacement_volume
 from thalweg.ship.methods.hull_regressions import (
     block_from_froude,
@@ -98,7 +98,7 @@ ESTIMATORS: Final[Mapping[str, tuple[Estimator, ...]]] = MappingProxyType(
         ),
         "lcb_percent": (
             Estimator(
-                lambda block, midship: lcb_from_prismatic(floats(block) / midship),
+                lambda block, midship: lcb_from_prismatic(as_float_array(block) / midship),
                 ("block_coefficient", "midship_coefficient"),
                 _SB,
                 1.5,

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 
 
-def floats(values: ArrayLike) -> Floats:
+def as_float_array(values: ArrayLike) -> Floats:
     """Return values as an array of floats, without copying where they are one already.
 
     Parameters

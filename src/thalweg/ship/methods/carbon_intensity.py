@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, unknown_name
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 _INF = float("inf")
 
@@ -77,7 +77,9 @@ _LNG_NOTE = (
 )
 
 
-def _one(capacity: str, a: float, c: float, d: tuple[float, float, float, float]) -> CiiShipType:
+def _single_band_ship_type(
+    capacity: str, a: float, c: float, d: tuple[float, float, float, float]
+) -> CiiShipType:
     return CiiShipType(capacity, (ReferenceBand(0.0, a, c),), ((0.0, d),))
 
 
@@ -94,15 +96,19 @@ SHIP_TYPES: Final[Mapping[str, CiiShipType]] = MappingProxyType(
             (ReferenceBand(65_000.0, 14405e7, 2.071), ReferenceBand(0.0, 8104.0, 0.639)),
             ((65_000.0, (0.81, 0.91, 1.12, 1.44)), (0.0, (0.85, 0.95, 1.06, 1.25))),
         ),
-        "tanker": _one("dwt", 5247.0, 0.610, (0.82, 0.93, 1.08, 1.28)),
-        "container_ship": _one("dwt", 1984.0, 0.489, (0.83, 0.94, 1.07, 1.19)),
+        "tanker": _single_band_ship_type("dwt", 5247.0, 0.610, (0.82, 0.93, 1.08, 1.28)),
+        "container_ship": _single_band_ship_type("dwt", 1984.0, 0.489, (0.83, 0.94, 1.07, 1.19)),
         "general_cargo_ship": CiiShipType(
             "dwt",
             (ReferenceBand(20_000.0, 31948.0, 0.792), ReferenceBand(0.0, 588.0, 0.3885)),
             ((0.0, (0.83, 0.94, 1.06, 1.19)),),
         ),
-        "refrigerated_cargo_carrier": _one("dwt", 4600.0, 0.557, (0.78, 0.91, 1.07, 1.20)),
-        "combination_carrier": _one("dwt", 5119.0, 0.622, (0.87, 0.96, 1.06, 1.14)),
+        "refrigerated_cargo_carrier": _single_band_ship_type(
+            "dwt", 4600.0, 0.557, (0.78, 0.91, 1.07, 1.20)
+        ),
+        "combination_carrier": _single_band_ship_type(
+            "dwt", 5119.0, 0.622, (0.87, 0.96, 1.06, 1.14)
+        ),
         "lng_carrier": CiiShipType(
             "dwt",
             (
@@ -121,10 +127,16 @@ SHIP_TYPES: Final[Mapping[str, CiiShipType]] = MappingProxyType(
             ),
             ((0.0, (0.86, 0.94, 1.06, 1.16)),),
         ),
-        "ro_ro_cargo_ship": _one("gt", 1967.0, 0.485, (0.76, 0.89, 1.08, 1.27)),
-        "ro_ro_passenger_ship": _one("gt", 2023.0, 0.460, (0.76, 0.92, 1.14, 1.30)),
-        "high_speed_ro_ro_passenger_craft": _one("gt", 4196.0, 0.460, (0.76, 0.92, 1.14, 1.30)),
-        "cruise_passenger_ship": _one("gt", 930.0, 0.383, (0.87, 0.95, 1.06, 1.16)),
+        "ro_ro_cargo_ship": _single_band_ship_type("gt", 1967.0, 0.485, (0.76, 0.89, 1.08, 1.27)),
+        "ro_ro_passenger_ship": _single_band_ship_type(
+            "gt", 2023.0, 0.460, (0.76, 0.92, 1.14, 1.30)
+        ),
+        "high_speed_ro_ro_passenger_craft": _single_band_ship_type(
+            "gt", 4196.0, 0.460, (0.76, 0.92, 1.14, 1.30)
+        ),
+        "cruise_passenger_ship": _single_band_ship_type(
+            "gt", 930.0, 0.383, (0.87, 0.95, 1.06, 1.16)
+        ),
     }
 )
 
@@ -166,13 +178,13 @@ def cii_ship_type(name: str) -> CiiShipType:
         For an unknown name, with near matches.
     """
     if name not in SHIP_TYPES:
-        raise unknown_name("CII ship type", name, SHIP_TYPES)
+        raise unknown_name_error("CII ship type", name, SHIP_TYPES)
     return SHIP_TYPES[name]
 
 
-def _intensity(co2: ArrayLike, work: Floats) -> Floats:
+def _carbon_intensity(co2: ArrayLike, work: Floats) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(work > 0.0, floats(co2) * 1000.0 / work, np.nan)
+        return np.where(work > 0.0, as_float_array(co2) * 1000.0 / work, np.nan)
 
 
 def attained_cii(co2: ArrayLike, *, capacity: ArrayLike, distance_nm: ArrayLike) -> Floats:
@@ -196,7 +208,7 @@ def attained_cii(co2: ArrayLike, *, capacity: ArrayLike, distance_nm: ArrayLike)
     ----------
     MEPC.352(78) (G1), section 4.
     """
-    return _intensity(co2, floats(capacity) * floats(distance_nm))
+    return _carbon_intensity(co2, as_float_array(capacity) * as_float_array(distance_nm))
 
 
 def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> Floats:
@@ -220,10 +232,12 @@ def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> Float
     ----------
     MEPC.1/Circ.684, appendix, section 4.
     """
-    emitted = np.atleast_1d(floats(co2))
-    work = np.atleast_1d(floats(cargo_t) * floats(distance_nm))
+    emitted = np.atleast_1d(as_float_array(co2))
+    work = np.atleast_1d(as_float_array(cargo_t) * as_float_array(distance_nm))
     shape = np.broadcast_shapes(emitted.shape, work.shape)
-    return _intensity(np.broadcast_to(emitted, shape).sum(-1), np.broadcast_to(work, shape).sum(-1))
+    return _carbon_intensity(
+        np.broadcast_to(emitted, shape).sum(-1), np.broadcast_to(work, shape).sum(-1)
+    )
 
 
 def reference_cii(ship_type: str, *, capacity: ArrayLike) -> Floats:
@@ -245,7 +259,7 @@ def reference_cii(ship_type: str, *, capacity: ArrayLike) -> Floats:
     ----------
     MEPC.353(78) (G2), Table 1; what was checked is in `SOURCES` and in each `ReferenceBand`.
     """
-    size = floats(capacity)
+    size = as_float_array(capacity)
     line = np.full(size.shape, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
         for band in reversed(cii_ship_type(ship_type).bands):
@@ -331,7 +345,7 @@ def rating_boundaries(ship_type: str, *, capacity: ArrayLike, year: int) -> Floa
     ----------
     MEPC.354(78) (G4), Table 1.
     """
-    size = floats(capacity)
+    size = as_float_array(capacity)
     factors = np.full((*size.shape, 4), np.nan)
     for least, row in reversed(cii_ship_type(ship_type).boundaries):
         factors = np.where((size >= least)[..., None], np.array(row), factors)
@@ -364,7 +378,7 @@ def cii_rating(
     ----------
     MEPC.354(78) (G4), section 4.
     """
-    value = floats(attained)
+    value = as_float_array(attained)
     limits = rating_boundaries(ship_type, capacity=capacity, year=year)
     above = (value[..., None] > limits).sum(-1)
     letters = np.array(["A", "B", "C", "D", "E"])[above]

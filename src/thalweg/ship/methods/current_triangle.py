@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import unknown_name
+from thalweg.core.errors import unknown_name_error
 from thalweg.core.units import SEA_WATER_DENSITY
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 #: Rudder drag coefficient read off Lübke (2016) by Schless (2023), Fig. 3.7: degrees -> C_D.
 LUEBKE_ANGLES_DEG: Final = (0.0, 10.0, 20.0, 30.0, 35.0)
@@ -69,10 +69,10 @@ def current_triangle(
     in eqs. 3.61, 3.62, 3.67 and 3.68; that changes the energies there by -0.26 to +0.26 %.
     van Halem (2019), eq. 2.4, prints tanh for atan2.
     """
-    stw, course_ = floats(speed), floats(course)
+    stw, course_ = as_float_array(speed), as_float_array(course)
     sin, cos = np.sin(course_), np.cos(course_)
-    along = floats(current_east) * sin + floats(current_north) * cos
-    across = floats(current_east) * cos - floats(current_north) * sin
+    along = as_float_array(current_east) * sin + as_float_array(current_north) * cos
+    across = as_float_array(current_east) * cos - as_float_array(current_north) * sin
     with np.errstate(divide="ignore", invalid="ignore"):
         ahead = np.sqrt(stw**2 - across**2)
         ground = ahead + along
@@ -108,7 +108,7 @@ def distance_through_water(
     Schless (2023), eqs. 3.56, 3.60 and 3.64, divides by the cosine of the drift angle as well,
     which counts the current twice.
     """
-    return floats(speed) * floats(distance) / floats(speed_over_ground)
+    return as_float_array(speed) * as_float_array(distance) / as_float_array(speed_over_ground)
 
 
 def _monotone_slopes(x: Floats, y: Floats) -> Floats:
@@ -119,20 +119,22 @@ def _monotone_slopes(x: Floats, y: Floats) -> Floats:
     return np.concatenate(([d[0] * 2.0 - inner[0]], inner, [2.0 * d[-1] - inner[-1]]))
 
 
-_X, _Y = np.array(LUEBKE_ANGLES_DEG), np.array(LUEBKE_DRAG)
-_M = np.clip(_monotone_slopes(_X, _Y), 0.0, None)
+_NODE_ANGLES_DEG, _NODE_DRAG = np.array(LUEBKE_ANGLES_DEG), np.array(LUEBKE_DRAG)
+_NODE_SLOPES = np.clip(_monotone_slopes(_NODE_ANGLES_DEG, _NODE_DRAG), 0.0, None)
 
 
-def _interpolated(degrees: Floats) -> Floats:
+def _interpolated_drag(degrees: Floats) -> Floats:
     """Return the monotone cubic through the nodes."""
-    i = np.clip(np.searchsorted(_X, degrees, side="right") - 1, 0, _X.size - 2)
-    h = _X[i + 1] - _X[i]
-    t = (degrees - _X[i]) / h
+    i = np.clip(
+        np.searchsorted(_NODE_ANGLES_DEG, degrees, side="right") - 1, 0, _NODE_ANGLES_DEG.size - 2
+    )
+    h = _NODE_ANGLES_DEG[i + 1] - _NODE_ANGLES_DEG[i]
+    t = (degrees - _NODE_ANGLES_DEG[i]) / h
     value: Floats = (
-        (1.0 + 2.0 * t) * (1.0 - t) ** 2 * _Y[i]
-        + t * (1.0 - t) ** 2 * h * _M[i]
-        + t**2 * (3.0 - 2.0 * t) * _Y[i + 1]
-        + t**2 * (t - 1.0) * h * _M[i + 1]
+        (1.0 + 2.0 * t) * (1.0 - t) ** 2 * _NODE_DRAG[i]
+        + t * (1.0 - t) ** 2 * h * _NODE_SLOPES[i]
+        + t**2 * (3.0 - 2.0 * t) * _NODE_DRAG[i + 1]
+        + t**2 * (t - 1.0) * h * _NODE_SLOPES[i + 1]
     )
     return value
 
@@ -160,11 +162,11 @@ def rudder_drag_coefficient(angle: ArrayLike, *, curve: str = "nodes") -> Floats
     SIAM J. Sci. Stat. Comput. 5 (1984).
     """
     if curve not in ("nodes", "quadratic"):
-        raise unknown_name("rudder drag curve", curve, ("nodes", "quadratic"))
-    degrees = np.degrees(np.abs(floats(angle)))
+        raise unknown_name_error("rudder drag curve", curve, ("nodes", "quadratic"))
+    degrees = np.degrees(np.abs(as_float_array(angle)))
     degrees = np.where(degrees <= LUEBKE_ANGLES_DEG[-1] + 1e-9, degrees, np.nan)
     if curve == "nodes":
-        return _interpolated(degrees)
+        return _interpolated_drag(degrees)
     quadratic = (3.0777e-4 * degrees + 5.5666e-3) * degrees + 6.54e-4
     return np.where(degrees == 0.0, 0.0, quadratic)
 
@@ -210,4 +212,10 @@ def rudder_drag(
     S. E. Schless, "Going with the flow", TU Delft (2023), section 3.3.1.
     """
     coefficient = rudder_drag_coefficient(crab_angle, curve=curve)
-    return 0.5 * floats(density) * coefficient * floats(rudder_area) * floats(speed) ** 2
+    return (
+        0.5
+        * as_float_array(density)
+        * coefficient
+        * as_float_array(rudder_area)
+        * as_float_array(speed) ** 2
+    )

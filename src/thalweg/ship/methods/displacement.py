@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 
 def between_empty_and_full(load_factor: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
@@ -29,9 +29,9 @@ def between_empty_and_full(load_factor: ArrayLike, *, empty: ArrayLike, full: Ar
     ----------
     J. P. van Halem, "Route optimization in dynamic currents", TU Delft (2019), section 3.2.3.
     """
-    r = floats(load_factor)
+    r = as_float_array(load_factor)
     inside = (r >= 0.0) & (r <= 1.0)
-    return (1.0 - np.where(inside, r, np.nan)) * floats(empty) + r * floats(full)
+    return (1.0 - np.where(inside, r, np.nan)) * as_float_array(empty) + r * as_float_array(full)
 
 
 def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
@@ -49,9 +49,9 @@ def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Fl
     ndarray
         Load factor [-], NaN where it would lie outside 0 to 1.
     """
-    low = floats(empty)
+    low = as_float_array(empty)
     with np.errstate(divide="ignore", invalid="ignore"):
-        r = (floats(value) - low) / (floats(full) - low)
+        r = (as_float_array(value) - low) / (as_float_array(full) - low)
         return np.where((r >= -1e-12) & (r <= 1.0 + 1e-12), np.clip(r, 0.0, 1.0), np.nan)
 
 
@@ -72,7 +72,12 @@ def displacement_volume(
     ndarray
         Volume [m3].
     """
-    return floats(block_coefficient) * floats(length) * floats(breadth) * floats(draught)
+    return (
+        as_float_array(block_coefficient)
+        * as_float_array(length)
+        * as_float_array(breadth)
+        * as_float_array(draught)
+    )
 
 
 def block_coefficient_of(
@@ -92,7 +97,9 @@ def block_coefficient_of(
     ndarray
         Block coefficient [-].
     """
-    return floats(displacement) / (floats(length) * floats(breadth) * floats(draught))
+    return as_float_array(displacement) / (
+        as_float_array(length) * as_float_array(breadth) * as_float_array(draught)
+    )
 
 
 def block_at_draught(
@@ -117,8 +124,8 @@ def block_at_draught(
     Riddlesworth's method as given by J.-P. Jalkanen et al., "Extension of an assessment model of
     ship traffic exhaust emissions", Atmos. Chem. Phys. 12 (2012) (from memory).
     """
-    ratio = floats(design_draught) / floats(draught)
-    return 1.0 - (1.0 - floats(design_block)) * np.cbrt(ratio)
+    ratio = as_float_array(design_draught) / as_float_array(draught)
+    return 1.0 - (1.0 - as_float_array(design_block)) * np.cbrt(ratio)
 
 
 def displacement_at_draught(
@@ -144,6 +151,6 @@ def displacement_at_draught(
     ndarray
         Volume [m3], NaN where it would not be positive.
     """
-    change = floats(draught) - floats(design_draught)
-    volume = floats(design_displacement) + floats(waterplane_area) * change
+    change = as_float_array(draught) - as_float_array(design_draught)
+    volume = as_float_array(design_displacement) + as_float_array(waterplane_area) * change
     return np.where(volume > 0.0, volume, np.nan)

@@ -8,8 +8,8 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import unknown_name
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.core.errors import unknown_name_error
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 _WATERLINE: Final = {"tanker": 1.02, "container": 1.01, "ro_ro": 1.035}
 _PROPELLER: Final = {"tanker": (0.395, 1.30), "container": (0.623, -0.16), "ro_ro": (0.713, -0.08)}
@@ -17,9 +17,9 @@ _WETTED: Final = {"tanker": (0.99, 2.0), "container": (0.995, 2.4)}
 _T = TypeVar("_T")
 
 
-def _of_kind(kind: str, table: Mapping[str, _T]) -> _T:
+def _value_for_ship_type(kind: str, table: Mapping[str, _T]) -> _T:
     if kind not in table:
-        raise unknown_name("kind of ship", kind, table)
+        raise unknown_name_error("kind of ship", kind, table)
     return table[kind]
 
 
@@ -43,7 +43,7 @@ def block_from_froude(froude: ArrayLike) -> Floats:
     H. Schneekluth, V. Bertram, "Ship design for efficiency and economy", 2nd ed. (1998),
     section 1.5 (after Jensen).
     """
-    fn = floats(froude)
+    fn = as_float_array(froude)
     fn = np.where((fn >= 0.15) & (fn <= 0.32), fn, np.nan)
     return -4.22 + 27.8 * np.sqrt(fn) - 39.1 * fn + 46.6 * fn**3
 
@@ -65,7 +65,7 @@ def midship_from_block(block_coefficient: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.6 (after Jensen, HSVA).
     """
-    return 1.0 / (1.0 + (1.0 - floats(block_coefficient)) ** 3.5)
+    return 1.0 / (1.0 + (1.0 - as_float_array(block_coefficient)) ** 3.5)
 
 
 def midship_kerlen(block_coefficient: ArrayLike) -> Floats:
@@ -85,7 +85,7 @@ def midship_kerlen(block_coefficient: ArrayLike) -> Floats:
     ----------
     Kerlen (1970) as given by Schneekluth and Bertram (1998), section 1.6.
     """
-    return 1.006 - 0.0056 * floats(block_coefficient) ** -3.56
+    return 1.006 - 0.0056 * as_float_array(block_coefficient) ** -3.56
 
 
 def waterplane_from_block(block_coefficient: ArrayLike) -> Floats:
@@ -105,7 +105,7 @@ def waterplane_from_block(block_coefficient: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.6.
     """
-    return (1.0 + 2.0 * floats(block_coefficient)) / 3.0
+    return (1.0 + 2.0 * as_float_array(block_coefficient)) / 3.0
 
 
 def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
@@ -126,7 +126,7 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
     Schneekluth and Bertram (1998), section 1.5, from memory. It has two such lines, this one and
     `lcb_from_froude`; which of them was drawn for tankers and bulkers is not certain.
     """
-    return 19.4 * floats(prismatic_coefficient) - 13.5
+    return 19.4 * as_float_array(prismatic_coefficient) - 13.5
 
 
 def lcb_from_froude(froude: ArrayLike) -> Floats:
@@ -146,7 +146,7 @@ def lcb_from_froude(froude: ArrayLike) -> Floats:
     ----------
     Schneekluth and Bertram (1998), section 1.5, from memory; see `lcb_from_prismatic`.
     """
-    return 8.80 - 38.9 * floats(froude)
+    return 8.80 - 38.9 * as_float_array(froude)
 
 
 def wetted_surface_denny_mumford(
@@ -173,8 +173,8 @@ def wetted_surface_denny_mumford(
     Denny and Mumford, as given by A. F. Molland, S. R. Turnock, D. A. Hudson, "Ship resistance
     and propulsion" (2011).
     """
-    t = floats(draught)
-    return 1.7 * floats(length) * t + floats(displacement) / t
+    t = as_float_array(draught)
+    return 1.7 * as_float_array(length) * t + as_float_array(displacement) / t
 
 
 def waterline_from_perpendiculars(
@@ -199,7 +199,7 @@ def waterline_from_perpendiculars(
     ----------
     Kristensen and Lützen (2012).
     """
-    return _of_kind(kind, _WATERLINE) * floats(length_between_perpendiculars)
+    return _value_for_ship_type(kind, _WATERLINE) * as_float_array(length_between_perpendiculars)
 
 
 def perpendiculars_from_waterline(length_waterline: ArrayLike, *, kind: str = "tanker") -> Floats:
@@ -221,7 +221,7 @@ def perpendiculars_from_waterline(length_waterline: ArrayLike, *, kind: str = "t
     ----------
     Kristensen and Lützen (2012), inverted.
     """
-    return floats(length_waterline) / _of_kind(kind, _WATERLINE)
+    return as_float_array(length_waterline) / _value_for_ship_type(kind, _WATERLINE)
 
 
 def length_over_surface_no_bulb(length_waterline: ArrayLike) -> Floats:
@@ -241,7 +241,7 @@ def length_over_surface_no_bulb(length_waterline: ArrayLike) -> Floats:
     ----------
     Definition in U. Hollenbach, "Estimating resistance and propulsion" (1998).
     """
-    return floats(length_waterline)
+    return as_float_array(length_waterline)
 
 
 def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker") -> Floats:
@@ -265,8 +265,8 @@ def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker")
     ----------
     Kristensen and Lützen (2012).
     """
-    slope, shift = _of_kind(kind, _PROPELLER)
-    return slope * floats(draught) + shift
+    slope, shift = _value_for_ship_type(kind, _PROPELLER)
+    return slope * as_float_array(draught) + shift
 
 
 def wetted_surface_kristensen(
@@ -307,10 +307,10 @@ def wetted_surface_kristensen(
     ----------
     Kristensen and Lützen (2012); also H. O. Kristensen, M. Lützen (2013).
     """
-    factor, rate = _of_kind(kind, _WETTED)
-    size, full = floats(length), floats(design_draught)
-    surface = factor * (floats(design_displacement) / full + 1.9 * size * full)
-    return surface - rate * (full - floats(draught)) * (size + floats(breadth))
+    factor, rate = _value_for_ship_type(kind, _WETTED)
+    size, full = as_float_array(length), as_float_array(design_draught)
+    surface = factor * (as_float_array(design_displacement) / full + 1.9 * size * full)
+    return surface - rate * (full - as_float_array(draught)) * (size + as_float_array(breadth))
 
 
 def waterplane_kristensen(block_coefficient: ArrayLike) -> Floats:
@@ -330,7 +330,7 @@ def waterplane_kristensen(block_coefficient: ArrayLike) -> Floats:
     ----------
     Kristensen and Lützen (2012).
     """
-    return 0.55 + 0.45 * floats(block_coefficient)
+    return 0.55 + 0.45 * as_float_array(block_coefficient)
 
 
 def bulb_area_rakke(
@@ -354,7 +354,12 @@ def bulb_area_rakke(
     ----------
     S. G. Rakke, "Ship emissions calculation from AIS", NTNU (2016).
     """
-    return 0.08 * floats(midship_coefficient) * floats(breadth) * floats(draught)
+    return (
+        0.08
+        * as_float_array(midship_coefficient)
+        * as_float_array(breadth)
+        * as_float_array(draught)
+    )
 
 
 def bulb_height_rakke(draught: ArrayLike) -> Floats:
@@ -374,7 +379,7 @@ def bulb_height_rakke(draught: ArrayLike) -> Floats:
     ----------
     Rakke (2016).
     """
-    return 0.4 * floats(draught)
+    return 0.4 * as_float_array(draught)
 
 
 def transom_area_rakke(
@@ -398,4 +403,9 @@ def transom_area_rakke(
     ----------
     Rakke (2016).
     """
-    return 0.051 * floats(midship_coefficient) * floats(breadth) * floats(draught)
+    return (
+        0.051
+        * as_float_array(midship_coefficient)
+        * as_float_array(breadth)
+        * as_float_array(draught)
+    )

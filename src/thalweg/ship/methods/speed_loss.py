@@ -32,30 +32,32 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import unknown_name
+from thalweg.core.errors import unknown_name_error
 from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 FloatArray = NDArray[np.float64]
-Loading = Literal["loaded", "normal", "ballast"]
-Sign = Literal["plus", "printed"]
+LoadingCondition = Literal["loaded", "normal", "ballast"]
+LastTermSign = Literal["plus", "printed"]
 ShipType = Literal["other", "container"]
 
 GREATEST_LOSS: Final = 0.99  #: cap of the loss, as in Seuren (2020)
-MIDDLES: Final = np.radians([15.0, 45.0, 105.0, 165.0])  #: middles of the heading sectors [rad]
-_EDGES: Final = np.radians([30.0, 60.0, 150.0])
-_LOWER_LIMITS: Final = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
+SECTOR_MIDDLES: Final = np.radians(
+    [15.0, 45.0, 105.0, 165.0]
+)  #: middles of the heading sectors [rad]
+_SECTOR_EDGES: Final = np.radians([30.0, 60.0, 150.0])
+_BEAUFORT_LOWER_LIMITS: Final = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
 # C_beta = a - b (B - c)^2 for head, bow, beam and following weather
 _TOP: Final = np.array([1.0, 0.85, 0.45, 0.20])
 _BEND: Final = np.array([0.0, 0.015, 0.030, 0.015])
 _VERTEX: Final = np.array([0.0, 4.0, 6.0, 8.0])
-_BLOCKS: Final = (0.55, 0.60, 0.65, 0.70, 0.75, 0.80, 0.85)
+_BLOCK_COEFFICIENTS: Final = (0.55, 0.60, 0.65, 0.70, 0.75, 0.80, 0.85)
 _LOADED: Final = (
     *((1.7, -1.4, -7.4), (2.2, -2.5, -9.7), (2.6, -3.7, -11.6), (3.1, -5.3, -12.4)),
     *((2.4, -10.6, 9.5), (2.6, -13.1, 15.1), (3.1, -18.7, 28.0)),
 )
 _BALLAST: Final = (*_LOADED[:4], (2.6, -12.5, 13.5), (3.0, -16.3, 21.6), (3.4, -20.9, 31.8))
-_UNSETTLED: Final = (4, 5)  # rows whose last sign is in doubt
+_DISPUTED_ROWS: Final = (4, 5)  # rows whose last sign is in doubt
 
 
 def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArray:
@@ -76,7 +78,7 @@ def beaufort_number(wind_speed: ArrayLike, *, classes: bool = False) -> FloatArr
     """
     wind = np.asarray(wind_speed, float)
     if classes:
-        number = np.searchsorted(_LOWER_LIMITS, wind, side="right").astype(float)
+        number = np.searchsorted(_BEAUFORT_LOWER_LIMITS, wind, side="right").astype(float)
         return np.where(np.isnan(wind), np.nan, number)
     return np.minimum((wind / 0.836) ** (2.0 / 3.0), 12.0)
 
@@ -103,8 +105,8 @@ def kwon_speed_coefficient(
     froude: ArrayLike,
     *,
     block_coefficient: ArrayLike,
-    loading: Loading = "loaded",
-    sign: Sign = "plus",
+    loading: LoadingCondition = "loaded",
+    sign: LastTermSign = "plus",
 ) -> FloatArray:
     """C_U, linear in the block coefficient between the rows of table B.2, not below zero.
 
@@ -125,9 +127,9 @@ def kwon_speed_coefficient(
     """
     rows = np.array(_choose({"loaded": _LOADED, "normal": _LOADED, "ballast": _BALLAST}, loading))
     factor = _choose({"plus": 1.0, "printed": -1.0}, sign)
-    rows[list(_UNSETTLED), 2] *= factor
+    rows[list(_DISPUTED_ROWS), 2] *= factor
     fn, block = np.asarray(froude, float), np.asarray(block_coefficient, float)
-    c0, c1, c2 = (np.interp(block, _BLOCKS, rows[:, k]) for k in range(3))
+    c0, c1, c2 = (np.interp(block, _BLOCK_COEFFICIENTS, rows[:, k]) for k in range(3))
     return np.maximum(c0 + c1 * fn + c2 * fn**2, 0.0)
 
 
@@ -135,7 +137,7 @@ def kwon_form_coefficient(
     beaufort: ArrayLike,
     *,
     displacement_volume: ArrayLike,
-    loading: Loading = "loaded",
+    loading: LoadingCondition = "loaded",
     ship_type: ShipType = "other",
 ) -> FloatArray:
     """C_form of table B.3: c B + B^6.5 / (d V^(2/3)) [per cent].
@@ -172,9 +174,9 @@ def kwon_speed_loss(
     length: float,
     block_coefficient: ArrayLike,
     displacement_volume: ArrayLike,
-    loading: Loading = "loaded",
+    loading: LoadingCondition = "loaded",
     ship_type: ShipType = "other",
-    sign: Sign = "plus",
+    sign: LastTermSign = "plus",
     classes: bool = False,
     hold: bool = True,
 ) -> FloatArray:
@@ -213,7 +215,11 @@ def kwon_speed_loss(
     )  # so that the axis of the sectors stays ahead of those of the speeds
     by_sector = np.empty((4, *number.shape))
     for sector in range(4):
-        at = np.minimum(number, _peaks(sector, volume, **options)) if hold else number
+        at = (
+            np.minimum(number, _worst_beaufort_numbers(sector, volume, **options))
+            if hold
+            else number
+        )
         direction = kwon_direction_coefficients(at)[sector]
         by_sector[sector] = direction * kwon_form_coefficient(
             at, displacement_volume=volume, **options
@@ -239,23 +245,29 @@ def kwon_notes(
         "kwon_2008",
         {
             "Beaufort number": (beaufort_number(wind_speed), 0.0, highest),
-            "block coefficient": (block_coefficient, _BLOCKS[0], _BLOCKS[-1]),
+            "block coefficient": (
+                block_coefficient,
+                _BLOCK_COEFFICIENTS[0],
+                _BLOCK_COEFFICIENTS[-1],
+            ),
         },
     )
 
 
-def _peaks(sector: int, volume: FloatArray, **options: Any) -> FloatArray:
+def _worst_beaufort_numbers(sector: int, volume: FloatArray, **options: Any) -> FloatArray:
     """Return the Beaufort number at which C_beta C_form of a sector is greatest."""
     if volume.size and volume.min() == volume.max():
-        only = _peak(sector, float(volume.flat[0]), **options)
+        only = _worst_beaufort_number(sector, float(volume.flat[0]), **options)
         return np.broadcast_to(np.float64(only), volume.shape)
     volumes, which = np.unique(volume, return_inverse=True)
-    peaks = np.array([_peak(sector, float(one), **options) for one in volumes])
+    peaks = np.array([_worst_beaufort_number(sector, float(one), **options) for one in volumes])
     return peaks[which].reshape(volume.shape)
 
 
 @lru_cache(maxsize=4096)
-def _peak(sector: int, volume: float, *, loading: Loading, ship_type: ShipType) -> float:
+def _worst_beaufort_number(
+    sector: int, volume: float, *, loading: LoadingCondition, ship_type: ShipType
+) -> float:
     """Return that number for one displaced volume [m3]."""
     if _BEND[sector] == 0.0:
         return 12.0
@@ -277,9 +289,9 @@ def _peak(sector: int, volume: float, *, loading: Loading, ship_type: ShipType) 
 
 def _between_sectors(by_sector: FloatArray, angle: FloatArray, *, classes: bool) -> FloatArray:
     if classes:
-        sector = np.searchsorted(_EDGES, angle, side="left")
+        sector = np.searchsorted(_SECTOR_EDGES, angle, side="left")
         return np.take_along_axis(by_sector, np.minimum(sector, 3)[None], axis=0)[0]
-    place = np.interp(angle, MIDDLES, np.arange(4.0))
+    place = np.interp(angle, SECTOR_MIDDLES, np.arange(4.0))
     # only the index of an unknown angle is made up: its value stays NaN through ``place`` below
     cell = np.minimum(np.nan_to_num(place).astype(np.intp), 2)
     low = np.take_along_axis(by_sector, cell[None], axis=0)[0]
@@ -289,5 +301,5 @@ def _between_sectors(by_sector: FloatArray, angle: FloatArray, *, classes: bool)
 
 def _choose(options: dict[str, Any], name: str) -> Any:
     if name not in options:
-        raise unknown_name("choice in Kwon's method", name, options)
+        raise unknown_name_error("choice in Kwon's method", name, options)
     return options[name]

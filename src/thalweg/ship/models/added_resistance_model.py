@@ -10,9 +10,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import unknown_name
-from thalweg.ship.hull.hull import Hull, require
-from thalweg.ship.hull.hull_estimates import estimated_or_error
+from thalweg.core.errors import unknown_name_error
+from thalweg.ship.hull.hull import Hull, required_particulars
+from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm_validity
 from thalweg.ship.methods.added_resistance.snnm_table import SnnmTable
 from thalweg.ship.methods.added_resistance.stawave import (
@@ -37,17 +37,17 @@ from thalweg.ship.methods.added_resistance.wind_resistance import (
 from thalweg.ship.methods.resistance.holtrop_form import length_of_run
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate
-from thalweg.ship.models.calm_water_model import FORM_KEYS, form_of
+from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of
 
 FloatArray = NDArray[np.float64]
 #: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
-_ENTRANCE: Final = 0.85
-_GYRATION: Final = Estimate("pitch_gyration", 0.25, "usual value, ITTC")
+_ENTRANCE_FRACTION: Final = 0.85
+_PITCH_GYRATION: Final = Estimate("pitch_gyration", 0.25, "usual value, ITTC")
 SHORTEST_PERIOD, LONGEST_PERIOD = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
 
 
 @dataclass(frozen=True, eq=False)
-class Waves:
+class AddedWaveResistance:
     """Added resistance in waves with a hull bound.
 
     Attributes
@@ -56,7 +56,7 @@ class Waves:
     hull : Hull
     force : callable
         [N] from speed [m/s], significant height [m], peak period [s], angle off the bow [rad].
-    notes_of : callable
+    validity_notes : callable
         Where the method is outside its range, from speeds, wave heights and angles off the bow.
     reads : frozenset of str
         Conditions that matter.
@@ -65,12 +65,12 @@ class Waves:
     method: str
     hull: Hull
     force: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
-    notes_of: Callable[[FloatArray, FloatArray, FloatArray], list[RangeNote]]
+    validity_notes: Callable[[FloatArray, FloatArray, FloatArray], list[RangeNote]]
     reads: frozenset[str]
 
 
 @dataclass(frozen=True, eq=False)
-class Wind:
+class WindResistance:
     """Wind resistance with a ship bound.
 
     Attributes
@@ -97,13 +97,18 @@ class Wind:
         return wind_resistance(felt, self.coefficient(where), frontal_area=self.frontal_area)
 
 
-_WAVE_KEYS = ("length_between_perpendiculars_m", "breadth_m", "draught_m", "block_coefficient")
-_BOTH = frozenset({"wave_height", "wave_angle"})
+_WAVE_PARTICULARS = (
+    "length_between_perpendiculars_m",
+    "breadth_m",
+    "draught_m",
+    "block_coefficient",
+)
+_WAVE_CONDITIONS = frozenset({"wave_height", "wave_angle"})
 
 
-def _stawave_1(hull: Hull) -> Waves:
+def _stawave_1(hull: Hull) -> AddedWaveResistance:
     need = ("length_between_perpendiculars_m", "breadth_m")
-    length, breadth = require(hull, need, "stawave_1", instead="waves: none")
+    length, breadth = required_particulars(hull, need, "stawave_1", instead="waves: none")
     bow = hull.number("length_bow_m")
     if bow is None:
         bow = 0.15 * length
@@ -119,37 +124,41 @@ def _stawave_1(hull: Hull) -> Waves:
         high = stawave1_validity(height, length_between_perpendiculars=length)
         return [*high, *head_sector_validity(angle, method="stawave1")]
 
-    return Waves("stawave_1", hull, force, notes, _BOTH)
+    return AddedWaveResistance("stawave_1", hull, force, notes, _WAVE_CONDITIONS)
 
 
-def _stawave_2(hull: Hull) -> Waves:
-    length, breadth, draught, block = require(hull, _WAVE_KEYS, "stawave_2", instead="stawave_1")
+def _stawave_2(hull: Hull) -> AddedWaveResistance:
+    length, breadth, draught, block = required_particulars(
+        hull, _WAVE_PARTICULARS, "stawave_2", instead="stawave_1"
+    )
     sizes: dict[str, Any] = {
         "length_between_perpendiculars": length,
         "breadth": breadth,
         "draught": draught,
         "block_coefficient": block,
     }
-    hull = hull.with_estimates(_GYRATION)
+    hull = hull.with_estimates(_PITCH_GYRATION)
     gyration = float(hull.values["pitch_gyration"])
 
     def force(
         speed: FloatArray, height: FloatArray, period: FloatArray, angle: FloatArray
     ) -> FloatArray:
-        return stawave2(speed, height, _tame(period), angle, **sizes, pitch_gyration=gyration)
+        return stawave2(
+            speed, height, _clipped_period(period), angle, **sizes, pitch_gyration=gyration
+        )
 
     def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
         ahead = head_sector_validity(angle, method="stawave2")
         return [*stawave2_validity(speed, **sizes), *ahead]
 
-    return Waves("stawave_2", hull, force, notes, _BOTH | {"wave_period"})
+    return AddedWaveResistance("stawave_2", hull, force, notes, _WAVE_CONDITIONS | {"wave_period"})
 
 
-def _snnm(hull: Hull) -> Waves:
-    keys = (*_WAVE_KEYS, *FORM_KEYS)
-    hull = estimated_or_error(hull, keys, "snnm", instead="stawave_1")
-    length, breadth, _, block = (float(hull.values[key]) for key in _WAVE_KEYS)
-    hull = _with_ends(hull).with_estimates(_GYRATION)
+def _snnm(hull: Hull) -> AddedWaveResistance:
+    keys = (*_WAVE_PARTICULARS, *FORM_KEYS)
+    hull = estimate_or_raise(hull, keys, "snnm", instead="stawave_1")
+    length, breadth, _, block = (float(hull.values[key]) for key in _WAVE_PARTICULARS)
+    hull = _with_entrance_and_run(hull).with_estimates(_PITCH_GYRATION)
     vessel = SnnmHull(
         length=length,
         breadth=breadth,
@@ -166,36 +175,38 @@ def _snnm(hull: Hull) -> Waves:
     def force(
         speed: FloatArray, height: FloatArray, period: FloatArray, angle: FloatArray
     ) -> FloatArray:
-        return table(speed, height, _tame(period), angle)
+        return table(speed, height, _clipped_period(period), angle)
 
     def notes(speed: FloatArray, height: FloatArray, angle: FloatArray) -> list[RangeNote]:
         return snnm_validity(speed, vessel)
 
-    return Waves("snnm", hull, force, notes, _BOTH | {"wave_period"})
+    return AddedWaveResistance("snnm", hull, force, notes, _WAVE_CONDITIONS | {"wave_period"})
 
 
-def _with_ends(hull: Hull) -> Hull:
+def _with_entrance_and_run(hull: Hull) -> Hull:
     """The hull with lengths of entrance and run [m], estimated when not given."""
-    form = form_of(hull)
-    entrance = float(_ENTRANCE * (1.0 - form.prismatic_coefficient) * form.length)
+    form = hull_form_of(hull)
+    entrance = float(_ENTRANCE_FRACTION * (1.0 - form.prismatic_coefficient) * form.length)
     run = float(length_of_run(form))
     return hull.with_estimates(
-        Estimate("length_entrance_m", entrance, f"{_ENTRANCE:g} (1 - C_P) L_WL, ours"),
+        Estimate("length_entrance_m", entrance, f"{_ENTRANCE_FRACTION:g} (1 - C_P) L_WL, ours"),
         Estimate("length_run_m", run, "Holtrop and Mennen (1982)"),
     )
 
 
-def _tame(period: FloatArray) -> FloatArray:
+def _clipped_period(period: FloatArray) -> FloatArray:
     return np.clip(period, SHORTEST_PERIOD, LONGEST_PERIOD)
 
 
-def _fujiwara(hull: Hull, kind: str) -> Wind:
+def _fujiwara(hull: Hull, kind: str) -> WindResistance:
     keys = (
         *("length_overall_m", "breadth_m", "frontal_area_m2", "lateral_area_m2"),
         *("superstructure_lateral_area_m2", "superstructure_height_m"),
     )
     instead = "wind: blendermann_1994 or wind: ittc"
-    length, breadth, front, side, deck, high = require(hull, keys, "fujiwara_2006", instead=instead)
+    length, breadth, front, side, deck, high = required_particulars(
+        hull, keys, "fujiwara_2006", instead=instead
+    )
     centre = hull.number("lateral_centre_height_m")
     if centre is None:
         centre = 0.5 * side / length
@@ -211,11 +222,11 @@ def _fujiwara(hull: Hull, kind: str) -> Wind:
         hull.number("lateral_centre_offset_m") or 0.0,
         centre,
     )
-    return Wind("fujiwara_2006", hull, front, lambda angle: fujiwara_2006(angle, vessel))
+    return WindResistance("fujiwara_2006", hull, front, lambda angle: fujiwara_2006(angle, vessel))
 
 
 #: words in ``hull.type`` and Blendermann's type for them, the first that fits
-_TYPES: Final = {
+_BLENDERMANN_TYPES: Final = {
     **{"container": "container_loaded", "lng": "lng_tanker", "gas": "lng_tanker"},
     **{"tanker": "tanker_loaded", "vehicle": "car_carrier", "car carrier": "car_carrier"},
     **{"cruise": "cruise", "ferry": "ferry", "ro-pax": "ferry", "passenger": "ferry"},
@@ -223,56 +234,56 @@ _TYPES: Final = {
 }
 
 
-def _with_type(hull: Hull) -> tuple[Hull, str]:
+def _with_blendermann_type(hull: Hull) -> tuple[Hull, str]:
     """Blendermann's type of ship from ``hull.type``, cargo ships when it tells none."""
     told = str(hull.values.get("type", "")).casefold().replace("_", " ")
-    kind = next((kind for word, kind in _TYPES.items() if word in told), "cargo_loaded")
+    kind = next((kind for word, kind in _BLENDERMANN_TYPES.items() if word in told), "cargo_loaded")
     why = f"from hull.type {told!r}" if told else "no hull.type given"
     return hull.with_estimates(Estimate("models.wind_type", kind, why)), kind
 
 
-def _blendermann(hull: Hull, kind: str) -> Wind:
+def _blendermann(hull: Hull, kind: str) -> WindResistance:
     if not kind:
-        hull, kind = _with_type(hull)
+        hull, kind = _with_blendermann_type(hull)
     if kind not in BLENDERMANN:
-        raise unknown_name(
+        raise unknown_name_error(
             "type of ship for blendermann_1994 (models.wind_type)", kind, BLENDERMANN
         )
     keys = ("frontal_area_m2", "lateral_area_m2")
-    front, side = require(hull, keys, "blendermann_1994", instead="wind: ittc")
+    front, side = required_particulars(hull, keys, "blendermann_1994", instead="wind: ittc")
 
     def coefficient(angle: FloatArray) -> FloatArray:
         return blendermann_1994(
             angle, frontal_area=front, lateral_area=side, ship_type=BLENDERMANN[kind]
         )
 
-    return Wind("blendermann_1994", hull, front, coefficient)
+    return WindResistance("blendermann_1994", hull, front, coefficient)
 
 
-def _ittc(hull: Hull, kind: str) -> Wind:
+def _ittc(hull: Hull, kind: str) -> WindResistance:
     curve = kind or "tanker_laden"
     if not kind:
         hull = hull.with_estimates(Estimate("models.wind_type", curve, "the usual curve"))
     if curve not in ITTC_CURVES:
-        raise unknown_name("wind curve (models.wind_type)", curve, ITTC_CURVES)
-    (front,) = require(hull, ("frontal_area_m2",), "ittc", instead="wind: yu_2021")
-    return Wind("ittc", hull, front, lambda angle: ittc_curve(angle, curve=curve))
+        raise unknown_name_error("wind curve (models.wind_type)", curve, ITTC_CURVES)
+    (front,) = required_particulars(hull, ("frontal_area_m2",), "ittc", instead="wind: yu_2021")
+    return WindResistance("ittc", hull, front, lambda angle: ittc_curve(angle, curve=curve))
 
 
-def _yu(hull: Hull, kind: str) -> Wind:
-    (breadth,) = require(hull, ("breadth_m",), "yu_2021", instead="wind: none")
+def _yu(hull: Hull, kind: str) -> WindResistance:
+    (breadth,) = required_particulars(hull, ("breadth_m",), "yu_2021", instead="wind: none")
     front = hull.number("frontal_area_m2")
     if front is None:
         aft = float(hull.values["draught_aft_m"])
         front = float(yu_2021_area(breadth, draught_aft=aft))
         hull = hull.with_estimates(Estimate("frontal_area_m2", front, "0.8 B T_A, Yu (2021)"))
-    return Wind("yu_2021", hull, front, yu_2021_coefficient)
+    return WindResistance("yu_2021", hull, front, yu_2021_coefficient)
 
 
-WAVES: Final[Mapping[str, Callable[[Hull], Waves]]] = MappingProxyType(
+WAVE_METHODS: Final[Mapping[str, Callable[[Hull], AddedWaveResistance]]] = MappingProxyType(
     {"stawave_1": _stawave_1, "stawave_2": _stawave_2, "snnm": _snnm}
 )
-WIND: Final[Mapping[str, Callable[[Hull, str], Wind]]] = MappingProxyType(
+WIND_METHODS: Final[Mapping[str, Callable[[Hull, str], WindResistance]]] = MappingProxyType(
     {
         "fujiwara_2006": _fujiwara,
         "blendermann_1994": _blendermann,
@@ -283,7 +294,7 @@ WIND: Final[Mapping[str, Callable[[Hull, str], Wind]]] = MappingProxyType(
 )
 
 
-def build_waves(data: Mapping[str, Any], hull: Hull) -> Waves | None:
+def build_wave_resistance(data: Mapping[str, Any], hull: Hull) -> AddedWaveResistance | None:
     """Return the wave part chosen in a ship file; None for ``none``.
 
     A method that lets waves from astern push the ship is cut off at zero unless the file says
@@ -298,20 +309,20 @@ def build_waves(data: Mapping[str, Any], hull: Hull) -> Waves | None:
     name = models.get("waves", "none")
     if name == "none":
         return None
-    if name not in WAVES:
-        raise unknown_name("wave method", name, ("none", *WAVES))
-    waves = WAVES[name](hull)
-    return waves if models.get("wave_push", False) else _without_push(waves)
+    if name not in WAVE_METHODS:
+        raise unknown_name_error("wave method", name, ("none", *WAVE_METHODS))
+    waves = WAVE_METHODS[name](hull)
+    return waves if models.get("wave_push", False) else _without_negative_resistance(waves)
 
 
-def _without_push(waves: Waves) -> Waves:
+def _without_negative_resistance(waves: AddedWaveResistance) -> AddedWaveResistance:
     def force(*at: FloatArray) -> FloatArray:
         return np.maximum(waves.force(*at), 0.0)
 
     return replace(waves, force=force)
 
 
-def build_wind(data: Mapping[str, Any], hull: Hull) -> Wind | None:
+def build_wind_resistance(data: Mapping[str, Any], hull: Hull) -> WindResistance | None:
     """Return the wind part chosen in a ship file; None for ``none``.
 
     Raises
@@ -322,6 +333,6 @@ def build_wind(data: Mapping[str, Any], hull: Hull) -> Wind | None:
     name = models.get("wind", "none")
     if name == "none":
         return None
-    if name not in WIND:
-        raise unknown_name("wind method", name, ("none", *WIND))
-    return WIND[name](hull, models.get("wind_type", ""))
+    if name not in WIND_METHODS:
+        raise unknown_name_error("wind method", name, ("none", *WIND_METHODS))
+    return WIND_METHODS[name](hull, models.get("wind_type", ""))

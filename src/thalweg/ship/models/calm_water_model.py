@@ -10,10 +10,10 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import unknown_name
+from thalweg.core.errors import unknown_name_error
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.hull.hull import Hull
-from thalweg.ship.hull.hull_estimates import estimated_or_error
+from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.resistance.friction_lines import SEA_WATER_VISCOSITY, reynolds_number
 from thalweg.ship.methods.resistance.hollenbach import (
     hollenbach_1998,
@@ -26,7 +26,11 @@ from thalweg.ship.methods.resistance.holtrop_form import (
     hull_form,
     wetted_surface,
 )
-from thalweg.ship.methods.resistance.holtrop_mennen import Extremities, holtrop, holtrop_validity
+from thalweg.ship.methods.resistance.holtrop_mennen import (
+    BulbTransomAppendages,
+    holtrop,
+    holtrop_validity,
+)
 from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
     karpov_speed,
     karpov_validity,
@@ -39,23 +43,23 @@ from thalweg.ship.model_protocol import Estimate
 
 FloatArray = NDArray[np.float64]
 #: names of the components of calm-water resistance; each is there, zero where a method has none
-COMPONENTS: Final = (
+CALM_WATER_COMPONENTS: Final = (
     *("friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),
     *("correlation", "residuary"),
 )
 #: ``karpov_bands`` has the steps that Karpov's curves are printed with; ``zeng_2019`` is friction
-SHALLOW_WATER: Final = ("none", "karpov", "karpov_bands", "lackenby_1963", "zeng_2019")
-_KARPOV: Final = ("karpov", "karpov_bands")
-FRICTION: Final = ("ittc_1957", "zeng_2019")
+SHALLOW_WATER_METHODS: Final = ("none", "karpov", "karpov_bands", "lackenby_1963", "zeng_2019")
+_KARPOV_METHODS: Final = ("karpov", "karpov_bands")
+FRICTION_LINES: Final = ("ittc_1957", "zeng_2019")
 STERN_SHAPES: Final = MappingProxyType(
     {"pram": -25.0, "v": -10.0, "v_shaped": -10.0, "normal": 0.0, "u": 10.0, "u_shaped": 10.0}
 )
 #: (speed, speed of the waves, friction coefficient or None) -> components
-Deep = Callable[[FloatArray, FloatArray, "FloatArray | None"], dict[str, FloatArray]]
+DeepWaterComponents = Callable[[FloatArray, FloatArray, "FloatArray | None"], dict[str, FloatArray]]
 
 
 @dataclass(frozen=True, eq=False)
-class CalmWater:
+class CalmWaterResistance:
     """Calm-water resistance with a hull bound.
 
     Attributes
@@ -65,7 +69,7 @@ class CalmWater:
         With what the method needed and was estimated.
     deep : callable
         Components [N] from speed [m/s], the speed that makes the waves and a friction coefficient.
-    notes_of : callable
+    validity_notes : callable
         Where the method is outside its range, from speeds.
     shallow_water, friction : str
         Names of the shallow-water method and the friction line.
@@ -75,8 +79,8 @@ class CalmWater:
 
     method: str
     hull: Hull
-    deep: Deep
-    notes_of: Callable[[FloatArray], list[RangeNote]]
+    deep: DeepWaterComponents
+    validity_notes: Callable[[FloatArray], list[RangeNote]]
     shallow_water: str = "none"
     friction: str = "ittc_1957"
     viscosity: float = SEA_WATER_VISCOSITY
@@ -89,14 +93,14 @@ class CalmWater:
     def total(self, speed: FloatArray, depth: FloatArray) -> FloatArray:
         """Resistance [N] at speeds [m/s] in water of a depth [m]."""
         if not self.reads_depth:
-            return _sum(self.deep(speed, speed, None))
+            return _total_resistance(self.deep(speed, speed, None))
         if self.shallow_water == "lackenby_1963":
             return self._lackenby(speed, depth)
         waves = speed
-        if self.shallow_water in _KARPOV:
+        if self.shallow_water in _KARPOV_METHODS:
             bands, draught = self.shallow_water == "karpov_bands", self._number("draught_m")
             waves = karpov_speed(speed, depth=depth, draught=draught, raw_bands=bands)
-        return _sum(self.deep(speed, waves, self._line(speed, depth)))
+        return _total_resistance(self.deep(speed, waves, self._line(speed, depth)))
 
     def components(self, speed: FloatArray, depth: FloatArray) -> dict[str, FloatArray]:
         """Components [N] in deep water, and ``shallow``: what the depth adds to their sum."""
@@ -104,12 +108,12 @@ class CalmWater:
         parts = self.deep(speed, speed, self._line(speed, far))
         shape = np.broadcast_shapes(np.shape(speed), np.shape(depth))
         parts = {name: np.broadcast_to(value, shape) for name, value in parts.items()}
-        return {**parts, "shallow": self.total(speed, depth) - _sum(parts)}
+        return {**parts, "shallow": self.total(speed, depth) - _total_resistance(parts)}
 
     def notes(self, speed: FloatArray, depth: FloatArray) -> list[RangeNote]:
         """Where the methods are outside their ranges."""
-        found = self.notes_of(speed)
-        if self.shallow_water in _KARPOV:
+        found = self.validity_notes(speed)
+        if self.shallow_water in _KARPOV_METHODS:
             found = [*found, *karpov_validity(speed, depth=depth)]
         if self.shallow_water == "lackenby_1963":
             area = self._midship_area()
@@ -119,7 +123,7 @@ class CalmWater:
     def _lackenby(self, speed: FloatArray, depth: FloatArray) -> FloatArray:
         far = np.full(np.shape(depth), np.inf)
         deep = lackenby_1963_deep_speed(speed, depth=depth, midship_area=self._midship_area())
-        force = _sum(self.deep(deep, deep, self._line(deep, far)))
+        force = _total_resistance(self.deep(deep, deep, self._line(deep, far)))
         with np.errstate(divide="ignore", invalid="ignore"):
             raised = np.where(speed > 0.0, force * deep / speed, 0.0 * force)
         return np.where(depth > self._number("draught_m"), raised, np.nan)
@@ -146,11 +150,11 @@ class CalmWater:
         return float(self.hull.values[key])
 
 
-def _sum(parts: Mapping[str, FloatArray]) -> FloatArray:
+def _total_resistance(parts: Mapping[str, FloatArray]) -> FloatArray:
     return np.sum(np.broadcast_arrays(*parts.values()), axis=0)
 
 
-def _water(data: Mapping[str, Any]) -> dict[str, float]:
+def _water_properties(data: Mapping[str, Any]) -> dict[str, float]:
     """Density and viscosity of the water; the sea at 15 degC when not given."""
     given = data.get("water", {})
     return {
@@ -159,9 +163,9 @@ def _water(data: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
-def _named(**known: FloatArray) -> dict[str, FloatArray]:
+def _all_components(**known: FloatArray) -> dict[str, FloatArray]:
     zero = 0.0 * next(iter(known.values()))
-    return {name: known.get(name, zero) for name in COMPONENTS}
+    return {name: known.get(name, zero) for name in CALM_WATER_COMPONENTS}
 
 
 #: what a `HullForm` is made from
@@ -169,10 +173,10 @@ FORM_KEYS: Final = (
     *("length_waterline_m", "breadth_m", "draught_m", "displacement_m3"),
     *("midship_coefficient", "waterplane_coefficient", "lcb_percent"),
 )
-_END_KEYS = ("bulb_area_m2", "bulb_centre_height_m", "transom_area_m2", "appendage_area_m2")
+_APPENDAGE_KEYS = ("bulb_area_m2", "bulb_centre_height_m", "transom_area_m2", "appendage_area_m2")
 
 
-def form_of(hull: Hull) -> HullForm:
+def hull_form_of(hull: Hull) -> HullForm:
     """The hull as Holtrop's methods take it; all of `FORM_KEYS` must be known."""
     numbers = {key: float(hull.values[key]) for key in FORM_KEYS}
     return hull_form(
@@ -192,7 +196,7 @@ def stern_shape(hull: Hull) -> float:
     return STERN_SHAPES[given] if isinstance(given, str) else float(given)
 
 
-def _with_shape(hull: Hull, form: HullForm) -> Hull:
+def _with_estimated_shape(hull: Hull, form: HullForm) -> Hull:
     """The hull with what Holtrop takes for shapes that a ship file does not tell."""
     angle = float(half_angle_of_entrance(form))
     taken = [Estimate("half_entrance_angle_deg", angle, "Holtrop and Mennen (1982)")]
@@ -203,15 +207,15 @@ def _with_shape(hull: Hull, form: HullForm) -> Hull:
     return hull.with_estimates(*taken)
 
 
-def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> CalmWater:
+def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> CalmWaterResistance:
     name = "holtrop_mennen_1982" if year == 1982 else "holtrop_1984"
-    hull = estimated_or_error(hull, (*FORM_KEYS, *_END_KEYS), name, instead="another method")
-    form = form_of(hull)
+    hull = estimate_or_raise(hull, (*FORM_KEYS, *_APPENDAGE_KEYS), name, instead="another method")
+    form = hull_form_of(hull)
     if hull.number("wetted_surface_m2") is None:
         own = float(wetted_surface(form, bulb_area=float(hull.values["bulb_area_m2"])))
         hull = hull.with_estimates(Estimate("wetted_surface_m2", own, "Holtrop and Mennen (1982)"))
-    hull = _with_shape(hull, form)
-    ends = Extremities(
+    hull = _with_estimated_shape(hull, form)
+    ends = BulbTransomAppendages(
         bulb_area=float(hull.values["bulb_area_m2"]),
         bulb_centre_height=float(hull.values["bulb_centre_height_m"]),
         transom_area=float(hull.values["transom_area_m2"]),
@@ -221,7 +225,7 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
     )
     fore = float(hull.values["draught_fore_m"])
     angle = hull.number("half_entrance_angle_deg")
-    water = _water(data)
+    water = _water_properties(data)
     area_of_correlation = data.get("models", {}).get("correlation_area", "hull_and_appendages")
 
     def deep(
@@ -231,7 +235,7 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
             speed,
             form,
             year=year,
-            extremities=ends,
+            bulb_transom_appendages=ends,
             draught_fore=fore,
             wetted_surface_area=float(hull.values["wetted_surface_m2"]),
             entrance_angle_deg=angle,
@@ -240,7 +244,9 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
             correlation_area=area_of_correlation,
             **water,
         )
-        return _named(**{k: getattr(found, k) for k in COMPONENTS if k != "residuary"})
+        return _all_components(
+            **{k: getattr(found, k) for k in CALM_WATER_COMPONENTS if k != "residuary"}
+        )
 
     def notes(speed: FloatArray) -> list[RangeNote]:
         height = float(hull.values["bulb_centre_height_m"])
@@ -248,23 +254,23 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
             speed, form, year=year, draught_fore=fore, bulb_centre_height=height
         )
 
-    return CalmWater(name, hull, deep, notes)
+    return CalmWaterResistance(name, hull, deep, notes)
 
 
 _HOLLENBACH_KEYS = (
     *("length_between_perpendiculars_m", "length_waterline_m", "length_over_surface_m"),
     *("breadth_m", "draught_m", "block_coefficient", "propeller_diameter_m"),
 )
-_COUNTS = ("rudders", "brackets", "bosses", "thrusters")
+_APPENDAGE_COUNTS = ("rudders", "brackets", "bosses", "thrusters")
 
 
-def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWater:
+def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWaterResistance:
     name = f"hollenbach_1998_{line_of}"
     propulsion = data.get("propulsion", {})
     if "propeller_diameter_m" in propulsion:
         diameter = propulsion["propeller_diameter_m"]
         hull = Hull({**hull.values, "propeller_diameter_m": diameter}, hull.estimated)
-    hull = estimated_or_error(hull, _HOLLENBACH_KEYS, name, instead="another method")
+    hull = estimate_or_raise(hull, _HOLLENBACH_KEYS, name, instead="another method")
     variant, surface_of = _hollenbach_variant(hull, data, line_of)
     if data.get("loading", {}).get("condition") == "ballast" and variant != "single_ballast":
         why = "Hollenbach has a ballast line for the mean of single screws alone"
@@ -281,12 +287,12 @@ def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWater:
     }
     if propulsion.get("propellers", 1) >= 2:  # a single screw's lines do not ask for it
         hull = hull.with_estimates(Estimate("rudders", 1.0, "taken as one"))
-    counts = {key: hull.number(key) or 0.0 for key in _COUNTS}
+    counts = {key: hull.number(key) or 0.0 for key in _APPENDAGE_COUNTS}
     if hull.number("wetted_surface_m2") is None:
-        few = {key: counts[key] for key in _COUNTS if key != "thrusters"}
+        few = {key: counts[key] for key in _APPENDAGE_COUNTS if key != "thrusters"}
         area = float(hollenbach_wetted_surface(**sizes, **few, variant=surface_of))
         hull = hull.with_estimates(Estimate("wetted_surface_m2", area, "Hollenbach (1998)"))
-    area, water = float(hull.values["wetted_surface_m2"]), _water(data)
+    area, water = float(hull.values["wetted_surface_m2"]), _water_properties(data)
 
     def deep(
         speed: FloatArray, waves: FloatArray, line: FloatArray | None
@@ -295,13 +301,13 @@ def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWater:
         options["wetted_surface"] = area
         found = hollenbach_1998(speed, **options, friction_coefficient=line)
         making = found if waves is speed else hollenbach_1998(waves, **options)
-        return _named(friction=found.friction, residuary=making.residuary)
+        return _all_components(friction=found.friction, residuary=making.residuary)
 
     def notes(speed: FloatArray) -> list[RangeNote]:
         keys = ("length_between_perpendiculars", "length_over_surface", "block_coefficient")
         return hollenbach_validity(speed, **{key: sizes[key] for key in keys}, variant=variant)
 
-    return CalmWater(name, hull, deep, notes)
+    return CalmWaterResistance(name, hull, deep, notes)
 
 
 def _hollenbach_variant(hull: Hull, data: Mapping[str, Any], line_of: str) -> tuple[Any, Any]:
@@ -320,7 +326,9 @@ def _hollenbach_variant(hull: Hull, data: Mapping[str, Any], line_of: str) -> tu
     return f"{screws}_design", surface
 
 
-CALM_WATER: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], CalmWater]]] = MappingProxyType(
+CALM_WATER_METHODS: Final[
+    Mapping[str, Callable[[Hull, Mapping[str, Any]], CalmWaterResistance]]
+] = MappingProxyType(
     {
         "holtrop_mennen_1982": lambda hull, data: _holtrop(hull, data, 1982),
         "holtrop_1984": lambda hull, data: _holtrop(hull, data, 1984),
@@ -330,7 +338,7 @@ CALM_WATER: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], CalmWater]]] 
 )
 
 
-def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWater:
+def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWaterResistance:
     """Return the calm-water part chosen in a ship file.
 
     Raises
@@ -340,16 +348,18 @@ def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWater:
     """
     models = data.get("models", {})
     shallow, friction = models.get("shallow_water", "none"), models.get("friction", "ittc_1957")
-    if shallow not in SHALLOW_WATER:
-        raise unknown_name("shallow-water method", shallow, SHALLOW_WATER)
-    if friction not in FRICTION:
-        raise unknown_name("friction line", friction, FRICTION)
+    if shallow not in SHALLOW_WATER_METHODS:
+        raise unknown_name_error("shallow-water method", shallow, SHALLOW_WATER_METHODS)
+    if friction not in FRICTION_LINES:
+        raise unknown_name_error("friction line", friction, FRICTION_LINES)
     if shallow == "zeng_2019":
         shallow, friction = "none", "zeng_2019"
-    calm = CALM_WATER[models["calm_water"]](hull, data)
+    calm = CALM_WATER_METHODS[models["calm_water"]](hull, data)
     if shallow == "lackenby_1963":
         keys = ("midship_coefficient",)
-        hull = estimated_or_error(calm.hull, keys, shallow, instead="shallow_water: none")
-        calm = CalmWater(calm.method, hull, calm.deep, calm.notes_of)
-    viscosity = _water(data)["viscosity"]
-    return CalmWater(calm.method, calm.hull, calm.deep, calm.notes_of, shallow, friction, viscosity)
+        hull = estimate_or_raise(calm.hull, keys, shallow, instead="shallow_water: none")
+        calm = CalmWaterResistance(calm.method, hull, calm.deep, calm.validity_notes)
+    viscosity = _water_properties(data)["viscosity"]
+    return CalmWaterResistance(
+        calm.method, calm.hull, calm.deep, calm.validity_notes, shallow, friction, viscosity
+    )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.ship.methods.engine.fuel_properties import fuel_named
 from thalweg.ship.methods.engine.specific_consumption import (
-    G_KWH,
+    GRAM_PER_KILOWATT_HOUR,
     base_sfoc,
     fuel_rate,
     hotel_fuel_rate,
@@ -26,7 +26,7 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Plant:
+class EnginePlant:
     """Engines: how much power there is, and what it burns.
 
     Attributes
@@ -68,9 +68,9 @@ class Plant:
     def _engines(self, power: FloatArray) -> FloatArray:
         if self.curve[0]:
             load = power / (self.rating * self.count)
-            return power * np.interp(load, *self.curve) * G_KWH
+            return power * np.interp(load, *self.curve) * GRAM_PER_KILOWATT_HOUR
         if np.isinf(self.rating):
-            return power * self.sfoc * G_KWH
+            return power * self.sfoc * GRAM_PER_KILOWATT_HOUR
         if self.count == 1:
             return fuel_rate(power, self.rating, sfoc_g_kwh=self.sfoc)
         reachable = np.minimum(power, self.largest_power)
@@ -99,7 +99,7 @@ class Plant:
         ]
 
 
-def build_plant(data: Mapping[str, Any]) -> Plant:
+def build_engine_plant(data: Mapping[str, Any]) -> EnginePlant:
     """Return the engines of a ship file.
 
     Raises
@@ -131,10 +131,10 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
             "Correct engine.least_load or engine.largest_load.",
             key="engine.least_load",
         )
-    sfoc, guessed = _sfoc(data)
+    sfoc, guessed = _specific_consumption(data)
     if not curve and "turbine" in given.get("type", "").casefold():
         loads, curve = (0.0, 1.0), (sfoc, sfoc)  # the study lets theirs vary with nothing
-    return Plant(
+    return EnginePlant(
         rating=given.get("power_kw", float("inf")) * 1000.0,
         count=int(given.get("count", 1)),
         sfoc=sfoc,
@@ -146,7 +146,7 @@ def build_plant(data: Mapping[str, Any]) -> Plant:
     )
 
 
-def _sfoc(data: Mapping[str, Any]) -> tuple[float, tuple[Estimate, ...]]:
+def _specific_consumption(data: Mapping[str, Any]) -> tuple[float, tuple[Estimate, ...]]:
     given = data.get("engine", {})
     if "sfoc_g_per_kwh" in given:
         return float(given["sfoc_g_per_kwh"]), ()

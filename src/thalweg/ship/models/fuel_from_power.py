@@ -11,22 +11,22 @@ from numpy.typing import NDArray
 from thalweg.ship.model_protocol import Estimate
 
 FloatArray = NDArray[np.float64]
-Data = Mapping[str, Any]
+ShipData = Mapping[str, Any]
 HOTEL_SFOC: Final = 195.0  #: of auxiliary engines, when the ship file does not tell [g/kWh]
 
 
-def hotel_power(data: Data) -> float:
+def hotel_power(data: ShipData) -> float:
     """The hotel load [W]; 0 when the ship file states none."""
     return 1000.0 * float(data.get("engine", {}).get("hotel_load_kw", 0.0))
 
 
-def hotel_fuel(data: Data) -> float:
+def hotel_load_fuel_rate(data: ShipData) -> float:
     """Fuel rate of the hotel load [kg/s]; 0 when the ship file states none."""
     engine = data.get("engine", {})
     return hotel_power(data) * float(engine.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC)) / 3.6e9
 
 
-def fuel_of_power(data: Data) -> Callable[[FloatArray], FloatArray] | None:
+def fuel_rate_of_power(data: ShipData) -> Callable[[FloatArray], FloatArray] | None:
     """Return the fuel rate [kg/s] of a brake power [W], hotel load included.
 
     Parameters
@@ -45,23 +45,25 @@ def fuel_of_power(data: Data) -> Callable[[FloatArray], FloatArray] | None:
     if "fuel_t_per_day" in data.get("table", {}) or "reference_t_per_day" in data.get("fuel", {}):
         return None
     if "sfoc_g_per_kwh" in engine:
-        sfoc, hotel = float(engine["sfoc_g_per_kwh"]), hotel_fuel(data)
+        sfoc, hotel = float(engine["sfoc_g_per_kwh"]), hotel_load_fuel_rate(data)
         return lambda power: np.asarray(power * sfoc / 3.6e9 + hotel)
-    if _follows_load(engine):
-        from thalweg.ship.models.engine_plant import build_plant  # reads the methods of engines
+    if _consumption_follows_load(engine):
+        from thalweg.ship.models.engine_plant import (
+            build_engine_plant,  # reads the methods of engines
+        )
 
-        return build_plant(data).fuel
+        return build_engine_plant(data).fuel
     return None
 
 
-def fuel_estimates(data: Data) -> tuple[Estimate, ...]:
-    """What `fuel_of_power` estimated."""
-    if fuel_of_power(data) is None or "sfoc_g_per_kwh" in data["engine"]:
+def fuel_estimates(data: ShipData) -> tuple[Estimate, ...]:
+    """What `fuel_rate_of_power` estimated."""
+    if fuel_rate_of_power(data) is None or "sfoc_g_per_kwh" in data["engine"]:
         return ()
-    from thalweg.ship.models.engine_plant import build_plant
+    from thalweg.ship.models.engine_plant import build_engine_plant
 
-    return build_plant(data).estimated
+    return build_engine_plant(data).estimated
 
 
-def _follows_load(engine: Data) -> bool:
+def _consumption_follows_load(engine: ShipData) -> bool:
     return "type" in engine or "sfoc_curve_g_per_kwh" in engine

@@ -12,7 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.ship.condition_variables import AXIS_OF, BED_DEPTH, HEADING_DEPENDENT, needed_variables
+from thalweg.ship.condition_variables import (
+    AXIS_OF_CONDITION,
+    BED_DEPTH,
+    HEADING_DEPENDENT,
+    needed_variables,
+)
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
@@ -109,7 +114,7 @@ class FunctionModel:
     @property
     def identity(self) -> Mapping[str, object]:
         """What tells this function from others: its answers to a set of probes."""
-        values = _call(self.function, RecordingConditions())
+        values = _evaluate(self.function, RecordingConditions())
         return {
             "kind": "function",
             "reads": sorted(self.reads),
@@ -118,19 +123,19 @@ class FunctionModel:
         }
 
     @property
-    def is_field(self) -> bool:
+    def is_speed_field(self) -> bool:
         """Whether the speed depends on place, time or scalars instead of table axes."""
         return self.table is None
 
     @property
     def needs(self) -> frozenset[str]:
         """Sea variables needed; a field that reads depth needs the sea's own bed level."""
-        extra = {BED_DEPTH} if self.is_field and "depth" in self.reads else set()
+        extra = {BED_DEPTH} if self.is_speed_field and "depth" in self.reads else set()
         return needed_variables(self.reads) | extra
 
     def field(self, load_factor: float) -> Callable[..., FloatArray] | None:
         """Return ``f(sampled, time, lat, lon) -> speed [m/s]``, or None for a tabulated ship."""
-        if not self.is_field:
+        if not self.is_speed_field:
             return None
 
         def speed_field(
@@ -150,7 +155,7 @@ class FunctionModel:
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Speed through water [m/s]."""
         index = setting_index(setting, 1)
-        speed = _call(self.function, conditions)
+        speed = _evaluate(self.function, conditions)
         shape = np.broadcast_shapes(conditions.shape, index.shape)
         unknown = np.zeros(shape, bool)
         for name in self.reads & set(conditions):
@@ -184,7 +189,7 @@ class FunctionModel:
             raise InputError(
                 f"The speed function reads {', '.join(sorted(self.reads))}: it has no table.",
                 "It is sampled in place and time instead (ship.speed_field).",
-                "Read only conditions of a table: " + ", ".join(AXIS_OF) + ".",
+                "Read only conditions of a table: " + ", ".join(AXIS_OF_CONDITION) + ".",
             )
         part, error = self.table
         if error.p99 > tolerance or "load_factor" in self.reads:
@@ -218,24 +223,25 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
         )
     recorder = RecordingConditions()
     try:
-        _check_answer(np.asarray(function(recorder), float), recorder.shape)
+        _check_speed_values(np.asarray(function(recorder), float), recorder.shape)
         read_all = recorder.read
     except InputError:
         raise
     except (TypeError, ValueError) as problem:
         function, read_all = _elementwise(function, problem)
     reads = read_all - {"load_factor"}
-    if reads <= AXIS_OF.keys():
+    if reads <= AXIS_OF_CONDITION.keys():
         part, error = _tabulate(function, read_all, 1.0, 0.01)
-        top = top_speed if top_speed is not None else _greatest(function, read_all, part)
+        top = top_speed if top_speed is not None else _greatest_speed(function, read_all, part)
         return FunctionModel(function, read_all, top, (part, error))
     turning = reads & HEADING_DEPENDENT
     if turning:
-        others = ", ".join(sorted(reads - AXIS_OF.keys() - turning))
+        others = ", ".join(sorted(reads - AXIS_OF_CONDITION.keys() - turning))
         raise InputError(
             f"The speed function reads {', '.join(sorted(turning))}, which depends on the heading, "
             f"together with {others or 'no table axis'}.",
-            f"It may read either only conditions of a table ({', '.join(AXIS_OF)}), or only what "
+            f"It may read either only conditions of a table ({', '.join(AXIS_OF_CONDITION)}), "
+            "or only what "
             "does not depend on the heading (place, time, currents, plain sea variables).",
             "Split the world: put place and time into the sea, headings into the ship.",
             reads=sorted(reads),
@@ -250,7 +256,7 @@ def _elementwise(
     recorders = [RecordingConditions(row) for row in range(_PROBES)]
     try:
         for recorder in recorders:
-            _check_answer(np.asarray(function(recorder), float), ())
+            _check_speed_values(np.asarray(function(recorder), float), ())
     except (TypeError, ValueError):
         raise InputError(
             f"The speed function fails on plausible conditions: {problem}.",
@@ -271,14 +277,14 @@ def _elementwise(
     return elementwise, reads
 
 
-def _call(function: SpeedFunction, conditions: Conditions) -> FloatArray:
+def _evaluate(function: SpeedFunction, conditions: Conditions) -> FloatArray:
     with np.errstate(all="ignore"):
         speed = np.asarray(function(conditions), float)
-    _check_answer(speed, conditions.shape)
+    _check_speed_values(speed, conditions.shape)
     return speed
 
 
-def _check_answer(speed: FloatArray, shape: tuple[int, ...]) -> None:
+def _check_speed_values(speed: FloatArray, shape: tuple[int, ...]) -> None:
     try:
         fits = np.broadcast_shapes(speed.shape, shape) == shape
     except ValueError:
@@ -294,12 +300,12 @@ def _check_answer(speed: FloatArray, shape: tuple[int, ...]) -> None:
 def _tabulate(
     function: SpeedFunction, reads: frozenset[str], load_factor: float, tolerance: float
 ) -> tuple[TablePart, TableError]:
-    names = sorted(reads & AXIS_OF.keys(), key=AXIS_OF.__getitem__)
+    names = sorted(reads & AXIS_OF_CONDITION.keys(), key=AXIS_OF_CONDITION.__getitem__)
 
     def speeds(where: Mapping[str, FloatArray]) -> FloatArray:
         whole = dict(zip(where, np.broadcast_arrays(*where.values())))
         conditions = Conditions(whole, load_factor=load_factor)
-        speed = _call(function, conditions)
+        speed = _evaluate(function, conditions)
         return np.maximum(np.broadcast_to(speed, conditions.shape), 0.0)[..., None]
 
     if not names:
@@ -307,13 +313,13 @@ def _tabulate(
     return tabulate_dense(speeds, [DEFAULT_AXES[n] for n in names], tolerance=tolerance)
 
 
-def _greatest(function: SpeedFunction, reads: frozenset[str], part: TablePart) -> float:
+def _greatest_speed(function: SpeedFunction, reads: frozenset[str], part: TablePart) -> float:
     """Greatest speed over the table's nodes and random conditions between them [m/s]."""
     top = float(np.nanmax(part.values, initial=0.0))
-    axes = [DEFAULT_AXES[n] for n in sorted(reads & AXIS_OF.keys())]
+    axes = [DEFAULT_AXES[n] for n in sorted(reads & AXIS_OF_CONDITION.keys())]
     if axes:
         draws: dict[str, Any] = random_conditions(axes, 20_000, 1)
-        between_nodes = _call(function, Conditions(draws, load_factor=1.0))
+        between_nodes = _evaluate(function, Conditions(draws, load_factor=1.0))
         top = max(top, float(np.nanmax(between_nodes, initial=0.0)))
     if not top > 0.0:
         raise InputError(

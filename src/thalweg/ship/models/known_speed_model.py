@@ -12,19 +12,19 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.loading_state import Loading, between
-from thalweg.ship.methods.speed_loss import ShipType, Sign, kwon_notes, kwon_speed_loss
+from thalweg.ship.loading_state import Loading, interpolate_loading
+from thalweg.ship.methods.speed_loss import LastTermSign, ShipType, kwon_notes, kwon_speed_loss
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
-from thalweg.ship.models.squat_model import Squat
+from thalweg.ship.models.squat_model import SquatModel
 from thalweg.ship.tables.performance_table import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, Axis, constant_part, tabulate_dense
+from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_dense
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class KwonLoss:
+class KwonSpeedLoss:
     """Kwon's speed loss with a ship's particulars bound (see `kwon_speed_loss`).
 
     Attributes
@@ -41,7 +41,7 @@ class KwonLoss:
     length: float
     block_coefficient: float
     loading: Loading
-    sign: Sign = "plus"
+    sign: LastTermSign = "plus"
     ship_type: ShipType = "other"
     classes: bool = False
 
@@ -71,13 +71,13 @@ class KwonLoss:
 
 
 @dataclass(frozen=True, eq=False)
-class Law:
+class SpeedPowerLaw:
     """How power and fuel follow the speed.
 
     Attributes
     ----------
     name : {"none", "cubic", "table"}
-    burn : callable, optional
+    power_to_fuel_rate : callable, optional
         Fuel rate [kg/s] of a power [W], where fuel follows from power and not from the speed.
     rows : tuple of ndarray, optional
         Speeds full and empty, fuel rates and powers that the settings were taken from; those of the
@@ -85,12 +85,12 @@ class Law:
     """
 
     name: str = "none"
-    burn: Callable[[FloatArray], FloatArray] | None = None
+    power_to_fuel_rate: Callable[[FloatArray], FloatArray] | None = None
     rows: tuple[FloatArray, FloatArray, FloatArray, FloatArray] | None = None
 
 
 @dataclass(frozen=True, eq=False)
-class NominalModel:
+class KnownSpeedModel:
     """A ship whose engine settings have known calm-water speeds.
 
     At a setting the engine keeps its power and fuel rate; weather takes speed.
@@ -113,9 +113,9 @@ class NominalModel:
     speeds_empty: FloatArray
     fuel_rates: FloatArray
     powers: FloatArray
-    law: Law = field(default_factory=Law)
-    loss: KwonLoss | None = None
-    squat: Squat | None = None
+    law: SpeedPowerLaw = field(default_factory=SpeedPowerLaw)
+    loss: KwonSpeedLoss | None = None
+    squat: SquatModel | None = None
 
     @property
     def reads(self) -> frozenset[str]:
@@ -138,13 +138,13 @@ class NominalModel:
 
     def speeds(self, load_factor: float) -> FloatArray:
         """Calm-water speeds at a load factor [m/s]."""
-        return between(self.speeds_empty, self.speeds_full, load_factor)
+        return interpolate_loading(self.speeds_empty, self.speeds_full, load_factor)
 
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Speed through water [m/s]."""
         index = setting_index(setting, len(self.speeds_full))
         load_factor = conditions.load_factor
-        calm = between(self.speeds_empty[index], self.speeds_full[index], load_factor)
+        calm = interpolate_loading(self.speeds_empty[index], self.speeds_full[index], load_factor)
         if self.loss is not None:
             calm = calm * (1.0 - self.loss.share(conditions, calm))
         if self.squat is not None:
@@ -178,10 +178,10 @@ class NominalModel:
             conditions = Conditions(columns, load_factor=load_factor)
             return self.speed_through_water(conditions, np.arange(count))
 
-        axes: list[Axis] = []
+        axes: list[AxisRange] = []
         if self.loss is not None:
             size = 257 if self.squat is None else 65
-            axes += [replace(DEFAULT_AXES["wind_speed"], size=size), angle_axis(self.loss)]
+            axes += [replace(DEFAULT_AXES["wind_speed"], size=size), wind_angle_axis(self.loss)]
         if self.squat is not None:
             axes.append(_depth_axis(self.squat, load_factor, 1025 if self.loss is None else 257))
         part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
@@ -203,7 +203,7 @@ class NominalModel:
         """Where the speed loss is used outside its range."""
         return [] if self.loss is None else self.loss.notes(conditions)
 
-    def with_speeds(self, speeds: FloatArray, load_factor: float) -> NominalModel:
+    def with_speeds(self, speeds: FloatArray, load_factor: float) -> KnownSpeedModel:
         """Return the model with other settings, given by calm-water speed [m/s] at a load factor.
 
         Raises
@@ -215,29 +215,33 @@ class NominalModel:
             *(self.speeds_full, self.speeds_empty),
             *(self.fuel_rates, self.powers),
         )
-        own, name = between(rows[1], rows[0], load_factor), self.law.name
+        own, name = interpolate_loading(rows[1], rows[0], load_factor), self.law.name
         low, high = (own[0], own[-1]) if name == "table" else (0.0, np.inf)
         if name == "none":
             high = own[-1] if len(own) > 1 else np.inf
         possible = np.isfinite(speeds) & (speeds > 0)
         if not (possible & (speeds >= low * (1 - 1e-9)) & (speeds <= high * (1 + 1e-9))).all():
-            raise _speed_out_of_range(speeds, low, high)
+            raise _speed_out_of_range_error(speeds, low, high)
         full, empty = (np.interp(speeds, own, column) for column in rows[:2])
         if name != "table":  # beyond the settings both grow as the speed does
             beyond = speeds / np.clip(speeds, own[0], own[-1])
             full, empty = full * beyond, empty * beyond
-        fuel, power = (_follow(name, rows[0], column, full) for column in rows[2:])
+        fuel, power = (_values_by_law(name, rows[0], column, full) for column in rows[2:])
         return replace(
             self,
             speeds_full=full,
             speeds_empty=empty,
-            fuel_rates=fuel if self.law.burn is None else self.law.burn(power),
+            fuel_rates=fuel
+            if self.law.power_to_fuel_rate is None
+            else self.law.power_to_fuel_rate(power),
             powers=power,
             law=replace(self.law, rows=rows),
         )
 
 
-def _follow(law: str, speeds: FloatArray, values: FloatArray, wanted: FloatArray) -> FloatArray:
+def _values_by_law(
+    law: str, speeds: FloatArray, values: FloatArray, wanted: FloatArray
+) -> FloatArray:
     """Fuel rates or powers at other full speeds, by a law."""
     if law == "cubic":
         return np.asarray(values[-1] * (wanted / speeds[-1]) ** 3)
@@ -271,7 +275,7 @@ def cubic_law(speed: ArrayLike, *, reference_speed: float, reference_value: floa
     return reference_value * (np.asarray(speed, float) / reference_speed) ** 3
 
 
-def check_rising(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
+def check_table_rises(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
     """Refuse a table whose speeds repeat, or whose power or fuel falls while the speed rises.
 
     Raises
@@ -298,23 +302,23 @@ def check_rising(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
             )
 
 
-def angle_axis(loss: KwonLoss) -> Axis:
+def wind_angle_axis(loss: KwonSpeedLoss) -> AxisRange:
     """Wind angle in steps of 15 degrees, on which the continuous loss is exact."""
-    return Axis(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 13, fixed=not loss.classes)
+    return AxisRange(codes.AXIS_WIND_ANGLE, 0.0, np.pi, 13, fixed=not loss.classes)
 
 
-def _depth_axis(squat: Squat, load_factor: float, size: int) -> Axis:
+def _depth_axis(squat: SquatModel, load_factor: float, size: int) -> AxisRange:
     """Depth from where the ship has no water for any speed, to twelve draughts."""
     draught = float(squat.loading.draught_at(load_factor))
     low = draught + squat.clearance
-    return Axis(codes.AXIS_DEPTH, low, max(12.0 * draught, low + 60.0), size)
+    return AxisRange(codes.AXIS_DEPTH, low, max(12.0 * draught, low + 60.0), size)
 
 
 def _shape(conditions: Conditions, index: NDArray[np.intp]) -> tuple[int, ...]:
     return np.broadcast_shapes(conditions.shape, index.shape)
 
 
-def _speed_out_of_range(speeds: FloatArray, low: float, high: float) -> InputError:
+def _speed_out_of_range_error(speeds: FloatArray, low: float, high: float) -> InputError:
     knot = 1852.0 / 3600.0
     listed = ", ".join(f"{s / knot:g}" for s in speeds)
     upper = f"{high / knot:g}" if np.isfinite(high) else "any"

@@ -13,21 +13,21 @@ from thalweg.core.units import GRAVITY
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate
-from thalweg.ship.models.engine_plant import Plant
-from thalweg.ship.models.force_balance import Balance
-from thalweg.ship.models.known_speed_model import KwonLoss, angle_axis
-from thalweg.ship.models.resistance_model import ResistanceModel, Tabulated
+from thalweg.ship.models.engine_plant import EnginePlant
+from thalweg.ship.models.force_balance import ForceBalance
+from thalweg.ship.models.known_speed_model import KwonSpeedLoss, wind_angle_axis
+from thalweg.ship.models.resistance_model import ResistanceModel, TabulatedModel
 from thalweg.ship.tables.performance_table import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, Axis, tabulate_dense
-from thalweg.ship.tables.tabulate_resistance import axes_of
+from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, tabulate_dense
+from thalweg.ship.tables.tabulate_resistance import condition_axes
 
 FloatArray = NDArray[np.float64]
-_FASTEST: Final = 0.4  #: Froude number of the fastest calm speed looked at
-_WIND: Final = ("wind_speed", "wind_angle")
+_LARGEST_FROUDE_NUMBER: Final = 0.4  #: Froude number of the fastest calm speed looked at
+_WIND_CONDITIONS: Final = ("wind_speed", "wind_angle")
 
 
 @dataclass(frozen=True, eq=False)
-class KwonOnResistance:
+class KwonResistanceModel:
     """Speed and power from the resistance in calm water; weather takes a share of the speed.
 
     A setting keeps its power: that of its calm-water speed at the depth there is.
@@ -40,12 +40,12 @@ class KwonOnResistance:
     """
 
     base: ResistanceModel
-    loss: KwonLoss
+    loss: KwonSpeedLoss
 
     @property
     def reads(self) -> frozenset[str]:
         """Conditions read."""
-        return self.base.reads | set(_WIND)
+        return self.base.reads | set(_WIND_CONDITIONS)
 
     @property
     def identity(self) -> Mapping[str, object]:
@@ -58,16 +58,16 @@ class KwonOnResistance:
         return self.base.estimated
 
     @property
-    def feels_crab(self) -> bool:
+    def depends_on_crab_angle(self) -> bool:
         """Whether the rudder drags where the heading is not the course."""
-        return self.base.feels_crab
+        return self.base.depends_on_crab_angle
 
     @property
-    def plant(self) -> Plant:
+    def plant(self) -> EnginePlant:
         """The engines."""
         return self.base.plant
 
-    def balance(self, load_factor: float) -> Balance:
+    def balance(self, load_factor: float) -> ForceBalance:
         """Forces in calm water at a load factor."""
         return self.base.balance(load_factor)
 
@@ -110,7 +110,7 @@ class KwonOnResistance:
         shape = np.broadcast_shapes(conditions.shape, np.shape(attained))
         wanted = np.broadcast_to(np.asarray(attained, float), shape)
         low = np.array(wanted)
-        high = np.maximum(low, _FASTEST * np.sqrt(GRAVITY * self.loss.length))
+        high = np.maximum(low, _LARGEST_FROUDE_NUMBER * np.sqrt(GRAVITY * self.loss.length))
         reached = high * (1.0 - self.loss.share(conditions, high)) >= wanted
         for _ in range(50):
             middle = 0.5 * (low + high)
@@ -135,18 +135,21 @@ class KwonOnResistance:
 
         deep = "depth" in self.base.reads
         size = 129 if deep else 257
-        axes: list[Axis] = [replace(DEFAULT_AXES["wind_speed"], size=size), angle_axis(self.loss)]
+        axes: list[AxisRange] = [
+            replace(DEFAULT_AXES["wind_speed"], size=size),
+            wind_angle_axis(self.loss),
+        ]
         if deep:
-            depth = axes_of(self.base.balance(load_factor), self.base.limits)["depth"]
+            depth = condition_axes(self.base.balance(load_factor), self.base.limits)["depth"]
             axes.append(replace(depth, size=65))
         part, error = tabulate_dense(speeds, axes, tolerance=tolerance)
         return (part,), error
 
-    def tabulate_fuel(self, load_factor: float, tolerance: float) -> Tabulated:
+    def tabulate_fuel(self, load_factor: float, tolerance: float) -> TabulatedModel:
         """As in calm water; where the engines are at full power the depth alone decides."""
         return self.base.tabulate_fuel(load_factor, tolerance)
 
-    def tabulate_power(self, load_factor: float, tolerance: float) -> Tabulated:
+    def tabulate_power(self, load_factor: float, tolerance: float) -> TabulatedModel:
         """As in calm water, like the fuel."""
         return self.base.tabulate_power(load_factor, tolerance)
 
@@ -154,6 +157,6 @@ class KwonOnResistance:
         """Where methods are used outside their ranges."""
         return [*self.base.notes(conditions, setting), *self.loss.notes(conditions)]
 
-    def with_speeds(self, speeds: FloatArray, load_factor: float) -> KwonOnResistance:
+    def with_speeds(self, speeds: FloatArray, load_factor: float) -> KwonResistanceModel:
         """Return the model with other settings, given by calm-water speeds [m/s]."""
         return replace(self, base=self.base.with_speeds(speeds, load_factor))

@@ -10,9 +10,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.ship.hull.hull import Hull
-from thalweg.ship.hull.hull_estimates import estimated_or_error
+from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.propulsion.b_series import Propeller, b_series_validity
 from thalweg.ship.methods.propulsion.propulsion_factors import (
     Efficiencies,
@@ -30,13 +30,13 @@ from thalweg.ship.methods.resistance.friction_lines import ittc_1957, reynolds_n
 from thalweg.ship.methods.resistance.holtrop_form import HullForm, form_factor_1984
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate
-from thalweg.ship.models.calm_water_model import FORM_KEYS, form_of, stern_shape
+from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of, stern_shape
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Propulsion:
+class PropulsionModel:
     """What turns resistance into brake power.
 
     Attributes
@@ -55,8 +55,8 @@ class Propulsion:
     notes: tuple[RangeNote, ...] = ()
 
 
-def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
-    idle = set_aside(given)
+def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> PropulsionModel:
+    idle = unused_efficiencies(given)
     known = {key: value for key, value in given.items() if key not in idle}
     if "propulsive_efficiency" in known:
         known |= {"relative_rotative_efficiency": 1.0, "hull_efficiency": 1.0}
@@ -83,14 +83,18 @@ def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
     def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
         return constant_efficiency_power(speed, resistance, efficiencies=chain)
 
-    return Propulsion("efficiencies", power, guessed)
+    return PropulsionModel("efficiencies", power, guessed)
 
 
-_INTERACTION: Final = ("wake_fraction", "thrust_deduction")
-_PARTS: Final = ("open_water_efficiency", "relative_rotative_efficiency", "hull_efficiency")
+_HULL_INTERACTION_KEYS: Final = ("wake_fraction", "thrust_deduction")
+_EFFICIENCY_KEYS: Final = (
+    "open_water_efficiency",
+    "relative_rotative_efficiency",
+    "hull_efficiency",
+)
 
 
-def set_aside(given: Mapping[str, Any], method: str = "efficiencies") -> tuple[str, ...]:
+def unused_efficiencies(given: Mapping[str, Any], method: str = "efficiencies") -> tuple[str, ...]:
     """Return the efficiencies under 'propulsion' that others make needless.
 
     All in one (``propulsive_efficiency``) goes before its parts, a hull efficiency before wake and
@@ -100,13 +104,13 @@ def set_aside(given: Mapping[str, Any], method: str = "efficiencies") -> tuple[s
     if method == "wageningen_b":
         idle = ("open_water_efficiency", "hull_efficiency", "propulsive_efficiency")
     elif "propulsive_efficiency" in given:
-        idle = (*_PARTS, *_INTERACTION)
-    elif "hull_efficiency" in given or not given.keys() >= {*_INTERACTION}:
-        idle = _INTERACTION
+        idle = (*_EFFICIENCY_KEYS, *_HULL_INTERACTION_KEYS)
+    elif "hull_efficiency" in given or not given.keys() >= {*_HULL_INTERACTION_KEYS}:
+        idle = _HULL_INTERACTION_KEYS
     return tuple(key for key in idle if key in given)
 
 
-def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
+def _b_series(hull: Hull, given: Mapping[str, Any]) -> PropulsionModel:
     keys = (
         *("propeller_diameter_m", "propeller_pitch_ratio"),
         *("propeller_area_ratio", "propeller_blades"),
@@ -127,10 +131,10 @@ def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
     )
     count = int(given.get("propellers", 1))
     wanted = (*FORM_KEYS, "wetted_surface_m2")
-    hull = estimated_or_error(hull, wanted, "wageningen_b", instead="propulsion: efficiencies")
-    form = form_of(hull)
-    factors, guessed = _interaction(hull, form, given, screw, count)
-    losses, lost = _losses(given)
+    hull = estimate_or_raise(hull, wanted, "wageningen_b", instead="propulsion: efficiencies")
+    form = hull_form_of(hull)
+    factors, guessed = _hull_propeller_interaction(hull, form, given, screw, count)
+    losses, lost = _transmission_losses(given)
 
     def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:
         wake, deduction, rotative = factors(speed)
@@ -147,10 +151,10 @@ def _b_series(hull: Hull, given: Mapping[str, Any]) -> Propulsion:
         return state.brake_power
 
     notes = tuple(b_series_validity(screw))
-    return Propulsion("wageningen_b", power, (*guessed, *lost), notes)
+    return PropulsionModel("wageningen_b", power, (*guessed, *lost), notes)
 
 
-def _losses(given: Mapping[str, Any]) -> tuple[dict[str, float], tuple[Estimate, ...]]:
+def _transmission_losses(given: Mapping[str, Any]) -> tuple[dict[str, float], tuple[Estimate, ...]]:
     usual = {"shaft_efficiency": 0.98, "gear_efficiency": 1.0}
     guessed = tuple(
         Estimate(key, value, "usual value") for key, value in usual.items() if key not in given
@@ -158,7 +162,7 @@ def _losses(given: Mapping[str, Any]) -> tuple[dict[str, float], tuple[Estimate,
     return {key: float(given.get(key, value)) for key, value in usual.items()}, guessed
 
 
-def _interaction(
+def _hull_propeller_interaction(
     hull: Hull, form: HullForm, given: Mapping[str, Any], screw: Propeller, count: int
 ) -> tuple[Callable[[FloatArray], tuple[FloatArray, float, float]], tuple[Estimate, ...]]:
     """Wake fraction by speed, thrust deduction and relative rotative efficiency."""
@@ -217,12 +221,12 @@ def _wake(
     return wake
 
 
-PROPULSION: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], Propulsion]]] = MappingProxyType(
-    {"efficiencies": _efficiencies, "wageningen_b": _b_series}
+PROPULSION_METHODS: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], PropulsionModel]]] = (
+    MappingProxyType({"efficiencies": _efficiencies, "wageningen_b": _b_series})
 )
 
 
-def build_propulsion(data: Mapping[str, Any], hull: Hull) -> Propulsion:
+def build_propulsion(data: Mapping[str, Any], hull: Hull) -> PropulsionModel:
     """Return the propulsion chosen in a ship file; constant efficiencies when none is named.
 
     ``engine.sea_margin_percent`` raises the power of every speed by that much.
@@ -233,14 +237,14 @@ def build_propulsion(data: Mapping[str, Any], hull: Hull) -> Propulsion:
     """
     given = data.get("propulsion", {})
     name = data.get("models", {}).get("propulsion", "efficiencies")
-    if name not in PROPULSION:
-        raise unknown_name("propulsion method", name, PROPULSION)
-    chain = PROPULSION[name](hull, given)
+    if name not in PROPULSION_METHODS:
+        raise unknown_name_error("propulsion method", name, PROPULSION_METHODS)
+    chain = PROPULSION_METHODS[name](hull, given)
     margin = data.get("engine", {}).get("sea_margin_percent", 0.0)
-    return _with_margin(chain, 1.0 + margin / 100.0) if margin > 0.0 else chain
+    return _with_sea_margin(chain, 1.0 + margin / 100.0) if margin > 0.0 else chain
 
 
-def _with_margin(chain: Propulsion, factor: float) -> Propulsion:
+def _with_sea_margin(chain: PropulsionModel, factor: float) -> PropulsionModel:
     """The propulsion with a sea margin on its power."""
 
     def power(speed: FloatArray, resistance: FloatArray) -> FloatArray:

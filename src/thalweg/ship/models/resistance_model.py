@@ -13,21 +13,28 @@ from thalweg.core.errors import InputError
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate, setting_index
-from thalweg.ship.models.engine_plant import Plant
-from thalweg.ship.models.force_balance import CALM, Balance, Flat, flat_calm
+from thalweg.ship.models.engine_plant import EnginePlant
+from thalweg.ship.models.force_balance import (
+    CALM_CONDITIONS,
+    FlatConditions,
+    ForceBalance,
+    calm_conditions,
+)
 from thalweg.ship.ship_limits import ShipLimits
-from thalweg.ship.tables.output_curve import Finish
+from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import TableError, TablePart
-from thalweg.ship.tables.table_cache import Kept, kept_table
+from thalweg.ship.tables.table_cache import TableWithMaxima, cached_table
 
 FloatArray = NDArray[np.float64]
 #: parts, their error, and what follows their sum
-Tabulated: TypeAlias = tuple[tuple[TablePart, ...], TableError, Finish | None]
-FASTEST: Final = 1.25  #: weather never takes a ship beyond this many times its calm-water speed
+TabulatedModel: TypeAlias = tuple[tuple[TablePart, ...], TableError, OutputCurve | None]
+LARGEST_SPEED_FACTOR: Final = (
+    1.25  #: weather never takes a ship beyond this many times its calm-water speed
+)
 
 
 @dataclass(frozen=True)
-class Orders:
+class EngineOrders:
     """What the bridge can order.
 
     Attributes
@@ -49,7 +56,7 @@ class ResistanceModel:
     Attributes
     ----------
     balance_at : callable
-        `Balance` at a load factor.
+        `ForceBalance` at a load factor.
     plant : Plant
     orders : Orders
     facts : mapping
@@ -58,9 +65,9 @@ class ResistanceModel:
         Tables end there.
     """
 
-    balance_at: Callable[[float], Balance]
-    plant: Plant
-    orders: Orders
+    balance_at: Callable[[float], ForceBalance]
+    plant: EnginePlant
+    orders: EngineOrders
     facts: Mapping[str, Any]
     limits: ShipLimits = field(default_factory=ShipLimits)
     _kept: dict[Any, Any] = field(default_factory=dict, repr=False)
@@ -71,7 +78,7 @@ class ResistanceModel:
         return self.balance(1.0).reads
 
     @property
-    def feels_crab(self) -> bool:
+    def depends_on_crab_angle(self) -> bool:
         """Whether the rudder drags where the heading is not the course."""
         return self.balance(1.0).rudder_area > 0.0
 
@@ -94,12 +101,12 @@ class ResistanceModel:
         found += [*balance.propulsion.estimated, *self.plant.estimated]
         return tuple({e.key: e for e in reversed(found)}.values())[::-1]
 
-    def balance(self, load_factor: float) -> Balance:
+    def balance(self, load_factor: float) -> ForceBalance:
         """Forces and power at a load factor."""
         key = ("balance", float(load_factor))
         if key not in self._kept:
             self._kept[key] = self.balance_at(float(load_factor))
-        found: Balance = self._kept[key]
+        found: ForceBalance = self._kept[key]
         return found
 
     def speeds(self, load_factor: float) -> FloatArray:
@@ -137,18 +144,24 @@ class ResistanceModel:
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
         """Brake power [W] at speeds through water [m/s], whatever the engine can."""
 
-        def power(balance: Balance, at: Flat, speeds: FloatArray, lf: float) -> FloatArray:
+        def power(
+            balance: ForceBalance, at: FlatConditions, speeds: FloatArray, lf: float
+        ) -> FloatArray:
             return balance.brake_power(at, speeds)
 
         return self._by_loading(conditions, np.asarray(speed, float), power)
 
     def resistance(self, conditions: Conditions, speed: ArrayLike) -> dict[str, FloatArray]:
-        """Resistance by component [N] at speeds through water [m/s]; see `Balance.components`."""
-        names = list(self.balance(1.0).components(flat_calm(1), np.ones(1)))
+        """Resistance by component [N] at speeds through water [m/s]; see
+        `ForceBalance.components`.
+        """
+        names = list(self.balance(1.0).components(calm_conditions(1), np.ones(1)))
         columns = []
         for name in names:
 
-            def one(b: Balance, at: Flat, v: FloatArray, lf: float, n: str = name) -> FloatArray:
+            def one(
+                b: ForceBalance, at: FlatConditions, v: FloatArray, lf: float, n: str = name
+            ) -> FloatArray:
                 return np.broadcast_to(b.components(at, v)[n], v.shape)
 
             columns.append(self._by_loading(conditions, np.asarray(speed, float), one))
@@ -158,7 +171,7 @@ class ResistanceModel:
         """Greatest speed over the table and over random conditions [m/s]."""
         return float(self._table(load_factor, 0.01)[1][setting])
 
-    def tabulate(self, load_factor: float, tolerance: float) -> Tabulated:
+    def tabulate(self, load_factor: float, tolerance: float) -> TabulatedModel:
         """Tabulate the speed; see `thalweg.ship.tables.tabulate_resistance`.
 
         Raises
@@ -169,21 +182,21 @@ class ResistanceModel:
         table, _ = self._table(load_factor, tolerance)
         return table.parts, table.error, table.finish
 
-    def tabulate_fuel(self, load_factor: float, tolerance: float) -> Tabulated:
+    def tabulate_fuel(self, load_factor: float, tolerance: float) -> TabulatedModel:
         """Tabulate the fuel rate [kg/s]; see `thalweg.ship.tables.tabulate_fuel`."""
         from thalweg.ship.tables.tabulate_fuel import tabulate_fuel_of_balance
 
         table, _ = self._stored("fuel", load_factor, tolerance, tabulate_fuel_of_balance)
         return table.parts, table.error, table.finish
 
-    def tabulate_power(self, load_factor: float, tolerance: float) -> Tabulated:
+    def tabulate_power(self, load_factor: float, tolerance: float) -> TabulatedModel:
         """Tabulate the brake power [W]; see `thalweg.ship.tables.tabulate_fuel`."""
         from thalweg.ship.tables.tabulate_fuel import tabulate_power_of_balance
 
         table, _ = self._stored("power", load_factor, tolerance, tabulate_power_of_balance)
         return table.parts, table.error, table.finish
 
-    def _table(self, load_factor: float, tolerance: float) -> Kept:
+    def _table(self, load_factor: float, tolerance: float) -> TableWithMaxima:
         """The table of speeds and the greatest speeds."""
         from thalweg.ship.tables.tabulate_resistance import tabulate_balance
 
@@ -194,16 +207,16 @@ class ResistanceModel:
         what: str,
         load_factor: float,
         tolerance: float,
-        build: Callable[[ResistanceModel, float, float], Kept],
-    ) -> Kept:
+        build: Callable[[ResistanceModel, float, float], TableWithMaxima],
+    ) -> TableWithMaxima:
         """A table from this object, from disk or built."""
         key = (what, float(load_factor), float(tolerance))
         if key not in self._kept:
             facts = [self.identity, repr(self.limits), key]
-            self._kept[key] = kept_table(
+            self._kept[key] = cached_table(
                 facts, lambda: build(self, float(load_factor), float(tolerance))
             )
-        found: Kept = self._kept[key]
+        found: TableWithMaxima = self._kept[key]
         return found
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
@@ -211,7 +224,7 @@ class ResistanceModel:
         index = setting_index(setting, len(self.orders.values))
         found: list[RangeNote] = []
 
-        def note(b: Balance, at: Flat, which: FloatArray, lf: float) -> FloatArray:
+        def note(b: ForceBalance, at: FlatConditions, which: FloatArray, lf: float) -> FloatArray:
             speed = self.speed_of(b, at, which, lf)
             found.extend([*b.notes(at, speed), *self.plant.notes(b.brake_power(at, speed))])
             return speed
@@ -227,30 +240,32 @@ class ResistanceModel:
         InputError
             If the engine cannot reach a speed in calm water, or it is not positive.
         """
-        flat = flat_calm(len(speeds))
+        flat = calm_conditions(len(speeds))
         balance = self.balance(load_factor)
         possible = np.isfinite(speeds) & (speeds > 0.0)
         power = balance.brake_power(flat, np.where(possible, speeds, 1.0))
         limit = self.plant.largest_power
         if not (possible & (power <= limit * (1 + 1e-6))).all():
-            raise _unreachable(speeds, power, limit)
+            raise _unreachable_speed_error(speeds, power, limit)
         values = power if self.orders.kind == "power" else speeds
-        orders = Orders(self.orders.kind, tuple(float(v) for v in values))
+        orders = EngineOrders(self.orders.kind, tuple(float(v) for v in values))
         return replace(self, orders=orders, _kept={})
 
     def _calm_speeds(self, load_factor: float, powers: FloatArray) -> FloatArray:
-        balance, flat = self.balance(load_factor), flat_calm(len(powers))
+        balance, flat = self.balance(load_factor), calm_conditions(len(powers))
         length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
         highest = np.full(len(powers), 0.6 * np.sqrt(9.80665 * length))
         return balance.speed_at_power(flat, powers, highest)
 
-    def speed_of(self, balance: Balance, at: Flat, which: FloatArray, lf: float) -> FloatArray:
+    def speed_of(
+        self, balance: ForceBalance, at: FlatConditions, which: FloatArray, lf: float
+    ) -> FloatArray:
         """Speed [m/s] in flat conditions, at settings and a load factor."""
         index = which.astype(np.intp)
         calm = self.speeds(lf)[index]
         if self.orders.kind == "power":
             powers = np.array(self.orders.values)[index]
-            return balance.speed_at_power(at, powers, FASTEST * calm)
+            return balance.speed_at_power(at, powers, LARGEST_SPEED_FACTOR * calm)
         if np.isinf(self.plant.largest_power):
             return np.where(np.isnan(balance.resistance(at, calm)), np.nan, calm)
         asked = balance.brake_power(at, calm)
@@ -261,7 +276,9 @@ class ResistanceModel:
         speed[weak] = balance.speed_at_power(here, limit, calm[weak])
         return speed
 
-    def power_of(self, balance: Balance, at: Flat, which: FloatArray, lf: float) -> FloatArray:
+    def power_of(
+        self, balance: ForceBalance, at: FlatConditions, which: FloatArray, lf: float
+    ) -> FloatArray:
         """Brake power [W] in flat conditions; no more than ordered where weather stops the ship."""
         power = balance.brake_power(at, self.speed_of(balance, at, which, lf))
         ordered: FloatArray = np.asarray(self.plant.largest_power)
@@ -273,12 +290,12 @@ class ResistanceModel:
         self,
         conditions: Conditions,
         which: NDArray[Any],
-        function: Callable[[Balance, Flat, FloatArray, float], FloatArray],
+        function: Callable[[ForceBalance, FlatConditions, FloatArray, float], FloatArray],
     ) -> FloatArray:
         """Apply a function of flat conditions, once for every load factor there is."""
         shape = np.broadcast_shapes(conditions.shape, which.shape)
         names = [n for n in (*self.reads, "crab_angle") if n in self.reads or n in conditions]
-        at = {name: np.full(int(np.prod(shape)), value) for name, value in CALM.items()}
+        at = {name: np.full(int(np.prod(shape)), value) for name, value in CALM_CONDITIONS.items()}
         at |= {name: np.broadcast_to(conditions[name], shape).ravel() for name in names}
         chosen = np.broadcast_to(which, shape).ravel().astype(float)
         load = np.broadcast_to(conditions.load_factor, shape).ravel()
@@ -291,7 +308,7 @@ class ResistanceModel:
         return result.reshape(shape)
 
 
-def _unreachable(speeds: FloatArray, power: FloatArray, limit: float) -> InputError:
+def _unreachable_speed_error(speeds: FloatArray, power: FloatArray, limit: float) -> InputError:
     knots = ", ".join(f"{s / 0.514444:.4g}" for s in speeds)
     needed = ", ".join(f"{p / 1000:.0f}" for p in power)
     return InputError(

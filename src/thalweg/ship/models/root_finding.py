@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 #: given values and the indices they belong to, returns the function's values
-Indexed = Callable[[FloatArray, NDArray[np.intp]], FloatArray]
+IndexedFunction = Callable[[FloatArray, NDArray[np.intp]], FloatArray]
 
 
 def bracketed_root(
-    function: Indexed,
+    function: IndexedFunction,
     low: FloatArray,
     high: FloatArray,
     *,

@@ -11,55 +11,63 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.kernels.leg import wave_limits as places
-from thalweg.ship.hull.hull import Hull, require
+from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.methods.seakeeping.motion_sickness import MIXED_ADULTS, weighted_acceleration
+from thalweg.ship.methods.seakeeping.motion_sickness import (
+    MIXED_ADULT_SUSCEPTIBILITY,
+    weighted_acceleration,
+)
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, ship_response
 from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import (
+    dangerous_situations,
     roll_period,
-    stability_checks,
     surf_riding_speed,
 )
 
 FloatArray = NDArray[np.float64]
 #: the situations of MSC.1/Circ.1228 that a ship file may name
-DANGERS: Final = ("surf_riding", "successive_high_waves", "synchronous_roll", "parametric_roll")
+DANGEROUS_SITUATIONS: Final = (
+    "surf_riding",
+    "successive_high_waves",
+    "synchronous_roll",
+    "parametric_roll",
+)
 #: mean over peak period of a JONSWAP spectrum with gamma 3.3 (DNV-RP-C205)
-MEAN_PERIOD: Final = 0.834
-EXPOSURE: Final = 7200.0  #: of people aboard, unless the ship file tells [s]
-SHORTEST, LONGEST = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
-_GRID: Final = (25, 37, 113)  # speeds, angles, periods
-_ROUNDS: Final = 6
-_USUAL_HEIGHT: Final = 3.0  # from which heights that reach a limit are sought [m]
-_BLOCK: Final = 20_000
+MEAN_TO_PEAK_PERIOD_RATIO: Final = 0.834
+EXPOSURE_TIME: Final = 7200.0  #: of people aboard, unless the ship file tells [s]
+SHORTEST_PERIOD, LONGEST_PERIOD = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
+_GRID_SHAPE: Final = (25, 37, 113)  # speeds, angles, periods
+_ITERATIONS: Final = 6
+_INITIAL_WAVE_HEIGHT: Final = 3.0  # from which heights that reach a limit are sought [m]
+_BLOCK_SIZE: Final = 20_000
 
 
 @dataclass(frozen=True)
-class Circular:
+class DangerousSituationLimits:
     """The dangers of MSC.1/Circ.1228 a ship shall keep out of.
 
     Attributes
     ----------
     dangers : tuple of str
-        Among `DANGERS`.
+        Among `DANGEROUS_SITUATIONS`.
     roll_period : float
         Natural roll period [s]; NaN when unknown.
     roll_tolerance : float
         Relative difference of periods that counts as resonance.
-    least_height : float
+    harmless_wave_height : float
         Waves up to this height are no danger [m].
     """
 
     dangers: tuple[str, ...]
     roll_period: float
     roll_tolerance: float
-    least_height: float
+    harmless_wave_height: float
 
 
 @dataclass(frozen=True)
-class MotionLimit:
+class AccelerationLimit:
     """A greatest vertical acceleration at a place of the ship.
 
     Attributes
@@ -76,7 +84,7 @@ class MotionLimit:
     forward: float
     weighted: bool = False
 
-    def over_height(
+    def ratio_to_limit(
         self,
         hull: MotionHull,
         *,
@@ -87,11 +95,11 @@ class MotionLimit:
     ) -> FloatArray:
         """Return the acceleration over its limit, for flat arrays."""
         found = np.empty(height.shape)
-        for first in range(0, height.size, _BLOCK):
-            part = slice(first, first + _BLOCK)
+        for first in range(0, height.size, _BLOCK_SIZE):
+            part = slice(first, first + _BLOCK_SIZE)
             state = ship_response(
                 height=height[part],
-                period=np.clip(period[part], SHORTEST, LONGEST),
+                period=np.clip(period[part], SHORTEST_PERIOD, LONGEST_PERIOD),
                 wave_angle=angle[part],
                 speed=speed[part],
                 hull=hull,
@@ -113,15 +121,15 @@ class SafetyLimits:
     ----------
     hull : MotionHull
         At the loading of the ship file.
-    circular : Circular or None
+    situation_limits : Circular or None
     motions : tuple of MotionLimit
     top_speed : float
         Speeds beyond are taken as this in the tables of motions [m/s].
     """
 
     hull: MotionHull
-    circular: Circular | None = None
-    motions: tuple[MotionLimit, ...] = ()
+    situation_limits: DangerousSituationLimits | None = None
+    motions: tuple[AccelerationLimit, ...] = ()
     top_speed: float = 20.0
 
     def forbids(
@@ -162,20 +170,20 @@ class SafetyLimits:
         self, speed: FloatArray, angle: FloatArray, height: FloatArray, period: FloatArray
     ) -> NDArray[np.bool_]:
         bad = np.zeros(speed.shape, bool)
-        if self.circular is None:
+        if self.situation_limits is None:
             return bad
-        rolls = self.circular.roll_period
-        checks = stability_checks(
+        rolls = self.situation_limits.roll_period
+        checks = dangerous_situations(
             speed=speed,
             wave_angle=angle,
             wave_height=height,
-            wave_period=MEAN_PERIOD * period,
+            wave_period=MEAN_TO_PEAK_PERIOD_RATIO * period,
             length=self.hull.length,
             roll_period=None if math.isnan(rolls) else rolls,
-            roll_tolerance=self.circular.roll_tolerance,
-            least_height=self.circular.least_height,
+            roll_tolerance=self.situation_limits.roll_tolerance,
+            harmless_wave_height=self.situation_limits.harmless_wave_height,
         )
-        for name in self.circular.dangers:
+        for name in self.situation_limits.dangers:
             bad |= getattr(checks, name)
         return bad
 
@@ -184,13 +192,13 @@ class SafetyLimits:
     ) -> FloatArray:
         """The greatest acceleration over its limit, flat arrays."""
         at = {"speed": speed, "angle": angle, "height": height, "period": period}
-        shares = [limit.over_height(self.hull, **at) for limit in self.motions]
+        shares = [limit.ratio_to_limit(self.hull, **at) for limit in self.motions]
         return np.max(shares, axis=0) if shares else np.zeros(speed.shape)
 
     def kernel_arrays(self) -> dict[str, Any]:
         """Return the fields of `thalweg.kernels.leg.table_lookup.TableArrays` that belong to it."""
         found: dict[str, Any] = {}
-        if self.circular is not None:
+        if self.situation_limits is not None:
             found["safety"] = self._numbers
         if self.motions:
             found["motions"], found["motion_grid"] = self._table
@@ -199,38 +207,40 @@ class SafetyLimits:
     @cached_property
     def _numbers(self) -> FloatArray:
         """The numbers of `thalweg.kernels.leg.wave_limits`."""
-        own = self.circular
-        numbers = np.zeros(places.NUMBERS)
+        own = self.situation_limits
+        numbers = np.zeros(places.SAFETY_NUMBER_COUNT)
         if own is None:
             return numbers
         rolls = {"synchronous_roll", "parametric_roll"} & set(own.dangers)
         astern = float(surf_riding_speed(math.pi, length=self.hull.length))
-        numbers[places.SURF_SPEED] = astern if "surf_riding" in own.dangers else math.inf
+        numbers[places.SURF_RIDING_SPEED] = astern if "surf_riding" in own.dangers else math.inf
         if "successive_high_waves" in own.dangers:
             numbers[places.HIGH_WAVE_LENGTH] = self.hull.length
         numbers[places.ROLL_PERIOD] = own.roll_period if rolls else 0.0
-        numbers[places.ROLL_HALF] = float("parametric_roll" in own.dangers)
+        numbers[places.CHECK_HALF_ROLL_PERIOD] = float("parametric_roll" in own.dangers)
         numbers[places.ROLL_TOLERANCE] = own.roll_tolerance
-        numbers[places.LEAST_HEIGHT] = own.least_height
-        numbers[places.MEAN_PERIOD] = MEAN_PERIOD
+        numbers[places.MIN_WAVE_HEIGHT] = own.harmless_wave_height
+        numbers[places.MEAN_TO_PEAK_PERIOD] = MEAN_TO_PEAK_PERIOD_RATIO
         return numbers
 
     @cached_property
     def _table(self) -> tuple[NDArray[np.float32], FloatArray]:
         """One over the wave height that reaches a limit, over speed, angle and period."""
-        ends = ((0.0, self.top_speed), (0.0, math.pi), (SHORTEST, LONGEST))
-        axes = [np.linspace(*end, size) for end, size in zip(ends, _GRID)]
+        ends = ((0.0, self.top_speed), (0.0, math.pi), (SHORTEST_PERIOD, LONGEST_PERIOD))
+        axes = [np.linspace(*end, size) for end, size in zip(ends, _GRID_SHAPE)]
         v, angle, period = (x.ravel() for x in np.meshgrid(*axes, indexing="ij"))
-        height = np.full(v.shape, _USUAL_HEIGHT)
-        for _ in range(_ROUNDS):  # the spectrum's peak depends a little on the height
+        height = np.full(v.shape, _INITIAL_WAVE_HEIGHT)
+        for _ in range(_ITERATIONS):  # the spectrum's peak depends a little on the height
             share = np.maximum(self._share(v, angle, height, period), 1e-6)
             height = np.clip(height / share, 0.05, 60.0)
         inverse = np.where(height < 60.0, 1.0 / height, 0.0)
         grid = np.array([[axis[0], 1.0 / (axis[1] - axis[0])] for axis in axes])
-        return inverse.reshape(_GRID).astype(np.float32), grid
+        return inverse.reshape(_GRID_SHAPE).astype(np.float32), grid
 
 
-def build_safety(data: Mapping[str, Any], hull: Hull, loading: Loading) -> SafetyLimits | None:
+def build_safety_limits(
+    data: Mapping[str, Any], hull: Hull, loading: Loading
+) -> SafetyLimits | None:
     """Return the safety and comfort limits of a ship file; None when it states none.
 
     Raises
@@ -240,12 +250,12 @@ def build_safety(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Safet
     """
     given = data.get("limits", {})
     dangers = tuple(dict.fromkeys(given.get("msc_circ_1228", ())))
-    limits = _motion_limits(given)
+    limits = _acceleration_limits(given)
     if not dangers and not limits:
         return None
     size = _motion_hull(hull, loading)
     middle = [
-        MotionLimit(limit.greatest, 0.5 * size.length * math.copysign(1, limit.forward))
+        AccelerationLimit(limit.greatest, 0.5 * size.length * math.copysign(1, limit.forward))
         if math.isinf(limit.forward)
         else limit
         for limit in limits
@@ -258,19 +268,21 @@ def build_safety(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Safet
                 "Correct limits.acceleration_at_m or limits.motion_sickness_at_m.",
                 key="limits.acceleration_at_m",
             )
-    circular = _circular(given, dangers, hull, size) if dangers else None
-    return SafetyLimits(size, circular, tuple(middle))
+    situation_limits = _dangerous_situation_limits(given, dangers, hull, size) if dangers else None
+    return SafetyLimits(size, situation_limits, tuple(middle))
 
 
-def _circular(
+def _dangerous_situation_limits(
     given: Mapping[str, Any], dangers: tuple[str, ...], hull: Hull, size: MotionHull
-) -> Circular:
+) -> DangerousSituationLimits:
     """The dangers of MSC.1/Circ.1228 named in a ship file."""
     if "all" in dangers:
-        dangers = DANGERS
+        dangers = DANGEROUS_SITUATIONS
     for name in dangers:
-        if name not in DANGERS:
-            raise unknown_name("danger of MSC.1/Circ.1228", name, ("all", *DANGERS))
+        if name not in DANGEROUS_SITUATIONS:
+            raise unknown_name_error(
+                "danger of MSC.1/Circ.1228", name, ("all", *DANGEROUS_SITUATIONS)
+            )
     rolls = natural_roll_period(hull, size)
     if rolls is None and {"synchronous_roll", "parametric_roll"} & set(dangers):
         raise InputError(
@@ -279,11 +291,11 @@ def _circular(
             "Add one of them, or name the other dangers only.",
             missing=["hull.roll_period_s", "hull.metacentric_height_m"],
         )
-    return Circular(
+    return DangerousSituationLimits(
         dangers=dangers,
         roll_period=math.nan if rolls is None else rolls,
         roll_tolerance=float(given.get("roll_period_tolerance", 0.1)),
-        least_height=float(given.get("danger_from_wave_height_m", 0.01 * size.length)),
+        harmless_wave_height=float(given.get("danger_from_wave_height_m", 0.01 * size.length)),
     )
 
 
@@ -296,17 +308,17 @@ def natural_roll_period(hull: Hull, size: MotionHull) -> float | None:
     return float(roll_period(beam, deep, length_waterline=size.length, metacentric_height=gm))
 
 
-def _motion_limits(given: Mapping[str, Any]) -> tuple[MotionLimit, ...]:
+def _acceleration_limits(given: Mapping[str, Any]) -> tuple[AccelerationLimit, ...]:
     """The limits of motions in a ship file; the bow is as far ahead as can be."""
     found = []
     if "max_vertical_acceleration_m_s2" in given:
         place = float(given.get("acceleration_at_m", math.inf))
-        found.append(MotionLimit(float(given["max_vertical_acceleration_m_s2"]), place))
+        found.append(AccelerationLimit(float(given["max_vertical_acceleration_m_s2"]), place))
     if "max_motion_sickness_percent" in given:
-        hours = float(given.get("motion_sickness_hours", EXPOSURE / 3600.0))
-        dose = float(given["max_motion_sickness_percent"]) / MIXED_ADULTS
+        hours = float(given.get("motion_sickness_hours", EXPOSURE_TIME / 3600.0))
+        dose = float(given["max_motion_sickness_percent"]) / MIXED_ADULT_SUSCEPTIBILITY
         place = float(given.get("motion_sickness_at_m", 0.0))
-        found.append(MotionLimit(dose / math.sqrt(hours * 3600.0), place, weighted=True))
+        found.append(AccelerationLimit(dose / math.sqrt(hours * 3600.0), place, weighted=True))
     return tuple(found)
 
 
@@ -317,9 +329,11 @@ def _motion_hull(hull: Hull, loading: Loading) -> MotionHull:
     if length is None:
         wanted = ("length_between_perpendiculars_m", *wanted)
     if any(hull.number(key) is None for key in wanted):
-        from thalweg.ship.hull.hull_estimates import estimate  # reads many regressions
+        from thalweg.ship.hull.hull_estimates import estimate_particulars  # reads many regressions
 
-        hull = estimate(hull, wanted)
-    numbers = require(hull, wanted, "a limit of motions in waves", instead="no such limit")
+        hull = estimate_particulars(hull, wanted)
+    numbers = required_particulars(
+        hull, wanted, "a limit of motions in waves", instead="no such limit"
+    )
     length = numbers[0] if length is None else length
     return MotionHull(float(length), float(numbers[-2]), loading.draught, float(numbers[-1]))

@@ -9,31 +9,31 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import DAY, KNOT, TONNE
-from thalweg.ship.models.known_speed_model import NominalModel, cubic_law
+from thalweg.ship.models.known_speed_model import KnownSpeedModel, cubic_law
 
 FloatArray = NDArray[np.float64]
-Data = Mapping[str, Any]
+ShipData = Mapping[str, Any]
 
 
-def law_of(data: Data) -> str:
+def speed_power_law_name(data: ShipData) -> str:
     """Which law ties fuel and power to speed."""
     name = data.get("models", {}).get("calm_water")
     if name is None:
         return "table" if "table" in data else "cubic" if _has_reference(data) else "none"
-    if name not in LAWS:
-        raise unknown_name("calm-water model", name, LAWS)
+    if name not in SPEED_POWER_LAWS:
+        raise unknown_name_error("calm-water model", name, SPEED_POWER_LAWS)
     return str(name)
 
 
-def _has_reference(data: Data) -> bool:
+def _has_reference(data: ShipData) -> bool:
     return "reference_power_kw" in data.get("engine", {}) or "reference_t_per_day" in data.get(
         "fuel", {}
     )
 
 
-def calm_speeds(data: Data, law: str) -> tuple[FloatArray, FloatArray]:
+def calm_speeds(data: ShipData, law: str) -> tuple[FloatArray, FloatArray]:
     """Calm-water speeds full and empty [m/s], ascending, from the one place that gives them.
 
     The law of a table has those of the table, and ``speeds_kn`` are settings on it; for other laws
@@ -84,14 +84,14 @@ def calm_speeds(data: Data, law: str) -> tuple[FloatArray, FloatArray]:
     return full[order] * KNOT, empty[order] * KNOT
 
 
-def _no_law(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _without_law(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     unknown = np.full(len(speeds), math.nan)
     return unknown, unknown
 
 
-def _cubic(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _from_cubic_law(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Fuel rates [kg/s] and powers [W] through the reference point."""
-    engine, fuel = _reference(data)
+    engine, fuel = _reference_sections(data)
     reference = engine.get("reference_speed_kn", speeds.max() / KNOT) * KNOT
     if not {"reference_power_kw", "reference_t_per_day"} & {*engine, *fuel}:
         raise InputError(
@@ -109,7 +109,7 @@ def _cubic(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     )
 
 
-def _reference(data: Data) -> tuple[Data, Data]:
+def _reference_sections(data: ShipData) -> tuple[ShipData, ShipData]:
     """The sections engine and fuel with the reference point; the table's last row without one."""
     engine, fuel, table = (data.get(name, {}) for name in ("engine", "fuel", "table"))
     if _has_reference(data) or "speed_kn" not in table:
@@ -124,14 +124,14 @@ def _reference(data: Data) -> tuple[Data, Data]:
     return engine, fuel
 
 
-def _reference_speed(data: Data) -> float:
+def _reference_speed(data: ShipData) -> float:
     """Speed of the reference point [kn], for settings that are powers.
 
     Raises
     ------
     InputError
     """
-    speed = _reference(data)[0].get("reference_speed_kn")
+    speed = _reference_sections(data)[0].get("reference_speed_kn")
     if speed is None:
         raise InputError(
             "The cubic law has no reference speed.",
@@ -143,7 +143,7 @@ def _reference_speed(data: Data) -> float:
     return float(speed)
 
 
-def with_settings(model: NominalModel, data: Data) -> NominalModel:
+def with_settings(model: KnownSpeedModel, data: ShipData) -> KnownSpeedModel:
     """Return the model with the settings a ship file asks for on its table or cubic law.
 
     Raises
@@ -186,7 +186,7 @@ def with_settings(model: NominalModel, data: Data) -> NominalModel:
     return model.with_speeds(np.interp(watts, model.powers, model.speeds_full), 1.0)
 
 
-def check_table(data: Data) -> None:
+def check_table(data: ShipData) -> None:
     """Refuse a table that is not there, or whose columns differ in length.
 
     Raises
@@ -211,7 +211,7 @@ def check_table(data: Data) -> None:
         )
 
 
-def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _from_table(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Fuel rates [kg/s] and powers [W] of the table's rows, in the order of speed."""
     table = data["table"]
     order = np.argsort(table["speed_kn"], kind="stable")
@@ -221,8 +221,10 @@ def _table(data: Data, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     return fuel, power
 
 
-LAWS: Final[dict[str, Callable[[Data, FloatArray], tuple[FloatArray, FloatArray]]]] = {
-    "none": _no_law,
-    "cubic": _cubic,
-    "table": _table,
+SPEED_POWER_LAWS: Final[
+    dict[str, Callable[[ShipData, FloatArray], tuple[FloatArray, FloatArray]]]
+] = {
+    "none": _without_law,
+    "cubic": _from_cubic_law,
+    "table": _from_table,
 }

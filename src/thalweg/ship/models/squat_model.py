@@ -10,23 +10,23 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import unknown_name
-from thalweg.ship.hull.hull import Hull, require
+from thalweg.core.errors import unknown_name_error
+from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.shallow_water.squat import (
     barrass_2004_speed,
     barrass_2004_squat,
     barrass_squat,
-    critical_speed,
-    speed_limit,
+    shallow_water_speed,
+    shallow_water_speed_limit,
 )
 
 FloatArray = NDArray[np.float64]
-SQUAT: Final = ("none", "van_halem_2019", "barrass_2004")
+SQUAT_METHODS: Final = ("none", "van_halem_2019", "barrass_2004")
 
 
 @dataclass(frozen=True)
-class Squat:
+class SquatModel:
     """A ship's squat, in open water.
 
     Attributes
@@ -63,10 +63,12 @@ class Squat:
         deep, sizes = np.asarray(speed, float), self._sizes(load_factor)
         if self.method == "barrass_2004":
             room = np.asarray(depth, float) - sizes["draught"] - self.clearance
-            slowed = critical_speed(deep, depth, draught=sizes["draught"], breadth=self.breadth)
+            slowed = shallow_water_speed(
+                deep, depth, draught=sizes["draught"], breadth=self.breadth
+            )
             left = np.minimum(slowed, barrass_2004_speed(room, depth, **sizes))
         else:
-            left = speed_limit(deep, depth, **sizes, clearance=self.clearance)
+            left = shallow_water_speed_limit(deep, depth, **sizes, clearance=self.clearance)
         return np.minimum(deep, left)
 
     def _sizes(self, load_factor: ArrayLike) -> dict[str, Any]:
@@ -83,7 +85,7 @@ class Squat:
         return volume / (self.length * self.breadth * draught)
 
 
-def squat_of(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat | None:
+def squat_model_of(data: Mapping[str, Any], hull: Hull, loading: Loading) -> SquatModel | None:
     """Return a ship's squat, or None when its particulars do not tell."""
     length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
     breadth = hull.number("breadth_m")
@@ -91,11 +93,11 @@ def squat_of(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat | N
         return None
     clearance = data.get("limits", {}).get("min_under_keel_clearance_m", 0.0)
     chosen = data.get("models", {}).get("squat", "none")
-    method = chosen if chosen in SQUAT[1:] else SQUAT[1]
-    return Squat(float(length), float(breadth), loading, float(clearance), method)
+    method = chosen if chosen in SQUAT_METHODS[1:] else SQUAT_METHODS[1]
+    return SquatModel(float(length), float(breadth), loading, float(clearance), method)
 
 
-def build_squat(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat | None:
+def build_squat_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> SquatModel | None:
     """Return the squat that limits a ship's speed, by ``models.squat``; None for ``none``.
 
     Raises
@@ -104,12 +106,12 @@ def build_squat(data: Mapping[str, Any], hull: Hull, loading: Loading) -> Squat 
         For unknown names, and particulars that are missing.
     """
     name = data.get("models", {}).get("squat", "none")
-    if name not in SQUAT:
-        raise unknown_name("squat method", name, SQUAT)
+    if name not in SQUAT_METHODS:
+        raise unknown_name_error("squat method", name, SQUAT_METHODS)
     if name == "none":
         return None
-    found = squat_of(data, hull, loading)
+    found = squat_model_of(data, hull, loading)
     if found is None:
         keys = ("length_between_perpendiculars_m", "breadth_m", "displacement_m3")
-        require(hull, keys, name, instead="squat: none")
+        required_particulars(hull, keys, name, instead="squat: none")
     return found

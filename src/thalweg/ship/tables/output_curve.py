@@ -10,17 +10,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.kernels.leg.table_lookup import CROSSING, CURVE, FINER, MOST_PLANES
+from thalweg.kernels.leg.table_lookup import (
+    CURVE_INTERSECTION,
+    CURVE_REFINEMENT,
+    MAX_PLANES,
+    OUTPUT_CURVE,
+)
 
 if TYPE_CHECKING:
     from thalweg.ship.tables.performance_table import TablePart
 
 FloatArray = NDArray[np.float64]
-FIELDS: Final = ("start", "step", "points", "top", "guess")  #: arrays, a row for each setting
+OUTPUT_CURVE_FIELDS: Final = (
+    "start",
+    "step",
+    "points",
+    "top",
+    "guess",
+)  #: arrays, a row for each setting
 
 
 @dataclass(frozen=True, eq=False)
-class Finish:
+class OutputCurve:
     """Turns the sum over the parts of a table into its value.
 
     ``curve``: the value is a curve of the sum, one for each setting, such as fuel over resistance.
@@ -35,7 +46,7 @@ class Finish:
     kind : {"curve", "crossing"}
     start, step : ndarray
         For each setting the first point of its curve and the step, in units of the sum; for a
-        crossing in speed [m/s], `FINER` steps to a column.
+        crossing in speed [m/s], `CURVE_REFINEMENT` steps to a column.
     points : ndarray
         The curves, shape ``(settings, points)``.
     top : ndarray
@@ -59,11 +70,15 @@ class Finish:
     @property
     def columns(self) -> int:
         """Length of the last axis of the parts."""
-        return (self.points.shape[1] - 1) // FINER + 1 if self.falls else self.points.shape[0]
+        return (
+            (self.points.shape[1] - 1) // CURVE_REFINEMENT + 1
+            if self.falls
+            else self.points.shape[0]
+        )
 
-    def at(self, chosen: slice) -> Finish:
+    def at(self, chosen: slice) -> OutputCurve:
         """Return that of some of the settings."""
-        return replace(self, **{name: getattr(self, name)[chosen] for name in FIELDS})
+        return replace(self, **{name: getattr(self, name)[chosen] for name in OUTPUT_CURVE_FIELDS})
 
     def check(self, parts: Sequence[TablePart]) -> None:
         """Refuse parts that kernels cannot follow with a crossing.
@@ -72,10 +87,10 @@ class Finish:
         ------
         InputError
         """
-        if self.falls and (len(parts) > MOST_PLANES or any(len(part.axes) > 2 for part in parts)):
+        if self.falls and (len(parts) > MAX_PLANES or any(len(part.axes) > 2 for part in parts)):
             raise InputError(
                 "A table with a crossing has too many parts or axes.",
-                f"It has at most {MOST_PLANES} parts of at most two axes.",
+                f"It has at most {MAX_PLANES} parts of at most two axes.",
                 "Check how the table was made.",
             )
 
@@ -95,18 +110,18 @@ class Finish:
 
     def _crossing(self, sums: FloatArray, chosen: NDArray[np.intp]) -> FloatArray:
         last = self.columns - 1
-        over = sums >= self.points[chosen][..., ::FINER]
+        over = sums >= self.points[chosen][..., ::CURVE_REFINEMENT]
         high = np.where(over.any(axis=-1), np.argmax(over, axis=-1), last + 1)
         low = np.clip(high - 1, 0, last - 1)
         ends = [np.take_along_axis(sums, (low + k)[..., None], axis=-1) for k in (0, 1)]
-        share = np.arange(FINER + 1) / FINER
-        index = low[..., None] * FINER + np.arange(FINER + 1)
+        share = np.arange(CURVE_REFINEMENT + 1) / CURVE_REFINEMENT
+        index = low[..., None] * CURVE_REFINEMENT + np.arange(CURVE_REFINEMENT + 1)
         lack = ends[0] + share * (ends[1] - ends[0]) - self.points[chosen[..., None], index]
-        after = np.clip(np.argmax(lack >= 0.0, axis=-1), 1, FINER)[..., None]
+        after = np.clip(np.argmax(lack >= 0.0, axis=-1), 1, CURVE_REFINEMENT)[..., None]
         second = np.take_along_axis(lack, after, axis=-1)[..., 0]
         first = np.take_along_axis(lack, after - 1, axis=-1)[..., 0]
         with np.errstate(divide="ignore", invalid="ignore"):
-            place = low * FINER + after[..., 0] - 1 + first / (first - second)
+            place = low * CURVE_REFINEMENT + after[..., 0] - 1 + first / (first - second)
         top = self.top[chosen]
         found = np.minimum(self.start[chosen] + place * self.step[chosen], top)
         found = np.where(high == 0, 0.0, np.where(high > last, top, found))
@@ -116,7 +131,7 @@ class Finish:
         """Return the fields of `thalweg.kernels.leg.table_lookup.TableArrays` that belong to it."""
         return {
             "n_columns": self.columns,
-            "finish": CROSSING if self.falls else CURVE,
+            "finish": CURVE_INTERSECTION if self.falls else OUTPUT_CURVE,
             "curve_start": np.ascontiguousarray(self.start),
             "curve_inv_step": 1.0 / self.step,
             "curve_top": np.ascontiguousarray(self.top),

@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.kernels.codes import AXES, AXIS_DEPTH
+from thalweg.kernels.codes import AXIS_COUNT, AXIS_DEPTH
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.ship.condition_variables import CONDITION_OF
-from thalweg.ship.tables.output_curve import Finish
+from thalweg.ship.condition_variables import CONDITION_OF_AXIS
+from thalweg.ship.tables.output_curve import OutputCurve
 
 if TYPE_CHECKING:
     from thalweg.ship.models.seaway_limits import SafetyLimits
 
 FloatArray = NDArray[np.float64]
-_EDGE = 1e-6  # how far outside an axis counts as on it [steps]
+_EDGE_TOLERANCE = 1e-6  # how far outside an axis counts as on it [steps]
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class TablePart:
     values : float32 ndarray
         Shape ``(len(grid) for each axis..., settings)``; NaN where the model has no value.
         Before a crossing the last axis runs over its columns instead.
-    square_stop : float, optional
+    squared_height_limit : float, optional
         The part is multiplied by the square of the wave height, up to this height [m].
 
     Raises
@@ -68,7 +68,7 @@ class TablePart:
     axes: tuple[int, ...]
     grids: tuple[FloatArray, ...]
     values: NDArray[np.float32]
-    square_stop: float = math.nan
+    squared_height_limit: float = math.nan
 
     def __post_init__(self) -> None:
         grids = tuple(np.ascontiguousarray(grid, float) for grid in self.grids)
@@ -79,19 +79,19 @@ class TablePart:
 
     def _check(self) -> None:
         if len(self.axes) != len(self.grids) or len(set(self.axes)) != len(self.axes):
-            raise _bad_part("needs one grid for each of its axes, and each axis once")
-        if any(axis not in CONDITION_OF for axis in self.axes):
-            raise _bad_part(f"has an unknown axis among {self.axes}")
+            raise _invalid_part_error("needs one grid for each of its axes, and each axis once")
+        if any(axis not in CONDITION_OF_AXIS for axis in self.axes):
+            raise _invalid_part_error(f"has an unknown axis among {self.axes}")
         if self.values.shape[:-1] != tuple(len(grid) for grid in self.grids):
-            raise _bad_part(
+            raise _invalid_part_error(
                 f"has values of shape {self.values.shape}, which does not fit its grids"
             )
         for axis, grid in zip(self.axes, self.grids):
             if len(grid) < 2 or not np.isfinite(grid).all() or grid[-1] <= grid[0]:
-                raise _bad_part(f"has no ascending grid for {CONDITION_OF[axis]}")
+                raise _invalid_part_error(f"has no ascending grid for {CONDITION_OF_AXIS[axis]}")
             even = np.linspace(grid[0], grid[-1], len(grid))
             if np.abs(grid - even).max() > 1e-6 * (grid[1] - grid[0]):
-                raise _bad_part(f"has an uneven grid for {CONDITION_OF[axis]}")
+                raise _invalid_part_error(f"has an uneven grid for {CONDITION_OF_AXIS[axis]}")
 
     def lookup(self, where: Mapping[str, ArrayLike], setting: ArrayLike = 0) -> FloatArray:
         """Return the multilinear look-up; NaN outside an axis (only depth reaches on downwards)."""
@@ -115,9 +115,9 @@ class TablePart:
         """Return the least value of every setting, anywhere."""
         flat = self.values.reshape(-1, self.values.shape[-1])
         low = np.fmin.reduce(flat, axis=0).astype(float)
-        if math.isnan(self.square_stop):
+        if math.isnan(self.squared_height_limit):
             return np.asarray(low)
-        return np.minimum(low * self.square_stop**2, 0.0)
+        return np.minimum(low * self.squared_height_limit**2, 0.0)
 
     def greatest(self) -> FloatArray:
         """Return the greatest value of every setting, anywhere."""
@@ -125,17 +125,17 @@ class TablePart:
 
     def _factor(self, where: Mapping[str, ArrayLike]) -> FloatArray | float:
         """What the look-up is multiplied by."""
-        if math.isnan(self.square_stop):
+        if math.isnan(self.squared_height_limit):
             return 1.0
         height = np.asarray(where["wave_height"], float)
-        inside = (height >= 0.0) & (height <= self.square_stop * (1.0 + _EDGE))
+        inside = (height >= 0.0) & (height <= self.squared_height_limit * (1.0 + _EDGE_TOLERANCE))
         return np.where(inside, height * height, np.nan)
 
     def _corners(
         self, where: Mapping[str, ArrayLike]
     ) -> Iterator[tuple[FloatArray, list[NDArray[np.intp]]]]:
         """Weight and index of every corner of the cells that hold the conditions."""
-        names = [CONDITION_OF[axis] for axis in self.axes]
+        names = [CONDITION_OF_AXIS[axis] for axis in self.axes]
         located = [
             _locate(axis, grid, np.asarray(where[name], float))
             for axis, grid, name in zip(self.axes, self.grids, names)
@@ -174,15 +174,15 @@ class PerformanceTable:
     settings: FloatArray
     fingerprint: str
     error: TableError
-    finish: Finish | None = None
+    finish: OutputCurve | None = None
     safety: SafetyLimits | None = None
 
     def __post_init__(self) -> None:
         if not self.parts:
-            raise _bad_part("is missing: a table has at least one")
+            raise _invalid_part_error("is missing: a table has at least one")
         count = len(self.settings) if self.finish is None else self.finish.columns
         if any(part.values.shape[-1] != count for part in self.parts):
-            raise _bad_part(f"has another number of settings than the table's {count}")
+            raise _invalid_part_error(f"has another number of settings than the table's {count}")
         if self.finish is not None:
             self.finish.check(self.parts)
 
@@ -196,9 +196,9 @@ class PerformanceTable:
         """From where to where each condition may go, SI; depth also beyond."""
         found: dict[str, tuple[float, float]] = {}
         for part in self.parts:
-            own = {CONDITION_OF[a]: (g[0], g[-1]) for a, g in zip(part.axes, part.grids)}
-            if not math.isnan(part.square_stop):
-                own["wave_height"] = (0.0, part.square_stop)
+            own = {CONDITION_OF_AXIS[a]: (g[0], g[-1]) for a, g in zip(part.axes, part.grids)}
+            if not math.isnan(part.squared_height_limit):
+                own["wave_height"] = (0.0, part.squared_height_limit)
             for name, (low, high) in own.items():
                 before = found.get(name, (low, high))
                 found[name] = (max(low, before[0]), min(high, before[1]))
@@ -246,15 +246,15 @@ class PerformanceTable:
     def kernel_arrays(self) -> TableArrays:
         """Return the arrays that kernels look up (see `thalweg.kernels.leg.table_lookup`)."""
         count = len(self.parts)
-        axes = np.full((count, AXES), -1, np.int64)
-        start, inverse = np.zeros((count, AXES)), np.zeros((count, AXES))
-        size = np.ones((count, AXES), np.int64)
+        axes = np.full((count, AXIS_COUNT), -1, np.int64)
+        start, inverse = np.zeros((count, AXIS_COUNT)), np.zeros((count, AXIS_COUNT))
+        size = np.ones((count, AXIS_COUNT), np.int64)
         lengths = [part.values.size for part in self.parts]
         for p, part in enumerate(self.parts):
             for k, (axis, grid) in enumerate(zip(part.axes, part.grids)):
                 axes[p, k], start[p, k], size[p, k] = axis, grid[0], len(grid)
                 inverse[p, k] = (len(grid) - 1) / (grid[-1] - grid[0])
-        stops = np.array([part.square_stop for part in self.parts])
+        stops = np.array([part.squared_height_limit for part in self.parts])
         return TableArrays(
             part_axes=axes,
             axis_start=start,
@@ -263,7 +263,7 @@ class PerformanceTable:
             value_offset=np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64),
             n_settings=len(self.settings),
             values=np.concatenate([part.values.ravel() for part in self.parts]),
-            square_stop=stops if np.isfinite(stops).any() else np.empty(0),
+            squared_height_limit=stops if np.isfinite(stops).any() else np.empty(0),
             **({} if self.finish is None else self.finish.kernel_arrays()),
             **({} if self.safety is None else self.safety.kernel_arrays()),
         )
@@ -275,13 +275,13 @@ def _locate(axis: int, grid: FloatArray, x: FloatArray) -> tuple[NDArray[np.intp
     place = (x - grid[0]) * (last / (grid[-1] - grid[0]))
     if axis == AXIS_DEPTH:
         place = np.minimum(place, last)
-    inside = (place >= -_EDGE) & (place <= last + _EDGE)
+    inside = (place >= -_EDGE_TOLERANCE) & (place <= last + _EDGE_TOLERANCE)
     clipped = np.clip(np.where(inside, place, 0.0), 0.0, last)
     cell = np.minimum(clipped.astype(np.intp), last - 1)
     return cell, np.where(inside, clipped - cell, np.nan)
 
 
-def _bad_part(problem: str) -> InputError:
+def _invalid_part_error(problem: str) -> InputError:
     return InputError(
         f"A part of the performance table {problem}.",
         "Axes are uniform and ascending, SI; values end with the settings.",

@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.kernels.leg.table_lookup import CROSSING, CURVE, TableArrays
+from thalweg.kernels.leg.table_lookup import CURVE_INTERSECTION, OUTPUT_CURVE, TableArrays
 
 FloatArray = NDArray[np.float64]
 
 
-def extreme(table: TableArrays, of: np.ufunc) -> FloatArray:
+def table_bounds(table: TableArrays, of: np.ufunc) -> FloatArray:
     """Return the largest (np.fmax) or least (np.fmin) value of a table by setting, or beyond it.
 
     Parts take their extremes each for itself.
@@ -23,19 +23,23 @@ def extreme(table: TableArrays, of: np.ufunc) -> FloatArray:
         used = table.part_axes[part] >= 0
         size = int(np.prod(table.axis_size[part][used])) * columns
         values = table.values[start : start + size].reshape(-1, columns).astype(float)
-        stop = table.square_stop[part] if len(table.square_stop) else math.nan
+        stop = table.squared_height_limit[part] if len(table.squared_height_limit) else math.nan
         least, most = np.fmin.reduce(values, axis=0), np.fmax.reduce(values, axis=0)
         if not math.isnan(stop):  # times the square of the wave height, which may be nothing
             least, most = np.fmin(least * stop**2, 0.0), np.fmax(most * stop**2, 0.0)
         low, high = low + least, high + most
-    if table.finish == CROSSING:  # a speed between nothing and the greatest of the setting
+    if (
+        table.finish == CURVE_INTERSECTION
+    ):  # a speed between nothing and the greatest of the setting
         return table.curve_top.copy() if of is np.fmax else np.zeros(table.n_settings)
-    if table.finish == CURVE:
-        return _of_curves(table, low, high, of)
+    if table.finish == OUTPUT_CURVE:
+        return _curve_bounds(table, low, high, of)
     return high if of is np.fmax else low
 
 
-def _of_curves(table: TableArrays, low: FloatArray, high: FloatArray, of: np.ufunc) -> FloatArray:
+def _curve_bounds(
+    table: TableArrays, low: FloatArray, high: FloatArray, of: np.ufunc
+) -> FloatArray:
     """Return the extreme of every curve between the least and the greatest sum."""
     found = np.empty(table.n_settings)
     last = table.curve.shape[1] - 1

@@ -15,18 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.cache_folder import cache_folder
-from thalweg.ship.tables.output_curve import FIELDS, Finish
+from thalweg.ship.tables.output_curve import OUTPUT_CURVE_FIELDS, OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
 
 FloatArray = NDArray[np.float64]
 #: a table (its fingerprint empty), and the greatest value of every setting
-Kept: TypeAlias = tuple[PerformanceTable, FloatArray]
-MOST_FILES: Final = 24
+TableWithMaxima: TypeAlias = tuple[PerformanceTable, FloatArray]
+MAX_FILES: Final = 24
 #: The folder of package `ship`.
 PACKAGE: Final = Path(__file__).resolve().parents[1]
 
 
-def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
+def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithMaxima:
     """Return a table from disk, or build and keep it.
 
     Parameters
@@ -41,7 +41,7 @@ def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
     table, top
         The same numbers as built.
     """
-    text = json.dumps([facts, _code_stamp()], sort_keys=True, default=str)
+    text = json.dumps([facts, _source_stamps()], sort_keys=True, default=str)
     name = hashlib.sha256(text.encode()).hexdigest()[:32]
     path = cache_folder("ship-tables") / f"{name}.npz"
     found = _read(path)
@@ -51,13 +51,13 @@ def kept_table(facts: Any, build: Callable[[], Kept]) -> Kept:
     return found
 
 
-def _code_stamp() -> list[tuple[str, int, int]]:
+def _source_stamps() -> list[tuple[str, int, int]]:
     """Size and time of every source file of package `ship`, so that changed code builds anew."""
     files = sorted(PACKAGE.rglob("*.py"))
     return [(str(f), f.stat().st_size, f.stat().st_mtime_ns) for f in files]
 
 
-def _read(path: Path) -> Kept | None:
+def _read(path: Path) -> TableWithMaxima | None:
     """Return the kept table; None when there is none or it is damaged."""
     try:
         with np.load(path, allow_pickle=False) as file:
@@ -71,21 +71,21 @@ def _read(path: Path) -> Kept | None:
         error = TableError(float(mean), float(p99), float(largest), int(samples))
         finish = None
         if "finish_points" in data:
-            arrays = (data[f"finish_{name}"] for name in FIELDS)
-            finish = Finish("crossing" if data["falls"] else "curve", *arrays)
+            arrays = (data[f"finish_{name}"] for name in OUTPUT_CURVE_FIELDS)
+            finish = OutputCurve("crossing" if data["falls"] else "curve", *arrays)
         return PerformanceTable(tuple(parts), data["settings"], "", error, finish), data["top"]
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
 
 
-def _write(path: Path, kept: Kept) -> None:
+def _write(path: Path, kept: TableWithMaxima) -> None:
     """Keep a table; a disk that is full or closed costs nothing but the time of the next run."""
     table, top = kept
     parts, error, finish = table.parts, table.error, table.finish
     arrays: dict[str, Any] = {
         "count": np.array(len(parts)),
         "settings": table.settings,
-        "square_stop": np.array([part.square_stop for part in parts]),
+        "square_stop": np.array([part.squared_height_limit for part in parts]),
         "falls": np.array(finish is not None and finish.falls),
         "error": np.array([error.mean, error.p99, error.max, error.samples]),
         "top": top,
@@ -95,19 +95,19 @@ def _write(path: Path, kept: Kept) -> None:
         arrays[f"values{p}"] = part.values
         arrays |= {f"grid{p}_{k}": grid for k, grid in enumerate(part.grids)}
     if finish is not None:
-        arrays |= {f"finish_{name}": getattr(finish, name) for name in FIELDS}
+        arrays |= {f"finish_{name}": getattr(finish, name) for name in OUTPUT_CURVE_FIELDS}
     draft = path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.tmp")
     try:
         with draft.open("wb") as file:
             np.savez(file, **arrays)
         os.replace(draft, path)
-        _tidy(path.parent)
+        _remove_oldest(path.parent)
     except OSError:
         draft.unlink(missing_ok=True)
 
 
-def _tidy(folder: Path) -> None:
-    """Remove the oldest tables beyond `MOST_FILES`."""
+def _remove_oldest(folder: Path) -> None:
+    """Remove the oldest tables beyond `MAX_FILES`."""
     files = sorted(folder.glob("*.npz"), key=lambda file: file.stat().st_mtime)
-    for file in files[:-MOST_FILES]:
+    for file in files[:-MAX_FILES]:
         file.unlink(missing_ok=True)

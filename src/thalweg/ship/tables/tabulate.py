@@ -11,22 +11,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.kernels import codes
-from thalweg.ship.condition_variables import CONDITION_OF
+from thalweg.ship.condition_variables import CONDITION_OF_AXIS
 from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
 
 FloatArray = NDArray[np.float64]
 #: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
-Tabulated = Callable[[Mapping[str, FloatArray]], FloatArray]
+ConditionsFunction = Callable[[Mapping[str, FloatArray]], FloatArray]
 
-FLOOR: Final = 0.25  #: relative errors are not taken to less than this share of the greatest value
+RELATIVE_ERROR_FLOOR: Final = (
+    0.25  #: relative errors are not taken to less than this share of the greatest value
+)
 LARGEST_TABLE: Final = 32_000_000  #: bytes of one part
-_CHUNK = 40_000
+_CHUNK_SIZE = 40_000
 _SAMPLES = 4000
 _LARGEST_AXIS = 1025
 
 
 @dataclass(frozen=True)
-class Axis:
+class AxisRange:
     """The range of one axis and the number of grid points to begin with.
 
     Attributes
@@ -50,32 +52,32 @@ class Axis:
     @property
     def name(self) -> str:
         """The condition on this axis."""
-        return CONDITION_OF[self.axis]
+        return CONDITION_OF_AXIS[self.axis]
 
     @property
     def grid(self) -> FloatArray:
         """The grid points."""
         return np.linspace(self.start, self.stop, self.size)
 
-    def refined(self) -> Axis:
+    def refined(self) -> AxisRange:
         """Return the axis with steps of half the length."""
         return replace(self, size=2 * self.size - 1)
 
 
 #: what a ship may meet: beyond these a table refuses (but depth reaches on downwards)
 DEFAULT_AXES: Final = {
-    "wind_speed": Axis(codes.AXIS_WIND_SPEED, 0.0, 80.0, 33),
-    "wind_angle": Axis(codes.AXIS_WIND_ANGLE, 0.0, math.pi, 13),
-    "wave_height": Axis(codes.AXIS_WAVE_HEIGHT, 0.0, 24.0, 25),
-    "wave_angle": Axis(codes.AXIS_WAVE_ANGLE, 0.0, math.pi, 13),
-    "wave_period": Axis(codes.AXIS_WAVE_PERIOD, 0.0, 30.0, 16),
-    "depth": Axis(codes.AXIS_DEPTH, 0.0, 400.0, 81),
+    "wind_speed": AxisRange(codes.AXIS_WIND_SPEED, 0.0, 80.0, 33),
+    "wind_angle": AxisRange(codes.AXIS_WIND_ANGLE, 0.0, math.pi, 13),
+    "wave_height": AxisRange(codes.AXIS_WAVE_HEIGHT, 0.0, 24.0, 25),
+    "wave_angle": AxisRange(codes.AXIS_WAVE_ANGLE, 0.0, math.pi, 13),
+    "wave_period": AxisRange(codes.AXIS_WAVE_PERIOD, 0.0, 30.0, 16),
+    "depth": AxisRange(codes.AXIS_DEPTH, 0.0, 400.0, 81),
 }
 
 
 def tabulate_dense(
-    function: Tabulated,
-    axes: Sequence[Axis],
+    function: ConditionsFunction,
+    axes: Sequence[AxisRange],
     *,
     tolerance: float,
     largest: int = LARGEST_TABLE,
@@ -106,7 +108,7 @@ def tabulate_dense(
     """
     points = random_conditions(axes, _SAMPLES if check is None else 1, 0)
     truth = function(points) + base
-    axes = _fitting(axes, largest // (4 * truth.shape[-1]))
+    axes = _coarsened(axes, largest // (4 * truth.shape[-1]))
     measure = check or (lambda part: table_error(part.lookup_all(points) + base, truth))
     while True:
         values = _on_grid(function, axes)
@@ -135,7 +137,7 @@ def tabulate_cubed_speed(speeds: Sequence[float] | FloatArray) -> PerformanceTab
     return PerformanceTable((constant_part(ordered**3),), ordered, "", exact)
 
 
-def random_conditions(axes: Sequence[Axis], count: int, seed: int) -> dict[str, FloatArray]:
+def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[str, FloatArray]:
     """Return conditions drawn evenly over the axes, by name."""
     draw = np.random.default_rng(seed)
     return {a.name: draw.uniform(a.start, a.stop, count) for a in axes}
@@ -150,7 +152,7 @@ def table_error(found: FloatArray, truth: FloatArray) -> TableError:
     if not known.any():
         return TableError(0.0, 0.0, 0.0, 0)
     top = np.where(sound, np.abs(truth), 0.0).reshape(-1, truth.shape[-1]).max(axis=0)
-    scale = np.maximum(np.maximum(np.abs(truth), FLOOR * top), 1e-12)
+    scale = np.maximum(np.maximum(np.abs(truth), RELATIVE_ERROR_FLOOR * top), 1e-12)
     relative = np.nan_to_num(np.abs(found - truth) / scale, nan=1.0)[known]
     return TableError(
         mean=float(relative.mean()),
@@ -160,7 +162,7 @@ def table_error(found: FloatArray, truth: FloatArray) -> TableError:
     )
 
 
-def _fitting(axes: Sequence[Axis], largest: int) -> list[Axis]:
+def _coarsened(axes: Sequence[AxisRange], largest: int) -> list[AxisRange]:
     """Coarsen the longest axes until the grid has no more than ``largest`` points."""
     fitting = list(axes)
     while math.prod(a.size for a in fitting) > largest:
@@ -171,10 +173,10 @@ def _fitting(axes: Sequence[Axis], largest: int) -> list[Axis]:
     return fitting
 
 
-def _on_grid(function: Tabulated, axes: Sequence[Axis]) -> NDArray[np.float32]:
+def _on_grid(function: ConditionsFunction, axes: Sequence[AxisRange]) -> NDArray[np.float32]:
     """Evaluate on the whole grid, a slab of the first axis at a time."""
     rest = math.prod(a.size for a in axes[1:])
-    rows = max(1, _CHUNK // rest)
+    rows = max(1, _CHUNK_SIZE // rest)
     grids = [a.grid for a in axes]
     slabs = []
     for first in range(0, axes[0].size, rows):
@@ -187,11 +189,11 @@ def _on_grid(function: Tabulated, axes: Sequence[Axis]) -> NDArray[np.float32]:
 
 
 def _worst_axis(
-    values: NDArray[np.float32], axes: Sequence[Axis], base: FloatArray | float
+    values: NDArray[np.float32], axes: Sequence[AxisRange], base: FloatArray | float
 ) -> int | None:
     """Return the axis along which linear interpolation errs most, by second differences."""
     whole = np.abs(values + np.asarray(base, np.float32))
-    scale = np.maximum(whole, FLOOR * np.nanmax(whole, initial=0.0)) + 1e-12
+    scale = np.maximum(whole, RELATIVE_ERROR_FLOOR * np.nanmax(whole, initial=0.0)) + 1e-12
     bends = []
     for k, axis in enumerate(axes):
         if axis.fixed or 2 * axis.size - 1 > _LARGEST_AXIS or axis.size < 3:

@@ -12,38 +12,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.ship.condition_variables import AXIS_OF
+from thalweg.ship.condition_variables import AXIS_OF_CONDITION
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.model_protocol import ShipModel
-from thalweg.ship.models.force_balance import Balance
+from thalweg.ship.models.force_balance import ForceBalance
 from thalweg.ship.models.fuel_from_power import hotel_power
 from thalweg.ship.models.resistance_model import ResistanceModel
-from thalweg.ship.tables.output_curve import Finish
+from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
-from thalweg.ship.tables.table_cache import Kept
+from thalweg.ship.tables.table_cache import TableWithMaxima
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense
 from thalweg.ship.tables.tabulate_resistance import (
-    CHECKS,
-    able,
+    ERROR_SAMPLES,
     calm_resistance,
-    conditions_of,
-    flattened,
+    conditions_per_setting,
+    random_term_conditions,
     refined_table,
-    terms_of,
+    resistance_at_power,
+    resistance_terms,
 )
 
 if TYPE_CHECKING:
     from thalweg.ship.ship import Ship
 
 FloatArray = NDArray[np.float64]
-_NODES: Final = 1025  #: of the curves of fuel and power
+_CURVE_POINTS: Final = 1025  #: of the curves of fuel and power
 #: Rates that models may tabulate themselves: by which method, and what they are called.
-_RATES: Final = {
+_RATE_METHODS: Final = {
     "fuel_rate": ("tabulate_fuel", "fuel rate"),
     "power": ("tabulate_power", "brake power"),
 }
-OfPower = Callable[[FloatArray], FloatArray]
-Rate = Callable[[Conditions, NDArray[np.intp]], FloatArray]
+RateOfPower = Callable[[FloatArray], FloatArray]
+RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
 
 def fuel_table(ship: Ship, tolerance: float) -> PerformanceTable:
@@ -54,7 +54,7 @@ def fuel_table(ship: Ship, tolerance: float) -> PerformanceTable:
     InputError
         If the fuel is unknown, or the speed is a field.
     """
-    return _table_of(ship, tolerance, "fuel_rate", _no_fuel)
+    return _rate_table(ship, tolerance, "fuel_rate", _unknown_fuel_error)
 
 
 def power_table(ship: Ship, tolerance: float) -> PerformanceTable:
@@ -65,20 +65,20 @@ def power_table(ship: Ship, tolerance: float) -> PerformanceTable:
     InputError
         If the power is unknown, or the speed is a field.
     """
-    table = _table_of(ship, tolerance, "power", _no_power)
+    table = _rate_table(ship, tolerance, "power", _unknown_power_error)
     hotel = hotel_power(ship.data)
     if table.finish is not None:
         return replace(table, finish=replace(table.finish, points=table.finish.points + hotel))
     return replace(table, parts=(*table.parts, constant_part(np.full(len(ship.speeds), hotel))))
 
 
-def _table_of(
+def _rate_table(
     ship: Ship, tolerance: float, name: str, refused: Callable[[Ship, str], InputError]
 ) -> PerformanceTable:
     """Tabulate a rate by the model's own way, or over all that the model reads."""
     if ship.speed_field is not None:
         raise refused(ship, "its speed is a field of place and time")
-    own, words = _RATES[name]
+    own, words = _RATE_METHODS[name]
     rate = getattr(ship.model, name)
     make = getattr(ship.model, own, None) or partial(tabulate_rate, ship.model, rate)
     parts, error, *more = make(ship.loading.load_factor, tolerance)
@@ -89,7 +89,7 @@ def _table_of(
     return table
 
 
-def _no_fuel(ship: Ship, why: str) -> InputError:
+def _unknown_fuel_error(ship: Ship, why: str) -> InputError:
     return InputError(
         f"The fuel of {ship.name!r} cannot be tabulated: {why}.",
         "A fuel model is a table with fuel_t_per_day, fuel.reference_t_per_day, or a resistance "
@@ -99,7 +99,7 @@ def _no_fuel(ship: Ship, why: str) -> InputError:
     )
 
 
-def _no_power(ship: Ship, why: str) -> InputError:
+def _unknown_power_error(ship: Ship, why: str) -> InputError:
     return InputError(
         f"The power of {ship.name!r} cannot be tabulated: {why}.",
         "Power comes from a resistance (models.calm_water such as holtrop_1984), a table with "
@@ -109,19 +109,23 @@ def _no_power(ship: Ship, why: str) -> InputError:
     )
 
 
-def tabulate_fuel_of_balance(model: ResistanceModel, load_factor: float, tolerance: float) -> Kept:
-    """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_of_balance`."""
-    return _of_balance(model, load_factor, tolerance, model.plant.fuel)
+def tabulate_fuel_of_balance(
+    model: ResistanceModel, load_factor: float, tolerance: float
+) -> TableWithMaxima:
+    """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_tabulate_rate_of_power`."""
+    return _tabulate_rate_of_power(model, load_factor, tolerance, model.plant.fuel)
 
 
-def tabulate_power_of_balance(model: ResistanceModel, load_factor: float, tolerance: float) -> Kept:
-    """Tabulate the brake power [W] of a resistance-based ship; see `_of_balance`."""
-    return _of_balance(model, load_factor, tolerance, np.asarray)
+def tabulate_power_of_balance(
+    model: ResistanceModel, load_factor: float, tolerance: float
+) -> TableWithMaxima:
+    """Tabulate the brake power [W] of a resistance-based ship; see `_tabulate_rate_of_power`."""
+    return _tabulate_rate_of_power(model, load_factor, tolerance, np.asarray)
 
 
-def _of_balance(
-    model: ResistanceModel, load_factor: float, tolerance: float, of_power: OfPower
-) -> Kept:
+def _tabulate_rate_of_power(
+    model: ResistanceModel, load_factor: float, tolerance: float, of_power: RateOfPower
+) -> TableWithMaxima:
     """Tabulate what follows from the power of every setting of a resistance-based ship.
 
     A setting of power takes the same in all weather: one constant. A setting of speed takes what
@@ -145,10 +149,10 @@ def _of_balance(
         Greatest rate of every setting.
     """
     balance, speeds = model.balance(load_factor), model.speeds(load_factor)
-    terms = terms_of(balance, model.limits)
+    terms = resistance_terms(balance, model.limits)
 
     def rates(where: Mapping[str, FloatArray]) -> FloatArray:
-        at, which, shape = flattened(where, len(speeds))
+        at, which, shape = conditions_per_setting(where, len(speeds))
         power = model.power_of(balance, at, which, load_factor)
         return of_power(power).reshape(shape)
 
@@ -158,11 +162,11 @@ def _of_balance(
             steady = of_power(np.array(model.orders.values))
         error = TableError(0.0, 0.0, 0.0, 0)
         if terms:
-            true = rates(conditions_of(terms, CHECKS, 7))
+            true = rates(random_term_conditions(terms, ERROR_SAMPLES, 7))
             error = table_error(np.where(np.isnan(true), np.nan, steady), true)
         return PerformanceTable((constant_part(steady),), speeds, "", error), steady
     parts = [term.part(speeds) for term in terms]
-    finish = _curve(model, balance, speeds, parts=parts, of_power=of_power)
+    finish = _rate_curve(model, balance, speeds, parts=parts, of_power=of_power)
     scale = calm_resistance(balance, speeds)[:, 0]
     table = refined_table(
         terms, speeds, finish, speeds, truth=rates, tolerance=tolerance, scale=scale
@@ -170,33 +174,35 @@ def _of_balance(
     return table, np.array([table.largest(k) for k in range(len(speeds))])
 
 
-def _curve(
+def _rate_curve(
     model: ResistanceModel,
-    balance: Balance,
+    balance: ForceBalance,
     speeds: FloatArray,
     *,
     parts: list[TablePart],
-    of_power: OfPower,
-) -> Finish:
+    of_power: RateOfPower,
+) -> OutputCurve:
     """The rate over the resistance [N] that conditions add, at each held speed."""
     still = calm_resistance(balance, speeds)[:, 0]
     limit = np.array([model.plant.largest_power])
     most = np.sum([part.greatest() for part in parts], axis=0)
-    spare = np.minimum(able(balance, speeds, limit)[:, 0] - still, np.maximum(most, 0.01 * still))
-    extra = -still[:, None] + (still + spare)[:, None] * np.linspace(0.0, 1.0, _NODES)
-    v, resistance = np.repeat(speeds, _NODES), (still[:, None] + extra).ravel()
+    spare = np.minimum(
+        resistance_at_power(balance, speeds, limit)[:, 0] - still, np.maximum(most, 0.01 * still)
+    )
+    extra = -still[:, None] + (still + spare)[:, None] * np.linspace(0.0, 1.0, _CURVE_POINTS)
+    v, resistance = np.repeat(speeds, _CURVE_POINTS), (still[:, None] + extra).ravel()
     power = np.minimum(balance.propulsion.brake_power(v, resistance), limit)
     start, step = extra[:, 0], extra[:, 1] - extra[:, 0]
     points = of_power(power).reshape(extra.shape)
     nothing = np.zeros(len(speeds))
-    return Finish("curve", start, step, points, nothing, nothing.astype(np.int64))
+    return OutputCurve("curve", start, step, points, nothing, nothing.astype(np.int64))
 
 
 def tabulate_rate(
-    model: ShipModel, rate: Rate, load_factor: float, tolerance: float
+    model: ShipModel, rate: RateFunction, load_factor: float, tolerance: float
 ) -> tuple[tuple[TablePart, ...], TableError]:
     """Tabulate a rate of any model over all conditions it reads, in one part."""
-    names = sorted(model.reads & AXIS_OF.keys(), key=AXIS_OF.__getitem__)
+    names = sorted(model.reads & AXIS_OF_CONDITION.keys(), key=AXIS_OF_CONDITION.__getitem__)
     settings = np.arange(len(model.speeds(load_factor)))
 
     def rates(where: Mapping[str, FloatArray]) -> FloatArray:

@@ -18,10 +18,10 @@ from thalweg.ship.methods.resistance.friction_lines import FloatArray
 Spectrum = Literal["bretschneider", "jonswap"]
 
 #: Step in ln w; trapezoids converge faster than any power for these smooth integrands.
-STEP: Final = {"bretschneider": 0.05, "jonswap": 0.025}
+LOG_FREQUENCY_STEP: Final = {"bretschneider": 0.05, "jonswap": 0.025}
 #: The same for the smoother reflection terms.
 REFLECTION_STEP: Final = {"bretschneider": 0.1, "jonswap": 0.04}
-_BLOCK: Final = 2048
+_BLOCK_SIZE: Final = 2048
 _MEAN_TO_PEAK: Final = (0.8 * 691.0) ** 0.25 / (2.0 * np.pi)
 
 
@@ -79,14 +79,14 @@ def spectral_shape(ratio: FloatArray, *, spectrum: Spectrum, gamma: float) -> Fl
     return np.asarray(shape)
 
 
-def nodes(low: float, high: float, *, step: float) -> FloatArray:
+def log_spaced_nodes(low: float, high: float, *, step: float) -> FloatArray:
     """Return equal steps in the logarithm that pass through one, from `low` to `high`."""
     first, last = np.floor(np.log(low) / step), np.ceil(np.log(high) / step)
     return np.asarray(np.exp(step * np.arange(first, last + 1.0)))
 
 
 def in_blocks(
-    function: Callable[..., FloatArray], *arguments: ArrayLike, block: int = _BLOCK
+    function: Callable[..., FloatArray], *arguments: ArrayLike, block: int = _BLOCK_SIZE
 ) -> FloatArray:
     """Apply a function of flat arrays block by block, so that memory stays small.
 

@@ -26,17 +26,19 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 from thalweg.ship.methods.added_resistance.mean_wave_force import (
+    LOG_FREQUENCY_STEP,
     REFLECTION_STEP,
-    STEP,
     Spectrum,
     in_blocks,
-    nodes,
+    log_spaced_nodes,
     spectral_shape,
 )
 from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number, ship_speed
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
-LONGEST: Final = 2.5  #: wave length over ship length beyond which nothing is reflected
+LONGEST_REFLECTED_WAVE: Final = (
+    2.5  #: wave length over ship length beyond which nothing is reflected
+)
 
 
 @dataclass(frozen=True)
@@ -200,7 +202,7 @@ def reflection_terms(
     )
 
 
-def wrapped(wave_angle: ArrayLike) -> FloatArray:
+def fold_angle(wave_angle: ArrayLike) -> FloatArray:
     """Return angles folded into 0 to pi [rad]."""
     return np.asarray(np.arccos(np.clip(np.cos(wave_angle), -1.0, 1.0)))
 
@@ -238,14 +240,16 @@ def snnm_transfer(
     particulars = hull.arrays()
     length, breadth, draught, trim, block, gyration = particulars[:6]
     omega, velocity = np.asarray(frequency, dtype=float), ship_speed(speed)
-    angle = wrapped(wave_angle)
+    angle = fold_angle(wave_angle)
     fn = froude_number(velocity, length=length, gravity=gravity)
     scale = frequency_scale(angle, fn, particulars, gravity)
     group = 2.0 * velocity * omega / gravity
     motion = 3859.2 * breadth**2 / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
     motion = motion * _heading_factors(angle, fn, group, particulars)
     motion = motion * motion_shape(omega * scale, particulars)
-    excess = np.maximum(2.0 * (omega**2 / gravity - 2.0 * np.pi / (LONGEST * length)), 0.0)
+    excess = np.maximum(
+        2.0 * (omega**2 / gravity - 2.0 * np.pi / (LONGEST_REFLECTED_WAVE * length)), 0.0
+    )
     b0, b1, s0, s1, deep = reflection_terms(velocity, angle, fn, particulars, gravity)
     bow = -np.expm1(-draught * excess) * (b0 + b1 * omega)
     stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
@@ -260,7 +264,7 @@ def _spectral_mean(
     speed, peak, angle, fn, *sizes = (condition[:, None] for condition in conditions)
     ship = tuple(sizes)
     length, breadth, draught, trim, block, gyration = ship[:6]
-    reduced = nodes(0.3, 4.0, step=STEP[spectrum])
+    reduced = log_spaced_nodes(0.3, 4.0, step=LOG_FREQUENCY_STEP[spectrum])
     omega = reduced / frequency_scale(angle, fn, ship, gravity)
     energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
     rows = np.broadcast_shapes(*(np.shape(c) for c in (*conditions,)))[0]
@@ -268,8 +272,8 @@ def _spectral_mean(
     factors = _factors_by_row(angle, fn, group, ship)
     motion = np.sum(energy * factors * motion_shape(reduced, ship), axis=1, keepdims=True)
     size = 3859.2 * breadth / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
-    above = nodes(1.0, 60.0, step=REFLECTION_STEP[spectrum])
-    lowest = 2.0 * np.pi / (LONGEST * length)
+    above = log_spaced_nodes(1.0, 60.0, step=REFLECTION_STEP[spectrum])
+    lowest = 2.0 * np.pi / (LONGEST_REFLECTED_WAVE * length)
     omega = above * np.sqrt(gravity * lowest)
     energy = spectral_shape(omega / peak, spectrum=spectrum, gamma=gamma)
     excess = 2.0 * lowest * (above**2 - 1.0)
@@ -277,7 +281,10 @@ def _spectral_mean(
     bow = -np.expm1(-draught * excess) * (b0 + b1 * omega)
     stern = -np.expm1(-deep * excess) * (s0 + s1 * omega)
     reflection = np.sum(energy * (bow - stern), axis=1, keepdims=True)
-    total = STEP[spectrum] * size * motion + 0.5625 * REFLECTION_STEP[spectrum] * reflection
+    total = (
+        LOG_FREQUENCY_STEP[spectrum] * size * motion
+        + 0.5625 * REFLECTION_STEP[spectrum] * reflection
+    )
     return np.asarray(2.0 * breadth * total)[:, 0]
 
 
@@ -317,7 +324,7 @@ def snnm(
         something is unknown.
     """
     particulars = hull.arrays()
-    velocity, angle = ship_speed(speed), wrapped(wave_angle)
+    velocity, angle = ship_speed(speed), fold_angle(wave_angle)
     period = np.asarray(wave_period, dtype=float)
     peak = 2.0 * np.pi / np.where(period > 0.0, period, np.nan)
     fn = froude_number(velocity, length=particulars[0], gravity=gravity)

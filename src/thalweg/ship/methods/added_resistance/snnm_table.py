@@ -18,21 +18,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 from thalweg.ship.methods.added_resistance.mean_wave_force import (
+    LOG_FREQUENCY_STEP,
     REFLECTION_STEP,
-    STEP,
     in_blocks,
-    nodes,
+    log_spaced_nodes,
     spectral_shape,
 )
 from thalweg.ship.methods.added_resistance.snnm import (
-    LONGEST,
+    LONGEST_REFLECTED_WAVE,
     SnnmHull,
     ahead_factors,
+    fold_angle,
     frequency_scale,
     motion_shape,
     reflection_terms,
     speed_factor,
-    wrapped,
 )
 from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number, ship_speed
 
@@ -41,7 +41,7 @@ _SPECTRUM: Final = "bretschneider"
 _STEP: Final = 0.002  # of the logarithm of peak frequencies
 _BLOCK: Final = 8192
 _FAR: Final = 0.12  # relative Froude number where the published factors change
-_DEPTHS: Final = 33  # draughts that count at the stern
+_DRAUGHT_POINTS: Final = 33  # draughts that count at the stern
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +111,7 @@ class SnnmTable:
     def of(cls, hull: SnnmHull, *, shortest: float, longest: float) -> SnnmTable:
         """Sum up for a hull of numbers, for peak periods from ``shortest`` to ``longest`` [s]."""
         own = tuple(np.asarray(value, float) for value in hull.arrays())
-        reduced = nodes(0.3, 4.0, step=STEP[_SPECTRUM])
+        reduced = log_spaced_nodes(0.3, 4.0, step=LOG_FREQUENCY_STEP[_SPECTRUM])
         shape = motion_shape(reduced, own)
         angles, fast = np.linspace(0.0, np.pi, 181), np.array([[0.0], [0.42], [1.0]])
         scales = frequency_scale(angles, fast, own, GRAVITY)
@@ -128,7 +128,7 @@ class SnnmTable:
         self, speed: ArrayLike, wave_height: ArrayLike, wave_period: ArrayLike, angle: ArrayLike
     ) -> FloatArray:
         """Mean added resistance [N]; see `thalweg.ship.methods.added_resistance.snnm.snnm`."""
-        velocity, turned = ship_speed(speed), wrapped(angle)
+        velocity, turned = ship_speed(speed), fold_angle(angle)
         period = np.asarray(wave_period, dtype=float)
         peak = 2.0 * np.pi / np.where(period > 0.0, period, np.nan)
         fn = froude_number(velocity, length=self.hull[0])
@@ -154,7 +154,10 @@ class SnnmTable:
             moved[abaft] = self._from_abaft(*at, cell=(cell[0][abaft], cell[1][abaft]))
         size = 3859.2 * breadth / length * block**1.34 * gyration**2 * (1.0 + 28.7 * trim)
         thrown = self._reflection(speed, peak, angle, fn)
-        total = STEP[_SPECTRUM] * size * moved + 0.5625 * REFLECTION_STEP[_SPECTRUM] * thrown
+        total = (
+            LOG_FREQUENCY_STEP[_SPECTRUM] * size * moved
+            + 0.5625 * REFLECTION_STEP[_SPECTRUM] * thrown
+        )
         unknown = np.isnan(speed + peak + angle + fn)
         return np.where(unknown, np.nan, 2.0 * breadth * total)
 
@@ -212,8 +215,8 @@ class SnnmTable:
         cell = self.bow.cell(peak)
         thrown = b0 * self.bow.at(cell, 0) + b1 * self.bow.at(cell, 1)
         least = _least_depth(self.hull)
-        place = (deep / self.hull[2] - least) / (1.0 - least) * (_DEPTHS - 1)
-        place = np.clip(np.where(np.isnan(place), 0.0, place), 0.0, _DEPTHS - 1.001)
+        place = (deep / self.hull[2] - least) / (1.0 - least) * (_DRAUGHT_POINTS - 1)
+        place = np.clip(np.where(np.isnan(place), 0.0, place), 0.0, _DRAUGHT_POINTS - 1.001)
         row = place.astype(np.intp)
         for power, factor in ((0, s0), (1, s1)):
             shallow = self.stern.at(cell, 2 * row + power)
@@ -229,13 +232,13 @@ def _least_depth(hull: tuple[FloatArray, ...]) -> float:
 
 def _reflections(hull: tuple[FloatArray, ...], peaks: FloatArray) -> tuple[LogTable, LogTable]:
     """Sums of the energy that bow and stern reflect, over peak frequencies [rad/s]."""
-    lowest = 2.0 * np.pi / (LONGEST * hull[0])
-    above = nodes(1.0, 60.0, step=REFLECTION_STEP[_SPECTRUM])
+    lowest = 2.0 * np.pi / (LONGEST_REFLECTED_WAVE * hull[0])
+    above = log_spaced_nodes(1.0, 60.0, step=REFLECTION_STEP[_SPECTRUM])
     omega = above * np.sqrt(GRAVITY * lowest)
     excess = 2.0 * lowest * (above**2 - 1.0)
     energy = spectral_shape(omega / peaks[:, None], spectrum=_SPECTRUM, gamma=1.0)
     powers = omega[:, None] ** np.arange(2)
-    draughts = hull[2] * np.linspace(_least_depth(hull), 1.0, _DEPTHS)
+    draughts = hull[2] * np.linspace(_least_depth(hull), 1.0, _DRAUGHT_POINTS)
     share = -np.expm1(-draughts[:, None, None] * excess[:, None]) * powers
     stern = np.einsum("pw,dwk->pdk", energy, share)
     first = float(np.log(peaks[0]))

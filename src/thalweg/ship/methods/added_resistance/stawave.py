@@ -18,27 +18,29 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 from thalweg.ship.methods.added_resistance.mean_wave_force import (
+    LOG_FREQUENCY_STEP,
     REFLECTION_STEP,
-    STEP,
     Spectrum,
     bessel_i1_scaled,
     bessel_k1_scaled,
     in_blocks,
-    nodes,
+    log_spaced_nodes,
     spectral_shape,
 )
 from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number, ship_speed
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
-SECTOR: Final = np.pi / 4.0  #: half width of the sector of STAwave-1 and STAwave-2 [rad]
-_SLOWEST: Final = 1e-3
-_PEAKS: Final = np.linspace(np.log(0.02), np.log(20.0), 2001)  #: where the means are tabulated
+HEAD_SECTOR: Final = np.pi / 4.0  #: half width of the sector of STAwave-1 and STAwave-2 [rad]
+_LEAST_FROUDE_NUMBER: Final = 1e-3
+_LOG_PEAK_FREQUENCIES: Final = np.linspace(
+    np.log(0.02), np.log(20.0), 2001
+)  #: where the means are tabulated
 
 
 def in_head_sector(wave_angle: ArrayLike) -> FloatArray:
     """1 for waves from within 45 degrees of the bow, 0 for others, NaN where unknown."""
     ahead = np.cos(np.asarray(wave_angle, dtype=float))
-    inside = np.where(ahead >= np.cos(SECTOR) - 1e-12, 1.0, 0.0)
+    inside = np.where(ahead >= np.cos(HEAD_SECTOR) - 1e-12, 1.0, 0.0)
     return np.where(np.isnan(ahead), np.nan, inside)
 
 
@@ -46,7 +48,7 @@ def head_sector_validity(wave_angle: ArrayLike, *, method: str) -> list[RangeNot
     """Say which waves come from outside the sector, where the resistance is taken as zero."""
     degrees = np.degrees(np.abs(np.asarray(wave_angle, dtype=float)))
     outside = np.where(in_head_sector(wave_angle) == 1.0, 0.0, degrees)
-    return range_notes(method, {"wave angle": (outside, 0.0, np.degrees(SECTOR))})
+    return range_notes(method, {"wave angle": (outside, 0.0, np.degrees(HEAD_SECTOR))})
 
 
 def stawave1(
@@ -122,7 +124,7 @@ def _frequency_scale(
 ) -> FloatArray:
     """Dimensionless frequency for w = 1 rad/s: sqrt(L/g) k_yy^(1/3) Fr^0.143 / 1.17."""
     scale = np.sqrt(np.asarray(length) / gravity) * np.cbrt(gyration)
-    return np.asarray(scale * np.maximum(froude, _SLOWEST) ** 0.143 / 1.17)
+    return np.asarray(scale * np.maximum(froude, _LEAST_FROUDE_NUMBER) ** 0.143 / 1.17)
 
 
 def stawave2_transfer(
@@ -177,15 +179,15 @@ def stawave2_transfer(
 @lru_cache(maxsize=32)
 def _motion_mean(slenderness: float, spectrum: Spectrum, gamma: float) -> FloatArray:
     """Mean of the motion shape over the spectrum, for each dimensionless peak frequency."""
-    frequency = nodes(0.3, 5.0, step=STEP[spectrum])
-    shape = STEP[spectrum] * _motion_shape(frequency, slenderness)
+    frequency = log_spaced_nodes(0.3, 5.0, step=LOG_FREQUENCY_STEP[spectrum])
+    shape = LOG_FREQUENCY_STEP[spectrum] * _motion_shape(frequency, slenderness)
     return _mean(frequency, shape, spectrum, gamma)
 
 
 @lru_cache(maxsize=32)
 def _reflection_mean(spectrum: Spectrum, gamma: float) -> FloatArray:
     """Mean of the reflected part over the spectrum, for each w_p sqrt(T / g)."""
-    frequency = nodes(0.02, 120.0, step=REFLECTION_STEP[spectrum])
+    frequency = log_spaced_nodes(0.02, 120.0, step=REFLECTION_STEP[spectrum])
     shape = REFLECTION_STEP[spectrum] * _reflection_shape(frequency**2)
     return _mean(frequency, shape, spectrum, gamma)
 
@@ -196,13 +198,13 @@ def _mean(frequency: FloatArray, shape: FloatArray, spectrum: Spectrum, gamma: f
         energy = spectral_shape(ratio, spectrum=spectrum, gamma=gamma)
         return np.asarray(energy @ shape)
 
-    return in_blocks(block, np.exp(_PEAKS))
+    return in_blocks(block, np.exp(_LOG_PEAK_FREQUENCIES))
 
 
 def _look_up(peak: FloatArray, means: FloatArray) -> FloatArray:
     """Interpolate between means; beyond the table nothing moves, or all is reflected."""
     known = np.where(peak > 0.0, peak, np.where(np.isnan(peak), np.nan, 1e-9))
-    return np.asarray(np.interp(np.log(known), _PEAKS, means))
+    return np.asarray(np.interp(np.log(known), _LOG_PEAK_FREQUENCIES, means))
 
 
 def stawave2(

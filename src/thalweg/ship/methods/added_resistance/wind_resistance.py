@@ -141,7 +141,7 @@ def wind_resistance(
     return np.asarray(force)
 
 
-def folded(angle: ArrayLike) -> FloatArray:
+def fold_angle_off_bow(angle: ArrayLike) -> FloatArray:
     """Angle from the bow folded to 0 ... pi, so that port and starboard are alike [rad]."""
     return np.asarray(
         np.abs(np.remainder(np.asarray(angle, dtype=float) + np.pi, 2 * np.pi) - np.pi)
@@ -220,7 +220,7 @@ def fujiwara_2006(wind_angle: ArrayLike, ship: FujiwaraShip) -> FloatArray:
         1.901 - 12.727 * side - 24.407 * frontal / lateral + 40.310 * front + 5.481 * face,
         0.314 + 1.117 * deck / lateral,
     )
-    angle = folded(wind_angle)
+    angle = fold_angle_off_bow(wind_angle)
     first, last = np.radians(80.0), np.radians(100.0)
     before = _fujiwara(np.minimum(angle, first), head)
     after = _fujiwara(np.maximum(angle, last), stern)
@@ -288,15 +288,15 @@ def blendermann_1994(
     -------
     ndarray
     """
-    angle = folded(wind_angle)
+    angle = fold_angle_off_bow(wind_angle)
     drag = np.where(angle <= 0.5 * np.pi, ship_type.bow, ship_type.stern)
     ratio = np.asarray(frontal_area, dtype=float) / np.asarray(lateral_area)
     slack = 0.5 * ship_type.cross_force * (1.0 - drag * ratio / ship_type.transverse)
     return np.asarray(drag * np.cos(angle) / (1.0 - slack * np.sin(2.0 * angle) ** 2))
 
 
-_TENS: Final = tuple(range(0, 181, 10))
-_FIFTEENS: Final = tuple(range(0, 181, 15))
+_EVERY_10_DEGREES: Final = tuple(range(0, 181, 10))
+_EVERY_15_DEGREES: Final = tuple(range(0, 181, 15))
 
 #: Angles [deg] and C_AA of the data sets of ISO 15016:2015 and ITTC 7.5-04-01-01.1. The curves
 #: ``tanker_laden``, ``general_cargo`` and ``container_laden_no_boxes`` agree within 0.04 between
@@ -305,14 +305,14 @@ _FIFTEENS: Final = tuple(range(0, 181, 15))
 ITTC_CURVES: Final = MappingProxyType(
     {
         "tanker_laden": (
-            _TENS,
+            _EVERY_10_DEGREES,
             (
                 *(0.96, 0.93, 0.85, 0.73, 0.62, 0.47, 0.34, 0.17, 0.06, -0.05),
                 *(-0.14, -0.22, -0.29, -0.40, -0.53, -0.66, -0.75, -0.79, -0.77),
             ),
         ),
         "tanker_ballast": (
-            _TENS,
+            _EVERY_10_DEGREES,
             (
                 *(0.87, 0.77, 0.63, 0.46, 0.35, 0.22, 0.16, 0.09, 0.09, 0.03),
                 *(-0.03, -0.13, -0.23, -0.30, -0.39, -0.47, -0.51, -0.55, -0.52),
@@ -326,14 +326,14 @@ ITTC_CURVES: Final = MappingProxyType(
             ),
         ),
         "container_laden": (
-            _FIFTEENS,
+            _EVERY_15_DEGREES,
             (
                 *(0.68, 0.77, 0.67, 0.41, 0.26, 0.22, 0.27),
                 *(0.07, -0.35, -0.67, -0.88, -0.83, -0.65),
             ),
         ),
         "container_laden_no_boxes": (
-            _FIFTEENS,
+            _EVERY_15_DEGREES,
             (
                 *(1.01, 1.11, 1.11, 0.95, 0.74, 0.46, 0.13),
                 *(-0.28, -0.77, -1.09, -1.18, -1.19, -0.94),
@@ -360,7 +360,7 @@ def ittc_curve(wind_angle: ArrayLike, *, curve: str = "tanker_laden") -> FloatAr
     ndarray
     """
     degrees, values = ITTC_CURVES[curve]
-    return np.asarray(np.interp(folded(wind_angle), np.radians(degrees), values))
+    return np.asarray(np.interp(fold_angle_off_bow(wind_angle), np.radians(degrees), values))
 
 
 def yu_2021_area(breadth: ArrayLike, *, draught_aft: ArrayLike) -> FloatArray:

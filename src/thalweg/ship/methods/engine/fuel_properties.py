@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import TONNE
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ FUELS: Final[Mapping[str, Fuel]] = MappingProxyType(
 )
 
 #: Other names -> short name. VLSFO is sold in residual grades; by its grade it may be ``lfo``.
-ALIASES: Final[Mapping[str, str]] = MappingProxyType(
+FUEL_ALIASES: Final[Mapping[str, str]] = MappingProxyType(
     {
         "mdo": "mgo",
         "diesel": "mgo",
@@ -104,7 +104,7 @@ def fuel_named(name: str) -> Fuel:
     Parameters
     ----------
     name : str
-        A key of `FUELS` or `ALIASES`.
+        A key of `FUELS` or `FUEL_ALIASES`.
 
     Returns
     -------
@@ -117,9 +117,9 @@ def fuel_named(name: str) -> Fuel:
         For an unknown name, with near matches.
     """
     key = name.casefold().replace(" ", "_").replace("-", "_")
-    key = ALIASES.get(key, key)
+    key = FUEL_ALIASES.get(key, key)
     if key not in FUELS:
-        raise unknown_name("fuel", name, [*FUELS, *ALIASES])
+        raise unknown_name_error("fuel", name, [*FUELS, *FUEL_ALIASES])
     return FUELS[key]
 
 
@@ -142,10 +142,10 @@ def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> Floats:
     ----------
     MEPC.364(79), section 2.2.1.
     """
-    return floats(fuel_mass) * floats(carbon_factor)
+    return as_float_array(fuel_mass) * as_float_array(carbon_factor)
 
 
-def same_heat_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> Floats:
+def equal_energy_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> Floats:
     """Return the mass of another fuel with the same lower heating value.
 
     Parameters
@@ -160,7 +160,7 @@ def same_heat_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> Floats:
     ndarray
         Mass of ``to``, in the unit of ``fuel_mass``.
     """
-    return floats(fuel_mass) * of.heating_value / to.heating_value
+    return as_float_array(fuel_mass) * of.heating_value / to.heating_value
 
 
 def fuel_cost(fuel_mass: ArrayLike, *, price_t: ArrayLike) -> Floats:
@@ -178,7 +178,7 @@ def fuel_cost(fuel_mass: ArrayLike, *, price_t: ArrayLike) -> Floats:
     ndarray
         Cost.
     """
-    return floats(fuel_mass) / TONNE * floats(price_t)
+    return as_float_array(fuel_mass) / TONNE * as_float_array(price_t)
 
 
 @dataclass(frozen=True)
@@ -237,15 +237,15 @@ def switch_in_control_area(
     Seuren (2020) gives one factor for fuel cost inside control areas, 1.5593 (Table 5.2); that is
     ``price_inside_t / price_outside_t`` here with one fuel and no change of heating value.
     """
-    share = floats(share_inside)
+    share = as_float_array(share_inside)
     if np.any((share < 0.0) | (share > 1.0)):
         raise InputError(
             "The share of a leg inside a control area lies outside 0 to 1.",
             f"It runs from {np.nanmin(share):g} to {np.nanmax(share):g}.",
             "Give lengths inside the area divided by leg lengths.",
         )
-    mass_out = floats(fuel_mass) * (1.0 - share)
-    mass_in = np.asarray(same_heat_mass(np.asarray(fuel_mass) * share, of=outside, to=inside))
+    mass_out = as_float_array(fuel_mass) * (1.0 - share)
+    mass_in = np.asarray(equal_energy_mass(np.asarray(fuel_mass) * share, of=outside, to=inside))
     cost = np.where(mass_out > 0, mass_out * price_outside_t, 0.0 * mass_out)
     cost = (cost + np.where(mass_in > 0, mass_in * price_inside_t, 0.0 * mass_in)) / TONNE
     return SwitchedFuel(
@@ -285,8 +285,8 @@ def halem_cost(
     J. P. van Halem, "Route optimization in dynamic currents", TU Delft (2019), eq. 3.4 (the text
     points to 3.5).
     """
-    t = floats(time)
-    return per_second * t + per_cube * t * floats(speed) ** 3
+    t = as_float_array(time)
+    return per_second * t + per_cube * t * as_float_array(speed) ** 3
 
 
 def halem_cheapest_speed(

@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import DAY, KNOT, TONNE
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 #: kg/(W s) in one g/kWh.
-G_KWH: Final = 1e-3 / 3.6e6
+GRAM_PER_KILOWATT_HOUR: Final = 1e-3 / 3.6e6
 
 _GHG4 = "Fourth IMO GHG Study 2020"
 
@@ -103,7 +103,7 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
     engines = {pair[0] for pair in BASE_SFOC}
     named, engine = engine, engine.casefold().replace(" ", "_").replace("-", "_")
     if engine not in engines:
-        raise unknown_name("engine type", named, engines)
+        raise unknown_name_error("engine type", named, engines)
     kinds = {pair[1] for pair in BASE_SFOC if pair[0] == engine}
     if fuel_kind not in kinds:
         raise InputError(
@@ -146,7 +146,7 @@ def sfoc_load_factor(load: ArrayLike) -> Floats:
     Fourth IMO GHG Study 2020, annex B.2, eq. 10 (checked against a quotation of the text);
     only for piston engines.
     """
-    x = floats(load)
+    x = as_float_array(load)
     return 1.280 + x * (-0.710 + 0.455 * x)
 
 
@@ -180,10 +180,14 @@ def fuel_rate(
     ----------
     Fourth IMO GHG Study 2020, annex B.2, eq. 10.
     """
-    p = floats(power)
+    p = as_float_array(power)
     p = np.where(p >= 0.0, p, np.nan)
-    factor = sfoc_load_factor(p / floats(mcr)) if varies_with_load else 1.0
-    return p * (floats(sfoc_g_kwh) * factor + floats(pilot_g_kwh)) * G_KWH
+    factor = sfoc_load_factor(p / as_float_array(mcr)) if varies_with_load else 1.0
+    return (
+        p
+        * (as_float_array(sfoc_g_kwh) * factor + as_float_array(pilot_g_kwh))
+        * GRAM_PER_KILOWATT_HOUR
+    )
 
 
 def engines_needed(
@@ -207,9 +211,9 @@ def engines_needed(
     ndarray
         Number of engines, 0 at zero power; NaN where all of them do not suffice.
     """
-    p = floats(power)
+    p = as_float_array(power)
     with np.errstate(invalid="ignore"):
-        need = np.ceil(p / (floats(engine_mcr) * largest_load) - 1e-12)
+        need = np.ceil(p / (as_float_array(engine_mcr) * largest_load) - 1e-12)
         return np.where((p >= 0.0) & (need <= count), need, np.nan)
 
 
@@ -245,9 +249,9 @@ def plant_fuel_rate(
         Fuel [kg/s] and number of engines running; NaN where the plant cannot give the power.
     """
     if choice not in ("least_fuel", "fewest"):
-        raise unknown_name("choice of engines", choice, ("least_fuel", "fewest"))
+        raise unknown_name_error("choice of engines", choice, ("least_fuel", "fewest"))
     fewest = engines_needed(power, engine_mcr, count=count, largest_load=largest_load)
-    p, least = floats(power), np.asarray(fewest)
+    p, least = as_float_array(power), np.asarray(fewest)
     best = np.where(least == 0.0, 0.0, np.full(np.broadcast(p, least).shape, np.inf))
     running = np.where(least == 0.0, 0.0, np.nan)
     for n in range(1, count + 1):
@@ -277,11 +281,11 @@ def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> Floats:
     ----------
     Fourth IMO GHG Study 2020, annex B.2, eq. 11: auxiliary power times base consumption.
     """
-    return floats(power) * floats(sfoc_g_kwh) * G_KWH
+    return as_float_array(power) * as_float_array(sfoc_g_kwh) * GRAM_PER_KILOWATT_HOUR
 
 
 @dataclass(frozen=True)
-class EngineTable:
+class EngineSettingsTable:
     """Engine settings of a ship with the speed and the fuel each gives.
 
     Parameters
@@ -306,7 +310,7 @@ class EngineTable:
 
 
 #: Two-engine bulk carrier of Seuren (2020), Table 5.3.
-SEUREN_TABLE_5_3: Final = EngineTable(
+SEUREN_TABLE_5_3: Final = EngineSettingsTable(
     engines=(2, 2, 2, 2, 2, 2, 1, 1, 1, 1, 1, 1),
     load_percent=(100, 95, 90, 85, 80, 75) * 2,
     fuel_t_day=(39.0, 36.8, 34.4, 32.0, 30.3, 28.9, 20.1, 18.9, 17.6, 16.4, 15.5, 14.3),
@@ -315,7 +319,7 @@ SEUREN_TABLE_5_3: Final = EngineTable(
 )
 
 
-def table_fuel_rate(speed: ArrayLike, table: EngineTable) -> tuple[Floats, Floats]:
+def table_fuel_rate(speed: ArrayLike, table: EngineSettingsTable) -> tuple[Floats, Floats]:
     """Return the least fuel of a table at a calm-water speed, and how many engines run.
 
     Interpolated linearly between the settings of the same number of engines only; a speed that
@@ -333,7 +337,7 @@ def table_fuel_rate(speed: ArrayLike, table: EngineTable) -> tuple[Floats, Float
     tuple of ndarray
         Fuel [kg/s] and engines running.
     """
-    knots = floats(speed) / KNOT
+    knots = as_float_array(speed) / KNOT
     engines, speeds = np.array(table.engines), np.array(table.speed_kn)
     fuel = np.array(table.fuel_t_day) * TONNE / DAY
     best, running = np.full(knots.shape, np.inf), np.full(knots.shape, np.nan)

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.methods.propulsion.b_series_coefficients import (
-    THRUST,
-    THRUST_REYNOLDS,
-    TORQUE,
-    TORQUE_REYNOLDS,
+    THRUST_REYNOLDS_TERMS,
+    THRUST_TERMS,
+    TORQUE_REYNOLDS_TERMS,
+    TORQUE_TERMS,
 )
 from thalweg.ship.methods.resistance.friction_lines import FloatArray
 from thalweg.ship.methods.validity import RangeNote, range_notes
@@ -48,7 +48,7 @@ class Propeller:
 
 
 @dataclass(frozen=True)
-class OperatingPoint:
+class PropellerOperatingPoint:
     """State of a propeller that gives a thrust at a speed of advance; arrays of one shape.
 
     Attributes
@@ -72,7 +72,9 @@ class OperatingPoint:
     efficiency: FloatArray
 
 
-def _collapse(terms: FloatArray, propeller: Propeller, log: float | None = None) -> FloatArray:
+def _advance_polynomial(
+    terms: FloatArray, propeller: Propeller, log: float | None = None
+) -> FloatArray:
     """Return the coefficients of 1, J, J^2 and J^3 of a polynomial for one propeller."""
     weights = (
         terms[:, 0]
@@ -104,11 +106,14 @@ def b_series_polynomials(
     thrust, torque : ndarray
         Four coefficients each.
     """
-    thrust, torque = _collapse(THRUST, propeller), _collapse(TORQUE, propeller)
+    thrust, torque = (
+        _advance_polynomial(THRUST_TERMS, propeller),
+        _advance_polynomial(TORQUE_TERMS, propeller),
+    )
     if reynolds is not None:
         log = float(np.log10(reynolds)) - 0.301
-        thrust = thrust + _collapse(THRUST_REYNOLDS, propeller, log)
-        torque = torque + _collapse(TORQUE_REYNOLDS, propeller, log)
+        thrust = thrust + _advance_polynomial(THRUST_REYNOLDS_TERMS, propeller, log)
+        torque = torque + _advance_polynomial(TORQUE_REYNOLDS_TERMS, propeller, log)
     return thrust, torque
 
 
@@ -221,7 +226,7 @@ def solve_advance(
     scale = np.maximum(stream, force)
     share = force / np.where(scale > 0.0, scale, 1.0)
     stream = stream / np.where(scale > 0.0, scale, 1.0)
-    ratio = _near_advance(share, stream, polynomial, largest)
+    ratio = _initial_advance(share, stream, polynomial, largest)
     for _ in range(3):
         step = _newton_step(ratio, share, stream, polynomial)
         ratio = ratio - step
@@ -263,7 +268,7 @@ def _bracketed_advance(
     return ratio
 
 
-def _near_advance(
+def _initial_advance(
     share: FloatArray, stream: FloatArray, polynomial: FloatArray, largest: float
 ) -> FloatArray:
     """Where to start the search for J: between 129 points of K_T / (K_T + J^2), which falls."""
@@ -284,7 +289,7 @@ def operating_point(
     *,
     density: float = SEA_WATER_DENSITY,
     reynolds: float | None = None,
-) -> OperatingPoint:
+) -> PropellerOperatingPoint:
     """State of a propeller that gives a thrust at a speed of advance.
 
     Parameters
@@ -323,7 +328,7 @@ def operating_point(
     rate = np.where(np.isnan(advance), np.nan, np.where(light, moving, loaded))
     torque = kq * density * rate**2 * size**5
     efficiency = advance * kt / (2.0 * np.pi * kq)
-    return OperatingPoint(advance, rate, torque, 2.0 * np.pi * rate * torque, efficiency)
+    return PropellerOperatingPoint(advance, rate, torque, 2.0 * np.pi * rate * torque, efficiency)
 
 
 def b_series_validity(propeller: Propeller) -> list[RangeNote]:

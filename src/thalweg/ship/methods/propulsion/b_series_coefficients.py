@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 # Coefficient and powers of J, P/D, A_E/A_0 and Z.
-THRUST: Final = np.array(
+THRUST_TERMS: Final = np.array(
     [
         [0.00880496, 0, 0, 0, 0],
         [-0.204554, 1, 0, 0, 0],
@@ -54,7 +54,7 @@ THRUST: Final = np.array(
         [-0.00146564, 0, 3, 2, 2],
     ]
 )
-TORQUE: Final = np.array(
+TORQUE_TERMS: Final = np.array(
     [
         [0.00379368, 0, 0, 0, 0],
         [0.00886523, 2, 0, 0, 0],
@@ -106,7 +106,7 @@ TORQUE: Final = np.array(
     ]
 )
 # The same for the Reynolds correction, with the power of log10(Rn) - 0.301 last.
-THRUST_REYNOLDS: Final = np.array(
+THRUST_REYNOLDS_TERMS: Final = np.array(
     [
         [0.000353485, 0, 0, 0, 0, 0],
         [-0.00333758, 2, 0, 1, 0, 0],
@@ -119,7 +119,7 @@ THRUST_REYNOLDS: Final = np.array(
         [0.0000032049, 1, 3, 1, 2, 1],
     ]
 )
-TORQUE_REYNOLDS: Final = np.array(
+TORQUE_REYNOLDS_TERMS: Final = np.array(
     [
         [-0.000591412, 0, 0, 0, 0, 0],
         [0.00696898, 0, 1, 0, 0, 0],

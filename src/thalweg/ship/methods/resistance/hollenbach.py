@@ -24,10 +24,10 @@ from thalweg.ship.methods.resistance.friction_lines import (
     ship_speed,
 )
 from thalweg.ship.methods.resistance.hollenbach_coefficients import (
-    COEFFICIENTS,
+    RESISTANCE_COEFFICIENTS,
     SURFACE_COEFFICIENTS,
+    ResistanceVariant,
     SurfaceVariant,
-    Variant,
 )
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
@@ -80,28 +80,28 @@ def froude_length(
 
 
 def standard_residuary(
-    froude: ArrayLike, *, block_coefficient: ArrayLike, variant: Variant = "single_design"
+    froude: ArrayLike, *, block_coefficient: ArrayLike, variant: ResistanceVariant = "single_design"
 ) -> FloatArray:
     """Standard residuary coefficient C_R,standard, a quadratic in Fn and C_B."""
     fn = np.asarray(froude, dtype=float)
     block = np.asarray(block_coefficient, dtype=float)
-    rows = [b1 + b2 * fn + b3 * fn**2 for b1, b2, b3 in COEFFICIENTS[variant].residuary]
+    rows = [b1 + b2 * fn + b3 * fn**2 for b1, b2, b3 in RESISTANCE_COEFFICIENTS[variant].residuary]
     return rows[0] + block * rows[1] + block**2 * rows[2]
 
 
 def critical_froude_number(
-    block_coefficient: ArrayLike, *, variant: Variant = "single_design"
+    block_coefficient: ArrayLike, *, variant: ResistanceVariant = "single_design"
 ) -> FloatArray:
     """Fn_crit = d1 + d2 C_B + d3 C_B^2; infinite for the minimum curves, which have none."""
     block = np.asarray(block_coefficient, dtype=float)
-    if COEFFICIENTS[variant].critical is None:
+    if RESISTANCE_COEFFICIENTS[variant].critical is None:
         return np.where(np.isnan(block), np.nan, np.inf)
-    d1, d2, d3 = COEFFICIENTS[variant].critical or (np.nan, np.nan, np.nan)
+    d1, d2, d3 = RESISTANCE_COEFFICIENTS[variant].critical or (np.nan, np.nan, np.nan)
     return d1 + d2 * block + d3 * block**2
 
 
 def froude_factor(
-    froude: ArrayLike, *, block_coefficient: ArrayLike, variant: Variant = "single_design"
+    froude: ArrayLike, *, block_coefficient: ArrayLike, variant: ResistanceVariant = "single_design"
 ) -> FloatArray:
     """Factor k_F: 1 below the critical Froude number, (Fn / Fn_crit)^c1 above.
 
@@ -112,7 +112,7 @@ def froude_factor(
     block = np.asarray(block_coefficient, dtype=float)
     ratio = fn / critical_froude_number(block, variant=variant)
     above = np.maximum(ratio, 1.0)
-    growth = COEFFICIENTS[variant].growth
+    growth = RESISTANCE_COEFFICIENTS[variant].growth
     exponent = 10.0 * block * (above - 1.0) if growth == "block" else above
     return np.where(np.isnan(ratio), np.nan, above**exponent)
 
@@ -132,14 +132,14 @@ def residuary_coefficient(
     brackets: ArrayLike = 0,
     bosses: ArrayLike = 0,
     thrusters: ArrayLike = 0,
-    variant: Variant = "single_design",
+    variant: ResistanceVariant = "single_design",
 ) -> FloatArray:
     """Residuary coefficient C_R on the area B T (the printed one divided by ten).
 
     The counts of rudders, brackets, bosses and side thrusters act on the twin-screw mean curve
     only; elsewhere their exponents are zero.
     """
-    coefficients = COEFFICIENTS[variant]
+    coefficients = RESISTANCE_COEFFICIENTS[variant]
     length = np.asarray(length_between_perpendiculars, dtype=float)
     waterline = np.asarray(length_waterline, dtype=float)
     wide = np.asarray(breadth, dtype=float)
@@ -178,7 +178,7 @@ def hollenbach_1998(
     brackets: ArrayLike = 0,
     bosses: ArrayLike = 0,
     thrusters: ArrayLike = 0,
-    variant: Variant = "single_design",
+    variant: ResistanceVariant = "single_design",
     correlation_allowance: ArrayLike = 0.0,
     friction_coefficient: ArrayLike | None = None,
     density: float = SEA_WATER_DENSITY,
@@ -204,7 +204,7 @@ def hollenbach_1998(
     rudders, brackets, bosses, thrusters : array_like
         Counts; felt by the twin-screw mean curve only.
     variant : str
-        Key of `COEFFICIENTS`; the ``*_minimum`` keys give the minimum line.
+        Key of `RESISTANCE_COEFFICIENTS`; the ``*_minimum`` keys give the minimum line.
     correlation_allowance : array_like
         C_A on the wetted surface; the method itself has none, see `correlation_allowance`.
     friction_coefficient : array_like, optional
@@ -253,9 +253,9 @@ def hollenbach_1998(
     return HollenbachResistance(friction, residuary, correlation, total)
 
 
-def maximum_factor(variant: Variant = "single_design") -> float:
+def maximum_factor(variant: ResistanceVariant = "single_design") -> float:
     """Ratio h1 of Hollenbach's maximum to his mean line (unverified: quoted from memory)."""
-    return COEFFICIENTS[variant].maximum
+    return RESISTANCE_COEFFICIENTS[variant].maximum
 
 
 def correlation_allowance(length_between_perpendiculars: ArrayLike) -> FloatArray:
@@ -327,12 +327,12 @@ def hollenbach_wetted_surface(
 
 
 def froude_limits(
-    block_coefficient: ArrayLike, *, variant: Variant = "single_design"
+    block_coefficient: ArrayLike, *, variant: ResistanceVariant = "single_design"
 ) -> tuple[FloatArray, FloatArray]:
     """Froude range of the data: min(f1, f1 + f2 (f3 - C_B)) to g1 + g2 C_B + g3 C_B^2."""
     block = np.asarray(block_coefficient, dtype=float)
-    f1, f2, f3 = COEFFICIENTS[variant].lower
-    g1, g2, g3 = COEFFICIENTS[variant].upper
+    f1, f2, f3 = RESISTANCE_COEFFICIENTS[variant].lower
+    g1, g2, g3 = RESISTANCE_COEFFICIENTS[variant].upper
     return np.minimum(f1, f1 + f2 * (f3 - block)), g1 + g2 * block + g3 * block**2
 
 
@@ -342,7 +342,7 @@ def hollenbach_validity(
     length_between_perpendiculars: float,
     length_over_surface: float,
     block_coefficient: float,
-    variant: Variant = "single_design",
+    variant: ResistanceVariant = "single_design",
     gravity: float = GRAVITY,
 ) -> list[RangeNote]:
     """Say which speeds lie outside the Froude range of the data.
@@ -358,7 +358,7 @@ def hollenbach_validity(
     block_coefficient : float
         C_B.
     variant : str
-        Key of `COEFFICIENTS`.
+        Key of `RESISTANCE_COEFFICIENTS`.
     gravity : float
         [m/s2].
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, Literal
 
-Variant = Literal[
+ResistanceVariant = Literal[
     "single_design", "single_ballast", "single_minimum", "twin_design", "twin_minimum"
 ]
 SurfaceVariant = Literal["single_design", "single_ballast", "twin_bulb", "twin_no_bulb"]
@@ -56,7 +56,7 @@ class HollenbachCoefficients:
     maximum: float
 
 
-COEFFICIENTS: Final = MappingProxyType(
+RESISTANCE_COEFFICIENTS: Final = MappingProxyType(
     {
         "single_design": HollenbachCoefficients(
             ratios=(-0.3382, 0.8086, -6.0258, -3.5632, 9.4405, 0.0146, 0.0, 0.0, 0.0, 0.0),

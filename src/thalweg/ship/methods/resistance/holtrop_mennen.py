@@ -132,7 +132,7 @@ def correlation_coefficient(
 
 
 @dataclass(frozen=True)
-class Extremities:
+class BulbTransomAppendages:
     """What hangs on the hull form: bulb, transom, appendages, shape of the stern.
 
     Attributes
@@ -160,7 +160,7 @@ def holtrop(
     hull: HullForm,
     *,
     year: Literal[1982, 1984] = 1982,
-    extremities: Extremities | None = None,
+    bulb_transom_appendages: BulbTransomAppendages | None = None,
     draught_fore: ArrayLike | None = None,
     wetted_surface_area: ArrayLike | None = None,
     entrance_angle_deg: ArrayLike | None = None,
@@ -181,7 +181,7 @@ def holtrop(
         Main particulars, from `hull_form`.
     year : {1982, 1984}
         Holtrop and Mennen (1982), for Fn up to about 0.4, or Holtrop (1984), for all Fn.
-    extremities : Extremities, optional
+    bulb_transom_appendages : Extremities, optional
         Bulb, transom and appendages; none by default.
     draught_fore : array_like, optional
         T_F [m]; the mean draught by default.
@@ -208,7 +208,7 @@ def holtrop(
     """
     velocity = ship_speed(speed)
     waves = velocity if wave_speed is None else ship_speed(wave_speed)
-    ends = extremities or Extremities()
+    ends = bulb_transom_appendages or BulbTransomAppendages()
     fore = hull.draught if draught_fore is None else np.asarray(draught_fore, dtype=float)
     area = wetted_surface_area
     if area is None:
@@ -223,7 +223,9 @@ def holtrop(
         plate,
         plate * (form(hull, stern_shape=ends.stern_shape) - 1.0),
         dynamic_force(line, speed=velocity, area=wetted, density=density),
-        _making(waves, hull, ends, fore, entrance_angle_deg, year, density, gravity),
+        _wave_making_resistance(
+            waves, hull, ends, fore, entrance_angle_deg, year, density, gravity
+        ),
         bulb_resistance(
             velocity,
             draught_fore=fore,
@@ -247,12 +249,12 @@ def holtrop(
     return HoltropResistance(*(*parts, np.sum(parts, axis=0)))
 
 
-def _correlation_area(area: ArrayLike, ends: Extremities, which: str) -> FloatArray:
+def _correlation_area(area: ArrayLike, ends: BulbTransomAppendages, which: str) -> FloatArray:
     own = np.asarray(area, dtype=float)
     return own if which == "hull" else own + np.asarray(ends.appendage_area, dtype=float)
 
 
-def _bulb_factor(hull: HullForm, ends: Extremities, fore: FloatArray) -> FloatArray:
+def _bulb_factor(hull: HullForm, ends: BulbTransomAppendages, fore: FloatArray) -> FloatArray:
     return bulb_wave_factor(
         hull,
         draught_fore=fore,
@@ -261,10 +263,10 @@ def _bulb_factor(hull: HullForm, ends: Extremities, fore: FloatArray) -> FloatAr
     )
 
 
-def _making(
+def _wave_making_resistance(
     speed: FloatArray,
     hull: HullForm,
-    ends: Extremities,
+    ends: BulbTransomAppendages,
     fore: FloatArray,
     angle: ArrayLike | None,
     year: Literal[1982, 1984],

@@ -16,7 +16,7 @@ from thalweg.ship.methods.resistance.holtrop_form import HullForm
 
 #: Highest place of the bulb centre the method allows, as a part of the draught forward.
 HIGHEST_BULB_CENTRE: Final = 0.6
-_SLOWEST: Final = 0.02  #: Froude number below which the wave resistance is not resolved
+_LEAST_FROUDE_NUMBER: Final = 0.02  #: Froude number below which the wave resistance is not resolved
 
 
 def bulb_height(bulb_centre_height: ArrayLike, draught_fore: ArrayLike) -> FloatArray:
@@ -66,7 +66,9 @@ def _wave_exponent(hull: HullForm, fn: FloatArray, first: Any, year: int) -> Flo
     return np.asarray(first * fn**-0.9 + m4 * np.cos(wave / fn**2))
 
 
-def _slow_wave(hull: HullForm, fn: FloatArray, entrance: Any, year: int) -> FloatArray:
+def _low_speed_wave_resistance(
+    hull: HullForm, fn: FloatArray, entrance: Any, year: int
+) -> FloatArray:
     """R_W / (c2 c5 V rho g) up to Fn = 0.4."""
     slim = hull.breadth / hull.length
     c7 = np.where(slim < 0.11, 0.229577 * np.cbrt(slim), slim)
@@ -85,7 +87,7 @@ def _slow_wave(hull: HullForm, fn: FloatArray, entrance: Any, year: int) -> Floa
     return np.asarray(c1 * np.exp(_wave_exponent(hull, fn, m1, year)))
 
 
-def _fast_wave(hull: HullForm, fn: FloatArray) -> FloatArray:
+def _high_speed_wave_resistance(hull: HullForm, fn: FloatArray) -> FloatArray:
     """R_W / (c2 c5 V rho g) from Fn = 0.55 (Holtrop 1984)."""
     c17 = (
         6919.3
@@ -133,13 +135,15 @@ def wave_resistance(
         [N].
     """
     fn = froude_number(speed, length=hull.length, gravity=gravity)
-    resolved = np.maximum(fn, _SLOWEST)
+    resolved = np.maximum(fn, _LEAST_FROUDE_NUMBER)
     if year == 1982:
-        shape = _slow_wave(hull, resolved, entrance_angle_deg, year)
+        shape = _low_speed_wave_resistance(hull, resolved, entrance_angle_deg, year)
     else:
-        shape = _slow_wave(hull, np.minimum(resolved, 0.4), entrance_angle_deg, year)
+        shape = _low_speed_wave_resistance(
+            hull, np.minimum(resolved, 0.4), entrance_angle_deg, year
+        )
         if np.any(fn > 0.4):
-            fast = _fast_wave(hull, np.maximum(resolved, 0.55))
+            fast = _high_speed_wave_resistance(hull, np.maximum(resolved, 0.55))
             part = np.clip((10.0 * fn - 4.0) / 1.5, 0.0, 1.0)
             shape = np.where(fn > 0.4, shape + part * (fast - shape), shape)
     scale = np.asarray(bulb_factor) * transom_factor * hull.displacement * density * gravity

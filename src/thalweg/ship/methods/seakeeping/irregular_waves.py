@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError, unknown_name
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 SCHEMES = ("deterministic", "random")
 
@@ -96,8 +96,8 @@ def wave_components(
     applications", IEEE J. Oceanic Eng. 43 (2018).
     """
     if scheme not in SCHEMES:
-        raise unknown_name("scheme", scheme, SCHEMES)
-    w, s = floats(frequency), floats(spectrum)
+        raise unknown_name_error("scheme", scheme, SCHEMES)
+    w, s = as_float_array(frequency), as_float_array(spectrum)
     if not _multiples(w) or w.shape != s.shape:
         raise InputError(
             "The frequencies of a wave history must be evenly spaced multiples of their spacing, "
@@ -149,7 +149,7 @@ def wave_history(components: WaveComponents, time: ArrayLike) -> WaveHistory:
     ----------
     Prestegårdshus (2020), eqs. 3.17 to 3.20.
     """
-    t, w = np.atleast_1d(floats(time)), components.frequency
+    t, w = np.atleast_1d(as_float_array(time)), components.frequency
     turning = np.exp(1j * np.multiply.outer(t, w))
     a = components.amplitude
     return WaveHistory(

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 #: Share of people sick per dose, unadapted men and women together (ISO 2631-1, annex D).
-MIXED_ADULTS: Final = 1.0 / 3.0
+MIXED_ADULT_SUSCEPTIBILITY: Final = 1.0 / 3.0
 
 #: Mean absolute over root mean square of a Gaussian motion.
 MEAN_ABSOLUTE: Final = float(np.sqrt(2.0 / np.pi))
@@ -20,7 +20,7 @@ MEAN_ABSOLUTE: Final = float(np.sqrt(2.0 / np.pi))
 _F1, _F2, _F4, _Q4, _F5, _Q5, _F6, _Q6 = 0.08, 0.63, 0.25, 0.86, 0.0625, 0.80, 0.10, 0.80
 
 
-def _normal(z: Floats) -> Floats:
+def _standard_normal_distribution(z: Floats) -> Floats:
     """Return the standard normal distribution function."""
     from scipy.special import ndtr
 
@@ -45,7 +45,7 @@ def wf_weighting(frequency_hz: ArrayLike) -> Floats:
     ----------
     ISO 2631-1:1997, Table 3 and annex A; reproduces its 18 tabulated one-third-octave factors.
     """
-    f = np.abs(floats(frequency_hz))
+    f = np.abs(as_float_array(frequency_hz))
     f2, f4 = f**2, f**4
     high = f2 / np.sqrt(f4 + _F1**4)
     low = 1.0 / np.sqrt(1.0 + f4 / _F2**4)
@@ -76,8 +76,8 @@ def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> F
     ----------
     ISO 2631-1:1997, 6.1.
     """
-    factor = wf_weighting(floats(encounter_frequency) / (2.0 * np.pi))
-    value: Floats = np.sqrt(np.sum(floats(parts) * factor**2, axis=-1))
+    factor = wf_weighting(as_float_array(encounter_frequency) / (2.0 * np.pi))
+    value: Floats = np.sqrt(np.sum(as_float_array(parts) * factor**2, axis=-1))
     return value
 
 
@@ -100,11 +100,11 @@ def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Flo
     ----------
     ISO 2631-1:1997, annex D.
     """
-    value: Floats = floats(weighted_rms) * np.sqrt(floats(duration))
+    value: Floats = as_float_array(weighted_rms) * np.sqrt(as_float_array(duration))
     return value
 
 
-def dose_of_voyage(weighted_rms: ArrayLike, *, durations: ArrayLike) -> Floats:
+def combined_dose(weighted_rms: ArrayLike, *, durations: ArrayLike) -> Floats:
     """Return the dose of consecutive stretches: the square root of the summed squares.
 
     Parameters
@@ -123,11 +123,15 @@ def dose_of_voyage(weighted_rms: ArrayLike, *, durations: ArrayLike) -> Floats:
     ----------
     ISO 2631-1:1997, annex D.
     """
-    value: Floats = np.sqrt(np.sum(floats(weighted_rms) ** 2 * floats(durations), axis=-1))
+    value: Floats = np.sqrt(
+        np.sum(as_float_array(weighted_rms) ** 2 * as_float_array(durations), axis=-1)
+    )
     return value
 
 
-def sick_percent_iso(dose: ArrayLike, *, susceptibility: ArrayLike = MIXED_ADULTS) -> Floats:
+def motion_sickness_percent_iso(
+    dose: ArrayLike, *, susceptibility: ArrayLike = MIXED_ADULT_SUSCEPTIBILITY
+) -> Floats:
     """Return the percentage of people who vomit by ISO 2631-1: K_m MSDV_z.
 
     Parameters
@@ -146,10 +150,10 @@ def sick_percent_iso(dose: ArrayLike, *, susceptibility: ArrayLike = MIXED_ADULT
     ----------
     ISO 2631-1:1997, annex D.
     """
-    return np.minimum(floats(susceptibility) * floats(dose), 100.0)
+    return np.minimum(as_float_array(susceptibility) * as_float_array(dose), 100.0)
 
 
-def sick_percent_mccauley(
+def motion_sickness_percent_mccauley(
     rms: ArrayLike, *, frequency_hz: ArrayLike, duration: ArrayLike, gravity: float = GRAVITY
 ) -> Floats:
     """Return the motion sickness incidence of McCauley et al. (1976).
@@ -179,17 +183,21 @@ def sick_percent_mccauley(
     M. E. McCauley et al., "Motion sickness incidence", Human Factors Research, TR 1733-2 (1976)
     (constants from memory of the secondary literature, not seen in print).
     """
-    a, f, t = floats(rms) / gravity, floats(frequency_hz), floats(duration) / 60.0
+    a, f, t = (
+        as_float_array(rms) / gravity,
+        as_float_array(frequency_hz),
+        as_float_array(duration) / 60.0,
+    )
     moving = (a > 0.0) & (t > 0.0) & (f > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         log_f = np.log10(f)
         z_a = 2.128 * np.log10(a) - 9.277 * log_f - 5.809 * log_f**2 - 1.851
         z_t = 1.134 * z_a + 1.989 * np.log10(t) - 2.904
-        percent = 100.0 * _normal(z_a) * _normal(z_t)
+        percent = 100.0 * _standard_normal_distribution(z_a) * _standard_normal_distribution(z_t)
     return np.where(moving | np.isnan(a * f * t), percent, 0.0)
 
 
-def sick_percent_ohanlon(
+def motion_sickness_percent_ohanlon(
     rms: ArrayLike, *, encounter_frequency: ArrayLike, gravity: float = GRAVITY
 ) -> Floats:
     """Return the motion sickness incidence after two hours by O'Hanlon and McCauley (1974).
@@ -222,8 +230,8 @@ def sick_percent_ohanlon(
     "Seakeeping: ship behaviour in rough weather" (1989); constants checked against the marine
     systems toolbox of Fossen and Perez.
     """
-    a, w = MEAN_ABSOLUTE * floats(rms) / gravity, floats(encounter_frequency)
+    a, w = MEAN_ABSOLUTE * as_float_array(rms) / gravity, as_float_array(encounter_frequency)
     with np.errstate(divide="ignore", invalid="ignore"):
         middle = -0.819 + 2.32 * np.log10(w) ** 2
-        percent = 100.0 * _normal((np.log10(a) - middle) / 0.4)
+        percent = 100.0 * _standard_normal_distribution((np.log10(a) - middle) / 0.4)
     return np.where((a > 0.0) | np.isnan(a * w), percent, 0.0)

@@ -8,19 +8,19 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError, unknown_name
+from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 from thalweg.ship.methods.seakeeping.wave_spectra import (
     jonswap,
-    moment,
     most_probable_maximum,
     quadrature,
+    spectral_moment,
 )
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 #: How wave pressure fades with depth in `jensen_motions`.
-DECAYS: Final = ("published", "strip")
+PRESSURE_DECAYS: Final = ("published", "strip")
 
 #: Ships `jensen_motions` was tried on, our judgement: Froude number, and length over breadth.
 _FROUDE: Final = (0.0, 0.35)
@@ -88,8 +88,8 @@ def encounter_ratio(
     ndarray
         Ratio [-]; negative where the ship overtakes the waves.
     """
-    ahead = floats(speed) * np.cos(floats(wave_angle))
-    return 1.0 + floats(frequency) * ahead[..., None] / gravity
+    ahead = as_float_array(speed) * np.cos(as_float_array(wave_angle))
+    return 1.0 + as_float_array(frequency) * ahead[..., None] / gravity
 
 
 def jensen_motions(
@@ -148,12 +148,12 @@ def jensen_motions(
     J. J. Jensen, A. E. Mansour, A. S. Olsen, "Estimation of ship motions using closed-form
     expressions", Ocean Engineering 31 (2004).
     """
-    if decay not in DECAYS:
-        raise unknown_name("decay", decay, DECAYS)
-    w = floats(frequency)
+    if decay not in PRESSURE_DECAYS:
+        raise unknown_name_error("decay", decay, PRESSURE_DECAYS)
+    w = as_float_array(frequency)
     k = w**2 / gravity
     a = encounter_ratio(w, speed=speed, wave_angle=wave_angle, gravity=gravity)
-    across = np.abs(np.cos(floats(wave_angle)))[..., None]
+    across = np.abs(np.cos(as_float_array(wave_angle)))[..., None]
     k_e, box = k * across, hull.block_coefficient * hull.breadth
     half = 0.5 * k_e * hull.length
     sway = np.sinc(0.5 * k * box * a**2 / np.pi) * np.exp(-k * hull.draught * a**2)
@@ -189,7 +189,9 @@ def vertical_motion(heave: ArrayLike, pitch: ArrayLike, *, forward: ArrayLike) -
         Amplitude [m/m]: sqrt(heave^2 + (x pitch)^2). Roll is not modelled, so the point is taken
         on the centre line.
     """
-    return np.hypot(floats(heave), floats(forward)[..., None] * floats(pitch))
+    return np.hypot(
+        as_float_array(heave), as_float_array(forward)[..., None] * as_float_array(pitch)
+    )
 
 
 @dataclass(frozen=True)
@@ -289,7 +291,7 @@ def ship_response(
     400 MB per intermediate array, so give long lists in parts.
     """
     hs, tp, angle, v, x = np.broadcast_arrays(
-        *(floats(values) for values in (height, period, wave_angle, speed, forward))
+        *(as_float_array(values) for values in (height, period, wave_angle, speed, forward))
     )
     flat = hs == 0.0  # a flat sea has neither period nor direction
     tp = np.where(flat & ~(tp > 0.0), 10.0, tp)
@@ -305,8 +307,8 @@ def ship_response(
     def statistics(amplitude: Floats) -> SeaResponse:
         density = amplitude**2 * waves
         return SeaResponse(
-            moment(density, weights, frequency=meeting, order=0),
-            moment(density, weights, frequency=meeting, order=2),
+            spectral_moment(density, weights, frequency=meeting, order=0),
+            spectral_moment(density, weights, frequency=meeting, order=2),
         )
 
     return ShipResponse(
@@ -338,7 +340,7 @@ def motions_validity(
     list of RangeNote
         Empty when all lies inside. The ranges are our judgement of the ships in the paper.
     """
-    froude = floats(speed) / np.sqrt(gravity * hull.length)
+    froude = as_float_array(speed) / np.sqrt(gravity * hull.length)
     return range_notes(
         "Jensen-Mansour-Olsen motions",
         {

@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.units import KNOT
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
-Flags = NDArray[np.bool_]
+BoolArray = NDArray[np.bool_]
 
 #: Half width of the sector of following and quartering seas [rad]: 135 to 225 degrees.
-SECTOR: Final = float(np.radians(45.0))
+SURF_RIDING_SECTOR: Final = float(np.radians(45.0))
 #: Encounter over wave period where successive high waves are met.
 HIGH_WAVE_RATIOS: Final = (1.8, 3.0)
 _WAVELENGTH: Final = 1.56  # g / (2 pi), as the circular rounds it [m/s2]
 
 
 @dataclass(frozen=True)
-class StabilityMargins:
+class DangerousSituationMargins:
     """How far a ship is from each dangerous situation; negative inside it.
 
     Parameters
@@ -42,7 +42,7 @@ class StabilityMargins:
 
 
 @dataclass(frozen=True)
-class StabilityChecks:
+class DangerousSituations:
     """What MSC.1/Circ.1228 warns of.
 
     Parameters
@@ -65,16 +65,16 @@ class StabilityChecks:
     """
 
     encounter_period: Floats
-    surf_riding: Flags
-    marginal_surging: Flags
-    successive_high_waves: Flags
-    synchronous_roll: Flags
-    parametric_roll: Flags
-    margins: StabilityMargins
-    known: Flags
+    surf_riding: BoolArray
+    marginal_surging: BoolArray
+    successive_high_waves: BoolArray
+    synchronous_roll: BoolArray
+    parametric_roll: BoolArray
+    margins: DangerousSituationMargins
+    known: BoolArray
 
     @property
-    def dangerous(self) -> Flags:
+    def dangerous(self) -> BoolArray:
         """Whether any of the dangerous situations is met (marginal surging is not one)."""
         return (
             self.surf_riding
@@ -84,7 +84,7 @@ class StabilityChecks:
         )
 
     @property
-    def safe(self) -> Flags:
+    def safe(self) -> BoolArray:
         """Whether all data were known and nothing dangerous is met."""
         return self.known & ~self.dangerous
 
@@ -114,8 +114,12 @@ def roll_period(
     ----------
     2008 IS Code (MSC.267(85)), part A, 2.3.4.
     """
-    b, gm = floats(breadth), floats(metacentric_height)
-    coefficient = 0.373 + 0.023 * b / floats(draught) - 0.043 * floats(length_waterline) / 100.0
+    b, gm = as_float_array(breadth), as_float_array(metacentric_height)
+    coefficient = (
+        0.373
+        + 0.023 * b / as_float_array(draught)
+        - 0.043 * as_float_array(length_waterline) / 100.0
+    )
     value: Floats = 2.0 * coefficient * b / np.sqrt(np.where(gm > 0.0, gm, np.nan))
     return value
 
@@ -141,10 +145,14 @@ def encounter_period(wave_period: ArrayLike, *, speed: ArrayLike, wave_angle: Ar
     ----------
     MSC.1/Circ.1228, 1.6. The 3 stands for g / (2 pi) in knots per second, 3.03.
     """
-    t = floats(wave_period)
+    t = as_float_array(wave_period)
     t = np.where(t > 0.0, t, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return 3.0 * t**2 / np.abs(3.0 * t + floats(speed) / KNOT * np.cos(floats(wave_angle)))
+        return (
+            3.0
+            * t**2
+            / np.abs(3.0 * t + as_float_array(speed) / KNOT * np.cos(as_float_array(wave_angle)))
+        )
 
 
 def surf_riding_speed(wave_angle: ArrayLike, *, length: ArrayLike, factor: float = 1.8) -> Floats:
@@ -169,14 +177,16 @@ def surf_riding_speed(wave_angle: ArrayLike, *, length: ArrayLike, factor: float
     MSC.1/Circ.1228, 4.2.1 and figure 2. The sector and the limits of 4.2.2 were read in the
     published text; 1.8 agrees in two secondary sources; 1.4 was not seen in print.
     """
-    following = -np.cos(floats(wave_angle))
-    limit = np.cos(SECTOR)
+    following = -np.cos(as_float_array(wave_angle))
+    limit = np.cos(SURF_RIDING_SECTOR)
     with np.errstate(divide="ignore", invalid="ignore"):
-        speed = KNOT * factor * np.sqrt(floats(length)) / following
+        speed = KNOT * factor * np.sqrt(as_float_array(length)) / following
     return np.where(following > limit, speed, np.where(np.isnan(following), np.nan, np.inf))
 
 
-def _resonance(encounter: Floats, period: Floats, tolerance: float) -> tuple[Floats, Floats]:
+def _roll_resonance_margins(
+    encounter: Floats, period: Floats, tolerance: float
+) -> tuple[Floats, Floats]:
     """Return relative distances from synchronous and parametric roll, less the tolerance."""
     with np.errstate(invalid="ignore", divide="ignore"):
         once = np.abs(encounter / period - 1.0)
@@ -184,7 +194,7 @@ def _resonance(encounter: Floats, period: Floats, tolerance: float) -> tuple[Flo
     return once - tolerance, np.minimum(once, twice) - tolerance
 
 
-def stability_checks(
+def dangerous_situations(
     *,
     speed: ArrayLike,
     wave_angle: ArrayLike,
@@ -193,8 +203,8 @@ def stability_checks(
     length: ArrayLike,
     roll_period: ArrayLike | None = None,
     roll_tolerance: float = 0.1,
-    least_height: float = 0.0,
-) -> StabilityChecks:
+    harmless_wave_height: float = 0.0,
+) -> DangerousSituations:
     """Return what MSC.1/Circ.1228 warns of in given waves.
 
     Parameters
@@ -214,7 +224,7 @@ def stability_checks(
         Natural roll period [s]; without it the roll checks are not made.
     roll_tolerance : float
         "Nearly equal" of the circular: relative difference of periods, 0.1 to 0.2.
-    least_height : float
+    harmless_wave_height : float
         Waves up to this height raise no flag [m]. The circular sets no height for surf-riding
         and roll; without one a ripple of the right period counts.
 
@@ -233,11 +243,11 @@ def stability_checks(
     IMO MSC.1/Circ.1228, sections 1.5, 1.6 and 4.2.
     """
     v, angle, hs, tw, size = np.broadcast_arrays(
-        *(floats(x) for x in (speed, wave_angle, wave_height, wave_period, length))
+        *(as_float_array(x) for x in (speed, wave_angle, wave_height, wave_period, length))
     )
-    rolls = np.full(v.shape, np.nan) if roll_period is None else floats(roll_period)
+    rolls = np.full(v.shape, np.nan) if roll_period is None else as_float_array(roll_period)
     hs = np.where(hs >= 0.0, hs, np.nan)
-    flat = hs <= least_height
+    flat = hs <= harmless_wave_height
     met = encounter_period(tw, speed=v, wave_angle=angle)
     surf = surf_riding_speed(angle, length=size) - v
     surge = surf_riding_speed(angle, length=size, factor=1.4) - v
@@ -250,17 +260,17 @@ def stability_checks(
             np.maximum(low - ratio, ratio - high),
         ]
     )
-    once, any_roll = _resonance(met, rolls, roll_tolerance)
+    once, any_roll = _roll_resonance_margins(met, rolls, roll_tolerance)
     seen = ~np.isnan(met) & ((roll_period is None) | ~np.isnan(rolls))
     known = ~np.isnan(v + hs + size) & (flat | seen)
     calm = [np.where(flat, np.inf, x) for x in (surf, high_waves, once, any_roll)]
-    return StabilityChecks(
+    return DangerousSituations(
         encounter_period=met,
         surf_riding=known & ~flat & (surf < 0.0),
         marginal_surging=known & ~flat & (surge < 0.0) & (surf >= 0.0),
         successive_high_waves=known & ~flat & (high_waves < 0.0),
         synchronous_roll=known & ~flat & (once < 0.0),
         parametric_roll=known & ~flat & (any_roll < 0.0),
-        margins=StabilityMargins(*(np.where(known, x, np.nan) for x in calm)),
+        margins=DangerousSituationMargins(*(np.where(known, x, np.nan) for x in calm)),
         known=known,
     )

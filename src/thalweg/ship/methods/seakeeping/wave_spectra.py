@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 
 #: Panels of the quadrature in units of the peak frequency, and points in each.
-PANELS: Final = (0.35, 0.75, 1.0, 1.3, 2.0, 4.0, 8.0)
-POINTS: Final = 8
+PANEL_EDGES: Final = (0.35, 0.75, 1.0, 1.3, 2.0, 4.0, 8.0)
+POINTS_PER_PANEL: Final = 8
 
 
 def _panel_rule() -> tuple[Floats, Floats]:
-    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
-    low, high = np.array(PANELS[:-1]), np.array(PANELS[1:])
+    nodes, weights = np.polynomial.legendre.leggauss(POINTS_PER_PANEL)
+    low, high = np.array(PANEL_EDGES[:-1]), np.array(PANEL_EDGES[1:])
     half = (high - low)[:, None] / 2.0
     return ((low + high)[:, None] / 2.0 + half * nodes).ravel(), (half * weights).ravel()
 
@@ -40,7 +40,7 @@ def quadrature(period: ArrayLike) -> tuple[Floats, Floats]:
         peak frequency. Gauss-Legendre panels that end at the peak, where the spectrum has a
         kink. NaN where the period is not positive.
     """
-    t = floats(period)
+    t = as_float_array(period)
     peak = 2.0 * np.pi / np.where(t > 0.0, t, np.nan)
     return peak[..., None] * _NODES, peak[..., None] * _WEIGHTS
 
@@ -67,7 +67,7 @@ def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> Floats:
     DNV-RP-C205 (2010), 3.5.5, as used by Prestegårdshus (2020), eq. 3.16.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = floats(period) / np.sqrt(floats(height))
+        ratio = as_float_array(period) / np.sqrt(as_float_array(height))
     return np.where(ratio <= 3.6, 5.0, np.where(ratio >= 5.0, 1.0, np.exp(5.75 - 1.15 * ratio)))
 
 
@@ -110,8 +110,14 @@ def jonswap(
     ----------
     K. Hasselmann et al., Dt. Hydrogr. Z. A8(12) (1973); DNV-RP-C205 (2010), 3.5.5.
     """
-    w, hs, tp = floats(frequency), floats(height)[..., None], floats(period)[..., None]
-    gamma = dnv_peak_factor(hs, tp) if peak_factor is None else floats(peak_factor)[..., None]
+    w, hs, tp = (
+        as_float_array(frequency),
+        as_float_array(height)[..., None],
+        as_float_array(period)[..., None],
+    )
+    gamma = (
+        dnv_peak_factor(hs, tp) if peak_factor is None else as_float_array(peak_factor)[..., None]
+    )
     hs, tp = np.where(hs >= 0.0, hs, np.nan), np.where(tp > 0.0, tp, np.nan)
     peak = 2.0 * np.pi / tp
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -163,11 +169,13 @@ def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> 
     ----------
     W. J. Pierson, L. Moskowitz, J. Geophys. Res. 69 (1964).
     """
-    period: Floats = 2.0 * np.pi / 0.02592**0.25 * np.sqrt(floats(height) / gravity)
+    period: Floats = 2.0 * np.pi / 0.02592**0.25 * np.sqrt(as_float_array(height) / gravity)
     return period
 
 
-def moment(density: ArrayLike, weights: ArrayLike, *, frequency: ArrayLike, order: float) -> Floats:
+def spectral_moment(
+    density: ArrayLike, weights: ArrayLike, *, frequency: ArrayLike, order: float
+) -> Floats:
     """Return a spectral moment: the sum of |w|^n S over the last axis with weights.
 
     Parameters
@@ -188,8 +196,8 @@ def moment(density: ArrayLike, weights: ArrayLike, *, frequency: ArrayLike, orde
     ndarray
         m_n.
     """
-    power = np.abs(floats(frequency)) ** order if order else 1.0
-    total: Floats = np.sum(floats(density) * floats(weights) * power, axis=-1)
+    power = np.abs(as_float_array(frequency)) ** order if order else 1.0
+    total: Floats = np.sum(as_float_array(density) * as_float_array(weights) * power, axis=-1)
     return total
 
 
@@ -206,7 +214,7 @@ def significant_height(m0: ArrayLike) -> Floats:
     ndarray
         In the unit of the motion; half of it is the significant amplitude.
     """
-    return 4.0 * np.sqrt(floats(m0))
+    return 4.0 * np.sqrt(as_float_array(m0))
 
 
 def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) -> Floats:
@@ -230,11 +238,11 @@ def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) 
     ----------
     M. K. Ochi, "On prediction of extreme values", J. Ship Research 17 (1973), narrow band.
     """
-    variance = floats(m0)
+    variance = as_float_array(m0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        cycles = floats(duration) / (2.0 * np.pi) * np.sqrt(floats(m2) / variance)
+        cycles = as_float_array(duration) / (2.0 * np.pi) * np.sqrt(as_float_array(m2) / variance)
         largest = np.sqrt(2.0 * variance * np.log(np.maximum(cycles, 1.0)))
-    return np.where(variance == 0.0, 0.0 * floats(m2), largest)
+    return np.where(variance == 0.0, 0.0 * as_float_array(m2), largest)
 
 
 def zero_crossing_period(m0: ArrayLike, m2: ArrayLike) -> Floats:
@@ -251,4 +259,4 @@ def zero_crossing_period(m0: ArrayLike, m2: ArrayLike) -> Floats:
         [s]; NaN without motion.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        return 2.0 * np.pi * np.sqrt(floats(m0) / floats(m2))
+        return 2.0 * np.pi * np.sqrt(as_float_array(m0) / as_float_array(m2))

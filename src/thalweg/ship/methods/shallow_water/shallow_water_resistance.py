@@ -16,12 +16,12 @@ from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_nu
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 #: Depth Froude number at which the fit of Karpov's curves ends.
-FASTEST_KARPOV: Final = 1.0
+LARGEST_KARPOV_FROUDE_NUMBER: Final = 1.0
 
-_CENTRES: Final = np.array([1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])
-_EDGES: Final = np.array([1.75, 2.25, 2.75, 3.25, 3.75, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5])
+_BAND_CENTRES: Final = np.array([1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])
+_BAND_EDGES: Final = np.array([1.75, 2.25, 2.75, 3.25, 3.75, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5])
 #: From the fourth power down, for depth Froude numbers up to 0.4 (one from D/T = 2.75).
-_SLOW: Final = np.array(
+_SLOW_COEFFICIENTS: Final = np.array(
     [
         [0.0, -4e-12, -0.2143, -0.0643, 0.9997],
         [0.0, -0.8333, 0.25, -0.0167, 1.0],
@@ -30,7 +30,7 @@ _SLOW: Final = np.array(
     ]
 )
 #: From the sixth power down, above 0.4 (the last two above 0.6, and one below).
-_FAST: Final = np.array(
+_FAST_COEFFICIENTS: Final = np.array(
     [
         [-0.9274, 9.5953, -37.197, 69.666, -65.391, 28.025, -3.4143],
         [2.2152, -11.852, 21.499, -12.174, -4.7873, 5.8662, -0.2652],
@@ -46,7 +46,7 @@ _FAST: Final = np.array(
         [-6.0727, 44.97, -135.21, 210.13, -176.72, 75.728, -11.893],
     ]
 )
-_START: Final = np.array([0.4] * 10 + [0.6] * 2)
+_FIRST_FROUDE_NUMBERS: Final = np.array([0.4] * 10 + [0.6] * 2)
 
 
 def _positive(depth: ArrayLike) -> FloatArray:
@@ -115,11 +115,11 @@ def zeng_2019_friction(
 def _curve(index: NDArray[np.intp], froude: FloatArray) -> FloatArray:
     """Return the polynomial of each band at each depth Froude number."""
     slow, fast = np.zeros_like(froude), np.zeros_like(froude)
-    for power in range(_SLOW.shape[1]):
-        slow = slow * froude + _SLOW[index, power]
-    for power in range(_FAST.shape[1]):
-        fast = fast * froude + _FAST[index, power]
-    start = _START[index]
+    for power in range(_SLOW_COEFFICIENTS.shape[1]):
+        slow = slow * froude + _SLOW_COEFFICIENTS[index, power]
+    for power in range(_FAST_COEFFICIENTS.shape[1]):
+        fast = fast * froude + _FAST_COEFFICIENTS[index, power]
+    start = _FIRST_FROUDE_NUMBERS[index]
     gap = (froude < start) & (start > 0.4)
     return np.where(froude <= 0.4, slow, np.where(gap, 1.0, fast))
 
@@ -151,14 +151,16 @@ def karpov(
     froude, ratio = np.broadcast_arrays(
         np.asarray(depth_froude, dtype=float), np.asarray(depth_to_draught, dtype=float)
     )
-    froude = np.minimum(froude, FASTEST_KARPOV)
+    froude = np.minimum(froude, LARGEST_KARPOV_FROUDE_NUMBER)
     known = np.where(ratio > 1.0, ratio, np.nan)
     filled = np.where(np.isnan(known), 1.5, known)
     if raw_bands:
-        alpha = _curve(np.searchsorted(_EDGES, filled, side="right"), froude)
+        alpha = _curve(np.searchsorted(_BAND_EDGES, filled, side="right"), froude)
     else:
-        upper = np.clip(np.searchsorted(_CENTRES, filled, side="right"), 1, _CENTRES.size - 1)
-        below, above = _CENTRES[upper - 1], _CENTRES[upper]
+        upper = np.clip(
+            np.searchsorted(_BAND_CENTRES, filled, side="right"), 1, _BAND_CENTRES.size - 1
+        )
+        below, above = _BAND_CENTRES[upper - 1], _BAND_CENTRES[upper]
         part = np.clip((filled - below) / (above - below), 0.0, 1.0)
         alpha = (1.0 - part) * _curve(upper - 1, froude) + part * _curve(upper, froude)
         alpha = np.minimum(alpha, 1.0)
@@ -202,7 +204,9 @@ def karpov_validity(
 ) -> list[RangeNote]:
     """Say which depth Froude numbers lie beyond 1.0, where the fit of the curves ends."""
     froude = froude_number(speed, length=_positive(depth), gravity=gravity)
-    return range_notes("karpov", {"depth Froude number": (froude, 0.0, FASTEST_KARPOV)})
+    return range_notes(
+        "karpov", {"depth Froude number": (froude, 0.0, LARGEST_KARPOV_FROUDE_NUMBER)}
+    )
 
 
 def lackenby_1963_speed_loss(

@@ -8,26 +8,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.units import GRAVITY, KNOT
-from thalweg.ship.methods.array_conversion import Floats, floats
+from thalweg.ship.methods.array_conversion import Floats, as_float_array
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 #: Width of open water that takes part in the flow, in ship breadths (van Halem 2019).
 OPEN_WATER_BREADTHS: Final = 9.0
 
-_DEEP: Final = 1e5  # stands for infinite depth [m]
+_DEEP_WATER_DEPTH: Final = 1e5  # stands for infinite depth [m]
 _LANDWEBER: Final = (1.002, 0.005, -0.1159, 0.0191)
 #: Where Landweber's cubic is least: 0 = c1 + 2 c2 q + 3 c3 q^2. Beyond, it would rise again.
-_NARROWEST: Final = float(np.polynomial.Polynomial(_LANDWEBER).deriv().roots().max())
+_LARGEST_BLOCKAGE_PARAMETER: Final = float(
+    np.polynomial.Polynomial(_LANDWEBER).deriv().roots().max()
+)
 
 #: Published ranges of both of Barrass's forms; deeper water is no fault, squat fades there.
-_BLOCKS: Final = (0.5, 0.9)
-_SHALLOWEST: Final = 1.1  # depth over draught
+_BLOCK_COEFFICIENT_RANGE: Final = (0.5, 0.9)
+_LEAST_DEPTH_TO_DRAUGHT: Final = 1.1  # depth over draught
 
 
-def _width(breadth: ArrayLike, channel_width: ArrayLike | None) -> Floats:
+def _waterway_width(breadth: ArrayLike, channel_width: ArrayLike | None) -> Floats:
     if channel_width is None:
-        return OPEN_WATER_BREADTHS * floats(breadth)
-    return floats(channel_width)
+        return OPEN_WATER_BREADTHS * as_float_array(breadth)
+    return as_float_array(channel_width)
 
 
 def blockage_ratio(
@@ -55,8 +57,8 @@ def blockage_ratio(
     ----------
     C. B. Barrass, "The phenomenon of ship squat", Int. Shipbuilding Progress 26 (1979).
     """
-    h, section = floats(depth), floats(breadth) * floats(draught)
-    free = _width(breadth, channel_width) * h - section
+    h, section = as_float_array(depth), as_float_array(breadth) * as_float_array(draught)
+    free = _waterway_width(breadth, channel_width) * h - section
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(free > 0.0, section / free, np.where(np.isnan(free), np.nan, np.inf))
 
@@ -98,11 +100,13 @@ def barrass_squat(
     C. B. Barrass, "The phenomenon of ship squat", Int. Shipbuilding Progress 26 (1979).
     """
     blockage = blockage_ratio(depth, draught, breadth=breadth, channel_width=channel_width)
-    knots = np.abs(floats(speed)) / KNOT
+    knots = np.abs(as_float_array(speed)) / KNOT
     sink = knots**2.08 / 30.0
     with np.errstate(invalid="ignore"):
         return np.where(
-            knots == 0.0, 0.0 * blockage, floats(block_coefficient) * blockage ** (2.0 / 3.0) * sink
+            knots == 0.0,
+            0.0 * blockage,
+            as_float_array(block_coefficient) * blockage ** (2.0 / 3.0) * sink,
         )
 
 
@@ -142,12 +146,18 @@ def barrass_2004_squat(
     C. B. Barrass, "Thirty-two years of research into ship squat", Squat Workshop, Oldenburg
     (2004).
     """
-    block = floats(block_coefficient)
-    width = 7.04 / block**0.85 * floats(breadth) if channel_width is None else floats(channel_width)
-    h = floats(depth)
-    knots = np.abs(floats(speed)) / KNOT
+    block = as_float_array(block_coefficient)
+    width = (
+        7.04 / block**0.85 * as_float_array(breadth)
+        if channel_width is None
+        else as_float_array(channel_width)
+    )
+    h = as_float_array(depth)
+    knots = np.abs(as_float_array(speed)) / KNOT
     with np.errstate(divide="ignore", invalid="ignore"):
-        blockage = floats(breadth) * floats(draught) / (width * np.where(h > 0, h, np.nan))
+        blockage = (
+            as_float_array(breadth) * as_float_array(draught) / (width * np.where(h > 0, h, np.nan))
+        )
         return block * blockage**0.81 * knots**2.08 / 20.0
 
 
@@ -183,10 +193,10 @@ def barrass_2004_speed(
         channel_width=channel_width,
     )
     with np.errstate(divide="ignore", invalid="ignore"):
-        return KNOT * (np.maximum(floats(squat), 0.0) / at_one_knot) ** (1.0 / 2.08)
+        return KNOT * (np.maximum(as_float_array(squat), 0.0) / at_one_knot) ** (1.0 / 2.08)
 
 
-def speed_for_squat(
+def barrass_speed(
     squat: ArrayLike,
     depth: ArrayLike,
     *,
@@ -215,16 +225,18 @@ def speed_for_squat(
     and gives the blockage as a length; the program published with the thesis compares the
     result, which is in knots, with metres per second. All four are put right here.
     """
-    allowed = floats(squat)
+    allowed = as_float_array(squat)
     blockage = blockage_ratio(depth, draught, breadth=breadth, channel_width=channel_width)
     with np.errstate(divide="ignore", invalid="ignore"):
         base = (
-            30.0 * np.maximum(allowed, 0.0) / (floats(block_coefficient) * blockage ** (2.0 / 3.0))
+            30.0
+            * np.maximum(allowed, 0.0)
+            / (as_float_array(block_coefficient) * blockage ** (2.0 / 3.0))
         )
         return KNOT * base ** (1.0 / 2.08)
 
 
-def critical_speed(
+def shallow_water_speed(
     deep_speed: ArrayLike,
     depth: ArrayLike,
     *,
@@ -266,22 +278,22 @@ def critical_speed(
     O. Schlichting (1934) and L. Landweber (1939) as used by van Oord; van Halem (2019), eq. 2.5,
     where V_max and the root of the tanh are missing and 0.0191 is cut to 0.019.
     """
-    v, h = floats(deep_speed), np.minimum(floats(depth), _DEEP)
-    b, width = floats(breadth), _width(breadth, channel_width)
-    section = b * floats(draught)
+    v, h = as_float_array(deep_speed), np.minimum(as_float_array(depth), _DEEP_WATER_DEPTH)
+    b, width = as_float_array(breadth), _waterway_width(breadth, channel_width)
+    section = b * as_float_array(draught)
     free = width * h - section
     open_water = (free > 0.0) & (h > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         schlichting = np.where(v > 0.0, np.sqrt(np.tanh(gravity * h / v**2)), 1.0 + 0.0 * h)
-        radius = free / (width + 2.0 * h + 2.0 * floats(draught) + b)
+        radius = free / (width + 2.0 * h + 2.0 * as_float_array(draught) + b)
         q = np.sqrt(section) / np.where(open_water, radius, np.nan)
-        q = np.minimum(q, _NARROWEST)
+        q = np.minimum(q, _LARGEST_BLOCKAGE_PARAMETER)
         landweber = np.minimum(np.polynomial.polynomial.polyval(q, _LANDWEBER), 1.0)
     blocked = np.where(np.isnan(free * v), np.nan, 0.0)
     return np.where(open_water, v * schlichting * landweber, blocked)
 
 
-def speed_limit(
+def shallow_water_speed_limit(
     deep_speed: ArrayLike,
     depth: ArrayLike,
     *,
@@ -292,7 +304,7 @@ def speed_limit(
     channel_width: ArrayLike | None = None,
     gravity: float = GRAVITY,
 ) -> Floats:
-    """Return the speed a depth allows: the smaller of `critical_speed` and `speed_for_squat`.
+    """Return the speed a depth allows: the smaller of `shallow_water_speed` and `barrass_speed`.
 
     The squat that is allowed is depth - draught - clearance.
 
@@ -327,7 +339,7 @@ def speed_limit(
     ----------
     J. P. van Halem, "Route optimization in dynamic currents", TU Delft (2019), eq. 2.5, corrected.
     """
-    critical = critical_speed(
+    critical = shallow_water_speed(
         deep_speed,
         depth,
         draught=draught,
@@ -335,8 +347,8 @@ def speed_limit(
         channel_width=channel_width,
         gravity=gravity,
     )
-    room = floats(depth) - floats(draught) - floats(clearance)
-    squatting = speed_for_squat(
+    room = as_float_array(depth) - as_float_array(draught) - as_float_array(clearance)
+    squatting = barrass_speed(
         room,
         depth,
         draught=draught,
@@ -347,7 +359,9 @@ def speed_limit(
     return np.minimum(critical, squatting)
 
 
-def clearance_under_way(depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLike) -> Floats:
+def dynamic_under_keel_clearance(
+    depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLike
+) -> Floats:
     """Return the water under the keel of a moving ship: depth - draught - squat [m].
 
     Parameters
@@ -360,7 +374,7 @@ def clearance_under_way(depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLik
     ndarray
         Clearance [m], negative where the ship would touch the bed.
     """
-    return floats(depth) - floats(draught) - floats(squat)
+    return as_float_array(depth) - as_float_array(draught) - as_float_array(squat)
 
 
 def squat_validity(
@@ -382,11 +396,11 @@ def squat_validity(
     list of RangeNote
         Empty when all lies inside.
     """
-    ratio = floats(depth) / floats(draught)
+    ratio = as_float_array(depth) / as_float_array(draught)
     return range_notes(
         "Barrass squat",
         {
-            "block coefficient": (block_coefficient, *_BLOCKS),
-            "depth over draught": (ratio, _SHALLOWEST, np.inf),
+            "block coefficient": (block_coefficient, *_BLOCK_COEFFICIENT_RANGE),
+            "depth over draught": (ratio, _LEAST_DEPTH_TO_DRAUGHT, np.inf),
         },
     )
