@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray, wrap_longitude
+from thalweg.core.geodesy import wrap_longitude
+from thalweg.core.types import FloatArray
 
 
 def may_wait(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.chart.coast.rings import Rings
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 
 if TYPE_CHECKING:
     from thalweg.chart.chart import Chart

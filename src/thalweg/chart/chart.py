@@ -21,7 +21,7 @@ from thalweg.chart.coast.gshhg import read_land_rings
 from thalweg.chart.coast.leg_tests import leg_status, point_status
 from thalweg.chart.coast.rings import Rings
 from thalweg.chart.coast.snapping import nearest_navigable
-from thalweg.chart.depth.depth_grids import Float32Array, make_depth_layer
+from thalweg.chart.depth.depth_grids import make_depth_layer
 from thalweg.chart.depth.depth_layers import DepthLayers, coarse_depth
 from thalweg.chart.ports import PORTS, Port, Ports
 from thalweg.chart.zones import geojson_zones
@@ -29,8 +29,8 @@ from thalweg.chart.zones.emission_control_areas import EcaZone, select_emission_
 from thalweg.chart.zones.zone_raster import ZoneRaster, zone_raster
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.bounding_box import WORLD, Area
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike
+from thalweg.core.types import Float32Array, FloatArray
 from thalweg.kernels.codes import LAND, OK
 from thalweg.kernels.geometry.coast_index import CoastArrays
 from thalweg.kernels.geometry.cube_sphere import IndexArrays

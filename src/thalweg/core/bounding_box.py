@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from pyproj import Geod
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 
 Position: TypeAlias = tuple[float, float]
-FloatArray: TypeAlias = NDArray[np.float64]
 
 WGS84 = Geod(ellps="WGS84")
 EQUATORIAL_RADIUS = WGS84.a

@@ -8,9 +8,9 @@ from collections.abc import Generator
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.evolution.variation import VariationSettings, reproduce
-from thalweg.route.refinement.population import IntArray, Population, concatenated_populations
+from thalweg.route.refinement.population import Population, concatenated_populations
 from thalweg.route.refinement.population_evaluator import Evaluator
 
 MIN_SIZE = 4  #: tracks in a population

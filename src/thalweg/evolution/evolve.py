@@ -11,8 +11,8 @@ from typing import TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.interrupt import cancel_on_interrupt
+from thalweg.core.types import FloatArray
 from thalweg.evolution.algorithm import EvolutionaryAlgorithm
 from thalweg.evolution.indicators import generational_distance
 from thalweg.evolution.initial_population import initial_population

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 
 
 def non_dominated(points: ArrayLike) -> NDArray[np.bool_]:

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.interrupt import cancel_on_interrupt
+from thalweg.core.types import FloatArray
 from thalweg.evolution.algorithm import check_size
 from thalweg.evolution.evolve import (
     SETTLED_VARIANCE,

@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.evolution import dominance
-from thalweg.route.refinement.population import BoolArray, IntArray
 
 TIME, COST, VIOLATION = 0, 1, 2
 

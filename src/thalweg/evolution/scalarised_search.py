@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.evolution.ranking import feasible_front
 from thalweg.kernels.leg import population_sailing
 from thalweg.route.refinement.calm_water_rates import calm_water_values
 from thalweg.route.refinement.finite_differences import ScoredTracks, delay_effects
-from thalweg.route.refinement.population import IntArray, Population, concatenated_populations
+from thalweg.route.refinement.population import Population, concatenated_populations
 from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.refinement.population_moves import (
     choose_speeds_of_tracks,

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.evolution.algorithm import EvolutionaryAlgorithm, ScoreRequests
 from thalweg.evolution.ranking import normalised, strength_fitness
 from thalweg.kernels.evolution.dominance import truncate
-from thalweg.route.refinement.population import IntArray
 
 
 class Spea2(EvolutionaryAlgorithm):

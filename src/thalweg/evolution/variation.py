@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.evolution import mutation, random_numbers
 from thalweg.kernels.evolution.crossover import make_offspring
 from thalweg.kernels.geometry.coast_index import CoastArrays
 from thalweg.kernels.leg.population_sailing import GENE_COLUMNS
-from thalweg.route.refinement.population import IntArray, Population
+from thalweg.route.refinement.population import Population
 from thalweg.route.refinement.population_evaluator import Evaluator, run_in_threads
 
 INSERTION_SHAPES = {

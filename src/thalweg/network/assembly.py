@@ -9,17 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core import geodesy
+from thalweg.core.types import BoolArray, Float32Array, FloatArray, Int32Array, IntArray
 from thalweg.kernels import codes
 from thalweg.kernels.network import graph_building
-from thalweg.network.network import (
-    BoolArray,
-    Float32Array,
-    FloatArray,
-    Int32Array,
-    IntArray,
-    Network,
-    NetworkMeta,
-)
+from thalweg.network.network import Network, NetworkMeta
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

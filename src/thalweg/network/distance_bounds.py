@@ -7,7 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING, FloatArray
+from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING
+from thalweg.core.types import FloatArray
 
 # The least radius of curvature of the meridian: a sphere of this radius with the same latitudes and
 # longitudes is nowhere longer than the ellipsoid, so its distances are lower bounds that obey the

@@ -11,6 +11,7 @@ import numpy as np
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import MEAN_RADIUS, Position
+from thalweg.core.types import FloatArray, Int32Array
 from thalweg.kernels.network import graph_building
 from thalweg.network.assembly import (
     Pairs,
@@ -22,7 +23,7 @@ from thalweg.network.assembly import (
     evenly_spaced_samples,
     measured_pairs,
 )
-from thalweg.network.network import FloatArray, Int32Array, Network
+from thalweg.network.network import Network
 from thalweg.network.regional_lattice.conformal_projection import (
     angle_to_point,
     conformal_unit_vectors,

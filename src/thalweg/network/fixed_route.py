@@ -9,6 +9,7 @@ import numpy as np
 
 from thalweg.core import geodesy
 from thalweg.core.geodesy import Position
+from thalweg.core.types import FloatArray
 from thalweg.network.assembly import (
     Pairs,
     Stations,
@@ -16,7 +17,7 @@ from thalweg.network.assembly import (
     evenly_spaced_samples,
     measured_pairs,
 )
-from thalweg.network.network import FloatArray, Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

@@ -4,22 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
+from thalweg.core.types import BoolArray, Float32Array, FloatArray, Int32Array, IntArray
 from thalweg.kernels.network import graph_building
 from thalweg.kernels.network.static_paths import static_astar
 from thalweg.network.distance_bounds import distance_bounds
-
-FloatArray: TypeAlias = NDArray[np.float64]
-Float32Array: TypeAlias = NDArray[np.float32]
-IntArray: TypeAlias = NDArray[np.int64]
-Int32Array: TypeAlias = NDArray[np.int32]
-BoolArray: TypeAlias = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

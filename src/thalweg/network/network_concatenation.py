@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.network.network import BoolArray, IntArray, Network, NetworkMeta
+from thalweg.core.types import BoolArray, IntArray
+from thalweg.network.network import Network, NetworkMeta
 
 _PER_EDGE = ("length", "course", "depth", "factor", "price", "fixed_time", "fee")
 

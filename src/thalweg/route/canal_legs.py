@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.core.geodesy import direct, inverse
+from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import WAVE_NORTH, WAVE_PERIOD
 from thalweg.ship.conditions import Conditions
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.route.referee.evaluation import RouteLike, evaluate
 from thalweg.route.route import Route
 

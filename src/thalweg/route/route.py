@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray, format_position
+from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.track import Track
 

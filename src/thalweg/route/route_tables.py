@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import format_time, to_datetime64
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
 from thalweg.route.route import Route, none_if_nan
 

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray, Position, check_position, distance, wrap_longitude
+from thalweg.core.geodesy import Position, check_position, distance, wrap_longitude
 from thalweg.core.time import TimeLike, parse_time
+from thalweg.core.types import FloatArray
 
 TOP_SETTING = -1  #: the ship's highest speed setting, counted from the end as in Python
 _FIELDS = ("lat", "lon", "depart", "wait", "setting", "speed")

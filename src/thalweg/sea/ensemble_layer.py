@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
-from thalweg.sea.frozen_fields import Area, Coverage, FloatArray, Mesh
+from thalweg.core.types import FloatArray
+from thalweg.sea.frozen_fields import Area, Coverage, Mesh
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.layer import Layer, Samples
 

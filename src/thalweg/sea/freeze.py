@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, OutsidePeriodError
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels import codes
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import FloatArray, GridFields, IntArray, StationFields
+from thalweg.sea.frozen_fields import GridFields, StationFields
 from thalweg.sea.layer_stack import LayeredSea
 
 DerivedChannel: TypeAlias = Callable[

@@ -8,7 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.sea.frozen_fields import Area, Coverage, FloatArray, Mesh
+from thalweg.core.types import FloatArray
+from thalweg.sea.frozen_fields import Area, Coverage, Mesh
 
 Samples = dict[str, FloatArray]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.sea.frozen_fields import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.sea.layer import Layer, Samples
 
 LayerReader = Callable[[Layer, Sequence[str], Any], Samples]

@@ -12,8 +12,9 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import Area, FloatArray
+from thalweg.sea.frozen_fields import Area
 from thalweg.sea.grids.gridded_layer import GridLayer
 
 if TYPE_CHECKING:

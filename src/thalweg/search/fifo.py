@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.edge_departure import edge_arrivals
 from thalweg.search.search_problem import make_search_problem
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
     from thalweg.network.network import Network
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, REASONS
 from thalweg.kernels.leg.edge_sailing import NetworkArrays
 from thalweg.kernels.search.label_setting import (
@@ -41,7 +42,6 @@ from thalweg.search.tidal_states import afloat_intervals
 if TYPE_CHECKING:
     from thalweg.network.network import Network
 
-FloatArray = NDArray[np.float64]
 
 DEPARTURE_STEP = 600.0  #: longest time between two waves [s]
 MIN_DEPARTURE_ROUNDS = 24  #: ... and at least so many over the time looked at

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import AXIS_DEPTH, BED_DEPTH, LIMIT_REQUIRED_DEPTH, WATER_LEVEL
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArrays
 from thalweg.kernels.leg.table_lookup import TableArrays, table_value
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from thalweg.search.profile_search import ProfileSearch
     from thalweg.ship.tables.performance_table import PerformanceTable
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _MOST_DEPTH = 60.0  # deeper than this the greatest speed is that anywhere [m]
 

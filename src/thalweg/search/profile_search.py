@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, ShipArrays
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search.tidal_intervals import TidalStates
@@ -26,9 +27,6 @@ from thalweg.search.limited_waiting import (
 )
 from thalweg.search.prepared_network import PreparedNetwork
 from thalweg.search.search_problem import ROUNDING_FACTOR, SearchProblem
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _ARRIVAL_SLACK = 1e-3  # an arrival this much above a known one is still looked at [s]
 _HEURISTIC_WEIGHT = 1.5  # weight of the time to go in a hasty search ...

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
 
-FloatArray = NDArray[np.float64]
 
 __all__ = [
     "BOUND_RADIUS",

@@ -13,11 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import BED_DEPTH, LIMIT_REQUIRED_DEPTH, WATER_LEVEL
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _DEPTH_TOLERANCE = 1e-3  # depths are in single precision [m]
 _MIN_SPEED_OVER_GROUND = 0.1  # no edge is sailed slower than this over ground [m/s]

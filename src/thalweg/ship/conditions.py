@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, close_matches
+from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import (
     BED_DEPTH,
     EASTWARD_CURRENT,
@@ -23,8 +24,6 @@ from thalweg.ship.condition_variables import (
     WAVE_PERIOD,
     WAVE_TO,
 )
-
-FloatArray = NDArray[np.float64]
 
 
 class Conditions(Mapping[str, FloatArray]):

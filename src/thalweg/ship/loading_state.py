@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
-
-FloatArray = NDArray[np.float64]
+from thalweg.core.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import AXIS_OF_CONDITION
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.model_protocol import ShipModel
@@ -16,7 +16,6 @@ from thalweg.ship.ship import Ship
 from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.tabulate import DEFAULT_AXES
 
-FloatArray = NDArray[np.float64]
 _SAMPLES = 64
 _CONDITION_SPANS = {"wind_speed": 20.0, "wave_height": 4.0, "wave_period": 14.0, "depth": 200.0}
 

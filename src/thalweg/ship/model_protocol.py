@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import TableError, TablePart
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.carbon_intensity import (
@@ -23,7 +23,6 @@ from thalweg.ship.models.propulsion_model import unused_efficiencies
 from thalweg.ship.performance_sheet_seaway import ShipInSeaway
 from thalweg.ship.ship import Ship
 
-FloatArray = NDArray[np.float64]
 _CALM_PERIOD = 10.0  #: [s]; nothing depends on it
 _DIRECTIONAL_WEATHER = (
     ("wave_height", "wave_angle", "waves"),

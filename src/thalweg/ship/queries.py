@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, ModelRangeError
+from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import ShipModel
-
-FloatArray = NDArray[np.float64]
 
 
 class ShipQueries:

@@ -12,9 +12,10 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.ship.condition_variables import HEADING_DEPENDENT, needed_variables
 from thalweg.ship.file.ship_builder import (
@@ -38,7 +39,6 @@ from thalweg.ship.queries import ShipQueries
 from thalweg.ship.ship_limits import ShipLimits
 from thalweg.ship.tables.performance_table import PerformanceTable
 
-FloatArray = NDArray[np.float64]
 _SINGLE_PRECISION = 2.0**-23
 
 

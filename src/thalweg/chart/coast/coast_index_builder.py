@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.coast.rings import Rings
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry.cube_sphere import (
     AXIS_RATIO_SQUARED,
     FIRST_ROW,
@@ -24,7 +24,6 @@ MAX_SEGMENT_LENGTH: Final = 10_000.0 / RADIUS  # edges are cut into pieces no lo
 MAX_BULGE: Final = 1.0 / RADIUS  # and bulging no more than this [rad]
 CELL_MARGIN: Final = 8.0e-5  # edges are listed in cells this near on the face (about 500 m)
 MAX_CLEARANCE: Final = 0.5  # distances are not told beyond this [rad]
-IntArray = NDArray[np.int64]
 
 
 class CoastSegments(NamedTuple):

@@ -7,7 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.core.geodesy import direct, inverse
+from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.geometry.coast_index import CoastArrays, leg_codes, point_codes
 

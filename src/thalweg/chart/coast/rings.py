@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 
 
 @dataclass(frozen=True)

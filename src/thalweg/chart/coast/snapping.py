@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core import geodesy
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 
 if TYPE_CHECKING:
     from thalweg.chart.chart import Chart

@@ -9,13 +9,11 @@ from os import PathLike
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import Float32Array, FloatArray
 from thalweg.sea.files.file_opener import open_file
 
-Float32Array = NDArray[np.float32]
 DepthFunction = Callable[[FloatArray, FloatArray], Any]
 
 #: names (standard names or variable names) of heights, positive up, and of depths, positive down

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.chart.coast.coast_index_builder import unit_vectors
-from thalweg.chart.depth.depth_grids import DepthFunctionLayer, DepthGrid, Float32Array
+from thalweg.chart.depth.depth_grids import DepthFunctionLayer, DepthGrid
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray, positions_along
+from thalweg.core.geodesy import positions_along
+from thalweg.core.types import Float32Array, FloatArray
 from thalweg.kernels.geometry.cube_sphere import AXIS_RATIO_SQUARED
 from thalweg.kernels.geometry.depth_sampling import DepthArrays, depths_at_points, least_depths
 

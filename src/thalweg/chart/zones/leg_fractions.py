@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import empty_index
 from thalweg.chart.coast.rings import Rings
-from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.core.geodesy import direct, inverse
+from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LAND
 from thalweg.kernels.geometry.coast_index import CoastArrays, outlines_touched, point_codes
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, RADIUS, IndexArrays
@@ -17,7 +18,6 @@ from thalweg.kernels.geometry.polygon_fractions import fractions_by_bisection, m
 
 CROSSING_TOLERANCE: Final = 0.25  # pieces this short are taken whole [m]
 MAX_PART_LENGTH: Final = 400_000.0  # longer legs are cut into such pieces first [m]
-IntArray = NDArray[np.int64]
 _WORLD: Final = np.array([-90.0, 90.0, -180.0, 360.0])
 
 

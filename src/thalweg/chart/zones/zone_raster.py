@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from thalweg.chart.zones.leg_fractions import boxes_touched, points_inside
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 
 OUTSIDE: Final = 0
 INSIDE: Final = 1

@@ -29,7 +29,8 @@ from thalweg.chart.zones.leg_fractions import (
 )
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray, direct, inverse, wrap_longitude
+from thalweg.core.geodesy import direct, inverse, wrap_longitude
+from thalweg.core.types import FloatArray
 from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 

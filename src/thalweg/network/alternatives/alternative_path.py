@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.network.alternatives.path_shortening import (
     LegCost,
     PassingSides,
@@ -18,7 +18,7 @@ from thalweg.network.alternatives.path_shortening import (
     pull_taut,
     total_cost,
 )
-from thalweg.network.network import IntArray, Network
+from thalweg.network.network import Network
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

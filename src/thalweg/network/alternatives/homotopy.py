@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import MEAN_RADIUS, FloatArray
+from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.network.static_paths import meridian_crossings
-from thalweg.network.network import IntArray, Network
+from thalweg.network.network import Network
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

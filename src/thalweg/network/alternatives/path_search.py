@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import FloatArray, distance, format_position
+from thalweg.core.geodesy import distance, format_position
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.network.graph_building import static_dijkstra
 from thalweg.kernels.network.static_paths import tree_sums
 from thalweg.network.alternatives.alternative_path import (
@@ -23,7 +24,7 @@ from thalweg.network.alternatives.alternative_path import (
 )
 from thalweg.network.alternatives.homotopy import Obstacles, obstacles
 from thalweg.network.alternatives.path_shortening import total_cost
-from thalweg.network.network import IntArray, Network
+from thalweg.network.network import Network
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core import geodesy
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.assembly import measured_pairs
-from thalweg.network.network import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

@@ -10,10 +10,11 @@ import numpy as np
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import MEAN_RADIUS, Position, distance, format_position
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network.alternatives.path_shortening import pull_taut
-from thalweg.network.network import BoolArray, FloatArray, IntArray, shortest_path
+from thalweg.network.network import shortest_path
 from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
 from thalweg.network.regional_lattice.lattice_builder import lattice
 

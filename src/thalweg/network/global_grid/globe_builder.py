@@ -12,6 +12,7 @@ from thalweg.chart.canals import CANALS, Canal
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.network import graph_building
 from thalweg.kernels.network.static_paths import connected_waters
@@ -27,7 +28,7 @@ from thalweg.network.assembly import (
 from thalweg.network.endpoints import check_endpoints, concatenate_pairs, direct_pairs
 from thalweg.network.global_grid.endpoint_attachment import Attachment, ConnectedWaters, attach
 from thalweg.network.global_grid.grid import GlobeGrid, GridResolution, globe_grid
-from thalweg.network.network import BoolArray, FloatArray, Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

@@ -17,6 +17,7 @@ import numpy as np
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.zones.geojson_zones import rings_from_polygons
 from thalweg.core.cache_folder import cache_folder
+from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.triangle_subdivision import outlines_crossed
 from thalweg.kernels.network.graph_building import directed_edges_of_pairs
@@ -31,7 +32,6 @@ from thalweg.network.global_grid.icosphere import (
     sorted_unique,
 )
 from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, STRAITS, strait_levels
-from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

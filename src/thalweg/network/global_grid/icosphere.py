@@ -15,8 +15,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.kernels.geometry import triangle_subdivision as kernels
-from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
 
 _PHI = (1.0 + np.sqrt(5.0)) / 2.0
 _VERTICES = [

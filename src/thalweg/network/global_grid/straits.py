@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS
-from thalweg.network.network import FloatArray, IntArray
+from thalweg.core.types import FloatArray, IntArray
 
 FINEST_STRAIT_LEVEL: Final = 14  # level of the grid there: nodes 430 to 515 m apart
 

@@ -11,14 +11,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.geodesy import FLATTENING, MEAN_RADIUS, Position, wrap_longitude
-
-FloatArray: TypeAlias = NDArray[np.float64]
+from thalweg.core.types import FloatArray
 
 _E2 = FLATTENING * (2.0 - FLATTENING)
 _E = float(np.sqrt(_E2))

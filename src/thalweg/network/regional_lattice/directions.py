@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.network.network import IntArray
+from thalweg.core.types import IntArray
 
 LARGEST_OFFSETS = {
     8: 1,

@@ -12,9 +12,10 @@ import numpy as np
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network.endpoints import check_endpoints
-from thalweg.network.network import FloatArray, IntArray, Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta
 from thalweg.network.regional_lattice.conformal_projection import (
     ConformalProjection,
     conformal_unit_vectors,

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.network.alternatives.homotopy import ring_areas
 from thalweg.network.assembly import Pairs, Stations, allowed_legs, measured_pairs
 from thalweg.network.endpoints import concatenate_pairs
-from thalweg.network.network import FloatArray, IntArray
 from thalweg.network.regional_lattice.conformal_projection import (
     conformal_positions,
     conformal_unit_vectors,

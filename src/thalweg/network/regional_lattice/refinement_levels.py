@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS
-from thalweg.network.network import BoolArray, FloatArray, Int32Array, IntArray
+from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.network.regional_lattice.conformal_projection import (
     ConformalProjection,
     angle_to_point,

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS, Position
-from thalweg.network.network import BoolArray, FloatArray, IntArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.regional_lattice.conformal_projection import (
     ConformalProjection,
     angle_to_point,

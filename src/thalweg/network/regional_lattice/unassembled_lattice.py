@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS, Position
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.network import graph_building
 from thalweg.network.assembly import (
     DirectedEdges,
@@ -31,7 +32,7 @@ from thalweg.network.endpoints import (
     direct_pairs,
     links_to_nodes,
 )
-from thalweg.network.network import BoolArray, FloatArray, IntArray, Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta
 from thalweg.network.regional_lattice.conformal_projection import (
     ConformalProjection,
     angle_to_point,

@@ -10,8 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry.triangle_crossings import crossed_sides
-from thalweg.network.network import FloatArray, IntArray, Network
+from thalweg.network.network import Network
 from thalweg.network.regional_lattice.conformal_projection import mercator_projection
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.network.network import Int32Array, IntArray
+from thalweg.core.types import Int32Array, IntArray
 
 
 def adjacency(triangles: IntArray, n: int) -> Any:

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.network import graph_building
-from thalweg.network.network import BoolArray, FloatArray, IntArray
 
 
 def spacing_fraction(

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, direct, distance, inverse, positions_along
+from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.network import Network, NetworkMeta, lattice, mesh
 from thalweg.network.assembly import Stations, assemble, measured_pairs, no_samples
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.ship import PerformanceTable, Ship
 
-FloatArray = NDArray[np.float64]
 
 LINE = "line"  #: kind of the network of a charted way
 _LINE_SPACING = 300.0  # of the nodes of a charted way [m]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.types import FloatArray
 from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
 from thalweg.operations.dredging.cycles import SailedLeg, leg_energy
 from thalweg.operations.dredging.project_environment import (
@@ -18,8 +19,6 @@ from thalweg.operations.dredging.project_environment import (
 from thalweg.route import Route, Track, evaluate
 from thalweg.route.referee.limit_checks import is_data_gap
 from thalweg.search import NetworkPassage, ProfileSearch
-
-FloatArray = NDArray[np.float64]
 
 #: Depth added for a leg while the referee finds a limit broken between the nodes [m].
 DEPTH_MARGINS = (0.0, 0.05, 0.2, 0.5)

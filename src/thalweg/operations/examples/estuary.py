@@ -12,16 +12,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
+from thalweg.core.types import FloatArray
 from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm
 from thalweg.sea.tides.constituents import Constituents
-
-FloatArray = NDArray[np.float64]
 
 CENTRE: Final = (51.70, 3.55)  #: origin of the plane below [deg]
 HALF_WIDTH, HALF_HEIGHT = 12.0, 10.0  # of the domain [km]

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.geodesy import FloatArray, Position, check_position, direct, distance, inverse
+from thalweg.core.geodesy import Position, check_position, direct, distance, inverse
 from thalweg.core.time import TimeLike, parse_time, to_datetime64
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
 

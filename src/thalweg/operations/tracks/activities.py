@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.tracks.track_cleaning import TrackLog
 from thalweg.operations.tracks.work_areas import AREA_KINDS, LOADING, UNLOADING, WAITING, WorkAreas

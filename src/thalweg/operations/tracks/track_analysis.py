@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import format_time, to_datetime64
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.operations.tracks.activities import (
     ACTIVITIES,

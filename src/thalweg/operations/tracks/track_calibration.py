@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.operations.tracks.track_segments import SAILING_KINDS, MeasuredSegments
 
 _MIN_LEGS = 3  # points of a spread, legs of a calibration

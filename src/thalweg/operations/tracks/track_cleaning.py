@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray, distance, wrap_longitude
+from thalweg.core.geodesy import distance, wrap_longitude
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 
 _MIN_UNDER_WAY_SPEED = (

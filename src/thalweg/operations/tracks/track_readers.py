@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.operations.tracks.track_cleaning import CleaningRules, RawTrack, TrackLog, clean_track
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray, inverse
+from thalweg.core.geodesy import inverse
+from thalweg.core.types import FloatArray
 from thalweg.operations.tracks.activities import SAILING_EMPTY, SAILING_FULL, Activity
 from thalweg.operations.tracks.track_cleaning import TrackLog
 from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT

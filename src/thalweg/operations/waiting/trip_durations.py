@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import CoverageError, InputError, MissingVariableError
-from thalweg.core.geodesy import FloatArray, format_position
+from thalweg.core.geodesy import format_position
 from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.core.types import FloatArray
 from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.route.referee.evaluation import RouteLike, as_track, resolve_settings
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces

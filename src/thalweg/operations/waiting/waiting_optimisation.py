@@ -30,8 +30,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import CoverageError, InputError, unknown_name_error
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.core.types import FloatArray
 from thalweg.operations.waiting.trip_table import TripTable
 
 DEPARTURE_RULES: Final = ("none", "current", "next trip", "optimum")

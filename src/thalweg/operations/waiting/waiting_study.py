@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, format_time, parse_time, to_datetime64
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.operations.waiting.waiting_optimisation import (

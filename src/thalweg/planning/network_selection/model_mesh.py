@@ -9,7 +9,8 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray, distance
+from thalweg.core.geodesy import distance
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.network import Network, mesh
 from thalweg.network.triangular_mesh.thinning import dimensionless_curl

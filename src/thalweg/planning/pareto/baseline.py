@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.route import Route, Track, better_route, evaluate
 from thalweg.sea import Sea

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import wrap_longitude
+from thalweg.core.types import FloatArray
 from thalweg.evolution import Evaluator, EvolutionResult, Genome, evolve, make_evaluator
 from thalweg.evolution.memetic import refine_front
-from thalweg.network.network import FloatArray
 from thalweg.planning.pareto.exploration import (
     ExploredAlternative,
     TrackCandidate,

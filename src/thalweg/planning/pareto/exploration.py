@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray, distance, inverse
+from thalweg.core.geodesy import distance, inverse
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up

@@ -9,7 +9,7 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, HOUR, MEGAWATT_HOUR, TONNE
 from thalweg.network import Network, eca_fractions
 from thalweg.planning.voyage import Voyage

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from thalweg.chart import Chart
 from thalweg.chart.coast.rings import Rings
-from thalweg.core.geodesy import FloatArray, distance, format_position, inverse, wrap_longitude
+from thalweg.core.geodesy import distance, format_position, inverse, wrap_longitude
+from thalweg.core.types import FloatArray
 from thalweg.network import Network
 from thalweg.network.alternatives.homotopy import obstacles
 from thalweg.route import Route

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.route import Route
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
 from thalweg.route.referee.sailing import sailing_state_along

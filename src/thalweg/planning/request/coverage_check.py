@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, NoRouteError, OutsideAreaError
-from thalweg.core.geodesy import FloatArray, direct, format_position
+from thalweg.core.geodesy import direct, format_position
 from thalweg.core.time import format_time
+from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.planning.request.requirements import Requirements

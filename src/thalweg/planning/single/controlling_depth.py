@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
 from thalweg.network import Network
 from thalweg.sea import StationFields

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
 from thalweg.core.time import TimeLike, parse_time
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
 from thalweg.route.referee.limit_checks import coverage_error, is_data_gap
 from thalweg.route.referee.route_assembly import assemble_route

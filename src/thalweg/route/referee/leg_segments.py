@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import WGS84, FloatArray, inverse, wrap_longitude
+from thalweg.core.geodesy import WGS84, inverse, wrap_longitude
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.canal_legs import CanalLegs, canal_legs
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-IntArray = NDArray[np.int64]
 
 #: Gauss-Legendre nodes of two points on [0, 1] (Hairer, Norsett & Wanner 1993, table II.7.3)
 GAUSS_NODES = np.array([0.5 - math.sqrt(3.0) / 6.0, 0.5 + math.sqrt(3.0) / 6.0])

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import CoverageError, OutsideAreaError, OutsidePeriodError
-from thalweg.core.geodesy import FloatArray, format_position, positions_along
+from thalweg.core.geodesy import format_position, positions_along
 from thalweg.core.time import format_time
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.codes import REASONS
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
@@ -27,7 +28,6 @@ from thalweg.ship.condition_variables import (
 )
 from thalweg.ship.conditions import Conditions
 
-BoolArray = NDArray[np.bool_]
 _LIMIT_TOLERANCE = 1e-9  # rounding allowed on every limit, in its own unit
 
 

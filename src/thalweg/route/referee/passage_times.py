@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 
 #: ``(index of the first point, one past the last, times, speeds through water guessed or None) ->
 #: (slowness [s/m], NaN where it cannot go, speed through water [m/s])`` at the Gauss points

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
-from thalweg.route.referee.leg_segments import IntArray, TrackPieces, TrackPoints
+from thalweg.core.types import FloatArray, IntArray
+from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints
 from thalweg.route.referee.limit_checks import (
     canal_violations,
     land_violations,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.route.canal_legs import CanalLegs
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
 from thalweg.route.referee.passage_times import PassageTimes, solve_passage_times

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thalweg.core.errors import MissingVariableError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.ship.condition_variables import (
     BED_DEPTH,

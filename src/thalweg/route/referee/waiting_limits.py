@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.route.route import Violation
 from thalweg.route.track import Track
 

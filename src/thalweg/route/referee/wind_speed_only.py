@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND

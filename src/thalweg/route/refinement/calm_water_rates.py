@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import AXIS_COUNT, AXIS_DEPTH, AXIS_WAVE_PERIOD
 from thalweg.kernels.leg.table_lookup import TableArrays, table_value
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.route.refinement.cost_evaluator import CostEvaluator
 from thalweg.route.refinement.polyline import METRES_PER_DEGREE, Polyline
 from thalweg.route.refinement.time_evaluator import (

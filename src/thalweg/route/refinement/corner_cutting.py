@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.core.geodesy import direct, inverse
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.polyline import IntArray, Polyline, unwrapped_longitudes
+from thalweg.route.refinement.polyline import Polyline, unwrapped_longitudes
 from thalweg.route.refinement.string_pulling import string_pull
 from thalweg.route.refinement.time_evaluator import (
     TimeEvaluator,

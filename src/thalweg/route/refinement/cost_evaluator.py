@@ -10,17 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, canal_rates, canal_setting
-from thalweg.route.refinement.time_evaluator import (
-    IntArray,
-    TimeEvaluator,
-    TrackBatch,
-    make_time_evaluator,
-)
+from thalweg.route.refinement.time_evaluator import TimeEvaluator, TrackBatch, make_time_evaluator
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

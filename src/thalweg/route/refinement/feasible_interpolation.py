@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.route.refinement.polyline import unwrapped_longitudes
 from thalweg.route.route import Route
 from thalweg.route.track import Track

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing
 from thalweg.kernels.leg.population_sailing import LAT, LON
-from thalweg.route.refinement.population import BoolArray, IntArray, Population
+from thalweg.route.refinement.population import Population
 from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.refinement.time_evaluator import approximate_leg_lengths
 

@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.route.refinement.cost_evaluator import CostEvaluator
 from thalweg.route.refinement.polyline import METRES_PER_DEGREE, Polyline
 from thalweg.route.refinement.time_evaluator import (
@@ -16,8 +15,6 @@ from thalweg.route.refinement.time_evaluator import (
     TrackBatch,
     approximate_leg_lengths,
 )
-
-BoolArray = NDArray[np.bool_]
 
 _DIFFERENCE_STEP = 0.02  # sideways probe, as a share of the shorter leg beside a waypoint
 _DAMPING = (0.0, 0.03, 1.0)  # shares of the curvature added to it

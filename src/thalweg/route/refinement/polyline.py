@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import FloatArray, positions_along, wrap_longitude
+from thalweg.core.geodesy import positions_along, wrap_longitude
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.refinement.cost_evaluator import CostEvaluator
 from thalweg.route.refinement.time_evaluator import (
     TimeEvaluator,
@@ -17,7 +18,6 @@ from thalweg.route.refinement.time_evaluator import (
 )
 from thalweg.route.track import Track
 
-IntArray = NDArray[np.int64]
 METRES_PER_DEGREE = 111_195.0
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing
 from thalweg.kernels.leg.population_sailing import LAT, LON
 from thalweg.route.refinement.finite_differences import (
@@ -18,12 +18,7 @@ from thalweg.route.refinement.finite_differences import (
     legs_as_tracks,
     sail_legs_alone,
 )
-from thalweg.route.refinement.population import (
-    BoolArray,
-    IntArray,
-    Population,
-    concatenated_populations,
-)
+from thalweg.route.refinement.population import Population, concatenated_populations
 
 _DIRECTIONS = 8
 _STEP_FRACTIONS = (

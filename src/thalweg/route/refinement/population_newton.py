@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing
 from thalweg.kernels.leg.population_sailing import LAT, LON
 from thalweg.route.refinement.finite_differences import (
@@ -19,7 +19,7 @@ from thalweg.route.refinement.finite_differences import (
     sail_legs_alone,
     starboard_vectors_of_tracks,
 )
-from thalweg.route.refinement.population import BoolArray, IntArray, Population
+from thalweg.route.refinement.population import Population
 
 _DIFFERENCE_STEP = 0.02  # sideways probe, as a share of the shorter leg beside a point
 _DAMPING = (0.0, 0.05, 1.0)  # shares of the curvature added to it

@@ -8,7 +8,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import MEAN_RADIUS, FloatArray
+from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.types import FloatArray
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.core.geodesy import direct, inverse
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.polyline import IntArray, Polyline, unwrapped_longitudes
+from thalweg.route.refinement.polyline import Polyline, unwrapped_longitudes
 from thalweg.route.refinement.time_evaluator import TrackBatch
 
 _MAX_ROUNDS = 4  # choices, each at the times of the one before

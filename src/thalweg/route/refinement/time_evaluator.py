@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.geodesy import FloatArray, direct, inverse
+from thalweg.core.geodesy import direct, inverse
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels import codes
 from thalweg.kernels.leg.polyline_sailing import (
     PolylineArrays,
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable
 
-IntArray = NDArray[np.int64]
 _METRES_PER_DEGREE = 111_195.0
 _CORRIDOR_HALF_WIDTH = 5.0  # metres to each side of a leg where charted depth is looked up
 _DEPTH_LOOKUP_SPAN = 0.5  # degrees of a leg whose charted depth is looked up at once

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.types import FloatArray
 from thalweg.sea.files import plausible_values
-from thalweg.sea.frozen_fields import FloatArray
 
 RawArray: TypeAlias = NDArray[Any]
 READ_ERRORS = (OSError, RuntimeError, ValueError, IndexError, KeyError, EOFError, OverflowError)

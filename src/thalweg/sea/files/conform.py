@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files import coordinates as co
 from thalweg.sea.files import derived_variables, ugrid, vertical_levels
@@ -21,7 +22,6 @@ from thalweg.sea.files.variable_recognition import (
     IgnoredVariable,
     recognise_variables,
 )
-from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.inspection import RecognisedVariable
 
 NO_TIMES = np.empty(0)

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.types import FloatArray
 from thalweg.sea.files import unit_conversion
 from thalweg.sea.files.vertical_levels import is_sigma, level_coordinate, surface_index
-from thalweg.sea.frozen_fields import FloatArray
 
 LATITUDE_NAMES: Final = (
     "latitude",

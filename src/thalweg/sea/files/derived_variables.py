@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.types import FloatArray
 from thalweg.sea.files.block_cache import GridWindow
 from thalweg.sea.files.grid_detection import GridPlacement
-from thalweg.sea.frozen_fields import FloatArray
 
 Combine = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
 

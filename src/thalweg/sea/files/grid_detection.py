@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.types import FloatArray
 from thalweg.sea.files import coordinates as co
 from thalweg.sea.files.ugrid import MeshLayout
-from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.grids.point_location import Grid, RectilinearGrid, curvilinear_grid
 
 NEMO_U_COORDINATES = ("glamu", "gphiu")

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.files import coordinates as co
-from thalweg.sea.frozen_fields import FloatArray, IntArray, Mesh
+from thalweg.sea.frozen_fields import Mesh
 from thalweg.sea.grids.point_location import TriangleGrid
 
 

@@ -15,8 +15,8 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.types import FloatArray
 from thalweg.sea.files import unit_conversion
-from thalweg.sea.frozen_fields import FloatArray
 
 SIGMA_STANDARD_NAME: Final = "ocean_sigma_coordinate"
 HEIGHT_NAMES: Final = ("altitude", "height", "height_above_mean_sea_level", "height_above_geoid")

@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files.block_cache import BlockCache, GridWindow, Quantity
-from thalweg.sea.frozen_fields import Area, Coverage, FloatArray, IntArray, Mesh
+from thalweg.sea.frozen_fields import Area, Coverage, Mesh
 from thalweg.sea.grids.point_location import Grid, GridLocation
 from thalweg.sea.inspection import RecognisedVariable
 from thalweg.sea.layer import Samples, nan_pairs

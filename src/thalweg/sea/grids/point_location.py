@@ -13,8 +13,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
-from thalweg.sea.frozen_fields import Area, FloatArray, IntArray, Mesh
+from thalweg.sea.frozen_fields import Area, Mesh
 
 MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin above which bins are made smaller ...
 MAX_BINS, MAX_ITEMS_PER_TRIANGLE = (

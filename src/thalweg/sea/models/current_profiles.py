@@ -16,15 +16,13 @@ Schless (2023) set both side by side as a model of the current along the Dutch c
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, ModelRangeError
-from thalweg.sea.frozen_fields import FloatArray
-
-ComplexArray: TypeAlias = NDArray[np.complex128]
+from thalweg.core.types import ComplexArray, FloatArray
 
 GRAVITY: Final = 9.81  #: [m/s2]
 MIN_ROTATION: Final = 1e-6  #: of the tide's frequency: how near f may come to it

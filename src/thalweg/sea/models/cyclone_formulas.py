@@ -6,14 +6,13 @@ They describe an idealised vortex: what they give is modelled, not observed.
 
 from __future__ import annotations
 
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
-
-FloatArray: TypeAlias = NDArray[np.float64]
 
 AIR_DENSITY: Final = 1.15  #: [kg/m3], as in Holland (1980)
 AMBIENT_PRESSURE: Final = 101300.0  #: [Pa]

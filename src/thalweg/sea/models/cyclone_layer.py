@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.sea import standard_names as nm
 from thalweg.sea.argument_checks import parse_time_step
-from thalweg.sea.frozen_fields import WORLD, Area, Coverage, FloatArray, Mesh
+from thalweg.sea.frozen_fields import WORLD, Area, Coverage, Mesh
 from thalweg.sea.layer import Samples
 from thalweg.sea.models import cyclone_formulas as models
 

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import WORLD, Area, Coverage, FloatArray, Mesh
+from thalweg.sea.frozen_fields import WORLD, Area, Coverage, Mesh
 from thalweg.sea.layer import Samples, nan_pairs
 
 FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]

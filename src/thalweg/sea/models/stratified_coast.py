@@ -17,8 +17,8 @@ import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.time import TimeLike, parse_time
+from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.models.current_profiles import WaterColumn, density_mean, tidal_mean, tidal_profile
 
 CurrentFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]

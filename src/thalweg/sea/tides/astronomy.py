@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.sea.frozen_fields import FloatArray
+from thalweg.core.types import FloatArray
 
 DAY: Final = 86400.0
 HOUR: Final = 3600.0

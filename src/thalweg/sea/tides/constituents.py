@@ -7,14 +7,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.sea.frozen_fields import FloatArray
+from thalweg.core.types import ComplexArray, FloatArray
 from thalweg.sea.tides import foreman, schureman
 from thalweg.sea.tides.astronomy import DAY
-
-ComplexArray = NDArray[np.complex128]
 
 CONVENTIONS: Final = ("foreman", "schureman", "rws")
 TIMES_PER_CHUNK: Final = 1 << 14  #: times for which arguments are made at once

@@ -11,13 +11,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.sea.frozen_fields import FloatArray, IntArray
+from thalweg.core.types import ComplexArray, FloatArray, IntArray
 from thalweg.sea.tides.astronomy import mean_longitudes
-
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)

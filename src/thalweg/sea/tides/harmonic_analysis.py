@@ -20,12 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.sea.frozen_fields import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea.tides import foreman
 from thalweg.sea.tides.astronomy import HOUR
 from thalweg.sea.tides.constituents import Constituents, unit_phasors
 
-BoolArray = NDArray[np.bool_]
 ProgressCallback = Callable[[int, int], None]
 
 RAYLEIGH: Final = 1.0  #: separation of two constituents [cycles over the record]

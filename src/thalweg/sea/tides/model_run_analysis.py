@@ -15,9 +15,9 @@ import numpy as np
 
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files.block_cache import GridWindow
-from thalweg.sea.frozen_fields import FloatArray
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.point_location import RectilinearGrid
 from thalweg.sea.layer import Layer

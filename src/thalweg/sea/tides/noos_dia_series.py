@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from thalweg.core.errors import DatasetError
-from thalweg.sea.frozen_fields import FloatArray
+from thalweg.core.types import FloatArray
 from thalweg.sea.tides.astronomy import HOUR
 
 LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}

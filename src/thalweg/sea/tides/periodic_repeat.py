@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
-from thalweg.sea.frozen_fields import Area, Coverage, FloatArray, Mesh
+from thalweg.core.types import FloatArray
+from thalweg.sea.frozen_fields import Area, Coverage, Mesh
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.tides import schureman
 from thalweg.sea.tides.astronomy import HOUR

@@ -19,13 +19,10 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import unknown_name_error
-from thalweg.sea.frozen_fields import FloatArray
+from thalweg.core.types import ComplexArray, FloatArray
 from thalweg.sea.tides.astronomy import argument_rates, mean_longitudes
-
-ComplexArray = NDArray[np.complex128]
 
 #: Share of the nodal factor that acts, for stations in the Netherlands (Rijkswaterstaat). The
 #: factor is 1 + share * (f - 1); S2, which has none of its own, takes the one of M2.

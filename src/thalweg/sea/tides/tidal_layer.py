@@ -12,14 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import ComplexArray, FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import WORLD, Area, Coverage, FloatArray, Mesh
+from thalweg.sea.frozen_fields import WORLD, Area, Coverage, Mesh
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.point_location import Grid, GridLocation, TriangleGrid
 from thalweg.sea.layer import Samples, nan_pairs
 from thalweg.sea.models.function_layer import automatic_times
 from thalweg.sea.tides import harmonic_analysis
-from thalweg.sea.tides.constituents import ComplexArray, Constituents, tidal_signal, unit_phasors
+from thalweg.sea.tides.constituents import Constituents, tidal_signal, unit_phasors
 from thalweg.sea.tides.model_run_analysis import analyse_layer, has_tides, no_tides_error
 
 if TYPE_CHECKING:

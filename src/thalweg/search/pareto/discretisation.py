@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import STATUS_COUNT
 from thalweg.kernels.pareto.edge_tables import EdgeTables, sail_departures
 from thalweg.kernels.pareto.time_expanded_labels import COUNTER_COUNT as AGENDA_COUNTS
@@ -24,9 +25,6 @@ from thalweg.search.pareto.front_problem import (
     FrontRequest,
     new_edge_workspace,
 )
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 #: What the tables of edges may be off from the legs, as a share of their duration or cost.
 TABLE_TOLERANCE = 1e-3

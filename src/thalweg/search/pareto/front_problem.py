@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import (
     AXIS_COUNT,
     AXIS_DEPTH,
@@ -48,8 +49,6 @@ if TYPE_CHECKING:
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _MAX_TIME_PRICES = 10
 

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-
-FloatArray = NDArray[np.float64]
+from thalweg.core.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

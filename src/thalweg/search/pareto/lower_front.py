@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.kernels.pareto.edge_tables import EdgeTables
 from thalweg.kernels.pareto.lower_labels import (
     InterpolationBounds,
@@ -26,8 +26,6 @@ from thalweg.search.pareto.front_problem import (
 )
 from thalweg.search.pareto.front_result import FrontPoint
 from thalweg.search.pareto.seed_paths import tighten_target
-
-FloatArray = NDArray[np.float64]
 
 _ROUNDING_MARGIN = 1.0 - 2e-6  # for sums in single precision
 _MAX_TIME_PRICES = 6

@@ -61,7 +61,6 @@ if TYPE_CHECKING:
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
 
-FloatArray = NDArray[np.float64]
 
 _PROGRESS_CHUNKS = 50
 MEMORY_LIMIT = 3e9  # [bytes]

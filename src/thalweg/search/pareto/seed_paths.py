@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.pareto.edge_tables import sail_path
 from thalweg.kernels.pareto.time_expanded_labels import (
@@ -28,9 +28,6 @@ from thalweg.search.pareto.front_result import FrontPoint
 from thalweg.search.search_result import SearchResult
 
 _SETTING_SWITCHES = 24  # places at most where a seed changes from one setting to the next
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class PlannedPath(NamedTuple):

@@ -7,9 +7,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import DAY, KNOT, SEA_WATER_DENSITY, TONNE
 from thalweg.ship.fuel_prices import fuel_terms
@@ -34,7 +31,6 @@ from thalweg.ship.models.speed_power_laws import (
 from thalweg.ship.models.squat_model import build_squat_model
 from thalweg.ship.ship_limits import ShipLimits
 
-FloatArray = NDArray[np.float64]
 ShipData = Mapping[str, Any]
 SAFETY_KEYS: Final = frozenset(
     {"msc_circ_1228", "max_vertical_acceleration_m_s2", "max_motion_sickness_percent"}

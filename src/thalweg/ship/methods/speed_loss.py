@@ -30,13 +30,13 @@ from functools import lru_cache
 from typing import Any, Final, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
-FloatArray = NDArray[np.float64]
 LoadingCondition = Literal["loaded", "normal", "ballast"]
 LastTermSign = Literal["plus", "printed"]
 ShipType = Literal["other", "container"]

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm_validity
@@ -39,7 +39,6 @@ from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of
 
-FloatArray = NDArray[np.float64]
 #: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
 _ENTRANCE_FRACTION: Final = 0.85
 _PITCH_GYRATION: Final = Estimate("pitch_gyration", 0.25, "usual value, ITTC")

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any, Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
@@ -41,7 +41,6 @@ from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate
 
-FloatArray = NDArray[np.float64]
 #: names of the components of calm-water resistance; each is there, zero where a method has none
 CALM_WATER_COMPONENTS: Final = (
     *("friction", "form_factor", "appendage", "wave_making", "bulb", "transom"),

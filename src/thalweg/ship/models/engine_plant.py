@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.ship.methods.engine.fuel_properties import fuel_named
 from thalweg.ship.methods.engine.specific_consumption import (
     GRAM_PER_KILOWATT_HOUR,
@@ -21,8 +21,6 @@ from thalweg.ship.methods.engine.specific_consumption import (
 from thalweg.ship.methods.validity import RangeNote, range_notes
 from thalweg.ship.model_protocol import Estimate
 from thalweg.ship.models.fuel_from_power import HOTEL_SFOC
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

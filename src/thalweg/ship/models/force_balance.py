@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.ship.methods.current_triangle import LARGEST_RUDDER_ANGLE, rudder_drag
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.models.added_resistance_model import AddedWaveResistance, WindResistance
@@ -16,7 +17,6 @@ from thalweg.ship.models.calm_water_model import CalmWaterResistance
 from thalweg.ship.models.propulsion_model import PropulsionModel
 from thalweg.ship.models.root_finding import bracketed_root
 
-FloatArray = NDArray[np.float64]
 FlatConditions = Mapping[str, FloatArray]
 _STOPPED_SPEED: Final = 0.01  #: below this the weather may stop the ship altogether [m/s]
 CALM_CONDITIONS: Final = {

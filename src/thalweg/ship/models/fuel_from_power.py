@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.ship.model_protocol import Estimate
 
-FloatArray = NDArray[np.float64]
 ShipData = Mapping[str, Any]
 HOTEL_SFOC: Final = 195.0  #: of auxiliary engines, when the ship file does not tell [g/kWh]
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import (
     AXIS_OF_CONDITION,
     BED_DEPTH,
@@ -29,7 +30,6 @@ from thalweg.ship.tables.tabulate import (
     tabulate_dense,
 )
 
-FloatArray = NDArray[np.float64]
 SpeedFunction = Callable[[Conditions], ArrayLike]
 
 _PROBE_RANGES = {

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading, interpolate_loading
@@ -19,8 +20,6 @@ from thalweg.ship.model_protocol import setting_index
 from thalweg.ship.models.squat_model import SquatModel
 from thalweg.ship.tables.performance_table import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_dense
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
@@ -21,7 +22,6 @@ from thalweg.ship.tables.performance_table import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, tabulate_dense
 from thalweg.ship.tables.tabulate_resistance import condition_axes
 
-FloatArray = NDArray[np.float64]
 _LARGEST_FROUDE_NUMBER: Final = 0.4  #: Froude number of the fastest calm speed looked at
 _WIND_CONDITIONS: Final = ("wind_speed", "wind_angle")
 

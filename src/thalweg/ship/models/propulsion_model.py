@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.propulsion.b_series import Propeller, b_series_validity
@@ -31,8 +31,6 @@ from thalweg.ship.methods.resistance.holtrop_form import HullForm, form_factor_1
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of, stern_shape
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import Estimate, setting_index
@@ -25,7 +26,6 @@ from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.performance_table import TableError, TablePart
 from thalweg.ship.tables.table_cache import TableWithMaxima, cached_table
 
-FloatArray = NDArray[np.float64]
 #: parts, their error, and what follows their sum
 TabulatedModel: TypeAlias = tuple[tuple[TablePart, ...], TableError, OutputCurve | None]
 LARGEST_SPEED_FACTOR: Final = (

@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from thalweg.core.types import FloatArray
+
 #: given values and the indices they belong to, returns the function's values
 IndexedFunction = Callable[[FloatArray, NDArray[np.intp]], FloatArray]
 

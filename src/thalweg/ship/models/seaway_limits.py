@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.kernels.leg import wave_limits as places
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
@@ -26,7 +27,6 @@ from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import (
     surf_riding_speed,
 )
 
-FloatArray = NDArray[np.float64]
 #: the situations of MSC.1/Circ.1228 that a ship file may name
 DANGEROUS_SITUATIONS: Final = (
     "surf_riding",

@@ -7,13 +7,12 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, KNOT, TONNE
 from thalweg.ship.models.known_speed_model import KnownSpeedModel, cubic_law
 
-FloatArray = NDArray[np.float64]
 ShipData = Mapping[str, Any]
 
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.shallow_water.squat import (
@@ -21,7 +22,6 @@ from thalweg.ship.methods.shallow_water.squat import (
     shallow_water_speed_limit,
 )
 
-FloatArray = NDArray[np.float64]
 SQUAT_METHODS: Final = ("none", "van_halem_2019", "barrass_2004")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.kernels.leg.table_lookup import (
     CURVE_INTERSECTION,
     CURVE_REFINEMENT,
@@ -20,7 +21,6 @@ from thalweg.kernels.leg.table_lookup import (
 if TYPE_CHECKING:
     from thalweg.ship.tables.performance_table import TablePart
 
-FloatArray = NDArray[np.float64]
 OUTPUT_CURVE_FIELDS: Final = (
     "start",
     "step",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import AXIS_COUNT, AXIS_DEPTH
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.ship.condition_variables import CONDITION_OF_AXIS
@@ -20,7 +21,6 @@ from thalweg.ship.tables.output_curve import OutputCurve
 if TYPE_CHECKING:
     from thalweg.ship.models.seaway_limits import SafetyLimits
 
-FloatArray = NDArray[np.float64]
 _EDGE_TOLERANCE = 1e-6  # how far outside an axis counts as on it [steps]
 
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.kernels.leg.table_lookup import CURVE_INTERSECTION, OUTPUT_CURVE, TableArrays
-
-FloatArray = NDArray[np.float64]
 
 
 def table_bounds(table: TableArrays, of: np.ufunc) -> FloatArray:

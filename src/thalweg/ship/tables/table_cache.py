@@ -12,13 +12,12 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.cache_folder import cache_folder
+from thalweg.core.types import FloatArray
 from thalweg.ship.tables.output_curve import OUTPUT_CURVE_FIELDS, OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
 
-FloatArray = NDArray[np.float64]
 #: a table (its fingerprint empty), and the greatest value of every setting
 TableWithMaxima: TypeAlias = tuple[PerformanceTable, FloatArray]
 MAX_FILES: Final = 24

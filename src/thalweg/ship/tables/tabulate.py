@@ -10,11 +10,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.ship.condition_variables import CONDITION_OF_AXIS
 from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
 
-FloatArray = NDArray[np.float64]
 #: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
 ConditionsFunction = Callable[[Mapping[str, FloatArray]], FloatArray]
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import AXIS_OF_CONDITION
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.model_protocol import ShipModel
@@ -35,7 +36,6 @@ from thalweg.ship.tables.tabulate_resistance import (
 if TYPE_CHECKING:
     from thalweg.ship.ship import Ship
 
-FloatArray = NDArray[np.float64]
 _CURVE_POINTS: Final = 1025  #: of the curves of fuel and power
 #: Rates that models may tabulate themselves: by which method, and what they are called.
 _RATE_METHODS: Final = {

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import ModelRangeError
+from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import CURVE_REFINEMENT
 from thalweg.ship.models.added_resistance_model import AddedWaveResistance
@@ -27,7 +28,6 @@ from thalweg.ship.tables.performance_table import PerformanceTable, TableError, 
 from thalweg.ship.tables.table_cache import TableWithMaxima
 from thalweg.ship.tables.tabulate import AxisRange, constant_part, random_conditions, table_error
 
-FloatArray = NDArray[np.float64]
 #: first grids
 _INITIAL_AXES: Final = {
     "wind_speed": AxisRange(codes.AXIS_WIND_SPEED, 0.0, 40.0, 26),

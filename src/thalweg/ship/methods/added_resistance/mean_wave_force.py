@@ -13,7 +13,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.ship.methods.resistance.friction_lines import FloatArray
+from thalweg.core.types import FloatArray
 
 Spectrum = Literal["bretschneider", "jonswap"]
 

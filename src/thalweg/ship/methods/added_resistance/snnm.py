@@ -24,6 +24,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 from thalweg.ship.methods.added_resistance.mean_wave_force import (
     LOG_FREQUENCY_STEP,
@@ -33,7 +34,7 @@ from thalweg.ship.methods.added_resistance.mean_wave_force import (
     log_spaced_nodes,
     spectral_shape,
 )
-from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number, ship_speed
+from thalweg.ship.methods.resistance.friction_lines import froude_number, ship_speed
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 LONGEST_REFLECTED_WAVE: Final = (

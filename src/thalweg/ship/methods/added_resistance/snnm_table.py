@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 from thalweg.ship.methods.added_resistance.mean_wave_force import (
     LOG_FREQUENCY_STEP,
@@ -34,7 +35,7 @@ from thalweg.ship.methods.added_resistance.snnm import (
     reflection_terms,
     speed_factor,
 )
-from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number, ship_speed
+from thalweg.ship.methods.resistance.friction_lines import froude_number, ship_speed
 
 IntArray = NDArray[np.intp]
 _SPECTRUM: Final = "bretschneider"

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.ship.methods.resistance.friction_lines import FloatArray
+from thalweg.core.types import FloatArray
 
 AIR_DENSITY: Final = 1.226  #: at 15 degC and 1013 hPa [kg/m3]
 _REFERENCE_HEIGHT: Final = 10.0

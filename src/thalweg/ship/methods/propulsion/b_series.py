@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.methods.propulsion.b_series_coefficients import (
     THRUST_REYNOLDS_TERMS,
@@ -21,7 +22,6 @@ from thalweg.ship.methods.propulsion.b_series_coefficients import (
     TORQUE_REYNOLDS_TERMS,
     TORQUE_TERMS,
 )
-from thalweg.ship.methods.resistance.friction_lines import FloatArray
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 

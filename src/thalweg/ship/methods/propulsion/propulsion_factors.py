@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
 from thalweg.ship.methods.propulsion.b_series import Propeller, operating_point
-from thalweg.ship.methods.resistance.friction_lines import FloatArray
 from thalweg.ship.methods.resistance.holtrop_form import HullForm
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
-
-FloatArray = NDArray[np.float64]
 
 SEA_WATER_VISCOSITY: Final = 1.1883e-6  #: kinematic viscosity at 15 degC, 3.5 % salt [m2/s]
 _LEAST_REYNOLDS: Final = 1.0e5

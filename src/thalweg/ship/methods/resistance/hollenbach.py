@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 from thalweg.ship.methods.resistance.friction_lines import (
     SEA_WATER_VISCOSITY,
-    FloatArray,
     froude_number,
     ittc_1957,
     reynolds_number,

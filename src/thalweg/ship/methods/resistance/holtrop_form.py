@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.ship.methods.resistance.friction_lines import FloatArray
+from thalweg.core.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 from thalweg.ship.methods.resistance.friction_lines import (
     SEA_WATER_VISCOSITY,
-    FloatArray,
     dynamic_force,
     froude_number,
     ittc_1957,

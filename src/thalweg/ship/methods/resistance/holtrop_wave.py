@@ -10,8 +10,9 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
-from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number
+from thalweg.ship.methods.resistance.friction_lines import froude_number
 from thalweg.ship.methods.resistance.holtrop_form import HullForm
 
 #: Highest place of the bulb centre the method allows, as a part of the draught forward.

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from thalweg.core.types import BoolArray
 from thalweg.core.units import KNOT
 from thalweg.ship.methods.array_conversion import Floats, as_float_array
-
-BoolArray = NDArray[np.bool_]
 
 #: Half width of the sector of following and quartering seas [rad]: 135 to 225 degrees.
 SURF_RIDING_SECTOR: Final = float(np.radians(45.0))

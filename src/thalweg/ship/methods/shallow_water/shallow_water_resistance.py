@@ -11,8 +11,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.resistance.friction_lines import FloatArray, froude_number, ittc_1957
+from thalweg.ship.methods.resistance.friction_lines import froude_number, ittc_1957
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 #: Depth Froude number at which the fit of Karpov's curves ends.
