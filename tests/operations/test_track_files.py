@@ -181,7 +181,7 @@ def test_wrong_requests(tmp_path):
         read_tracks(straight(), columns={"latt": "lat"})
     with pytest.raises(InputError, match="are wrong"):
         read_tracks(straight(), columns={"lat": "latt"})
-    for rules in ({"longest_gap": 0.0}, {"fastest": np.nan}, {"most_outliers": -1}):
+    for rules in ({"longest_gap": 0.0}, {"fastest": np.nan}, {"max_outliers": -1}):
         with pytest.raises(InputError):
             CleaningRules(**rules)
 

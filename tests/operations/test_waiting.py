@@ -94,7 +94,7 @@ def test_the_optimum_of_a_table_that_ends_is_that_of_brute_force(seed, width, ho
 def test_nothing_beats_the_optimum(seed, cycles, wait, hotel):
     rng = np.random.default_rng(seed)
     trips = [table(rng, 40, closed=0.1), table(rng, 40, closed=0.1)] * cycles
-    asked = {"start": 7 * STEP, "most_wait": wait * STEP, "hotel_power": hotel}
+    asked = {"start": 7 * STEP, "max_wait": wait * STEP, "hotel_power": hotel}
     energy = {rule: plan_waiting(trips, rule=rule, **asked).energy for rule in DEPARTURE_RULES}
     assert all(energy["optimum"] <= e * (1 + 1e-12) for e in energy.values())
     longer = plan_waiting(trips, start=7 * STEP, max_wait=(wait + 9) * STEP, hotel_power=hotel)
@@ -173,12 +173,12 @@ def test_what_cannot_be_is_refused():
     trip = table(rng, 10)
     other = TripTable("b", 0.0, 30.0, trip.duration, trip.energy, trip.current, True)
     for wrong in (
-        {"trips": [], "most_wait": 0.0},
-        {"trips": [trip, other], "most_wait": 0.0},
-        {"trips": [trip], "most_wait": -1.0},
-        {"trips": [trip], "most_wait": float("nan")},
-        {"trips": [trip], "most_wait": 0.0, "hotel_power": -1.0},
-        {"trips": [trip], "most_wait": 0.0, "rule": "optimun"},
+        {"trips": [], "max_wait": 0.0},
+        {"trips": [trip, other], "max_wait": 0.0},
+        {"trips": [trip], "max_wait": -1.0},
+        {"trips": [trip], "max_wait": float("nan")},
+        {"trips": [trip], "max_wait": 0.0, "hotel_power": -1.0},
+        {"trips": [trip], "max_wait": 0.0, "rule": "optimun"},
     ):
         with pytest.raises(InputError):
             plan_waiting(wrong.pop("trips"), start=0.0, **wrong)

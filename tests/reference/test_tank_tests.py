@@ -132,7 +132,11 @@ def _friction(model):
 def _waves(model, year):
     """Wave, bulb and transom resistance by Holtrop, as a coefficient on the wetted surface."""
     hull, ends, surface, speed, viscosity = model
-    options = {"extremities": ends, "wetted_surface_area": surface, "viscosity": viscosity}
+    options = {
+        "bulb_transom_appendages": ends,
+        "wetted_surface_area": surface,
+        "viscosity": viscosity,
+    }
     parts = holtrop(speed, hull, year=year, density=1000.0, **options)
     making = parts.wave_making + parts.bulb + parts.transom
     return float(making / (0.5 * 1000.0 * speed**2 * surface))

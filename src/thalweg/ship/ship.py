@@ -252,7 +252,7 @@ class Ship(ShipQueries):
     @property
     def heading_matters(self) -> bool:
         """Whether the speed depends on the heading, or on its angle to the course."""
-        crab = bool(getattr(self.model, "feels_crab", False))
+        crab = bool(getattr(self.model, "depends_on_crab_angle", False))
         return crab or bool(self.model.reads & HEADING_DEPENDENT)
 
     @property

@@ -94,7 +94,7 @@ ARRAY_TYPES = {
     "axis_size": np.int64,
     "value_offset": np.int64,
     "values": np.float32,
-    "square_stop": np.float64,
+    "squared_height_limit": np.float64,
     "curve_start": np.float64,
     "curve_inv_step": np.float64,
     "curve_top": np.float64,

@@ -116,7 +116,7 @@ def sailing_state_along(
     )
     for name, values in part.sampled.items():
         motion.sampled.setdefault(name, np.full(len(points), math.nan))[free] = values
-    for name in ("depth", "heading", "through_water", "over_ground"):
+    for name in ("depth", "heading", "speed_through_water", "speed_over_ground"):
         getattr(motion, name)[free] = getattr(part, name)
     return motion
 

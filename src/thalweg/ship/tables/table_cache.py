@@ -65,7 +65,9 @@ def _read(path: Path) -> TableWithMaxima | None:
         for p in range(int(data["count"])):
             axes = tuple(int(axis) for axis in data[f"axes{p}"])
             grids = tuple(data[f"grid{p}_{k}"] for k in range(len(axes)))
-            parts.append(TablePart(axes, grids, data[f"values{p}"], float(data["square_stop"][p])))
+            parts.append(
+                TablePart(axes, grids, data[f"values{p}"], float(data["squared_height_limit"][p]))
+            )
         mean, p99, largest, samples = data["error"]
         error = TableError(float(mean), float(p99), float(largest), int(samples))
         finish = None
@@ -84,7 +86,7 @@ def _write(path: Path, kept: TableWithMaxima) -> None:
     arrays: dict[str, Any] = {
         "count": np.array(len(parts)),
         "settings": table.settings,
-        "square_stop": np.array([part.squared_height_limit for part in parts]),
+        "squared_height_limit": np.array([part.squared_height_limit for part in parts]),
         "falls": np.array(finish is not None and finish.falls),
         "error": np.array([error.mean, error.p99, error.max, error.samples]),
         "top": top,
