@@ -103,3 +103,50 @@ def test_longitude_just_beyond_the_antimeridian_stays_in_its_range():
 def test_wrapping_leaves_longitudes_alone(value):
     assert float(geodesy.wrap_longitude(value)) == value
     assert float(geodesy.wrap_longitude(value + 360.0)) == pytest.approx(value, abs=1e-9)
+
+
+def test_a_degree_of_the_mean_sphere() -> None:
+    arc = math.radians(1.0) * geodesy.MEAN_RADIUS
+    assert pytest.approx(arc, abs=0.1) == geodesy.METRES_PER_DEGREE
+
+
+def test_unwrapped_longitudes_have_no_jumps() -> None:
+    lines = np.array([[170.0, 179.0, -178.0, -170.0], [-179.0, 179.0, 0.0, 10.0]])
+    got = geodesy.unwrap_longitude(lines)
+    np.testing.assert_allclose(got[0], [170.0, 179.0, 182.0, 190.0])
+    np.testing.assert_allclose(got[1, :2], [-179.0, -181.0])
+    np.testing.assert_allclose(geodesy.wrap_longitude(got), lines)
+
+
+@given(lat, lon, lat, lon)
+def test_rough_lengths_are_within_0_6_percent_of_geodesics(lat1, lon1, lat2, lon2):
+    exact = float(geodesy.distance(lat1, lon1, lat2, lon2))
+    rough = geodesy.rough_lengths(np.array([lat1, lat2]), np.array([lon1, lon2]))
+    assert rough.shape == (1,)
+    assert rough[0] == pytest.approx(exact, rel=6e-3, abs=0.1)
+
+
+@given(lat, lon, lat, lon)
+def test_angles_between_unit_vectors_are_rough_lengths(lat1, lon1, lat2, lon2):
+    vectors = geodesy.unit_vectors([lat1, lat2], [lon1, lon2])
+    np.testing.assert_allclose(np.linalg.norm(vectors, axis=1), 1.0)
+    half_chord = 0.5 * float(np.linalg.norm(vectors[1] - vectors[0]))
+    angle = 2.0 * math.asin(min(1.0, half_chord))
+    rough = geodesy.rough_lengths(np.array([lat1, lat2]), np.array([lon1, lon2]))
+    assert rough[0] == pytest.approx(angle * geodesy.MEAN_RADIUS, abs=1.0)
+
+
+@given(lat, lon)
+def test_geocentric_positions_undo_geocentric_unit_vectors(lat, lon):
+    vectors = geodesy.geocentric_unit_vectors(np.array([lat]), np.array([lon]))
+    np.testing.assert_allclose(np.linalg.norm(vectors, axis=1), 1.0)
+    got = geodesy.geocentric_positions(vectors)
+    assert got[0] == pytest.approx(lat, abs=1e-9)
+    assert got[1] == pytest.approx(lon, abs=1e-9)
+
+
+def test_geocentric_vectors_are_exact_at_the_antimeridian_and_the_poles() -> None:
+    east, west = geodesy.geocentric_unit_vectors(np.array([10.0, 10.0]), np.array([180.0, -180.0]))
+    np.testing.assert_array_equal(east, west)
+    poles = geodesy.geocentric_unit_vectors(np.array([90.0, 90.0]), np.array([0.0, 77.0]))
+    np.testing.assert_array_equal(poles[0], poles[1])

@@ -1,14 +1,14 @@
 """Geodesy on the WGS 84 ellipsoid; positions are (lat, lon) in degrees everywhere.
 
-All exact lengths and courses come from `pyproj.Geod` (Karney 2013, "Algorithms for geodesics",
-J. Geodesy 87, 43-55), whose own order (lon, lat) is hidden here.
+Exact lengths and courses come from `pyproj.Geod` (Karney 2013, "Algorithms for geodesics",
+J. Geodesy 87, 43-55). Its order (lon, lat) is used in this module only.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,15 +22,70 @@ Position: TypeAlias = tuple[float, float]
 WGS84 = Geod(ellps="WGS84")
 EQUATORIAL_RADIUS = WGS84.a
 FLATTENING = WGS84.f
-MEAN_RADIUS = 6371008.8  #: mean radius of the ellipsoid [m] (IUGG)
+AXIS_RATIO_SQUARED: Final = (1.0 - FLATTENING) ** 2  #: tan(geocentric latitude) / tan(latitude)
+MEAN_RADIUS: Final = 6371008.8  #: mean radius of the ellipsoid [m] (IUGG)
+METRES_PER_DEGREE: Final = 111_195.0  #: length of a degree of a great circle on the mean sphere [m]
 
 
 def wrap_longitude(lon: ArrayLike) -> FloatArray:
-    """Return longitude in [-180, 180) degrees; values already there stay the same to the bit."""
+    """Return longitudes in [-180, 180) degrees; values in this range are not changed."""
     lon = np.asarray(lon, float)
     inside = (lon >= -180.0) & (lon < 180.0)
     turned = (lon + 180.0) % 360.0 - 180.0
     return np.where(inside, lon, np.where(turned == 180.0, -180.0, turned))
+
+
+def unwrap_longitude(lon: ArrayLike) -> FloatArray:
+    """Return longitudes [deg] of lines (..., n) without jumps of 360 degrees along the last axis.
+
+    The first longitude of every line is not changed; the others may leave [-180, 180).
+    """
+    return np.asarray(np.unwrap(np.asarray(lon, float), period=360.0))
+
+
+def unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
+    r"""Return unit vectors (..., 3) of positions (...) [deg] on a sphere.
+
+    .. math:: (\cos\phi \cos\lambda, \cos\phi \sin\lambda, \sin\phi)
+
+    Angles between them are great-circle distances on a sphere, within 0.6 % of the geodesic.
+    """
+    phi, lam = np.radians(np.asarray(lat, float)), np.radians(np.asarray(lon, float))
+    return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=-1)
+
+
+def geocentric_unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return unit vectors (..., 3) from the centre of the ellipsoid to positions (...) [deg].
+
+    Exact at the poles and at longitudes of 180 and -180 degrees: positions that are the same have
+    the same vector. `geocentric_positions` is the inverse.
+    """
+    phi, lam = np.radians(lat), np.radians(lon)
+    c, s = np.cos(phi), AXIS_RATIO_SQUARED * np.sin(phi)
+    c = np.where(np.abs(lat) >= 90.0, 0.0, c)
+    scale = 1.0 / np.sqrt(c * c + s * s)
+    east = np.where(np.abs(lon) == 180.0, 0.0, np.sin(lam))
+    return np.stack([c * np.cos(lam) * scale, c * east * scale, s * scale], -1)
+
+
+def geocentric_positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return latitude and longitude (...) [deg] of vectors (..., 3) from the ellipsoid's centre."""
+    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    lat = np.degrees(np.arctan2(z, AXIS_RATIO_SQUARED * np.hypot(x, y)))
+    return lat, np.degrees(np.arctan2(y, x))
+
+
+def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
+    """Return the great-circle lengths [m] of the legs (..., n - 1) of lines (..., n) [deg].
+
+    By the haversine formula on a sphere of mean radius; within 0.6 % of the geodesic and much
+    faster than `distance`.
+    """
+    phi = np.radians(np.asarray(lat, float))
+    half = 0.5 * np.radians(np.diff(lon, axis=-1))
+    a, b = phi[..., :-1], phi[..., 1:]
+    h = np.sin(0.5 * (b - a)) ** 2 + np.cos(a) * np.cos(b) * np.sin(half) ** 2
+    return np.asarray(2.0 * MEAN_RADIUS * np.arcsin(np.sqrt(np.minimum(h, 1.0))))
 
 
 def inverse(

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.coast.rings import Rings
+from thalweg.core.geodesy import geocentric_positions, geocentric_unit_vectors
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry.cube_sphere import (
-    AXIS_RATIO_SQUARED,
     FIRST_ROW,
     RADIUS,
     IndexArrays,
@@ -64,19 +64,6 @@ def empty_index() -> IndexArrays:
         np.zeros((0, 3)),
         np.zeros(0, np.uint8),
     )
-
-
-def unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
-    """Return geocentric unit vectors, shape (..., 3), of positions [deg].
-
-    Poles and both names of the antimeridian are exact, so that they meet.
-    """
-    phi, lam = np.radians(lat), np.radians(lon)
-    c, s = np.cos(phi), AXIS_RATIO_SQUARED * np.sin(phi)
-    c = np.where(np.abs(lat) >= 90.0, 0.0, c)
-    scale = 1.0 / np.sqrt(c * c + s * s)
-    east = np.where(np.abs(lon) == 180.0, 0.0, np.sin(lam))
-    return np.stack([c * np.cos(lam) * scale, c * east * scale, s * scale], -1)
 
 
 def _shared_meridian_edges(
@@ -131,7 +118,7 @@ def _positions_on_edges(
     lon = lon0[which] + share * (lon1 - lon0)[which]
     last = share == 1.0
     lat[last], lon[last] = lat1[which[last]], lon1[which[last]]
-    return unit_vectors(lat, lon)
+    return geocentric_unit_vectors(lat, lon)
 
 
 def _face_components(xyz: FloatArray, face: int) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -195,9 +182,8 @@ def _seed_windings(rings: Rings, side: int) -> IntArray:
     lon0, lon1 = rings.lon[:-1][keep], rings.lon[1:][keep]
     seeds = np.zeros(6, np.int64)
     for face in range(6):
-        x, y, z = cell_middle(face, 0, 0, side)
-        lat = np.degrees(np.arctan2(z, AXIS_RATIO_SQUARED * np.hypot(x, y)))
-        for lon in np.degrees(np.arctan2(y, x)) + np.array([-360.0, 0.0, 360.0]):
+        lat, middle = geocentric_positions(np.array(cell_middle(face, 0, 0, side)))
+        for lon in middle + np.array([-360.0, 0.0, 360.0]):
             k = np.flatnonzero((lon0 <= lon) != (lon1 <= lon))
             at = lat0[k] + (lon - lon0[k]) / (lon1[k] - lon0[k]) * (lat1[k] - lat0[k])
             seeds[face] += np.sum(np.where(lon1[k] > lon0[k], -1, 1)[at > lat])

@@ -13,7 +13,6 @@ from thalweg.core.types import FloatArray
 if TYPE_CHECKING:
     from thalweg.chart.chart import Chart
 
-METRES_PER_DEGREE: Final = 111_195.0
 OPEN_SEA_MARGIN: Final = (
     40_000.0  # water that goes on this far beyond the search is the open sea [m]
 )
@@ -49,7 +48,7 @@ def _search_grid(lat: float, lon: float, half: float) -> tuple[FloatArray, Float
         np.arange(-HALF_GRID_POINTS, HALF_GRID_POINTS + 1)
         / HALF_GRID_POINTS
         * half
-        / METRES_PER_DEGREE
+        / geodesy.METRES_PER_DEGREE
     )
     north = np.clip(lat + share, -90.0, 90.0)
     east = share / max(np.cos(np.radians(lat)), 0.02)

@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError
+from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import Float32Array, FloatArray
 from thalweg.sea.files.file_opener import open_file
 
@@ -130,7 +131,7 @@ class DepthFunctionLayer:
         step = self.spacing_deg or max(north - south, east - west) / 1000.0
         lat = np.arange(south - step, north + 2.0 * step, step)
         lon = np.arange(west - step, east + 2.0 * step, step)
-        wrapped = np.where((lon >= -180.0) & (lon < 180.0), lon, (lon + 180.0) % 360.0 - 180.0)
+        wrapped = wrap_longitude(lon)
         y, x = np.meshgrid(np.clip(lat, -90.0, 90.0), wrapped, indexing="ij")
         return (lat[0], step, lon[0], step), self.at(y, x).astype(np.float32)
 

@@ -11,12 +11,15 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.chart.coast.coast_index_builder import unit_vectors
 from thalweg.chart.depth.depth_grids import DepthFunctionLayer, DepthGrid
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import positions_along
+from thalweg.core.geodesy import (
+    geocentric_positions,
+    geocentric_unit_vectors,
+    positions_along,
+    wrap_longitude,
+)
 from thalweg.core.types import Float32Array, FloatArray
-from thalweg.kernels.geometry.cube_sphere import AXIS_RATIO_SQUARED
 from thalweg.kernels.geometry.depth_sampling import DepthArrays, depths_at_points, least_depths
 
 MAX_SOUNDINGS: Final = 60_000_000  # soundings held in memory at once
@@ -120,7 +123,7 @@ class DepthLayers:
         if not self.layers:
             return np.full(ends[0].shape, np.inf, np.float32)
         a, b, c, d = (np.ascontiguousarray(x).ravel() for x in ends)
-        d = b + (d - b + 180.0) % 360.0 - 180.0
+        d = b + wrap_longitude(d - b)
         return self._legs(a, b, c, d).reshape(ends[0].shape)
 
     def _legs(
@@ -166,11 +169,11 @@ class DepthLayers:
         widest = float(np.maximum(np.abs(lon2 - lon1), np.abs(lat2 - lat1)).max())
         count = min(max(math.ceil(widest / min(steps)), 8), 2048)
         least = np.full(len(lat1), np.inf)
-        a, b = unit_vectors(lat1, lon1), unit_vectors(lat2, lon2)
+        a, b = geocentric_unit_vectors(lat1, lon1), geocentric_unit_vectors(lat2, lon2)
         for share in np.arange(count + 1) / count:
-            x, y, z = np.moveaxis(a + share * (b - a), -1, 0)
-            lat = np.degrees(np.arctan2(z, AXIS_RATIO_SQUARED * np.hypot(x, y)))
-            least = np.minimum(least, self.at(lat, np.degrees(np.arctan2(y, x)), least=True))
+            least = np.minimum(
+                least, self.at(*geocentric_positions(a + share * (b - a)), least=True)
+            )
         return least
 
     def _least_depth_of_long_leg(self, lat1: float, lon1: float, lat2: float, lon2: float) -> float:

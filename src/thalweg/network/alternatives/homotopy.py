@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.geodesy import MEAN_RADIUS, wrap_longitude
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.network.static_paths import meridian_crossings
 from thalweg.network.network import Network
@@ -98,10 +98,10 @@ def _large_land(network: Network, chart: Chart, island: float) -> FloatArray:
     begin = rings.start[:-1]
     low, high = (f.reduceat(rings.lat, begin) for f in (np.minimum, np.maximum))
     lon0 = float(network.lon[network.meta.start])
-    away = (rings.lon - lon0 + 540.0) % 360.0 - 180.0
+    away = wrap_longitude(rings.lon - lon0)
     west, east = (f.reduceat(away, begin) for f in (np.minimum, np.maximum))
     area = ring_areas(rings)
-    mine = (network.lon - lon0 + 540.0) % 360.0 - 180.0
+    mine = wrap_longitude(network.lon - lon0)
     near = (low <= network.lat.max()) & (high >= network.lat.min())
     near &= (west <= mine.max()) & (east >= mine.min())
     chosen = np.flatnonzero(near & (area >= island**2))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
-from thalweg.core.geodesy import MEAN_RADIUS, Position, distance, format_position
+from thalweg.core.geodesy import MEAN_RADIUS, Position, distance, format_position, wrap_longitude
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
@@ -221,8 +221,9 @@ def _fine_path(
     away = float(distance(*start, *goal))
     margin = max(away, 15.0 * NAUTICAL_MILE) / (60.0 * NAUTICAL_MILE)
     east = margin / max(float(np.cos(np.radians(start[0]))), 0.05)
-    middle = goal[1] + 0.5 * ((start[1] - goal[1] + 180.0) % 360.0 - 180.0)
-    wide = east + 0.5 * abs((start[1] - goal[1] + 180.0) % 360.0 - 180.0)
+    turn = float(wrap_longitude(start[1] - goal[1]))
+    middle = goal[1] + 0.5 * turn
+    wide = east + 0.5 * abs(turn)
     south = max(min(start[0], goal[0]) - margin, -89.9)
     area = (south, min(max(start[0], goal[0]) + margin, 89.9), middle - wide, middle + wide)
     try:

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.geodesy import MEAN_RADIUS, unit_vectors
 from thalweg.core.types import FloatArray, IntArray
 
 FINEST_STRAIT_LEVEL: Final = 14  # level of the grid there: nodes 430 to 515 m apart
@@ -44,10 +44,9 @@ STRAITS: Final[dict[str, tuple[tuple[tuple[float, float], ...], float]]] = {
 def strait_levels(middles: FloatArray, levels: int) -> IntArray:
     """Return ``levels`` for unit vectors (n, 3) that lie in a strait, 0 for others."""
     answer = np.zeros(len(middles), np.int64)
-    x, y, z = (middles / np.linalg.norm(middles, axis=1, keepdims=True)).T.copy()
+    directions = middles / np.linalg.norm(middles, axis=1, keepdims=True)
     for places, radius in STRAITS.values():
         far = np.cos(1000.0 * radius / MEAN_RADIUS)
-        for lat, lon in np.radians(np.array(places)):
-            u, v, w = np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)
-            answer[u * x + v * y + w * z > far] = levels
+        for lat, lon in places:
+            answer[directions @ unit_vectors(lat, lon) > far] = levels
     return answer

@@ -131,7 +131,7 @@ def _channel_midpoints(shores: Edges, land: IntArray, widest: float) -> FloatArr
     """
     found, width = [np.empty((0, 3))], widest
     while len(land):
-        places = _unit_vectors(shores[0])
+        places = _normalised(shores[0])
         away, middle = _facing_shore(places, land, width)
         last = width <= _MIN_WIDTH
         here = (away <= width) & (last | (away > 0.5 * width))
@@ -160,7 +160,7 @@ def _facing_shore(
     row = np.arange(len(places))
     nearest = np.where(other[row, first], found[row, first], row)
     apart = np.where(nearest != row, away[row, first] * MEAN_RADIUS, np.inf)
-    return apart, _unit_vectors(places + places[nearest])
+    return apart, _normalised(places + places[nearest])
 
 
 def _one_per_cell(places: FloatArray, apart: float) -> FloatArray:
@@ -170,5 +170,6 @@ def _one_per_cell(places: FloatArray, apart: float) -> FloatArray:
     return np.asarray(places[np.sort(first)])
 
 
-def _unit_vectors(places: FloatArray) -> FloatArray:
+def _normalised(places: FloatArray) -> FloatArray:
+    """Return vectors (n, 3) scaled to unit length."""
     return np.asarray(places / np.linalg.norm(places, axis=1, keepdims=True))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
-from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.geodesy import METRES_PER_DEGREE, wrap_longitude
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.network import graph_building
 
@@ -94,9 +94,12 @@ def dimensionless_curl(
         The largest over the triangles at a node and over time; 0 for nodes of no triangle.
     """
     a, b, c = np.asarray(triangles).T
-    scale = MEAN_RADIUS * np.radians(1.0)
-    x = np.stack([_rotation(lon[k] - lon[a]) for k in (b, c)]) * scale * np.cos(np.radians(lat[a]))
-    y = np.stack([lat[k] - lat[a] for k in (b, c)]) * scale
+    x = (
+        np.stack([wrap_longitude(lon[k] - lon[a]) for k in (b, c)])
+        * METRES_PER_DEGREE
+        * np.cos(np.radians(lat[a]))
+    )
+    y = np.stack([lat[k] - lat[a] for k in (b, c)]) * METRES_PER_DEGREE
     double_area = x[0] * y[1] - x[1] * y[0]
     u, v = np.atleast_2d(east), np.atleast_2d(north)
     dv_dx = ((v[:, b] - v[:, a]) * y[1] - (v[:, c] - v[:, a]) * y[0]) / double_area
@@ -106,7 +109,3 @@ def dimensionless_curl(
     for corner in (a, b, c):
         np.maximum.at(result, corner, largest)
     return result
-
-
-def _rotation(degrees: FloatArray) -> FloatArray:
-    return (degrees + 180.0) % 360.0 - 180.0
