@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     trips = _trips(arguments)
     count = arguments.starts or (4 if arguments.north_sea else 1)
     starts = parse_time(arguments.depart) + np.arange(count) * M2_PERIOD / count
-    waits = np.linspace(0.0, arguments.max_wait * HOUR, 13)
+    waits = np.linspace(0.0, arguments.most_wait * HOUR, 13)
     hotel = _hotel_power(arguments)
     study = waiting_study(trips, starts=starts.tolist(), max_waits=waits, hotel_power=hotel)
     even = {
@@ -93,7 +93,7 @@ def _check(arguments: argparse.Namespace) -> None:
     for name, value, least in (
         ("--cycles", arguments.cycles, 0),
         ("--starts", 1 if arguments.starts is None else arguments.starts, 1),
-        ("--most-wait", arguments.max_wait, 0.0),
+        ("--most-wait", arguments.most_wait, 0.0),
         ("--hotel-kw", arguments.hotel_kw or 0.0, 0.0),
     ):
         if not (math.isfinite(value) and value >= least):
@@ -176,7 +176,7 @@ def _window(arguments: argparse.Namespace, way: list[float], ship: Ship) -> floa
     """Return how long departures are needed [s]."""
     longest = _SLOW * float(inverse(*way)[0]) / float(ship.speeds[-1])
     trips = max(1, 2 * arguments.cycles)
-    return trips * (longest + arguments.max_wait * HOUR)
+    return trips * (longest + arguments.most_wait * HOUR)
 
 
 def _sea(arguments: argparse.Namespace, ends: tuple[Position, Position], draught: float) -> Sea:
