@@ -62,7 +62,6 @@ def test_every_module_has_a_name_of_its_own():
     assert repeated(places) == {}
 
 
-@pytest.mark.xfail(strict=True, reason="two classes of boxes become one")
 def test_every_class_has_a_name_of_its_own():
     assert repeated(top_level(ast.ClassDef)) == {}
 

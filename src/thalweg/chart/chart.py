@@ -28,7 +28,7 @@ from thalweg.chart.zones import geojson_zones
 from thalweg.chart.zones.emission_control_areas import EcaZone, select_emission_control_areas
 from thalweg.chart.zones.zone_raster import ZoneRaster, zone_raster
 from thalweg.chart.zones.zone_set import Zones
-from thalweg.core.bounding_box import WORLD, Area
+from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.time import TimeLike
 from thalweg.core.types import Float32Array, FloatArray
 from thalweg.kernels.codes import LAND, OK
@@ -66,7 +66,7 @@ class Chart:
     """
 
     land: LandPolygons
-    area: Area = WORLD
+    area: BoundingBox = WORLD
     zones: Zones = NO_ZONES
     depths: DepthLayers = NO_DEPTHS
     canals: tuple[Canal, ...] = ()
@@ -109,7 +109,8 @@ class Chart:
         """
         none = Rings.from_lists([])
         land = LandPolygons("open water", empty_index(), lambda: none)
-        return cls(land, Area(float(south), float(north), float(west), float(east)))
+        box = BoundingBox.checked(float(south), float(north), float(west), float(east))
+        return cls(land, box)
 
     @classmethod
     def from_geojson(cls, land: geojson_zones.GeoJsonSource) -> Chart:
@@ -239,11 +240,13 @@ class Chart:
         emission control areas, and mixed ones, for which ``zones.eca_index`` (exact, for
         `thalweg.kernels.geometry.cube_sphere.inside`) or `eca_fraction` decides.
         """
-        return zone_raster(self.zones, Area(south, north, west, east).array(), spacing)
+        box = BoundingBox.checked(south, north, west, east)
+        return zone_raster(self.zones, box.array(), spacing)
 
     def within(self, south: float, north: float, west: float, east: float) -> Chart:
         """Return this chart cut to a box that no leg may leave [deg]."""
-        return replace(self, area=Area(float(south), float(north), float(west), float(east)))
+        box = BoundingBox.checked(float(south), float(north), float(west), float(east))
+        return replace(self, area=box)
 
     def without_canals(self, *names: str) -> Chart:
         """Return this chart with canals closed, by name; "all" closes all of them.

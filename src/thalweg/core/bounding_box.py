@@ -1,4 +1,4 @@
-"""The box of a chart, which no leg may leave."""
+"""A box of latitudes and longitudes."""
 
 from __future__ import annotations
 
@@ -8,39 +8,81 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
+
+EDGE_TOLERANCE: Final = 2e-5  #: [deg] a position this far outside counts as inside (float32 axes)
 
 
 @dataclass(frozen=True)
-class Area:
-    """A box of latitudes and longitudes [deg]; west above east crosses the antimeridian."""
+class BoundingBox:
+    """A box of latitudes and longitudes, from west to east.
+
+    Attributes
+    ----------
+    south, north : float
+        Latitudes [deg], ``south <= north``.
+    west, east : float
+        Longitudes [deg]. A box across the antimeridian has an ``east`` below ``west`` or above 180.
+    """
 
     south: float
     north: float
     west: float
     east: float
 
-    def __post_init__(self) -> None:
-        values = (self.south, self.north, self.west, self.east)
-        swapped = self.south > self.north or abs(self.south) > 90 or abs(self.north) > 90
-        if not all(np.isfinite(values)) or swapped or self.west == self.east:
+    @classmethod
+    def checked(cls, south: float, north: float, west: float, east: float) -> BoundingBox:
+        """Return the box of four values that a user gave.
+
+        Raises
+        ------
+        InputError
+            If a value is not finite, a latitude is beyond 90 degrees, south is above north, or
+            west equals east.
+        """
+        values = (south, north, west, east)
+        swapped = south > north or abs(south) > 90 or abs(north) > 90
+        if not all(np.isfinite(values)) or swapped or west == east:
             raise InputError(
-                f"The area south {self.south:g}, north {self.north:g}, west {self.west:g}, "
-                f"east {self.east:g} is none.",
-                "South lies below north, both within 90 degrees, and west differs from east.",
+                f"The area south {south:g}, north {north:g}, west {west:g}, east {east:g} "
+                "is not a valid box.",
+                "South is below north, both are within 90 degrees, and west differs from east.",
                 "Give south, north, west, east in degrees, in that order.",
                 value=values,
             )
+        return cls(*values)
 
     @property
     def width(self) -> float:
-        """Degrees of longitude from west to east."""
+        """Degrees of longitude from west to east, 0 to 360."""
         width = self.east - self.west
         return width % 360.0 if abs(width) < 360.0 else 360.0
 
     def array(self) -> FloatArray:
-        """South, north, west and width [deg], as kernels take it."""
+        """Return south, north, west and width [deg] (4,), the form that kernels take."""
         return np.array([self.south, self.north, self.west, self.width])
 
+    def covers(
+        self, lat: FloatArray, lon: FloatArray, tolerance: float = EDGE_TOLERANCE
+    ) -> BoolArray:
+        """Return whether positions are in the box or on its edge.
 
-WORLD: Final = Area(-90.0, 90.0, -180.0, 180.0)
+        Parameters
+        ----------
+        lat, lon : float64 array (N,)
+            Positions [deg]; longitudes of any turn.
+        tolerance : float
+            How far outside a position may be [deg].
+
+        Returns
+        -------
+        bool array (N,)
+        """
+        inside = (lat >= self.south - tolerance) & (lat <= self.north + tolerance)
+        if self.width >= 360.0 - tolerance:
+            return inside & np.isfinite(lon)
+        offset = (lon - self.west + tolerance) % 360.0
+        return inside & (offset <= self.width + 2.0 * tolerance)
+
+
+WORLD: Final = BoundingBox(-90.0, 90.0, -180.0, 180.0)

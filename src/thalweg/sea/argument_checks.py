@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.sea.frozen_fields import WORLD, Area
 
 
-def parse_area(area: tuple[float, float, float, float] | None) -> Area:
+def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
     """Return the box for (south, north, west, east) [deg]; the world for None."""
     if area is None:
         return WORLD
@@ -19,11 +19,11 @@ def parse_area(area: tuple[float, float, float, float] | None) -> Area:
         south = north = west = east = np.nan
     if not (-90.0 <= south < north <= 90.0 and np.isfinite([west, east]).all()):
         raise InputError(
-            f"The area {area!r} is none.",
+            f"The area {area!r} is not a valid box.",
             "An area is (south, north, west, east) in degrees with south < north.",
             "Check the four numbers and their order.",
         )
-    return Area(south, north, west, east if east > west else east + 360.0)
+    return BoundingBox(south, north, west, east if east > west else east + 360.0)
 
 
 def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:

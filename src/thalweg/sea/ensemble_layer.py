@@ -15,11 +15,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
-from thalweg.sea.frozen_fields import Area, Coverage, Mesh
+from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
 
 if TYPE_CHECKING:
@@ -44,7 +46,7 @@ class EnsembleLayer:
         return self.member_layers[0].variables
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The box of positions the members may know."""
         return self.member_layers[0].area
 

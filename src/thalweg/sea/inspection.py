@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.time import format_time
-from thalweg.sea.frozen_fields import Coverage
+from thalweg.sea.coverage import Coverage
 
 if TYPE_CHECKING:
     from thalweg.sea.grids.gridded_layer import GridLayer

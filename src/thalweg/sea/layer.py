@@ -8,8 +8,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.types import FloatArray
-from thalweg.sea.frozen_fields import Area, Coverage, Mesh
+from thalweg.sea.coverage import Coverage
+from thalweg.sea.grids.triangle_mesh import Mesh
 
 Samples = dict[str, FloatArray]
 
@@ -23,7 +25,7 @@ class Layer(Protocol):
         ...
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The box of positions the layer may know."""
         ...
 

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
+from thalweg.sea.coverage import Coverage
 from thalweg.sea.ensemble_layer import ensemble_not_allowed_error, member_count, select_member
-from thalweg.sea.frozen_fields import Coverage, Mesh
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.layer_priority import merge_layers, period_edges, point_reader, series_reader
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import Area
 from thalweg.sea.grids.gridded_layer import GridLayer
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def draw_maps(
     path: str | os.PathLike[str],
     *,
     time: float | None = None,
-    area: Area | None = None,
+    area: BoundingBox | None = None,
     coastline: Sequence[CoastlinePart] = (),
 ) -> None:
     """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`)."""
@@ -117,20 +117,20 @@ def _shortened(text: str) -> str:
     return text if len(text) <= 90 else text[:87] + "..."
 
 
-def _map_area(sea: Sea) -> Area:
+def _map_area(sea: Sea) -> BoundingBox:
     """Return the box of the smallest layer of files; the world if there are only formulas."""
     boxes = [layer.area for layer in sea.layers if isinstance(layer, GridLayer)]
     boxes = boxes or [layer.area for layer in sea.layers]
     return min(boxes, key=lambda a: (a.north - a.south) * (a.east - a.west))
 
 
-def _aspect_ratio(area: Area) -> float:
+def _aspect_ratio(area: BoundingBox) -> float:
     """Return height over width of the map, within what fits a page."""
     width = (area.east - area.west) * math.cos(math.radians(0.5 * (area.south + area.north)))
     return min(2.0, max(0.35, (area.north - area.south) / max(width, 1e-6)))
 
 
-def _raster_axes(area: Area, count: int) -> tuple[FloatArray, FloatArray]:
+def _raster_axes(area: BoundingBox, count: int) -> tuple[FloatArray, FloatArray]:
     shape = _aspect_ratio(area)
     ny, nx = (count, int(count / shape)) if shape > 1.0 else (int(count * shape), count)
     return np.linspace(area.south, area.north, max(ny, 8)), np.linspace(
@@ -162,7 +162,7 @@ def _draw_panel(
     sea: Sea,
     panel: MapPanel,
     points: tuple[float, FloatArray, FloatArray],
-    area: Area,
+    area: BoundingBox,
 ) -> None:
     """Draw one quantity: colours, arrows, a colour bar and a grid of positions."""
     time, lat, lon = points
@@ -224,7 +224,7 @@ def _colour_limits(values: FloatArray, panel: MapPanel) -> tuple[float, float]:
     return low, max(float(high), low + 1e-3)
 
 
-def _draw_arrows(axis: Any, sea: Sea, panel: MapPanel, time: float, area: Area) -> None:
+def _draw_arrows(axis: Any, sea: Sea, panel: MapPanel, time: float, area: BoundingBox) -> None:
     lat, lon = _raster_axes(area, ARROWS_ALONG_SIDE)
     lat, lon = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
     got = sea.sample(list(panel.arrows), time, lat[:, None], lon[None, :])
@@ -246,7 +246,7 @@ def _draw_arrows(axis: Any, sea: Sea, panel: MapPanel, time: float, area: Area) 
     )  # fmt: skip
 
 
-def _draw_coastline(axis: Any, line: CoastlinePart, area: Area) -> None:
+def _draw_coastline(axis: Any, line: CoastlinePart, area: BoundingBox) -> None:
     lat, lon = line
     middle = 0.5 * (area.west + area.east)
     lon = (np.asarray(lon) - middle + 180.0) % 360.0 - 180.0 + middle

@@ -19,8 +19,8 @@ from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.files import coordinates as co
-from thalweg.sea.frozen_fields import Mesh
 from thalweg.sea.grids.point_location import TriangleGrid
+from thalweg.sea.grids.triangle_mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea import standard_names as nm
+from thalweg.sea.coverage import Coverage
 from thalweg.sea.files.block_cache import BlockCache, GridWindow, Quantity
-from thalweg.sea.frozen_fields import Area, Coverage, Mesh
 from thalweg.sea.grids.point_location import Grid, GridLocation
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.inspection import RecognisedVariable
 from thalweg.sea.layer import Samples, nan_pairs
 
@@ -138,7 +140,7 @@ class GridLayer:
         return frozenset(name for quantity in self.quantities for name in quantity.names)
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The box around the grid."""
         return self.grid.area
 

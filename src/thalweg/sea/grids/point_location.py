@@ -13,18 +13,16 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
-from thalweg.sea.frozen_fields import Area, Mesh
+from thalweg.sea.grids.triangle_mesh import Mesh
 
 MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin above which bins are made smaller ...
 MAX_BINS, MAX_ITEMS_PER_TRIANGLE = (
     1500,
     20.0,
 )  #: ... up to so many a side, or entries for each triangle
-EDGE_TOLERANCE = (
-    2e-5  #: [deg] how far outside a point may lie and still count: float32 rounding of axes
-)
 
 
 class GridLocation(NamedTuple):
@@ -48,7 +46,7 @@ class Grid(Protocol):
         ...
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The box around the grid."""
         ...
 
@@ -95,12 +93,12 @@ class RectilinearGrid:
         return bool(abs(self.lon[-1] + step - self.lon[0] - 360.0) < 0.5 * step)
 
     @cached_property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The box from the first to the last row and column; the world around if it wraps."""
         south, north = float(self.lat.min()), float(self.lat.max())
         if self.wraps:
-            return Area(south, north, -180.0, 180.0)
-        return Area(south, north, float(self.lon[0]), float(self.lon[-1]))
+            return BoundingBox(south, north, -180.0, 180.0)
+        return BoundingBox(south, north, float(self.lon[0]), float(self.lon[-1]))
 
     @property
     def spacing(self) -> float:
@@ -192,12 +190,12 @@ class TriangleGrid:
     wraps: bool = False
 
     @cached_property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The box around all places."""
         known = np.isfinite(self.lat) & np.isfinite(self.lon)
         south, north = float(self.lat[known].min()), float(self.lat[known].max())
         west, width = _narrowest_range(self.lon[known])
-        return Area(south, north, west, west + width)
+        return BoundingBox(south, north, west, west + width)
 
     @cached_property
     def spacing(self) -> float:

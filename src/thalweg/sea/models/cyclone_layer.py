@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import TimeLike, format_time, parse_time
@@ -18,7 +19,8 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.sea import standard_names as nm
 from thalweg.sea.argument_checks import parse_time_step
-from thalweg.sea.frozen_fields import WORLD, Area, Coverage, Mesh
+from thalweg.sea.coverage import Coverage
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples
 from thalweg.sea.models import cyclone_formulas as models
 
@@ -149,7 +151,7 @@ class StormLayer:
         return STORM_VARIABLES
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The whole world: beyond the storm lies the ambient sea."""
         return WORLD
 

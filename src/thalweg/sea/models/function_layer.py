@@ -9,10 +9,12 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import WORLD, Area, Coverage, Mesh
+from thalweg.sea.coverage import Coverage
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples, nan_pairs
 
 FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]
@@ -35,7 +37,7 @@ class FormulaLayer:
         ``evaluate(names, time, lat, lon) -> {name: array}`` on arrays of one shape.
     label : str
         A word for where the values come from.
-    area : Area
+    area : BoundingBox
         Outside it everything is unknown.
     period : tuple of float or None
         First and last time [s]; outside it everything is unknown.
@@ -49,7 +51,7 @@ class FormulaLayer:
     variables: frozenset[str]
     evaluate: Evaluate
     label: str = "formula"
-    area: Area = WORLD
+    area: BoundingBox = WORLD
     period: tuple[float, float] | None = None
     time_step: float | None = None
     facts: Mapping[str, Any] = field(default_factory=dict)
@@ -154,7 +156,7 @@ def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
 def layer_of_functions(
     functions: Mapping[str, FieldFunction],
     *,
-    area: Area = WORLD,
+    area: BoundingBox = WORLD,
     period: tuple[float, float] | None = None,
     time_step: float | None = None,
 ) -> FormulaLayer:

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import WORLD, Area, Coverage, Mesh
+from thalweg.sea.coverage import Coverage
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples
 
 if TYPE_CHECKING:
@@ -87,7 +89,7 @@ class WindSeaLayer:
         return _VARIABLES
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The world: the wind says where it is known."""
         return WORLD
 

@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
-from thalweg.sea.frozen_fields import Area, Coverage, Mesh
+from thalweg.sea.coverage import Coverage
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.tides import schureman
 from thalweg.sea.tides.astronomy import HOUR
@@ -67,7 +69,7 @@ class RepeatedLayer:
         return self.layer.variables
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The area of the layer."""
         return self.layer.area
 

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.types import ComplexArray, FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.frozen_fields import WORLD, Area, Coverage, Mesh
+from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.point_location import Grid, GridLocation, TriangleGrid
+from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples, nan_pairs
 from thalweg.sea.models.function_layer import automatic_times
 from thalweg.sea.tides import harmonic_analysis
@@ -40,7 +42,7 @@ class TidalLayer:
         Constants at the places of the grid.
     grid : Grid or None
         Where the nodes lie; None for one node that holds for a whole area.
-    box : Area
+    box : BoundingBox
         The area, if there is no grid.
     time_step : float
         Step [s] at which kernels get the tide.
@@ -52,7 +54,7 @@ class TidalLayer:
 
     constituents: Constituents
     grid: Grid | None
-    box: Area = WORLD
+    box: BoundingBox = WORLD
     time_step: float = TIME_STEP
     source: str = "tidal constituents"
     facts: Mapping[str, Any] = field(default_factory=dict)
@@ -63,7 +65,7 @@ class TidalLayer:
         return self.constituents.variables
 
     @property
-    def area(self) -> Area:
+    def area(self) -> BoundingBox:
         """The box around the nodes."""
         return self.box if self.grid is None else self.grid.area
 
@@ -193,7 +195,7 @@ def tidal_sea(
     source: Sea | Constituents | harmonic_analysis.TideAnalysis,
     *,
     constituents: Sequence[str] | None = None,
-    area: Area | None = None,
+    area: BoundingBox | None = None,
     rayleigh: float = harmonic_analysis.RAYLEIGH,
     progress: harmonic_analysis.ProgressCallback | None = None,
     cache: bool = True,
@@ -241,7 +243,7 @@ def _layer_from_model_run(
     )
 
 
-def _layer_from_constituents(constants: Constituents, area: Area | None) -> TidalLayer:
+def _layer_from_constituents(constants: Constituents, area: BoundingBox | None) -> TidalLayer:
     facts = dict(constants.facts)
     source = str(facts.get("source", "tidal constituents"))
     pair = nm.CURRENT.pair
