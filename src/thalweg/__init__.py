@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from thalweg import deprecated_names
+
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.core.errors import (
@@ -21,8 +23,8 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-#: Where each public name lives; a room is imported when a name of it is first used.
-_ROOM_OF = {
+#: The package of each public name; it is imported when the name is first used.
+_PACKAGE_OF = {
     "Chart": "chart",
     "CoverageError": "core.errors",
     "DatasetError": "core.errors",
@@ -64,14 +66,16 @@ __all__ = [
     "plan",
 ]
 
+deprecated_names.install()
+
 
 def __getattr__(name: str) -> Any:
-    if name not in _ROOM_OF:
+    if name not in _PACKAGE_OF:
         raise AttributeError(f"module 'thalweg' has no attribute {name!r}")
-    value = getattr(import_module(f"thalweg.{_ROOM_OF[name]}"), name)
+    value = getattr(import_module(f"thalweg.{_PACKAGE_OF[name]}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_ROOM_OF])
+    return sorted([*globals(), *_PACKAGE_OF])

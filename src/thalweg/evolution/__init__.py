@@ -1,5 +1,6 @@
 """Evolution of tracks: populations scored by the shared kernel, their operators and fronts."""
 
+from thalweg.deprecated_names import renamed
 from thalweg.evolution.evolve import EvolutionProgress, EvolutionResult, evolve
 from thalweg.evolution.memetic import refine_front
 from thalweg.evolution.variation import OperatorWeights, VariationSettings
@@ -19,3 +20,5 @@ __all__ = [
     "make_evaluator",
     "refine_front",
 ]
+
+__getattr__ = renamed("thalweg.evolution")

@@ -1,5 +1,6 @@
 """Networks of ways over the sea, as plain arrays, and the builders that make them."""
 
+from thalweg.deprecated_names import renamed
 from thalweg.network.alternatives.alternative_path import (
     AlternativePath,
     EdgeWeights,
@@ -32,3 +33,5 @@ __all__ = [
     "spacing_fraction",
     "with_endpoints",
 ]
+
+__getattr__ = renamed("thalweg.network")

@@ -1,5 +1,6 @@
 """Routes: tracks to sail, the referee that scores them, and the formats they travel in."""
 
+from thalweg.deprecated_names import renamed
 from thalweg.route.ensemble_evaluation import (
     EnsembleResult,
     MemberStatistics,
@@ -36,3 +37,5 @@ __all__ = [
     "write_geojson",
     "write_gpx",
 ]
+
+__getattr__ = renamed("thalweg.route")

@@ -1,5 +1,6 @@
 """Exact searches on networks through time-dependent water."""
 
+from thalweg.deprecated_names import renamed
 from thalweg.search.departure_window import best_departure
 from thalweg.search.earliest_arrival import earliest_arrival
 from thalweg.search.fifo import FifoReport, earliest_arrivals_with_waiting, fifo_report
@@ -33,3 +34,5 @@ __all__ = [
     "pareto_front",
     "table_bounds",
 ]
+
+__getattr__ = renamed("thalweg.search")
