@@ -16,7 +16,7 @@ from thalweg.chart.canals import SUEZ
 from thalweg.core.errors import InputError
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.route import Track, better_route, evaluate, join, polish, smooth
-from thalweg.route.refinement.speed_profile import _knapsack, _lower_hull
+from thalweg.route.refinement.speed_profile import _efficient_settings, _knapsack
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -289,7 +289,7 @@ def test_the_knapsack_against_all_choices(legs, count, share, random):
 
 def test_the_hull_leaves_out_what_no_mix_wants():
     time = np.array([1.0, 2.0, 3.0, 4.0, 2.5])
-    assert _lower_hull(time, np.array([10.0, 9.0, 4.0, 5.0, np.inf])) == [0, 2]
+    assert _efficient_settings(time, np.array([10.0, 9.0, 4.0, 5.0, np.inf])) == [0, 2]
 
 
 # canals and several settings

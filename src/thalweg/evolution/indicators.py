@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import FloatArray
 
 
@@ -27,11 +28,7 @@ def non_dominated(points: ArrayLike) -> NDArray[np.bool_]:
     """
     points = _checked(points)
     mask = np.zeros(len(points), dtype=bool)
-    finite = np.flatnonzero(np.isfinite(points).all(axis=1))
-    order = finite[np.lexsort((points[finite, 1], points[finite, 0]))]
-    second = points[order, 1]
-    best_before = np.concatenate([[np.inf], np.minimum.accumulate(second)[:-1]])
-    mask[order[second < best_before]] = True
+    mask[non_dominated_indices(points[:, 0], points[:, 1])] = True
     return mask
 
 
@@ -57,9 +54,8 @@ def hypervolume(points: ArrayLike, reference: ArrayLike) -> float:
             "It is the worst value of each objective that still counts.",
             "Give two numbers.",
         )
-    front = points[non_dominated(points)]
+    front = points[non_dominated_indices(points[:, 0], points[:, 1])]
     front = front[(front < corner).all(axis=1)]
-    front = front[np.argsort(front[:, 0])]
     ends = np.append(front[1:, 0], corner[0])
     return float(((ends - front[:, 0]) * (corner[1] - front[:, 1])).sum())
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.evolution import dominance
 
@@ -57,9 +58,8 @@ def strength_fitness(scores: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
 
 def feasible_front(scores: FloatArray) -> IntArray:
     """Return the feasible tracks that nothing dominates, by ascending time."""
-    rank, _ = ranks_and_crowding(scores)
-    chosen = np.flatnonzero((rank == 0) & (scores[:, VIOLATION] == 0.0))
-    return chosen[np.argsort(scores[chosen, TIME])]
+    feasible = np.flatnonzero(scores[:, VIOLATION] == 0.0)
+    return feasible[non_dominated_indices(scores[feasible, TIME], scores[feasible, COST])]
 
 
 def least_crowded_front(scores: FloatArray, size: int) -> IntArray:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thalweg.core.pareto_fronts import length_along_front, lower_hull
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.evolution.ranking import feasible_front
 from thalweg.kernels.leg import population_sailing
@@ -84,25 +85,9 @@ def time_prices(evaluator: Evaluator, count: int) -> FloatArray:
 
 def hull_slopes(points: FloatArray) -> list[float]:
     """Return the slopes of the lower convex hull of points (n, 2), ascending in the first."""
-    hull = lower_hull(points)
+    hull = lower_hull(points[:, 0], points[:, 1])
     a, b = points[hull[:-1]], points[hull[1:]]
     return ((b[:, 1] - a[:, 1]) / (b[:, 0] - a[:, 0])).tolist()
-
-
-def lower_hull(points: FloatArray) -> IntArray:
-    """Return the lower convex hull of points (n, 2) by ascending first coordinate."""
-    hull: list[int] = []
-    for i in np.lexsort((points[:, 1], points[:, 0])):
-        x, y = points[i]
-        if hull and points[hull[-1], 0] == x:
-            continue
-        while len(hull) > 1:
-            (x1, y1), (x2, y2) = points[hull[-2]], points[hull[-1]]
-            if (x2 - x1) * (y - y1) > (y2 - y1) * (x - x1):
-                break
-            hull.pop()
-        hull.append(int(i))
-    return np.array(hull, dtype=np.int64)
 
 
 def seeds_with_time_prices(evaluator: Evaluator, seeds: Population, *, count: int) -> ScoredTracks:
@@ -165,9 +150,7 @@ def fill_front(lines: ScoredTracks, size: int) -> Population:
     if len(front) < 2:
         return lines.population.take(front)
     scores = lines.scores[front]
-    width = np.ptp(scores, axis=0)
-    step = np.hypot(*(np.diff(scores[:, :2], axis=0) / np.where(width > 0, width, 1.0)[:2]).T)
-    along = np.concatenate([[0.0], np.cumsum(step)])
+    along = length_along_front(scores[:, 0], scores[:, 1])
     targets = np.interp(np.linspace(0.0, along[-1], size), along, scores[:, 0])
     chosen = ScoredTracks(
         lines.evaluator,
@@ -214,7 +197,7 @@ def _speed_steps(
     finite = np.flatnonzero(np.isfinite(time) & np.isfinite(cost))
     if now not in finite:
         return [], []
-    hull = finite[lower_hull(np.column_stack([time[finite], cost[finite]]))]
+    hull = finite[lower_hull(time[finite], cost[finite])]
     if now not in hull:
         return [], []
     at = int(np.flatnonzero(hull == now)[0])

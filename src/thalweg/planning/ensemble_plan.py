@@ -11,7 +11,11 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
-from thalweg.planning.pareto.exploration import evenly_spaced_subset, non_dominated_indices
+from thalweg.core.pareto_fronts import (
+    ROUNDING_TOLERANCE,
+    evenly_spaced_subset,
+    non_dominated_indices,
+)
 from thalweg.planning.pareto.objective import Criterion, find_criterion
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Plan
@@ -175,7 +179,10 @@ def _select_plan(
     time = np.array([item.time for item in sailed])
     value = np.array([item.value for item in sailed])
     if voyage.objective == "front":
-        order = [sailed[index] for index in non_dominated_indices(time, value)]
+        order = [
+            sailed[index]
+            for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
+        ]
     else:
         order = [sailed[int(np.argmin(value))]]
     first, shown = order[0].plan, order[0].member

@@ -1,48 +1,16 @@
-"""Sailing polylines quickly through a frozen raster of the sea: many at once, arrays only."""
+"""Sailing many polylines through a frozen raster of the sea: times of passage."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from thalweg.kernels.codes import (
-    CHANNEL_COUNT,
-    CURRENT,
-    DEPTH,
-    NO_DATA,
-    OK,
-    OUTSIDE_PERIOD,
-    WAVE_HEIGHT,
-    WIND_SPEED,
-)
+from thalweg.kernels.codes import CURRENT, DEPTH, OK, WAVE_HEIGHT, WIND_SPEED
 from thalweg.kernels.compilation.decorators import allocation_free, inlined
+from thalweg.kernels.leg.great_circle import great_circle, great_circle_point
 from thalweg.kernels.leg.point_speed import point_speed_with_axes
+from thalweg.kernels.leg.raster_sampling import interpolate_raster
 from thalweg.kernels.leg.table_lookup import axes_needed
-
-_MAJOR = 6378137.0  # WGS 84
-_ECCENTRICITY2 = 6.69437999014e-3
-_RADIANS = math.pi / 180.0
-
-
-class RasterArrays(NamedTuple):
-    """A frozen raster of the sea as kernels see it.
-
-    Attributes
-    ----------
-    times : float64[T]
-        Strictly increasing [s].
-    corner : float64[4]
-        ``lat0, dlat, lon0, dlon`` [deg].
-    values : float32[T, Y, X, K]
-        NaN is unknown.
-    channel_index : int64[CHANNELS]
-        Channel to place in the last axis, -1 if absent.
-    """
-
-    times: np.ndarray
-    corner: np.ndarray
-    values: np.ndarray
-    channel_index: np.ndarray
 
 
 class PolylineArrays(NamedTuple):
@@ -62,7 +30,7 @@ class PolylineArrays(NamedTuple):
     charted : float64[P]
         Of the leg that starts at a point: least charted depth [m below datum], +inf if not checked.
     depart : float64[L]
-        When each polyline is begun [s].
+        Departure of each polyline [s].
     """
 
     first: np.ndarray
@@ -76,14 +44,14 @@ class PolylineArrays(NamedTuple):
 
 
 class PolylineResults(NamedTuple):
-    """What comes of sailing `PolylineArrays`.
+    """Results of sailing `PolylineArrays`.
 
     Attributes
     ----------
     arrive : float64[P]
         Arrival at every point [s]; +inf from the first leg that cannot be sailed.
     leave : float64[P]
-        When every point is left [s]; not set at last points and from a leg that cannot be sailed.
+        Departure from every point [s]; not set at last points and from a leg that cannot be sailed.
     length : float64[L]
         Length sailed [m].
     status : int64[L]
@@ -97,84 +65,34 @@ class PolylineResults(NamedTuple):
 
 
 @inlined
-def _interpolate_raster(raster, t, lat, lon, step, sample):
-    """Fill ``sample`` by channel, linear in time and place; return (status, time step found)."""
-    times = raster.times
-    last = times.shape[0] - 2
-    if not (t >= times[0] and t <= times[last + 1]):
-        return OUTSIDE_PERIOD, step
-    while step < last and t >= times[step + 1]:
-        step += 1
-    while step > 0 and t < times[step]:
-        step -= 1
-    ft = (t - times[step]) / (times[step + 1] - times[step])
-    corner, values = raster.corner, raster.values
-    y = (lat - corner[0]) / corner[1]
-    x = ((lon - corner[2] + 1e-9) % 360.0 - 1e-9) / corner[3]
-    top, right = values.shape[1] - 2, values.shape[2] - 2
-    if not (y >= -1e-6 and x >= -1e-6 and y <= top + 1 + 1e-6 and x <= right + 1 + 1e-6):
-        return NO_DATA, step
-    row, column = min(max(int(y), 0), top), min(max(int(x), 0), right)
-    fy, fx = min(max(y - row, 0.0), 1.0), min(max(x - column, 0.0), 1.0)
-    sample[:] = 0.0
-    for corner_id in range(8):
-        up, right_side, later = corner_id & 1, (corner_id >> 1) & 1, corner_id >> 2
-        weight = (fy if up else 1.0 - fy) * (fx if right_side else 1.0 - fx)
-        weight *= ft if later else 1.0 - ft
-        if weight == 0.0:
-            continue
-        for channel in range(CHANNEL_COUNT):
-            k = raster.channel_index[channel]
-            if k >= 0:
-                value = values[step + later, row + up, column + right_side, k]
-                sample[channel] += weight * value
-    return OK, step
-
-
-@inlined
 def _sail_leg(lines, point, stop, t, raster, table, limits, needs, sample, state):
     """Sail at most ``stop`` pieces of the leg that starts at a point; return (arrival, status).
 
-    ``state`` carries (time step of the raster, slowness met last, length sailed).
+    ``state`` carries (time step of the raster, slowness found last, length sailed).
     """
-    lat1, lat2 = lines.lat[point] * _RADIANS, lines.lat[point + 1] * _RADIANS
-    lon1, lon2 = lines.lon[point] * _RADIANS, lines.lon[point + 1] * _RADIANS
-    ax, ay, az = math.cos(lat1) * math.cos(lon1), math.cos(lat1) * math.sin(lon1), math.sin(lat1)
-    bx, by, bz = math.cos(lat2) * math.cos(lon2), math.cos(lat2) * math.sin(lon2), math.sin(lat2)
-    cx, cy, cz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-    sine = math.sqrt(cx * cx + cy * cy + cz * cz)
-    if sine < 1e-12:
+    start, tangent, arc = great_circle(
+        lines.lat[point], lines.lon[point], lines.lat[point + 1], lines.lon[point + 1]
+    )
+    if arc == 0.0:
         return t, OK
-    arc = math.atan2(sine, ax * bx + ay * by + az * bz)
-    # (fx, fy, fz): unit tangent at the start, so that a point is cos(w) a + sin(w) f
-    fx, fy, fz = (cy * az - cz * ay) / sine, (cz * ax - cx * az) / sine, (cx * ay - cy * ax) / sine
     count = lines.pieces[point]
     step = arc / count
     turn_sine, turn_cosine = math.sin(step), math.cos(step)
     s, c = math.sin(0.5 * step), math.cos(0.5 * step)
     for _ in range(min(count, stop)):
-        px, py, pz = c * ax + s * fx, c * ay + s * fy, c * az + s * fz
-        dx, dy, dz = c * fx - s * ax, c * fy - s * ay, c * fz - s * az
+        lat, lon, east, north, scale = great_circle_point(start, tangent, s, c)
         s, c = s * turn_cosine + c * turn_sine, c * turn_cosine - s * turn_sine
-        level = math.sqrt(px * px + py * py)
-        east = (px * dy - py * dx) / level
-        north = dz * level - pz * (px * dx + py * dy) / level
-        w2 = 1.0 / (1.0 - _ECCENTRICITY2 * pz * pz)
-        prime = _MAJOR * math.sqrt(w2)  # radius of curvature in the prime vertical
-        east, north = east * prime, north * prime * (1.0 - _ECCENTRICITY2) * w2
-        scale = math.sqrt(east * east + north * north)
         length = scale * step
         at = t + 0.5 * length * state[1]
-        lat, lon = math.atan2(pz, level) / _RADIANS, math.atan2(py, px) / _RADIANS
-        status, found = _interpolate_raster(raster, at, lat, lon, int(state[0]), sample)
+        status, found = interpolate_raster(raster, at, lat, lon, int(state[0]), sample)
         state[0] = found
         if status != OK:
             return math.inf, status
         speed, status = point_speed_with_axes(
             sample,
             raster.channel_index,
-            east / scale,
-            north / scale,
+            east,
+            north,
             table,
             lines.setting[point],
             lines.charted[point],
@@ -201,26 +119,25 @@ def sail_polylines(lines, raster, table, limits, waiting_parameters, out, sample
 
     Parameters
     ----------
-    lines : Lines
+    lines : PolylineArrays
     raster : RasterArrays
     table : TableArrays
         Speed through water.
     limits : float64[LIMITS]
         See `thalweg.kernels.leg.point_speed.point_speed`.
     waiting_parameters : float64[3]
-        How long the ship waits at most at a point for the next leg to open, how long between two
-        looks, and how exactly the opening is found [s]; zero: it does not wait of itself.
-    out : Passages
+        Longest wait at a point for the next leg to open, time between two trials, and tolerance of
+        the time of opening [s]. Zeros: the ship does not wait unless ``lines.leave`` says so.
+    out : PolylineResults
         Filled.
     sample : float64[CHANNELS]
     state : float64[3]
-        Room to work in, zeros.
+        Work space, zeros.
 
     Notes
     -----
-    Legs are great circles of the sphere of geographic latitudes, measured on WGS 84 with the local
-    radii of curvature; they differ in length from geodesics by less than 1e-6. Time goes by the
-    midpoint rule, the middle of a piece reached with the slowness met before (order 2).
+    Legs are great circles, see `thalweg.kernels.leg.great_circle`. Time is integrated by the
+    midpoint rule; the middle of a piece is reached with the slowness of the piece before (order 2).
     """
     needs = axes_needed(table)
     for line in range(lines.first.shape[0] - 1):

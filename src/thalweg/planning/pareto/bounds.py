@@ -7,11 +7,11 @@ import math
 import numpy as np
 
 from thalweg.core.geodesy import distance
+from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.exploration import (
     ExploredAlternative,
     TradeOffContext,
-    non_dominated_indices,
     strongest_current,
 )
 from thalweg.planning.pareto.plan_front import ParetoFront
@@ -42,7 +42,7 @@ def open_water_lower_front(
         time.append(k * one.exact.lower_time / HOUR)
         value.append(np.maximum(k * one.exact.lower_cost, criterion_lower_bound))
     times, values = np.concatenate(time), np.concatenate(value)
-    kept = non_dominated_indices(times, values)
+    kept = non_dominated_indices(times, values, tolerance=ROUNDING_TOLERANCE)
     return np.array([times[kept], values[kept]]).reshape(2, -1)
 
 

@@ -10,6 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import wrap_longitude
+from thalweg.core.pareto_fronts import (
+    ROUNDING_TOLERANCE,
+    evenly_spaced_subset,
+    non_dominated_indices,
+)
 from thalweg.core.types import FloatArray
 from thalweg.evolution import Evaluator, EvolutionResult, Genome, evolve, make_evaluator
 from thalweg.evolution.memetic import refine_front
@@ -17,8 +22,6 @@ from thalweg.planning.pareto.exploration import (
     ExploredAlternative,
     TrackCandidate,
     TradeOffContext,
-    evenly_spaced_subset,
-    non_dominated_indices,
 )
 from thalweg.route import Track
 
@@ -77,7 +80,7 @@ def _seeds(
     """
     time = np.array([item.time for item in found])
     value = np.array([item.value for item in found])
-    kept = np.array(non_dominated_indices(time, value))
+    kept = non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
     rest = np.setdiff1d(np.arange(len(found)), kept)
     chosen = kept[evenly_spaced_subset(time[kept], value[kept], _MAX_SEEDS)]
     if len(rest):

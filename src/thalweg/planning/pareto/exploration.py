@@ -393,30 +393,6 @@ def _essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: Float
     return keep
 
 
-def evenly_spaced_subset(time: FloatArray, value: FloatArray, count: int) -> np.ndarray:
-    """Return indices of at most ``count`` points of a front: its ends, and evenly between."""
-    order = np.argsort(time, kind="stable")
-    if len(order) <= count:
-        return order
-    x = (time[order] - time[order[0]]) / max(float(np.ptp(time)), 1e-12)
-    y = (value[order] - value.min()) / max(float(np.ptp(value)), 1e-12)
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
-    wanted = np.linspace(0.0, along[-1], count)
-    picked = np.unique(np.abs(along[None, :] - wanted[:, None]).argmin(axis=1))
-    return np.asarray(order[picked])
-
-
-def non_dominated_indices(time: FloatArray, value: FloatArray) -> list[int]:
-    """Return the indices of what is not dominated, by ascending time."""
-    kept: list[int] = []
-    least = math.inf
-    for index in np.lexsort((value, time)):
-        if value[index] * (1.0 + 1e-9) < least:
-            kept.append(int(index))
-            least = float(value[index])
-    return kept
-
-
 def strongest_current(stations: StationFields) -> float:
     """Return the strongest current [m/s] in frozen fields; 0 where there is none."""
     east, north = (stations.channel_index[c] for c in (codes.CURRENT_EAST, codes.CURRENT_NORTH))

@@ -10,6 +10,11 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.pareto_fronts import (
+    ROUNDING_TOLERANCE,
+    evenly_spaced_subset,
+    non_dominated_indices,
+)
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
@@ -32,9 +37,7 @@ from thalweg.planning.pareto.exploration import (
     ExploredAlternative,
     TrackCandidate,
     TradeOffContext,
-    evenly_spaced_subset,
     explore_alternative,
-    non_dominated_indices,
     shortest_path_length,
     track_from_front_point,
 )
@@ -134,7 +137,7 @@ def _candidates(
     if not found:  # stopped before there was a front
         return fastest
     found += _refined_candidates(trade_off, explored, found)
-    kept = non_dominated_indices(*_times_and_values(found))
+    kept = non_dominated_indices(*_times_and_values(found), tolerance=ROUNDING_TOLERANCE)
     time, value = _times_and_values([found[index] for index in kept])
     steps = max(len(one.fastest.samples["time"]) for one in explored)
     most = min(max(_MAX_STEPS // max(steps, 1), _MIN_ROUTES), _MAX_ROUTES)
@@ -206,7 +209,9 @@ def _refereed(
         return [item for item in scored if math.isfinite(item.route.arrive)]
     time = np.array([item.route.time_h for item in usable])
     value = np.array([item.value for item in usable])
-    return [usable[index] for index in non_dominated_indices(time, value)]
+    return [
+        usable[index] for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
+    ]
 
 
 def _assemble_plan(
@@ -317,7 +322,9 @@ def _including_constant_speeds(
     pool = [*scored, *constant]
     time = np.array([item.route.time_h for item in pool])
     value = np.array([item.value for item in pool])
-    return [pool[index] for index in non_dominated_indices(time, value)]
+    return [
+        pool[index] for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
+    ]
 
 
 def _rejections(explored: list[ExploredAlternative]) -> dict[str, int]:

@@ -313,11 +313,8 @@ def make_cost_evaluator(
     terms[columns.TIME_PRICE] = weights.time
     terms[columns.WAITING_PRICE] = weights.waiting
     terms[columns.LATEST_ARRIVAL], terms[columns.PIECE_SPACING] = math.inf, time_evaluator.spacing
-    index = time_evaluator.raster.channel_index
-    channels = np.zeros(time_evaluator.raster.values.shape[3], dtype=np.int64)
-    channels[index[index >= 0]] = np.flatnonzero(index >= 0)
     world = FitnessArrays(
-        time_evaluator.raster, channels, time_evaluator.table, rates, time_evaluator.limits, terms
+        time_evaluator.raster, time_evaluator.table, rates, time_evaluator.limits, terms
     )
     passed = canal_legs(track, chart)  # none: canals need not be looked for again and again
 

@@ -312,11 +312,8 @@ def make_evaluator(
     terms[columns.WAITING_PRICE] = waiting_fuel * waiting_weight
     terms[columns.LATEST_ARRIVAL] = latest - depart
     terms[columns.PIECE_SPACING] = time_evaluator.spacing if spacing is None else spacing
-    index = time_evaluator.raster.channel_index
-    channels = np.zeros(time_evaluator.raster.values.shape[3], dtype=np.int64)
-    channels[index[index >= 0]] = np.flatnonzero(index >= 0)
     world = FitnessArrays(
-        time_evaluator.raster, channels, time_evaluator.table, rates, time_evaluator.limits, terms
+        time_evaluator.raster, time_evaluator.table, rates, time_evaluator.limits, terms
     )
     prices = ObjectivePrices(
         weight_inside, weight_outside, time_price, float(terms[columns.WAITING_PRICE]), fees

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from thalweg.core.geodesy import direct, inverse
+from thalweg.core.pareto_fronts import lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.route.refinement.cost_evaluator import CostEvaluator
 from thalweg.route.refinement.polyline import Polyline, unwrapped_longitudes
@@ -109,7 +110,7 @@ def _knapsack(
     setting = np.zeros(legs, dtype=np.int64)
     steps: list[tuple[float, int, int, int, float]] = []  # slope, leg, from, to, seconds
     for leg in range(legs):
-        hull = _lower_hull(times[leg], costs[leg])
+        hull = _efficient_settings(times[leg], costs[leg])
         setting[leg] = hull[0] if hull else int(np.argmin(times[leg]))
         for a, b in itertools.pairwise(hull):
             seconds = float(times[leg, b] - times[leg, a])
@@ -136,22 +137,10 @@ def _rounded_slope(slope: float) -> float:
     )
 
 
-def _lower_hull(time: FloatArray, cost: FloatArray) -> list[int]:
+def _efficient_settings(time: FloatArray, cost: FloatArray) -> list[int]:
     """Return the settings on the lower convex hull of cost over time, fastest first."""
-    order = [int(k) for k in np.lexsort((cost, time)) if np.isfinite(time[k] + cost[k])]
-    hull: list[int] = []
-    for k in order:
-        if hull and not cost[k] < cost[hull[-1]]:
-            continue
-        while len(hull) > 1:
-            a, b = hull[-2], hull[-1]
-            if (cost[b] - cost[a]) * (time[k] - time[a]) < (cost[k] - cost[a]) * (
-                time[b] - time[a]
-            ):
-                break
-            hull.pop()
-        hull.append(k)
-    return hull
+    front = non_dominated_indices(time, cost)
+    return front[lower_hull(time[front], cost[front])].tolist()
 
 
 def _with_slower_part(line: Polyline, part: tuple[int, int, float] | None) -> Polyline:

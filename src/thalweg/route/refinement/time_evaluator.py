@@ -15,9 +15,9 @@ from thalweg.kernels import codes
 from thalweg.kernels.leg.polyline_sailing import (
     PolylineArrays,
     PolylineResults,
-    RasterArrays,
     sail_polylines,
 )
+from thalweg.kernels.leg.raster_sampling import RasterArrays
 from thalweg.kernels.leg.table_lookup import TableArrays
 
 if TYPE_CHECKING:
@@ -237,12 +237,7 @@ def make_time_evaluator(
 
     Pieces are half a cell of the raster, at least a 400th of the track, at most 100 km.
     """
-    raster = RasterArrays(
-        np.asarray(fields.times, np.float64) - origin,
-        np.array([fields.lat0, fields.dlat, fields.lon0, fields.dlon], np.float64),
-        np.ascontiguousarray(fields.values, dtype=np.float32),
-        np.asarray(fields.channel_index, np.int64),
-    )
+    raster = raster_arrays(fields, origin)
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
     spacing = min(max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0), _MAX_PIECE_LENGTH)
     bounds = np.asarray(limits, np.float64)
@@ -252,6 +247,23 @@ def make_time_evaluator(
         waiting_parameters[:] = _MAX_WAIT, pause, _OPENING_TOLERANCE
     return TimeEvaluator(
         raster, arrays, chart, bounds, origin, by_length, spacing, waiting_parameters
+    )
+
+
+def raster_arrays(fields: GridFields, origin: float) -> RasterArrays:
+    """Return a frozen raster as kernels take it; times count from ``origin``.
+
+    ``origin`` is in seconds since 1970-01-01T00:00Z.
+    """
+    index = np.asarray(fields.channel_index, np.int64)
+    channels = np.zeros(fields.values.shape[3], dtype=np.int64)
+    channels[index[index >= 0]] = np.flatnonzero(index >= 0)
+    return RasterArrays(
+        np.asarray(fields.times, np.float64) - origin,
+        np.array([fields.lat0, fields.dlat, fields.lon0, fields.dlon], np.float64),
+        np.ascontiguousarray(fields.values, dtype=np.float32),
+        index,
+        channels,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.pareto_fronts import evenly_spaced_subset
 from thalweg.core.types import FloatArray
 
 
@@ -155,14 +156,9 @@ class NetworkFront:
 
     def spread(self, count: int) -> tuple[FrontPoint, ...]:
         """Return at most ``count`` points, the ends among them, evenly along the front."""
-        if count < 2 or len(self.points) <= count:
+        if count < 2:
             return self.points
-        time, cost = self.time, self.cost
-        x, y = time / max(float(np.ptp(time)), 1e-12), cost / max(float(np.ptp(cost)), 1e-12)
-        along = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))))
-        wanted = np.linspace(0.0, along[-1], count)
-        chosen = np.unique(np.abs(along[:, None] - wanted).argmin(axis=0))
-        return tuple(self.points[i] for i in chosen)
+        return tuple(self.points[i] for i in evenly_spaced_subset(self.time, self.cost, count))
 
 
 def cheapest(front: NetworkFront, arrive_by: float | None = None) -> FrontPoint:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.core.pareto_fronts import lower_hull
 from thalweg.core.types import FloatArray
 from thalweg.kernels.pareto.edge_tables import EdgeTables
 from thalweg.kernels.pareto.lower_labels import (
@@ -179,11 +180,7 @@ def _lower_by_time_prices(
 
 def _prices_of_time(time: FloatArray, cost: FloatArray) -> list[float]:
     """Return the slopes of the front's lower hull, thinned evenly in time."""
-    hull: list[int] = []
-    for i in range(len(time)):
-        while len(hull) > 1 and _on_or_above_line(time, cost, hull[-2], hull[-1], i):
-            hull.pop()
-        hull.append(i)
+    hull = lower_hull(time, cost)
     if len(hull) < 2:
         return []
     slopes = -np.diff(cost[hull]) / np.diff(time[hull])
@@ -191,12 +188,6 @@ def _prices_of_time(time: FloatArray, cost: FloatArray) -> list[float]:
     wanted = np.linspace(time[0], time[-1], 2 * _MAX_TIME_PRICES + 1)[1::2]
     chosen = np.abs(middle[:, None] - wanted).argmin(axis=0)
     return sorted({float(slopes[i]) for i in chosen if slopes[i] > 0.0})
-
-
-def _on_or_above_line(time: FloatArray, cost: FloatArray, a: int, b: int, c: int) -> bool:
-    """Return whether point b lies on or above the line from a to c."""
-    rise = (cost[b] - cost[a]) * (time[c] - time[a])
-    return bool(rise >= (cost[c] - cost[a]) * (time[b] - time[a]))
 
 
 def _larger_bound(

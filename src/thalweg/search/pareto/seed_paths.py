@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import OK
 from thalweg.kernels.pareto.edge_tables import sail_path
@@ -209,8 +210,5 @@ def _path_of_label(
 
 def non_dominated_points(points: list[FrontPoint]) -> tuple[FrontPoint, ...]:
     """Return the points that no other dominates, by ascending time."""
-    kept: list[FrontPoint] = []
-    for point in sorted(points, key=lambda p: (p.time, p.cost)):
-        if not kept or point.cost < kept[-1].cost:
-            kept.append(point)
-    return tuple(kept)
+    kept = non_dominated_indices([p.time for p in points], [p.cost for p in points])
+    return tuple(points[index] for index in kept)

@@ -1,0 +1,59 @@
+"""Fronts of two objectives: the filter and the hull against brute force, even spacing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from thalweg.core.pareto_fronts import (
+    ROUNDING_TOLERANCE,
+    evenly_spaced_subset,
+    length_along_front,
+    lower_hull,
+    non_dominated_indices,
+)
+
+points = st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=30)
+
+
+@given(points)
+def test_the_filter_keeps_what_no_other_point_dominates(drawn):
+    x, y = np.array(drawn, float).reshape(-1, 2).T
+    kept = non_dominated_indices(x, y)
+    expected = [
+        i
+        for i in range(len(x))
+        if not any(
+            (x[j] <= x[i] and y[j] <= y[i]) and ((x[j], y[j]) != (x[i], y[i]) or j < i)
+            for j in range(len(x))
+        )
+    ]
+    assert sorted(kept.tolist()) == expected
+    assert (np.diff(x[kept]) > 0).all() and (np.diff(y[kept]) < 0).all()
+
+
+def test_unknown_points_and_improvements_within_rounding_are_left_out():
+    time, cost = [1.0, 2.0, 3.0, 0.5, 4.0], [5.0, 5.0 * (1.0 - 1e-12), 4.0, np.nan, -np.inf]
+    assert non_dominated_indices(time, cost).tolist() == [0, 1, 2]
+    assert non_dominated_indices(time, cost, tolerance=ROUNDING_TOLERANCE).tolist() == [0, 2]
+    assert non_dominated_indices([], []).tolist() == []
+
+
+@given(points.filter(len))
+def test_no_point_is_below_the_lower_hull(drawn):
+    x, y = np.array(drawn, float).T
+    hull = lower_hull(x, y)
+    assert x[hull[0]] == x.min() and x[hull[-1]] == x.max()
+    assert (y >= np.interp(x, x[hull], y[hull]) - 1e-9).all()
+    slopes = np.diff(y[hull]) / np.diff(x[hull])
+    assert (np.diff(slopes) > 0.0).all()
+
+
+def test_points_are_chosen_evenly_along_the_front_with_both_ends():
+    time, cost = np.linspace(0.0, 10.0, 101)[::-1], np.linspace(0.0, 5.0, 101)
+    chosen = evenly_spaced_subset(time, cost, 5)
+    assert time[chosen] == pytest.approx([0.0, 2.5, 5.0, 7.5, 10.0])
+    assert len(evenly_spaced_subset(time, cost, 500)) == 101
+    assert length_along_front([0.0, 1.0, 2.0], [7.0, 7.0, 7.0]).tolist() == [0.0, 0.5, 1.0]
