@@ -30,12 +30,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from tests.evolution import jet
 
 from thalweg import Chart, Ship
-from thalweg.core.geodesy import positions_along
+from thalweg.core.geodesy import positions_along, rough_lengths
 from thalweg.evolution import Evaluator, Genome, evolve, make_evaluator, refine_front
 from thalweg.evolution.indicators import hypervolume
 from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.time_evaluator import approximate_leg_lengths
 from thalweg.sea.frozen_fields import GridFields
 
 EVALUATIONS = 21_000
@@ -85,7 +84,7 @@ def crossing(legs: int) -> Genome:
 
 def pieces_of(route: Genome) -> int:
     """Return how many pieces the legs of a route are cut into, as the kernel cuts them."""
-    lengths = approximate_leg_lengths(route.lat[None], route.lon[None])
+    lengths = rough_lengths(route.lat[None], route.lon[None])
     cut = np.ceil(lengths / OCEAN.world.terms[population_sailing.PIECE_SPACING])
     return int(np.maximum(cut, population_sailing.MIN_PIECES).sum())
 

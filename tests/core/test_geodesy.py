@@ -110,7 +110,7 @@ def test_a_degree_of_the_mean_sphere() -> None:
     assert pytest.approx(arc, abs=0.1) == geodesy.METRES_PER_DEGREE
 
 
-def test_unwrapped_longitudes_have_no_jumps() -> None:
+def test_unwrap_longitude_have_no_jumps() -> None:
     lines = np.array([[170.0, 179.0, -178.0, -170.0], [-179.0, 179.0, 0.0, 10.0]])
     got = geodesy.unwrap_longitude(lines)
     np.testing.assert_allclose(got[0], [170.0, 179.0, 182.0, 190.0])

@@ -12,8 +12,8 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.evolution import Genome, Population
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.population import concatenated_populations
-from thalweg.route.refinement.time_evaluator import TrackBatch
+from thalweg.route.evaluators.population import concatenated_populations
+from thalweg.route.evaluators.time_evaluator import TrackBatch
 from thalweg.route.track import Track
 
 rng = np.random.default_rng(7)

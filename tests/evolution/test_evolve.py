@@ -9,12 +9,13 @@ import pytest
 from tests.evolution import jet
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.core.pareto_fronts import lower_hull
 from thalweg.evolution import Genome, VariationSettings, evolve, refine_front
 from thalweg.evolution.evolve import METHODS, ConvergenceTest
 from thalweg.evolution.indicators import c_metric, hypervolume, non_dominated
 from thalweg.evolution.initial_population import least_cost_setting
 from thalweg.evolution.nsga2 import Nsga2
-from thalweg.evolution.scalarised_search import lower_hull, time_prices
+from thalweg.route.refinement.scalarised_search import time_prices
 
 ISLANDS = (
     ((200, 180), (240, 160), (260, 240), (250, 320), (215, 330)),
@@ -189,7 +190,7 @@ def test_thriftiest_setting_and_prices_of_time():
     assert least_cost_setting(jet.evaluator(time_price=10.0)) == 11
     prices = time_prices(evaluator, 5)
     assert (np.diff(prices) > 0.0).all()
-    hull = lower_hull(np.array([(24 / s, f / s) for s, f in zip(jet.SPEED_KN, jet.FUEL_T_DAY)]))
+    hull = lower_hull(*np.array([(24 / s, f / s) for s, f in zip(jet.SPEED_KN, jet.FUEL_T_DAY)]).T)
     assert sorted(jet.SPEED_KN[k] for k in hull) == [8.8, 9.5, 9.9, 14.1, 14.3, 14.8, 15.2]
 
 

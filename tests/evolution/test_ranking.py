@@ -5,7 +5,6 @@ import pytest
 
 from thalweg.evolution.mpaes import HillClimber
 from thalweg.evolution.ranking import (
-    feasible_front,
     least_crowded_front,
     ranks_and_crowding,
     select_survivors,
@@ -13,6 +12,7 @@ from thalweg.evolution.ranking import (
 )
 from thalweg.evolution.spea2 import environmental_selection
 from thalweg.kernels.evolution.dominance import truncate
+from thalweg.route.refinement.scored_tracks import feasible_front
 
 WORKED = [(1, 5), (2, 3), (4, 1), (3, 4), (5, 5), (4, 4)]
 

@@ -8,9 +8,9 @@ import pytest
 from tests.route.planar import Islands, Plane, rectangle, ship
 from thalweg.chart import Chart
 from thalweg.route import Track, better_route, evaluate
-from thalweg.route.refinement.polyline import polyline_of_track
+from thalweg.route.evaluators.polyline import polyline_of_track
+from thalweg.route.evaluators.time_evaluator import make_time_evaluator
 from thalweg.route.refinement.string_pulling import string_pull
-from thalweg.route.refinement.time_evaluator import make_time_evaluator
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -235,7 +235,7 @@ def test_a_limit_in_the_field_is_kept():
 
 def test_quick_sailor_measures_like_the_geodesic():
     from thalweg.core.geodesy import distance
-    from thalweg.route.refinement.time_evaluator import TrackBatch
+    from thalweg.route.evaluators.time_evaluator import TrackBatch
 
     fields = Sea.calm().freeze_grid(-85, 85, -100, 100, 0, 1e7, [0, 1], spacing_deg=5.0)
     evaluator = make_time_evaluator(
@@ -261,7 +261,7 @@ def test_quick_sailor_measures_like_the_geodesic():
 
 
 def test_quick_sailor_knows_the_edges_of_its_raster():
-    from thalweg.route.refinement.time_evaluator import TrackBatch
+    from thalweg.route.evaluators.time_evaluator import TrackBatch
 
     fields = Sea.calm().freeze_grid(-1, 1, -1, 1, 0, 1e4, [0, 1], spacing_deg=0.5)
     evaluator = make_time_evaluator(

@@ -177,7 +177,7 @@ def test_frozen_stations_hold_what_is_sampled() -> None:
     assert speed == pytest.approx(2.0 * lat[:, None] + fields.times[None], rel=1e-6)
 
 
-def test_frozen_grid_across_the_antimeridian_has_unwrapped_longitudes() -> None:
+def test_frozen_grid_across_the_antimeridian_has_unwrap_longitude() -> None:
     sea = Sea.from_functions(
         {"sea_surface_wave_significant_height": lambda t, y, x: np.where(x > 0, x, x + 360.0)}
     )

@@ -4,8 +4,8 @@ from thalweg.deprecated_names import renamed
 from thalweg.evolution.evolve import EvolutionProgress, EvolutionResult, evolve
 from thalweg.evolution.memetic import refine_front
 from thalweg.evolution.variation import OperatorWeights, VariationSettings
-from thalweg.route.refinement.population import Genome, Population
-from thalweg.route.refinement.population_evaluator import Evaluator, ObjectivePrices, make_evaluator
+from thalweg.route.evaluators.population import Genome, Population
+from thalweg.route.evaluators.population_evaluator import Evaluator, ObjectivePrices, make_evaluator
 
 __all__ = [
     "Evaluator",

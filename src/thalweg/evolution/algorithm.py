@@ -10,8 +10,8 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.evolution.variation import VariationSettings, reproduce
-from thalweg.route.refinement.population import Population, concatenated_populations
-from thalweg.route.refinement.population_evaluator import Evaluator
+from thalweg.route.evaluators.population import Population, concatenated_populations
+from thalweg.route.evaluators.population_evaluator import Evaluator
 
 MIN_SIZE = 4  #: tracks in a population
 ScoreRequests = Generator[Population, FloatArray, None]

@@ -22,8 +22,8 @@ from thalweg.evolution.ranking import feasible_front, least_crowded_front
 from thalweg.evolution.spea2 import Spea2
 from thalweg.evolution.variation import VariationSettings
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.population import Genome, Population
-from thalweg.route.refinement.population_evaluator import Evaluator
+from thalweg.route.evaluators.population import Genome, Population
+from thalweg.route.evaluators.population_evaluator import Evaluator
 from thalweg.route.track import Track
 
 METHODS: dict[str, type[EvolutionaryAlgorithm]] = {"nsga2": Nsga2, "spea2": Spea2, "mpaes": Mpaes}

@@ -11,9 +11,9 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import IntArray
 from thalweg.evolution.variation import INITIAL_OPERATOR_WEIGHTS, VariationSettings, reproduce
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.calm_water_rates import calm_water_values
-from thalweg.route.refinement.population import Genome, Population, concatenated_populations
-from thalweg.route.refinement.population_evaluator import Evaluator
+from thalweg.route.evaluators.calm_water_rates import calm_water_values
+from thalweg.route.evaluators.population import Genome, Population, concatenated_populations
+from thalweg.route.evaluators.population_evaluator import Evaluator
 from thalweg.route.track import Track
 
 MAX_POINTS = 400  #: of a track

@@ -25,14 +25,14 @@ from thalweg.evolution.evolve import (
 from thalweg.evolution.initial_population import as_genomes, capacity_for, initial_population
 from thalweg.evolution.nsga2 import Nsga2
 from thalweg.evolution.ranking import feasible_front, least_crowded_front
-from thalweg.evolution.scalarised_search import (
+from thalweg.evolution.variation import VariationSettings
+from thalweg.route.evaluators.population import Genome, Population, concatenated_populations
+from thalweg.route.evaluators.population_evaluator import Evaluator
+from thalweg.route.refinement.scalarised_search import (
     fill_front,
     scalarised_local_search,
     seeds_with_time_prices,
 )
-from thalweg.evolution.variation import VariationSettings
-from thalweg.route.refinement.population import Genome, Population, concatenated_populations
-from thalweg.route.refinement.population_evaluator import Evaluator
 from thalweg.route.track import Track
 
 TIME_PRICES = 48  #: prices of time that are polished for
@@ -97,7 +97,7 @@ def refine_front(
 
     A track that is best for some price of time lies on the lower convex hull of the front. For
     one price the problem is smooth but for the settings: Newton's method bends the track (see
-    `thalweg.route.refinement.population_newton`), the setting of each leg is chosen anew, points
+    `thalweg.route.refinement.newton_offsets`), the setting of each leg is chosen anew, points
     are left out or put between, and points at coasts and limits feel their way. Between two such
     tracks the cheapest seconds are exchanged first, and the last leg in part, so the front can be
     filled evenly. What that misses, tracks off the hull among them, is left to evolution. Of all

@@ -10,7 +10,7 @@ from thalweg.core.types import FloatArray, IntArray
 from thalweg.evolution.algorithm import EvolutionaryAlgorithm, ScoreRequests
 from thalweg.evolution.indicators import crowding_distance
 from thalweg.evolution.ranking import dominates, select_survivors
-from thalweg.route.refinement.population import concatenated_populations
+from thalweg.route.evaluators.population import concatenated_populations
 
 MAX_FAILURES = 5  #: moves in a row to somewhere worse that end a climb
 MAX_MOVES = 20  #: of a climb

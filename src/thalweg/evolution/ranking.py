@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from thalweg.core.pareto_fronts import non_dominated_indices
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.evolution import dominance
+from thalweg.route.refinement.scored_tracks import feasible_front
 
 TIME, COST, VIOLATION = 0, 1, 2
 
@@ -54,12 +54,6 @@ def strength_fitness(scores: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
     k = min(math.isqrt(len(scores)), near.shape[1])
     density = 1.0 / (near[:, k - 1] + 2.0) if k else np.full(len(scores), 0.5)
     return strength, raw, raw + density
-
-
-def feasible_front(scores: FloatArray) -> IntArray:
-    """Return the feasible tracks that nothing dominates, by ascending time."""
-    feasible = np.flatnonzero(scores[:, VIOLATION] == 0.0)
-    return feasible[non_dominated_indices(scores[feasible, TIME], scores[feasible, COST])]
 
 
 def least_crowded_front(scores: FloatArray, size: int) -> IntArray:

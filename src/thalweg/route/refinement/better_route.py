@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.geodesy import unwrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
+from thalweg.route.evaluators.time_evaluator import penalty_factors
 from thalweg.route.referee.evaluation import evaluate
 from thalweg.route.refinement.feasible_interpolation import bisect_to_feasible
-from thalweg.route.refinement.polyline import unwrapped_longitudes
 from thalweg.route.refinement.simplification import simplified_route
 from thalweg.route.refinement.smoothing import smooth
-from thalweg.route.refinement.time_evaluator import penalty_factors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 from thalweg.sea.standard_names import CHANNEL_VARIABLES
@@ -177,7 +177,7 @@ def freeze_around_track(
     until : float, optional
         Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
     """
-    lon = unwrapped_longitudes(track.lon)
+    lon = unwrap_longitude(track.lon)
     extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
     margin = room * extent
     south, north = max(track.lat.min() - margin, -89.9), min(track.lat.max() + margin, 89.9)

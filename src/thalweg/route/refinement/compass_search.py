@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
+from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths
 from thalweg.core.types import FloatArray
-from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.polyline import METRES_PER_DEGREE, Polyline
-from thalweg.route.refinement.time_evaluator import (
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.time_evaluator import (
     TimeEvaluator,
     TrackBatch,
-    approximate_leg_lengths,
 )
 
 _DIRECTIONS = 8
@@ -47,7 +47,7 @@ def compass_search(
     """
     if len(line) < 3 or not math.isfinite(evaluator.sail(line.batch())[1][0]):
         return line
-    lengths = approximate_leg_lengths(line.lat, line.lon)
+    lengths = rough_lengths(line.lat, line.lon)
     step = np.zeros(len(line))
     step[1:-1] = _INITIAL_STEP_SHARE * np.minimum(lengths[:-1], lengths[1:])
     step[line.required_points(evaluator)] = 0.0

@@ -6,17 +6,16 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import direct, inverse
+from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.polyline import Polyline, unwrapped_longitudes
-from thalweg.route.refinement.string_pulling import string_pull
-from thalweg.route.refinement.time_evaluator import (
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.time_evaluator import (
     TimeEvaluator,
     TrackBatch,
-    approximate_leg_lengths,
     penalty_factors,
 )
+from thalweg.route.refinement.string_pulling import string_pull
 
 _MAX_ROUNDS = 24
 _TRIAL_CUTS = 12  # cuts tried at once
@@ -73,7 +72,7 @@ def merge_short_legs(
     """
     k = 1
     while k < len(line) - 2:
-        short = approximate_leg_lengths(line.lat[k : k + 2], line.lon[k : k + 2])[0] < shortest
+        short = rough_lengths(line.lat[k : k + 2], line.lon[k : k + 2])[0] < shortest
         merged = None
         fixed = line.required_points(evaluator)[k : k + 2]
         if short and np.isinf(line.leave[k : k + 2]).all() and not fixed.any():
@@ -202,7 +201,7 @@ def _with_cuts(line: Polyline, corners: IntArray, back: FloatArray, on: FloatArr
     lat[place], lon[place] = before
     lat[place + 1], lon[place + 1] = after
     setting = line.setting[np.maximum(old[1:] - 1, 0)]
-    return Polyline(lat, unwrapped_longitudes(lon), line.leave[old], setting, line.depart)
+    return Polyline(lat, unwrap_longitude(lon), line.leave[old], setting, line.depart)
 
 
 def _near(lon: FloatArray) -> FloatArray:

@@ -9,25 +9,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.geodesy import direct, inverse
+from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_ends
-from thalweg.route.referee.evaluation import evaluate
-from thalweg.route.refinement.better_route import freeze_around_track, tightened_limits
-from thalweg.route.refinement.cost_evaluator import CostEvaluator, CostWeights, make_cost_evaluator
-from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
-from thalweg.route.refinement.polyline import (
+from thalweg.route.evaluators.cost_evaluator import (
+    CostEvaluator,
+    make_cost_evaluator,
+    objective_prices,
+)
+from thalweg.route.evaluators.polyline import (
     Polyline,
     polyline_of_track,
     track_of_polyline,
-    unwrapped_longitudes,
 )
+from thalweg.route.evaluators.time_evaluator import penalty_factors
+from thalweg.route.referee.evaluation import evaluate
+from thalweg.route.refinement.better_route import freeze_around_track, tightened_limits
+from thalweg.route.refinement.sailed_polyline import optimise_line_offsets
 from thalweg.route.refinement.simplification import simplified_route
 from thalweg.route.refinement.smoothing import resampled_polyline
 from thalweg.route.refinement.speed_profile import choose_speeds
 from thalweg.route.refinement.string_pulling import string_pull
-from thalweg.route.refinement.time_evaluator import approximate_leg_lengths, penalty_factors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 from thalweg.ship.tables.tabulate import tabulate_cubed_speed
@@ -114,8 +117,9 @@ def polish(
     passage.
     """
     terms = ship.fuel_terms if terms is None else terms
-    weights = CostWeights.of(objective, terms, ship.waiting_fuel_rate)
-    if weights.cubed:
+    prices = objective_prices(objective, terms, ship.waiting_fuel_rate)
+    by_cubed_speed = objective == "cost" and terms.by_speed
+    if by_cubed_speed:
         fuel = tabulate_cubed_speed(ship.speeds)
     latest = scored.arrive if arrive_by is None else max(parse_time(arrive_by), scored.arrive)
     if not (scored.feasible and math.isfinite(scored.arrive)):
@@ -145,7 +149,8 @@ def polish(
             limits=tightened_limits(limits, margin),
             chart=chart,
             track=track,
-            weights=weights,
+            prices=prices,
+            by_cubed_speed=by_cubed_speed,
         )
 
     best = _best_attempt(scored, latest, evaluator_of, score, value)
@@ -208,7 +213,7 @@ def _optimised(line: Polyline, evaluator: CostEvaluator, latest: float) -> Polyl
     own = _cost_with_time_value(paced, evaluator, value_of_time)
     if not math.isfinite(own):
         return None
-    starts = [string_pull(paced, evaluator.value_of_time(value_of_time))]
+    starts = [string_pull(paced, evaluator.with_value_of_time(value_of_time))]
     if not np.isfinite(line.leave).any() and not _fixed_waypoints(line, evaluator)[1:-1].any():
         for count in _MIN_LEGS_OF_LEVEL[:2]:
             coarse = resampled_polyline(paced, count + 1)
@@ -231,7 +236,7 @@ def _fixed_waypoints(line: Polyline, evaluator: CostEvaluator) -> np.ndarray:
 
 def _cost_with_time_value(line: Polyline, evaluator: CostEvaluator, value_of_time: float) -> float:
     """Return cost plus the worth of the time."""
-    return float(evaluator.value_of_time(value_of_time).sail(line.batch())[1][0])
+    return float(evaluator.with_value_of_time(value_of_time).sail(line.batch())[1][0])
 
 
 def _cost_with_lateness(
@@ -247,7 +252,7 @@ def _refine_by_levels(
     line: Polyline, evaluator: CostEvaluator, latest: float, value_of_time: float
 ) -> Polyline:
     """Refine a line level by level."""
-    total = float(approximate_leg_lengths(line.lat, line.lon).sum())
+    total = float(rough_lengths(line.lat, line.lon).sum())
     for number, parts in enumerate(_MIN_LEGS_OF_LEVEL):
         while True:
             finer = _split_long_legs(line, evaluator, total / parts)
@@ -260,8 +265,8 @@ def _refine_by_levels(
             paced, value_of_time = choose_speeds(line, evaluator, latest, whole=True)
             if not math.isfinite(_cost_with_time_value(paced, evaluator, value_of_time)):
                 return line
-            line = optimise_lateral_offsets(
-                paced, evaluator.value_of_time(value_of_time), rounds=_NEWTON_STEPS
+            line = optimise_line_offsets(
+                paced, evaluator.with_value_of_time(value_of_time), rounds=_NEWTON_STEPS
             )
     return line
 
@@ -275,11 +280,7 @@ def _split_long_legs(line: Polyline, evaluator: CostEvaluator, longest: float) -
 def _split_at_zone_borders(line: Polyline, evaluator: CostEvaluator) -> Polyline:
     """Return the line with a waypoint where a leg enters or leaves the control areas."""
     chart = evaluator.chart
-    if (
-        chart is None
-        or not chart.zones.eca
-        or evaluator.weights.inside == evaluator.weights.outside
-    ):
+    if chart is None or not chart.zones.eca or evaluator.prices.inside == evaluator.prices.outside:
         return line
     share = chart.eca_fraction(line.lat[:-1], line.lon[:-1], line.lat[1:], line.lon[1:])
     crossed = (share > _MIN_ZONE_SHARE) & (share < 1.0 - _MIN_ZONE_SHARE)
@@ -295,7 +296,7 @@ def _split_at_zone_borders(line: Polyline, evaluator: CostEvaluator) -> Polyline
     lat, lon = direct(line.lat[legs], line.lon[legs], course, at * length)
     return Polyline(
         np.insert(line.lat, legs + 1, lat),
-        unwrapped_longitudes(np.insert(line.lon, legs + 1, lon)),
+        unwrap_longitude(np.insert(line.lon, legs + 1, lon)),
         np.insert(line.leave, legs + 1, -math.inf),
         np.insert(line.setting, legs, line.setting[legs]),
         line.depart,

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from thalweg.core.geodesy import unwrap_longitude
 from thalweg.core.types import FloatArray
-from thalweg.route.refinement.polyline import unwrapped_longitudes
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
@@ -51,7 +51,7 @@ def _interpolated_track(sound: Track, wished: Track, share: float) -> Track:
     lat = (1 - share) * _values_at_fractions(wished, wished.lat, at) + share * _values_at_fractions(
         sound, sound.lat, at
     )
-    lon = unwrapped_longitudes(np.concatenate([wished.lon, sound.lon]))
+    lon = unwrap_longitude(np.concatenate([wished.lon, sound.lon]))
     wished_lon, sound_lon = lon[: len(wished.lon)], lon[len(wished.lon) :]
     sound_lon = sound_lon + 360.0 * np.round((wished_lon[0] - sound_lon[0]) / 360.0)
     lon = (1 - share) * _values_at_fractions(wished, wished_lon, at) + share * _values_at_fractions(

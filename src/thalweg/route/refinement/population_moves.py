@@ -6,19 +6,20 @@ import math
 
 import numpy as np
 
+from thalweg.core.geodesy import unit_vectors, wrap_longitude
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing
 from thalweg.kernels.leg.population_sailing import LAT, LON
-from thalweg.route.refinement.finite_differences import (
+from thalweg.route.evaluators.population import Population, concatenated_populations
+from thalweg.route.refinement.scored_tracks import (
     DelayEffects,
     ScoredTracks,
     delay_effects,
-    displaced_positions,
     fix_piece_counts,
     legs_as_tracks,
     sail_legs_alone,
 )
-from thalweg.route.refinement.population import Population, concatenated_populations
+from thalweg.route.refinement.track_geometry import displaced_positions
 
 _DIRECTIONS = 8
 _STEP_FRACTIONS = (
@@ -93,8 +94,12 @@ def compass_search_of_tracks(lines: ScoredTracks, *, radius: float) -> ScoredTra
     angle = 2.0 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     point = lines.population.genes[row, place][:, None, :]
     lat, lon = displaced_positions(
-        point, reach[:, None] * np.sin(angle), reach[:, None] * np.cos(angle)
+        point[..., LAT],
+        point[..., LON],
+        reach[:, None] * np.sin(angle),
+        reach[:, None] * np.cos(angle),
     )
+    lat, lon = np.clip(lat, -90.0, 90.0), wrap_longitude(lon)
     value, base = _moved_values(lines, row, place, lat, lon)
     best = np.argmin(value, axis=1)
     every = np.arange(len(row))
@@ -237,7 +242,7 @@ def _middles(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def points_between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArray:
     """Return points (n, COLUMNS) at shares of the arcs of legs, free and new."""
-    u, v = _vectors(a), _vectors(b)
+    u, v = unit_vectors(a[:, LAT], a[:, LON]), unit_vectors(b[:, LAT], b[:, LON])
     arc = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(u - v, axis=1), 1.0))
     with np.errstate(invalid="ignore", divide="ignore"):
         p = np.where(arc > 1e-9, np.sin((1.0 - share) * arc) / np.sin(arc), 1.0 - share)
@@ -256,11 +261,6 @@ def points_between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArra
     ):
         made[:, column] = 0.0
     return made
-
-
-def _vectors(points: FloatArray) -> FloatArray:
-    lat, lon = np.radians(points[:, LAT]), np.radians(points[:, LON])
-    return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=1)
 
 
 def _isolated_maxima(gain: FloatArray) -> FloatArray:

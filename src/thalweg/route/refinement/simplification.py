@@ -8,8 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import MEAN_RADIUS
-from thalweg.core.types import FloatArray
+from thalweg.core.geodesy import MEAN_RADIUS, unit_vectors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
@@ -73,7 +72,7 @@ def _douglas_peucker(
     track: Track, aside: float, held: NDArray[np.bool_] | None
 ) -> NDArray[np.bool_]:
     """Return which waypoints to keep so that none lies farther [m] aside (Douglas-Peucker)."""
-    points = _unit_vectors(track)
+    points = unit_vectors(track.lat, track.lon)
     keep = np.zeros(len(points), bool)
     keep[[0, -1]] = True
     keep[np.flatnonzero(track.wait)] = True
@@ -94,8 +93,3 @@ def _douglas_peucker(
             keep[a + 1 + k] = True
             spans += [(a, a + 1 + k), (a + 1 + k, b)]
     return keep
-
-
-def _unit_vectors(track: Track) -> FloatArray:
-    lat, lon = np.radians(track.lat), np.radians(track.lon)
-    return np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=1)

@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.geodesy import rough_lengths
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
-from thalweg.route.refinement.compass_search import compass_search
-from thalweg.route.refinement.corner_cutting import cut_corners, merge_short_legs
-from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
-from thalweg.route.refinement.polyline import Polyline, polyline_of_track, track_of_polyline
-from thalweg.route.refinement.string_pulling import string_pull
-from thalweg.route.refinement.time_evaluator import (
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.polyline import Polyline, polyline_of_track, track_of_polyline
+from thalweg.route.evaluators.time_evaluator import (
     TimeEvaluator,
-    approximate_leg_lengths,
     make_time_evaluator,
 )
+from thalweg.route.refinement.compass_search import compass_search
+from thalweg.route.refinement.corner_cutting import cut_corners, merge_short_legs
+from thalweg.route.refinement.sailed_polyline import optimise_line_offsets
+from thalweg.route.refinement.string_pulling import string_pull
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -199,7 +199,7 @@ def _initial_polylines(
 
 def resampled_polyline(line: Polyline, count: int) -> Polyline:
     """Return points at equal shares of the length of a line without waits."""
-    along = np.concatenate([[0.0], np.cumsum(approximate_leg_lengths(line.lat, line.lon))])
+    along = np.concatenate([[0.0], np.cumsum(rough_lengths(line.lat, line.lon))])
     at = np.linspace(0.0, along[-1], count)
     index = np.minimum(np.searchsorted(along, at[:-1], side="right") - 1, len(line.setting) - 1)
     lat, lon = np.interp(at, along, line.lat), np.interp(at, along, line.lon)
@@ -210,7 +210,7 @@ def _refine_by_levels(
     line: Polyline, evaluator: TimeEvaluator | CostEvaluator, finest: int
 ) -> Polyline:
     """Refine a line level by level, and thin it at the end."""
-    total = float(approximate_leg_lengths(line.lat, line.lon).sum())
+    total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
     bound = _may_be_constrained(line, evaluator)
     line = _refined(line, evaluator, bound)
@@ -231,11 +231,11 @@ def _refine_by_levels(
 
 def _refined(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, bound: bool) -> Polyline:
     """Bend a line, and feel along obstacles where they may bind."""
-    bent = optimise_lateral_offsets(line, evaluator)
+    bent = optimise_line_offsets(line, evaluator)
     if not bound:
         return bent
-    smallest = max(1.0, 1e-6 * float(approximate_leg_lengths(line.lat, line.lon).sum()))
-    return optimise_lateral_offsets(
+    smallest = max(1.0, 1e-6 * float(rough_lengths(line.lat, line.lon).sum()))
+    return optimise_line_offsets(
         compass_search(bent, evaluator, smallest=smallest), evaluator, rounds=3
     )
 
@@ -251,10 +251,10 @@ def _simplified(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Pol
     spent = _elapsed_cost(line, evaluator)
     if not math.isfinite(spent) or len(line) < 3:
         return line
-    shortest = _MIN_LEG_SHARE * float(approximate_leg_lengths(line.lat, line.lon).sum())
+    shortest = _MIN_LEG_SHARE * float(rough_lengths(line.lat, line.lon).sum())
     thin = merge_short_legs(line, evaluator, shortest=shortest)
     thin = string_pull(thin, evaluator, penalty=SIMPLIFICATION_LOSS * spent / len(line))
-    thin = optimise_lateral_offsets(thin, evaluator, rounds=3)
+    thin = optimise_line_offsets(thin, evaluator, rounds=3)
     return (
         thin
         if _elapsed_cost(thin, evaluator) <= spent * (1.0 + 2.0 * SIMPLIFICATION_LOSS)

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from thalweg.core.geodesy import direct, inverse
+from thalweg.core.geodesy import direct, inverse, unwrap_longitude
 from thalweg.core.pareto_fronts import lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.polyline import Polyline, unwrapped_longitudes
-from thalweg.route.refinement.time_evaluator import TrackBatch
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.time_evaluator import TrackBatch
 
 _MAX_ROUNDS = 4  # choices, each at the times of the one before
 _SLOPE_TOLERANCE = (
@@ -157,7 +157,7 @@ def _with_slower_part(line: Polyline, part: tuple[int, int, float] | None) -> Po
     setting = np.concatenate([line.setting[:leg], pair, line.setting[leg + 1 :]])
     return Polyline(
         np.insert(line.lat, leg + 1, lat),
-        unwrapped_longitudes(np.insert(line.lon, leg + 1, lon)),
+        unwrap_longitude(np.insert(line.lon, leg + 1, lon)),
         np.insert(line.leave, leg + 1, -math.inf),
         setting.astype(np.int64),
         line.depart,

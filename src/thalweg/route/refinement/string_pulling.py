@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.polyline import Polyline
-from thalweg.route.refinement.time_evaluator import TimeEvaluator, TrackBatch
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.time_evaluator import TimeEvaluator, TrackBatch
 
 _MAX_HOP = 48  # waypoints a single hop may skip
 _PASSES = 4

@@ -8,17 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import positions_along, wrap_longitude
+from thalweg.core.geodesy import positions_along, rough_lengths, unwrap_longitude, wrap_longitude
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.route.refinement.cost_evaluator import CostEvaluator
-from thalweg.route.refinement.time_evaluator import (
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.time_evaluator import (
     TimeEvaluator,
     TrackBatch,
-    approximate_leg_lengths,
 )
 from thalweg.route.track import Track
-
-METRES_PER_DEGREE = 111_195.0
 
 
 @dataclass(frozen=True)
@@ -88,7 +85,7 @@ class Polyline:
         Of the legs in ``which`` only, if that is given.
         """
         lat, lon, leave, setting = [self.lat[0]], [self.lon[0]], [self.leave[0]], []
-        longer = approximate_leg_lengths(self.lat, self.lon) > longest
+        longer = rough_lengths(self.lat, self.lon) > longest
         for k, long in enumerate(longer if which is None else longer & which):
             if long:
                 middle = positions_along(
@@ -104,7 +101,7 @@ class Polyline:
             setting.append(self.setting[k])
         return Polyline(
             np.array(lat),
-            unwrapped_longitudes(np.array(lon)),
+            unwrap_longitude(np.array(lon)),
             np.array(leave),
             np.array(setting),
             self.depart,
@@ -115,7 +112,7 @@ def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) ->
     """Return a track as a line; its waits become moments of leaving."""
     line = Polyline(
         np.array(track.lat),
-        unwrapped_longitudes(track.lon),
+        unwrap_longitude(track.lon),
         np.full(len(track), -math.inf),
         np.array(track.setting),
         track.depart - evaluator.origin,
@@ -137,9 +134,3 @@ def track_of_polyline(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) 
     return Track(
         line.lat, wrap_longitude(line.lon), line.depart + evaluator.origin, wait, line.setting
     )
-
-
-def unwrapped_longitudes(lon: FloatArray) -> FloatArray:
-    """Return longitudes without jumps of 360 degrees."""
-    result: FloatArray = np.unwrap(np.asarray(lon, float), period=360.0)
-    return result

@@ -11,12 +11,11 @@ import numpy as np
 
 from thalweg.core.pareto_fronts import length_along_front, lower_hull
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.evolution.ranking import feasible_front
 from thalweg.kernels.leg import population_sailing
-from thalweg.route.refinement.calm_water_rates import calm_water_values
-from thalweg.route.refinement.finite_differences import ScoredTracks, delay_effects
-from thalweg.route.refinement.population import Population, concatenated_populations
-from thalweg.route.refinement.population_evaluator import Evaluator
+from thalweg.route.evaluators.calm_water_rates import calm_water_values
+from thalweg.route.evaluators.population import Population, concatenated_populations
+from thalweg.route.evaluators.population_evaluator import Evaluator
+from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
 from thalweg.route.refinement.population_moves import (
     choose_speeds_of_tracks,
     compass_search_of_tracks,
@@ -25,7 +24,7 @@ from thalweg.route.refinement.population_moves import (
     remove_points,
     split_long_legs,
 )
-from thalweg.route.refinement.population_newton import optimise_lateral_offsets_of_tracks
+from thalweg.route.refinement.scored_tracks import ScoredTracks, delay_effects, feasible_front
 
 REFINEMENT_LEVELS = (12, 24, 40)  #: legs of a track, level by level
 _REMOVAL_PASSES = 8  # passes that leave points out at first ...
@@ -54,14 +53,10 @@ def scalarised_local_search(
         if stop():
             return lines
         lines = split_long_legs(lines, legs=level)
-        lines = choose_speeds_of_tracks(
-            optimise_lateral_offsets_of_tracks(lines, rounds=4), rounds=2
-        )
+        lines = choose_speeds_of_tracks(optimise_lateral_offsets(lines, rounds=4), rounds=2)
         for radius in _SEARCH_RADII:
             lines = compass_search_of_tracks(lines, radius=radius)
-        lines = choose_speeds_of_tracks(
-            optimise_lateral_offsets_of_tracks(lines, rounds=3), rounds=2
-        )
+        lines = choose_speeds_of_tracks(optimise_lateral_offsets(lines, rounds=3), rounds=2)
     return lines
 
 

@@ -1,15 +1,16 @@
-"""The quick sailor: many tracks at once through a frozen raster, for refinement to compare."""
+"""Quick evaluation of time and length: many polylines at once through a frozen raster."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.geodesy import direct, inverse
+from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, rough_lengths
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels import codes
 from thalweg.kernels.leg.polyline_sailing import (
@@ -25,12 +26,11 @@ if TYPE_CHECKING:
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable
 
-_METRES_PER_DEGREE = 111_195.0
 _CORRIDOR_HALF_WIDTH = 5.0  # metres to each side of a leg where charted depth is looked up
 _DEPTH_LOOKUP_SPAN = 0.5  # degrees of a leg whose charted depth is looked up at once
-_MAX_WAIT = 13.0 * 3600.0  # longest wait for a leg to open [s]: a tide and a little
-_WAIT_STEPS = (30.0, 900.0)  # least and largest time between two looks [s]
-_OPENING_TOLERANCE = 0.1  # seconds to which an opening is found
+_MAX_WAIT = 13.0 * 3600.0  # longest wait for a leg to open [s]: a little more than a tide
+_WAIT_STEPS = (30.0, 900.0)  # least and largest time between two trial departures [s]
+_OPENING_TOLERANCE = 0.1  # tolerance of the time of opening [s]
 _MAX_PIECE_LENGTH = 100_000.0  # metres; keeps lengths within 1e-6 of the geodesic's
 
 
@@ -58,7 +58,7 @@ class TrackBatch:
 
 @dataclass(frozen=True)
 class TimeEvaluator:
-    """Everything that stays the same while a track is refined.
+    """Sea, ship, chart and limits that tracks are sailed with; make one with `make_time_evaluator`.
 
     Attributes
     ----------
@@ -74,8 +74,8 @@ class TimeEvaluator:
     spacing : float
         Longest piece [m].
     waiting_parameters : float64 array (3,)
-        How the ship waits of itself (see `thalweg.kernels.leg.polyline_sailing.sail_polylines`);
-        zeros: it does not.
+        How the ship waits where a leg is closed, beside the given waits (see
+        `thalweg.kernels.leg.polyline_sailing.sail_polylines`); zeros: it does not.
     """
 
     raster: RasterArrays
@@ -97,9 +97,7 @@ class TimeEvaluator:
 
     def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
         """Return how many pieces each leg of polylines (..., n) is cut into."""
-        return np.maximum(2, np.ceil(approximate_leg_lengths(lat, lon) / self.spacing)).astype(
-            np.int64
-        )
+        return np.maximum(2, np.ceil(rough_lengths(lat, lon) / self.spacing)).astype(np.int64)
 
     def sail(
         self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
@@ -108,11 +106,11 @@ class TimeEvaluator:
 
         Parameters
         ----------
-        batch : Bundle
+        batch : TrackBatch
         pieces : int64 array (L, n - 1), optional
-            Pieces of each leg; the same for lines whose times are to be differenced.
+            Pieces of each leg; the same for polylines whose times are to be differenced.
         check : bool
-            Look at land, zones and charted depth too.
+            Check land, zones and charted depth too.
 
         Returns
         -------
@@ -120,8 +118,8 @@ class TimeEvaluator:
             Arrival at every point [s after the origin]; +inf from the first leg that cannot be
             sailed.
         cost : float64 array (L,)
-            What is compared: last arrival [s], or length [m], with what penalty zones add to it;
-            +inf if it cannot be sailed.
+            Last arrival [s] or length [m], with the additions of penalty zones; +inf for a
+            polyline that cannot be sailed.
         """
         arrive, _, cost = self.sail_and_wait(batch, pieces=pieces, check=check)
         return arrive, cost
@@ -129,7 +127,7 @@ class TimeEvaluator:
     def sail_and_wait(
         self, batch: TrackBatch, *, pieces: IntArray | None = None, check: bool = True
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Do as `sail` does, and return (arrive, leave, cost): when each point is left, too."""
+        """Sail as `sail` does; return (arrive, leave, cost), with the departure from each point."""
         count, size = batch.lat.shape
         shape = (count, size - 1)
         pieces = self.pieces(batch.lat, batch.lon) if pieces is None else pieces
@@ -167,17 +165,27 @@ class TimeEvaluator:
     def _penalty(
         self, batch: TrackBatch, arrive: FloatArray, leave: FloatArray, cost: FloatArray
     ) -> FloatArray:
-        """Return what penalty zones add to the cost of polylines."""
+        """Return the additions of penalty zones to the cost of polylines."""
         factor = penalty_factors(self.chart, batch.lat, batch.lon)
         if factor is None:
             return np.zeros(len(cost))
-        spent = approximate_leg_lengths(batch.lat, batch.lon)
+        spent = rough_lengths(batch.lat, batch.lon)
         if not self.by_length:
             with np.errstate(invalid="ignore"):
                 spent = arrive[:, 1:] - leave[:, :-1]
         spent = np.where(np.isfinite(cost)[:, None], spent, 0.0)
         added: FloatArray = ((factor - 1.0) * spent).sum(axis=1)
         return added
+
+    def infeasible_legs(self, batch: TrackBatch, arrive: FloatArray) -> NDArray[np.bool_]:
+        """Return which legs (L, n - 1) of sailed polylines are known to be infeasible.
+
+        Those that are blocked, and the first of each polyline that cannot be sailed; ``arrive`` is
+        the arrival at every point as `sail` returns it.
+        """
+        bad = np.isinf(arrive[:, 1:]) & np.isfinite(arrive[:, :-1])
+        blocked, _ = self.look_up_legs(batch.lat, batch.lon)
+        return bad if blocked is None else bad | blocked
 
     def look_up_legs(
         self, lat: FloatArray, lon: FloatArray
@@ -186,8 +194,9 @@ class TimeEvaluator:
         if self.chart is None:
             return None, None
         shape = (lat.shape[0], lat.shape[1] - 1)
-        every = np.stack([lat[:, :-1], lon[:, :-1], lat[:, 1:], lon[:, 1:]], axis=-1).reshape(-1, 4)
-        legs, place = np.unique(every, axis=0, return_inverse=True)
+        ends = [values.ravel() for values in (lat[:, :-1], lon[:, :-1], lat[:, 1:], lon[:, 1:])]
+        first, place = unique_legs(ends)
+        legs = np.stack([end[first] for end in ends], axis=1)
         blocked = np.asarray(self.chart.legs_blocked(*legs.T))
         required = self.limits[codes.LIMIT_REQUIRED_DEPTH]
         charted = None
@@ -199,7 +208,7 @@ class TimeEvaluator:
 
 
 def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
-    """Return the least charted depth of legs (n, 4); long ones in short parts, which is quicker."""
+    """Return the least charted depth of legs (n, 4); long legs in short parts, which is faster."""
     lat1, lon1, lat2, lon2 = legs.T
     span = np.maximum(np.abs(lat2 - lat1), np.abs(lon2 - lon1))
     count = np.maximum(np.ceil(span / _DEPTH_LOOKUP_SPAN), 1.0).astype(np.int64)
@@ -214,7 +223,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     b = direct(lat1[leg], lon1[leg], way, (number + 1) * part)
     beside = np.minimum(_CORRIDOR_HALF_WIDTH, 1e-3 * length)[leg]
     depth = np.full(len(leg), math.inf)
-    for side in (-0.5 * math.pi, 0.5 * math.pi):  # a lane, so that cutting it otherwise is the same
+    for side in (-0.5 * math.pi, 0.5 * math.pi):  # a corridor: the same however legs are cut
         ends = *direct(*a, way + side, beside), *direct(*b, way + side, beside)
         depth = np.minimum(depth, np.asarray(chart.depth_along(*ends), dtype=np.float64))
     least: FloatArray = np.minimum.reduceat(depth, first)
@@ -232,14 +241,31 @@ def make_time_evaluator(
     total: float,
     wait: bool = False,
 ) -> TimeEvaluator:
-    """Put a sailor together; ``total`` is the rough length of the track [m], and
-    with ``wait`` it waits of itself where a leg is closed for the time being.
+    """Return a time evaluator.
 
-    Pieces are half a cell of the raster, at least a 400th of the track, at most 100 km.
+    Parameters
+    ----------
+    table : PerformanceTable or TableArrays
+        Speed through water [m/s].
+    chart : Chart or None
+        Land, zones and charted depth; None: not checked.
+    fields : GridFields
+        The sea frozen around the tracks.
+    limits : array_like of float
+        Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
+    origin : float
+        Where times count from [s since 1970-01-01T00:00Z].
+    by_length : bool
+        Whether tracks compare by length instead of time.
+    total : float
+        Rough length of the track [m]. Pieces are half a cell of the raster, at least a 400th of
+        this and at most 100 km.
+    wait : bool
+        Whether the ship may wait wherever a leg is closed for some time.
     """
     raster = raster_arrays(fields, origin)
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
-    spacing = min(max(0.5 * fields.dlat * _METRES_PER_DEGREE, total / 400.0), _MAX_PIECE_LENGTH)
+    spacing = min(max(0.5 * fields.dlat * METRES_PER_DEGREE, total / 400.0), _MAX_PIECE_LENGTH)
     bounds = np.asarray(limits, np.float64)
     waiting_parameters = np.zeros(3)
     if wait and np.isfinite(bounds).any():
@@ -276,13 +302,19 @@ def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> Fl
     return np.asarray(chart.zone_factor(*(x.ravel() for x in ends))[0]).reshape(shape)
 
 
-def approximate_leg_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
-    """Return lengths of legs (..., n - 1) on the sphere [m], good to 0.5 %."""
-    a, b = np.radians(lat[..., :-1]), np.radians(lat[..., 1:])
-    half = 0.5 * np.radians(np.diff(lon, axis=-1))
-    h = np.sin(0.5 * (b - a)) ** 2 + np.cos(a) * np.cos(b) * np.sin(half) ** 2
-    lengths: FloatArray = 2.0 * 6371008.8 * np.arcsin(np.sqrt(np.minimum(h, 1.0)))
-    return lengths
+def unique_legs(ends: Sequence[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the first of every different leg, and which of these each leg is.
+
+    ``ends`` are (lat1, lon1, lat2, lon2) of legs [deg]. A third of the legs that refinement tries
+    are tried more than once.
+    """
+    mixed = ends[0] + math.sqrt(2.0) * ends[1] + math.sqrt(3.0) * ends[2] + math.sqrt(5.0) * ends[3]
+    _, first, back = np.unique(mixed, return_index=True, return_inverse=True)
+    back = back.reshape(-1)
+    if all(np.array_equal(end, end[first][back]) for end in ends):
+        return first, back
+    every = np.arange(len(mixed))  # different legs with equal sums, which is very rare
+    return every, every
 
 
 def _flat(values: ArrayLike, kind: type) -> NDArray[Any]:

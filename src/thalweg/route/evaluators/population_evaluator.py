@@ -1,4 +1,4 @@
-"""What tracks are worth: a whole population sailed at once, on all cores."""
+"""Quick evaluation of time and cost: a whole population of tracks at once, on all cores."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
@@ -20,22 +20,22 @@ from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.route.refinement.calm_water_rates import calm_water_value, calm_water_values
-from thalweg.route.refinement.population import Genome, Population
-from thalweg.route.refinement.time_evaluator import TimeEvaluator, make_time_evaluator
+from thalweg.route.evaluators.calm_water_rates import calm_water_value, calm_water_values
+from thalweg.route.evaluators.population import Genome, Population
+from thalweg.route.evaluators.time_evaluator import TimeEvaluator, make_time_evaluator, unique_legs
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable
 
-_MIN_TRACKS_PER_THREAD = 16  # tracks that are worth a thread of their own
-_ZONE_BORDER_RESOLUTION = 25.0  # [m] to which legs are cut at borders of control areas
+_MIN_TRACKS_PER_THREAD = 16
+_ZONE_RESOLUTION = 25.0  # to which crossings of the borders of control areas are found [m]
 
 
 @dataclass(frozen=True)
 class ObjectivePrices:
-    """What time and fuel cost, in one unit (kilograms, money, kilograms of CO2).
+    """Prices of time and fuel, in one unit (kilograms of fuel, money, kilograms of CO2).
 
     Attributes
     ----------
@@ -44,9 +44,9 @@ class ObjectivePrices:
     time : float
         Of a second.
     waiting : float
-        Of the fuel of a second lain still.
+        Of the fuel of a second of waiting.
     fees : bool
-        Whether canal fees count.
+        Whether canal dues and the factors of price zones count.
     """
 
     inside: float = 1.0
@@ -58,17 +58,21 @@ class ObjectivePrices:
 
 @dataclass(frozen=True)
 class Evaluator:
-    """Scores tracks; make one with `make_evaluator`.
+    """Scores tracks by time, cost and violations; make one with `make_evaluator`.
 
     Attributes
     ----------
-    world : FitnessWorld
+    world : FitnessArrays
         Sea, ship, limits and terms, as the kernel takes them; times are seconds after ``depart``.
-    time_evaluator : Sailor
+    time_evaluator : TimeEvaluator
         Looks up land and charted depth.
-    prices : Prices
+    prices : ObjectivePrices
     depart, latest : float
         [s since 1970-01-01T00:00Z]; ``latest`` may be +inf.
+    canals : float64 array (C, 3)
+        Time [s], fuel [kg] and dues of each canal of the chart.
+    zone_resolution : float
+        To which crossings of the borders of control areas are found [m].
     """
 
     world: FitnessArrays
@@ -76,6 +80,8 @@ class Evaluator:
     prices: ObjectivePrices
     depart: float
     latest: float
+    canals: FloatArray
+    zone_resolution: float
 
     @property
     def settings(self) -> int:
@@ -89,7 +95,7 @@ class Evaluator:
 
     @property
     def varies(self) -> bool:
-        """Whether zones or charted depth make legs differ besides by the sea."""
+        """Whether zones or charted depth make legs differ, beside the sea."""
         chart: Any = self.chart
         if chart is None:
             return False
@@ -105,12 +111,12 @@ class Evaluator:
         Returns
         -------
         time : float64 array (N,)
-            Passage time [s], with what penalty zones add.
+            Passage time [s], with the additions of penalty zones.
         cost : float64 array (N,)
-            In the unit of the prices, with what penalty zones add.
+            In the unit of the prices, with the additions of penalty zones.
         violation : float64 array (N,)
             0: feasible. Else the share of the length that cannot be sailed (land, no-go zones,
-            limits, no data) plus the lateness as a share of the time there is.
+            limits, no data) plus the lateness as a share of the available time.
         """
         population = genomes if isinstance(genomes, Population) else self.population(genomes)
         score = self.score(population)
@@ -129,7 +135,7 @@ class Evaluator:
         return population
 
     def score(self, population: Population) -> FloatArray:
-        """Return time, cost and violation, shape (N, 3); what legs need is looked up first."""
+        """Return time, cost and violation (N, 3); new legs are looked up on the chart first."""
         return self.sail(population)[0]
 
     def sail(
@@ -160,29 +166,38 @@ class Evaluator:
         run_in_threads(part, n)
         return score, arrive
 
-    def look_up_legs(self, population: Population) -> None:
-        """Look up land, depth, zones and canals of the legs that are not known yet, in place."""
+    def look_up_legs(self, population: Population, *, obstacles: bool = True) -> None:
+        """Look up land, depth, zones and canals of the legs that are not known yet, in place.
+
+        Without ``obstacles`` land, no-go zones and charted depth are left out.
+        """
         legs = np.arange(population.room) < (population.count - 1)[:, None]
         row, place = np.nonzero(legs & (population.genes[:, :, columns.IS_LOOKED_UP] == 0.0))
         if not len(row):
             return
         genes = population.genes
         ends = [genes[row, place + k, c] for k in (0, 1) for c in (columns.LAT, columns.LON)]
-        first, back = _unique_legs(ends)
-        facts = self._leg_properties(*(end[first] for end in ends))
+        first, back = unique_legs(ends)
+        facts = self._leg_properties(*(end[first] for end in ends), obstacles=obstacles)
         blocked, charted, weight, penalty = (fact[back] for fact in facts)
         genes[row, place, columns.IS_BLOCKED] = blocked
         genes[row, place, columns.CHARTED_DEPTH] = charted
         genes[row, place, columns.FUEL_PRICE] = weight
         genes[row, place, columns.PENALTY_FACTOR] = penalty
         genes[row, place, columns.FIXED_TIME] = math.nan
-        self._canals(genes, row, place, ends)
+        self._set_canals(genes, row, place, ends)
         genes[row, place, columns.IS_LOOKED_UP] = 1.0
 
     def _leg_properties(
-        self, lat1: FloatArray, lon1: FloatArray, lat2: FloatArray, lon2: FloatArray
+        self,
+        lat1: FloatArray,
+        lon1: FloatArray,
+        lat2: FloatArray,
+        lon2: FloatArray,
+        *,
+        obstacles: bool,
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return (blocked, charted depth, weight of fuel, penalty) of legs."""
+        """Return (blocked, charted depth, price of fuel, penalty factor) of legs."""
         n, prices = len(lat1), self.prices
         chart: Any = self.chart
         blocked, charted = np.zeros(n), np.full(n, math.inf)
@@ -191,42 +206,52 @@ class Evaluator:
             return blocked, charted, weight, penalty
         ends = (lat1, lon1, lat2, lon2)
         required = self.world.limits[codes.LIMIT_REQUIRED_DEPTH]
-        if chart.has_depth and math.isfinite(required):
+        if obstacles and chart.has_depth and math.isfinite(required):
             lines = np.stack([lat1, lat2], axis=1), np.stack([lon1, lon2], axis=1)
             shut, depth = self.time_evaluator.look_up_legs(*lines)
             if shut is not None and depth is not None:
                 blocked, charted = shut[:, 0].astype(float), depth[:, 0]
-        else:
+        elif obstacles:
             blocked[:] = chart.legs_blocked(*ends)
         zones: Any = chart.zones
         if prices.inside != prices.outside and len(getattr(zones, "eca", ())):
-            weight = weight + _eca_fractions(chart, ends) * (prices.inside - prices.outside)
+            weight = weight + self._eca_fractions(ends) * (prices.inside - prices.outside)
         if chart.zones.penalty or chart.zones.price:
             factor, price = chart.zone_factor(*ends)
-            penalty, weight = np.asarray(factor), weight * np.asarray(price)
+            penalty = np.asarray(factor)
+            weight = weight * np.asarray(price) if prices.fees else weight
         return blocked, charted, weight, penalty
 
-    def _canals(
+    def _eca_fractions(self, ends: tuple[FloatArray, ...]) -> FloatArray:
+        """Return the shares of legs inside emission control areas."""
+        chart: Any = self.chart
+        share = np.empty(len(ends[0]))
+
+        def part(legs: slice) -> None:
+            share[legs] = chart.eca_fraction(
+                *(end[legs] for end in ends), finest=self.zone_resolution
+            )
+
+        run_in_threads(part, len(share))
+        return share
+
+    def _set_canals(
         self, genes: FloatArray, row: np.ndarray, place: np.ndarray, ends: list[FloatArray]
     ) -> None:
-        """Note time and cost of the legs that are canals; their points are held."""
-        chart: Any = self.chart
-        canals = getattr(chart, "canals", ())
-        if not canals:
+        """Set time and cost of the legs that are canals."""
+        if not len(self.canals):
             return
+        chart: Any = self.chart
         index = np.asarray(chart.canal_of_legs(*ends))
-        for k in np.flatnonzero(index >= 0):
-            canal, gene = canals[index[k]], genes[row[k], place[k]]
-            speed = canal.length / canal.transit_time
-            enough = np.flatnonzero(calm_water_values(self.world.table) >= speed)
-            setting = int(enough[0]) if len(enough) else self.settings - 1
-            burnt = calm_water_value(self.world.fuel, setting) * canal.transit_time
-            gene[columns.IS_BLOCKED], gene[columns.FIXED_TIME] = 0.0, canal.transit_time
-            fee = canal.fee if self.prices.fees else 0.0
-            gene[columns.FIXED_COST] = burnt * gene[columns.FUEL_PRICE] + fee
+        on = np.flatnonzero(index >= 0)
+        time, burnt, dues = self.canals[index[on]].T
+        legs = row[on], place[on]
+        genes[*legs, columns.IS_BLOCKED], genes[*legs, columns.FIXED_TIME] = 0.0, time
+        price = genes[*legs, columns.FUEL_PRICE]
+        genes[*legs, columns.FIXED_COST] = burnt * price + dues * self.prices.fees
 
     def finer(self, times: float) -> Evaluator:
-        """Return an evaluator with pieces so many times shorter."""
+        """Return an evaluator with pieces shorter by a factor ``times``."""
         terms = self.world.terms.copy()
         terms[columns.PIECE_SPACING] /= times
         return replace(self, world=self.world._replace(terms=terms))
@@ -249,8 +274,10 @@ def make_evaluator(
     fees: bool = True,
     spacing: float | None = None,
     total: float = 0.0,
+    canals: FloatArray | None = None,
+    zone_resolution: float = _ZONE_RESOLUTION,
 ) -> Evaluator:
-    """Put an evaluator together.
+    """Return an evaluator of time and cost.
 
     Parameters
     ----------
@@ -271,16 +298,22 @@ def make_evaluator(
     time_price : float
         Cost of a second.
     waiting_fuel : float
-        Fuel rate while lying still [kg/s].
+        Fuel rate while waiting [kg/s].
     waiting_weight : float, optional
         Cost of a kilogram of it; ``weight_outside`` by default.
     fees : bool
-        Whether canal fees count (not when the cost is fuel).
+        Whether canal dues and the factors of price zones count (not when the cost is fuel).
     spacing : float, optional
         Longest piece that legs are cut into [m]; by default half a cell of the raster, at least a
         400th of ``total`` and at most 100 km.
     total : float
         Rough length of the tracks [m].
+    canals : float64 array (C, 3), optional
+        Time [s], fuel [kg] and dues of each canal of the chart; by default with the fuel rate of
+        the slowest setting that reaches the mean speed of the canal in calm water. Empty: the
+        tracks pass no canal.
+    zone_resolution : float
+        To which crossings of the borders of control areas are found [m].
 
     Raises
     ------
@@ -318,7 +351,21 @@ def make_evaluator(
     prices = ObjectivePrices(
         weight_inside, weight_outside, time_price, float(terms[columns.WAITING_PRICE]), fees
     )
-    return Evaluator(world, time_evaluator, prices, depart, latest)
+    passed = _canal_table(chart, world) if canals is None else canals
+    return Evaluator(world, time_evaluator, prices, depart, latest, passed, zone_resolution)
+
+
+def _canal_table(chart: Any, world: FitnessArrays) -> FloatArray:
+    """Return time [s], fuel [kg] and dues (C, 3) of the canals of a chart, by calm-water rates."""
+    canals = getattr(chart, "canals", ())
+    speeds = calm_water_values(world.table)
+    out = np.empty((len(canals), 3))
+    for k, canal in enumerate(canals):
+        enough = np.flatnonzero(speeds >= canal.length / canal.transit_time)
+        setting = int(enough[0]) if len(enough) else len(speeds) - 1
+        burnt = calm_water_value(world.fuel, setting) * canal.transit_time
+        out[k] = canal.transit_time, burnt, canal.fee
+    return out
 
 
 def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
@@ -334,33 +381,6 @@ def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
             f"The departure is {format_time(depart)}.",
             "Give a later arrival.",
         )
-
-
-def _unique_legs(ends: list[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the first of every different leg, and which of these each leg is.
-
-    A third of the legs that polishing tries are tried more than once.
-    """
-    mixed = ends[0] + math.sqrt(2.0) * ends[1] + math.sqrt(3.0) * ends[2] + math.sqrt(5.0) * ends[3]
-    _, first, back = np.unique(mixed, return_index=True, return_inverse=True)
-    back = back.reshape(-1)
-    if all(np.array_equal(end, end[first][back]) for end in ends):
-        return first, back
-    every = np.arange(len(mixed))  # different legs with one mixture: as good as never
-    return every, every
-
-
-def _eca_fractions(chart: Any, ends: tuple[FloatArray, ...]) -> FloatArray:
-    """Return the shares of legs inside emission control areas, as closely as evolution needs."""
-    share = np.empty(len(ends[0]))
-
-    def part(legs: slice) -> None:
-        share[legs] = chart.eca_fraction(
-            *(end[legs] for end in ends), finest=_ZONE_BORDER_RESOLUTION
-        )
-
-    run_in_threads(part, len(share))
-    return share
 
 
 def run_in_threads(work, count: int) -> None:  # type: ignore[no-untyped-def]

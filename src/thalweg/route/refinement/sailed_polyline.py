@@ -1,0 +1,177 @@
+"""A single line as a batch of one track, for Newton's method on lateral offsets."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from thalweg.core.geodesy import rough_lengths
+from thalweg.core.types import BoolArray, FloatArray, IntArray
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator
+from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.time_evaluator import TimeEvaluator, TrackBatch
+from thalweg.route.refinement.delay_effects import accumulated_delay_effects
+from thalweg.route.refinement.newton_offsets import (
+    DIFFERENCE_STEP,
+    PERTURBATIONS,
+    StepSchedule,
+    optimise_lateral_offsets,
+)
+from thalweg.route.refinement.track_geometry import displaced_positions, starboard_vectors
+
+_STEP_SCHEDULE = StepSchedule(damping=(0.0, 0.03, 1.0), factors=(1.0, 0.4, 0.12, 0.02))
+_ABSORBED_DELAY = 1e-3  # share of the time saved before a wait that counts
+
+
+def optimise_line_offsets(
+    line: Polyline,
+    evaluator: TimeEvaluator | CostEvaluator,
+    *,
+    rounds: int = 12,
+    tolerance: float = 1e-7,
+) -> Polyline:
+    """Return a line with its waypoints moved sideways to lower its cost.
+
+    Parameters
+    ----------
+    line : Polyline
+        One that can be sailed; any other is returned unchanged.
+    evaluator : TimeEvaluator or CostEvaluator
+    rounds : int
+        Newton iterations at most.
+    tolerance : float
+        Relative gain below which the iteration ends.
+
+    Returns
+    -------
+    Polyline
+        Nowhere worse; see `optimise_lateral_offsets`.
+    """
+    tracks = SailedPolyline.of(line, evaluator)
+    if not np.isfinite(tracks.value).all() or len(line) < 3:
+        return line
+    return optimise_lateral_offsets(tracks, rounds=rounds, tolerance=tolerance).line
+
+
+@dataclass(frozen=True)
+class SailedPolyline:
+    """A line with its cost: a batch of one track (`LateralProblem`, R = 1, M = n).
+
+    Attributes
+    ----------
+    line : Polyline
+    evaluator : TimeEvaluator or CostEvaluator
+    cost : float
+        As the evaluator compares; +inf where the line cannot be sailed.
+    """
+
+    line: Polyline
+    evaluator: TimeEvaluator | CostEvaluator
+    cost: float
+
+    @classmethod
+    def of(cls, line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> SailedPolyline:
+        """Sail a line and keep it with its cost."""
+        return cls(line, evaluator, float(evaluator.sail(line.batch())[1][0]))
+
+    @property
+    def step_schedule(self) -> StepSchedule:
+        """The trial steps of a Newton iteration."""
+        return _STEP_SCHEDULE
+
+    @property
+    def value(self) -> FloatArray:
+        """The cost from departure (1,): seconds, metres or the unit of the prices."""
+        start = 0.0 if self.evaluator.by_length else self.line.depart
+        return np.array([self.cost - start])
+
+    @property
+    def free(self) -> BoolArray:
+        """Which points (1, n) may move: not the ends, nor those of canals."""
+        return ~self.evaluator.fixed_points(self.line.lat, self.line.lon)[None]
+
+    @property
+    def legs(self) -> tuple[IntArray, IntArray]:
+        """Row (all 0) and place of every leg."""
+        place = np.arange(len(self.line) - 1)
+        return np.zeros_like(place), place
+
+    def lengths(self) -> FloatArray:
+        """Return the rough length (1, n) [m] of the leg that starts at each point, 0 at the end."""
+        return np.append(rough_lengths(self.line.lat, self.line.lon), 0.0)[None]
+
+    def perturbed_leg_values(self, row: IntArray, place: IntArray, step: FloatArray) -> FloatArray:
+        """Return the value of every leg (7, n - 1) under `PERTURBATIONS`; NaN where not sailed."""
+        line, evaluator = self.line, self.evaluator
+        arrive = evaluator.sail(line.batch(), check=False)[0][0]
+        leave = np.maximum(arrive, line.leave)
+        late = np.maximum(DIFFERENCE_STEP * np.diff(arrive), 1e-3)
+        spent, took = self._perturbed_legs(step[0], leave, late)
+        with np.errstate(invalid="ignore"):
+            growth = np.nan_to_num(1.0 + (took[-1] - took[0]) / late, nan=1.0)
+        waits = (leave > arrive + 1e-9)[None]
+        if isinstance(evaluator, CostEvaluator):
+            with np.errstate(invalid="ignore"):
+                dearer = np.nan_to_num((spent[-1] - spent[0]) / late)
+            delays = accumulated_delay_effects(
+                growth[None], dearer[None], evaluator.per_second, absorbed=waits
+            )
+            return (spent + took * delays[0, 1:])[:-1]
+        if evaluator.by_length:
+            return spent[:-1]
+        delays = accumulated_delay_effects(
+            growth[None], 0.0, 1.0, absorbed=waits, remaining=_ABSORBED_DELAY
+        )
+        return (took * delays[0, 1:])[:-1]
+
+    def _perturbed_legs(
+        self, step: FloatArray, leave: FloatArray, late: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return (cost, time) of every leg (8, n - 1) under `PERTURBATIONS`, and then delayed."""
+        line, legs, count = self.line, len(self.line) - 1, len(PERTURBATIONS) + 1
+        lat, lon = np.empty((count, legs, 2)), np.empty((count, legs, 2))
+        shifted = {times: self._shifted(times * step) for times in (-1, 0, 1)}
+        for k, ends in enumerate((*PERTURBATIONS, (0, 0))):
+            for end, times in enumerate(ends):
+                lat[k, :, end] = shifted[times][0][end : legs + end]
+                lon[k, :, end] = shifted[times][1][end : legs + end]
+        depart = np.tile(leave[:-1], (count, 1))
+        depart[-1] += late
+        pieces = np.tile(self.evaluator.pieces(line.lat, line.lon), count)[:, None]
+        batch = TrackBatch(
+            lat.reshape(-1, 2),
+            lon.reshape(-1, 2),
+            np.full((count * legs, 2), -math.inf),
+            np.tile(line.setting, count)[:, None],
+            depart.reshape(-1),
+        )
+        if isinstance(self.evaluator, CostEvaluator):
+            arrive, cost, _ = self.evaluator.cost_and_time(batch, pieces=pieces, check=False)
+        else:
+            arrive, cost = self.evaluator.sail(batch, pieces=pieces, check=False)
+        known = np.isfinite(cost)
+        spent = np.where(known, cost, math.nan).reshape(count, legs)
+        took = np.where(known, arrive[:, -1] - batch.depart, math.nan).reshape(count, legs)
+        return spent, took
+
+    def best_of_offsets(
+        self, offsets: FloatArray, rows: IntArray
+    ) -> tuple[SailedPolyline, BoolArray]:
+        """Return the line after trial offsets (T, 1, n), and the points at infeasible legs."""
+        lat, lon = self._shifted(offsets[:, 0])
+        batch = self.line.batch(lat, lon)
+        arrive, cost = self.evaluator.sail(batch)
+        pick = int(np.argmin(cost))
+        if cost[pick] < self.cost:
+            line = self.line.moved(lat[pick], lon[pick])
+            return replace(self, line=line, cost=float(cost[pick])), np.zeros_like(self.free)
+        legs = self.evaluator.infeasible_legs(batch, arrive).any(axis=0)
+        return self, (np.append(legs, False) | np.append(False, legs))[None]
+
+    def _shifted(self, offset: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return positions (..., n) of the points moved to starboard [m]."""
+        line = self.line
+        east, north = starboard_vectors(line.lat[None], line.lon[None], np.array([len(line)]))
+        return displaced_positions(line.lat, line.lon, offset * east[0], offset * north[0])
