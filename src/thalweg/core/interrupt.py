@@ -1,16 +1,62 @@
-"""Ctrl-C ends an evolution as cancelling it does: with the best so far."""
+"""Ctrl-C as a request to stop: long calculations end with the best result so far."""
 
 from __future__ import annotations
 
 import signal
 import threading
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import wraps
+from types import TracebackType
 from typing import Any, Protocol, TypeVar
 
 from thalweg.core.errors import ThalwegWarning
+
+
+class SearchInterrupted(Exception):
+    """Raised out of a search that is stopped; the calculation that started it catches it."""
+
+
+class InterruptGuard:
+    """A context that notes Ctrl-C as a request to stop, from the call of `begin` on.
+
+    Before `begin`, and when it is pressed a second time, Ctrl-C raises `KeyboardInterrupt` as
+    usual. Only the main thread handles Ctrl-C, and only while no other handler is installed; in
+    all other cases no request is ever noted.
+    """
+
+    def __init__(self) -> None:
+        self._pressed = threading.Event()
+        self._installed = False
+
+    def __enter__(self) -> InterruptGuard:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._installed:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def begin(self) -> None:
+        """Note Ctrl-C from now on: there is a result to keep."""
+        main = threading.current_thread() is threading.main_thread()
+        usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        if self._installed or not (main and usual):
+            return
+        signal.signal(signal.SIGINT, self._note)
+        self._installed = True
+
+    def stopped(self) -> bool:
+        """Return whether Ctrl-C has been pressed since `begin`."""
+        return self._pressed.is_set()
+
+    def _note(self, *_: Any) -> None:
+        self._pressed.set()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class _CancellableResult(Protocol):
@@ -21,41 +67,24 @@ class _CancellableResult(Protocol):
 _ResultType = TypeVar("_ResultType", bound=_CancellableResult)
 
 
-@contextmanager
-def interrupt_requested() -> Iterator[Callable[[], bool]]:
-    """Give a function that tells whether Ctrl-C was pressed; pressed again, it interrupts.
-
-    Only in the main thread, and only where nobody else handles Ctrl-C; else it is never true.
-    """
-    pressed = threading.Event()
-    ours = threading.current_thread() is threading.main_thread()
-    if not (ours and signal.getsignal(signal.SIGINT) is signal.default_int_handler):
-        yield pressed.is_set
-        return
-
-    def note(*_: Any) -> None:
-        pressed.set()
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-
-    signal.signal(signal.SIGINT, note)
-    try:
-        yield pressed.is_set
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
 def cancel_on_interrupt(function: Callable[..., _ResultType]) -> Callable[..., _ResultType]:
-    """Let Ctrl-C cancel a run that nothing else can cancel, with a warning."""
+    """Decorate a function with an argument ``cancel``: without it Ctrl-C cancels, with a warning.
+
+    The result of the function has an attribute ``cancelled``.
+    """
 
     @wraps(function)
     def run(*given: Any, **options: Any) -> _ResultType:
         if options.get("cancel") is not None:
             return function(*given, **options)
-        with interrupt_requested() as cancel:
-            found = function(*given, **{**options, "cancel": cancel})
-        if found.cancelled:
-            message = "Stopped by Ctrl-C: the best so far is kept; more time may find better."
+        with InterruptGuard() as guard:
+            guard.begin()
+            result = function(*given, **{**options, "cancel": guard.stopped})
+        if result.cancelled:
+            message = (
+                "Stopped by Ctrl-C: the best result so far is kept; more time may find better."
+            )
             warnings.warn(ThalwegWarning(message), stacklevel=2)
-        return found
+        return result
 
     return run

@@ -18,12 +18,13 @@ from thalweg.evolution.indicators import generational_distance
 from thalweg.evolution.initial_population import initial_population
 from thalweg.evolution.mpaes import Mpaes
 from thalweg.evolution.nsga2 import Nsga2
-from thalweg.evolution.ranking import feasible_front, least_crowded_front
+from thalweg.evolution.ranking import least_crowded_front
 from thalweg.evolution.spea2 import Spea2
 from thalweg.evolution.variation import VariationSettings
 from thalweg.kernels.leg import population_sailing
 from thalweg.route.evaluators.population import Genome, Population
 from thalweg.route.evaluators.population_evaluator import Evaluator
+from thalweg.route.refinement.scored_tracks import feasible_front
 from thalweg.route.track import Track
 
 METHODS: dict[str, type[EvolutionaryAlgorithm]] = {"nsga2": Nsga2, "spea2": Spea2, "mpaes": Mpaes}

@@ -24,7 +24,7 @@ from thalweg.evolution.evolve import (
 )
 from thalweg.evolution.initial_population import as_genomes, capacity_for, initial_population
 from thalweg.evolution.nsga2 import Nsga2
-from thalweg.evolution.ranking import feasible_front, least_crowded_front
+from thalweg.evolution.ranking import least_crowded_front
 from thalweg.evolution.variation import VariationSettings
 from thalweg.route.evaluators.population import Genome, Population, concatenated_populations
 from thalweg.route.evaluators.population_evaluator import Evaluator
@@ -33,6 +33,7 @@ from thalweg.route.refinement.scalarised_search import (
     scalarised_local_search,
     seeds_with_time_prices,
 )
+from thalweg.route.refinement.scored_tracks import feasible_front
 from thalweg.route.track import Track
 
 TIME_PRICES = 48  #: prices of time that are polished for

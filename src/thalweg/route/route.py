@@ -1,4 +1,4 @@
-"""A route: a track as the referee found it, with all its numbers."""
+"""A route: a track with the results of the referee."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
+from thalweg.route.route_tables import none_if_nan, waypoint_frame, waypoint_rows
 from thalweg.route.track import Track
 
 if TYPE_CHECKING:
@@ -21,18 +22,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Violation:
-    """One stretch of a route where a limit is broken or the data do not reach.
+    """One stretch of a route where a limit is violated or data are missing.
 
     Attributes
     ----------
     reason : str
-        In the words of `thalweg.kernels.codes.REASONS`; details may follow a colon.
+        One of `thalweg.kernels.codes.REASONS`; details may follow a colon.
     time : float
-        When [s since 1970-01-01T00:00Z]; NaN if the route never gets there.
+        [s since 1970-01-01T00:00Z]; NaN if the route cannot be sailed so far.
     lat, lon : float
-        Where [deg]: the worst point of the stretch.
+        Position [deg] of the worst point of the stretch.
     value, limit : float
-        What was found there and what is allowed, in SI; NaN where neither is a number.
+        Value found there and value allowed, in SI; NaN where there is no number.
     """
 
     reason: str
@@ -49,7 +50,7 @@ class Violation:
         return text
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the violation as plain data for a JSON answer."""
+        """Return the violation as plain data for JSON."""
         return {
             "reason": self.reason,
             "time": format_time(self.time) if np.isfinite(self.time) else None,
@@ -62,30 +63,30 @@ class Violation:
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """A track as re-sailed by the referee; nothing in it changes.
+    """A track as evaluated by the referee; immutable.
 
     Attributes
     ----------
     track : Track
-        What was sailed; settings are indices from the bottom.
+        The track that was sailed; settings are indices from 0, the lowest.
     legs : mapping of str to ndarray
         Per leg: ``length`` [m], ``course`` (at its start) [rad], ``depart``, ``arrive`` [s since
         1970], ``under_keel_clearance`` (least, in a wait before it too) [m], ``ordered_speed`` (in
         calm water, through it) [m/s]; NaN if unknown: ``fuel`` of sailing it and ``waiting_fuel``
-        of lying still before it [kg], likewise ``energy`` and ``waiting_energy`` of brake and hotel
+        of waiting before it [kg], likewise ``energy`` and ``waiting_energy`` of brake and hotel
         load [J], and of both ``fuel_in_eca`` [kg], ``co2`` [kg] and ``cost`` [``currency``] (with
         canal dues and the price of time).
     samples : mapping of str to ndarray
         The fine samples along the route, in order: ``time, leg, lat, lon, distance, course,
         heading, speed_through_water, speed_over_ground, depth, under_keel_clearance, power,
         fuel_rate`` and every sampled variable of the sea by its name; SI, NaN where unknown or not
-        asked for. Power is that of the brake; the fuel rate has the hotel load in it.
+        requested. Power is brake power; the fuel rate includes the hotel load.
     violations : tuple of Violation
-        Where limits are broken; empty for a route that can be sailed.
+        Violated limits; empty for a feasible route.
     tolerance_s : float
         Difference of the sailing time between the last two step sizes [s].
     assumptions : tuple of str
-        What was taken for granted where the data say nothing.
+        Assumptions made where data are missing.
     fuel_zones : mapping of str to float
         Fuel [kg] by emission control area, and ``outside`` them.
     currency : str
@@ -131,7 +132,7 @@ class Route:
 
     @property
     def fuel_t(self) -> float | None:
-        """Fuel burnt [t]; None if the ship has no fuel model or the route is not sailed out."""
+        """Fuel burnt [t]; None if the ship has no fuel model or the route cannot be completed."""
         sailing, waiting = self._sum("fuel"), self._sum("waiting_fuel")
         return None if sailing is None or waiting is None else (sailing + waiting) / TONNE
 
@@ -170,7 +171,7 @@ class Route:
 
     @property
     def waiting_h(self) -> float:
-        """Time lain still at waypoints [h]."""
+        """Waiting time at waypoints [h]."""
         return float(self.track.wait.sum()) / HOUR
 
     @property
@@ -182,19 +183,15 @@ class Route:
 
     @property
     def feasible(self) -> bool:
-        """Whether the route can be sailed to its end without breaking any limit."""
+        """Whether the route can be sailed to its end within every limit."""
         return not self.violations and bool(np.isfinite(self.arrive))
 
     def waypoints(self) -> list[dict[str, Any]]:
         """Return one plain dictionary per waypoint, ready for JSON (None where unknown)."""
-        from thalweg.route.route_tables import waypoint_rows
-
         return waypoint_rows(self)
 
     def to_frame(self) -> pd.DataFrame:
         """Return a pandas table with one row per waypoint; ``time`` is datetime64 (UTC)."""
-        from thalweg.route.route_tables import waypoint_frame
-
         return waypoint_frame(self)
 
     def sample_frame(self) -> pd.DataFrame:
@@ -209,7 +206,7 @@ class Route:
         return f"cost_{self.currency.casefold()}"
 
     def as_dict(self) -> dict[str, Any]:
-        """Return totals, waypoints and violations as plain data for a JSON answer."""
+        """Return totals, waypoints and violations as plain data for JSON."""
         return {
             "depart": format_time(self.depart),
             "arrive": format_time(self.arrive) if np.isfinite(self.arrive) else None,
@@ -233,10 +230,5 @@ class Route:
     def __str__(self) -> str:
         fuel = "" if self.fuel_t is None else f", {self.fuel_t:.2f} t fuel"
         fuel += "" if self.cost is None else f", {self.cost:,.0f} {self.currency}"
-        state = "" if self.feasible else f", {len(self.violations)} limits broken"
+        state = "" if self.feasible else f", {len(self.violations)} limits violated"
         return f"Route: {self.time_h:.4f} h, {self.distance_nm:.2f} nm{fuel}{state}"
-
-
-def none_if_nan(value: float) -> float | None:
-    """Return the number, or None for NaN and infinities, which JSON does not have."""
-    return float(value) if np.isfinite(value) else None

@@ -1,23 +1,49 @@
-"""Routes as tables for people: one row per waypoint, units in the names."""
+"""Tables of routes: one row per waypoint, units in the names of columns."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from thalweg.core.time import format_time, to_datetime64
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT, MEGAWATT_HOUR, NAUTICAL_MILE, TONNE
-from thalweg.route.route import Route, none_if_nan
+from thalweg.route.track import Track
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def waypoint_rows(route: Route) -> list[dict[str, Any]]:
-    """Return one plain dictionary per waypoint; None where a value is unknown or not there.
+class SailedRoute(Protocol):
+    """The results of a route that tables are made of; see `thalweg.route.Route`."""
+
+    @property
+    def track(self) -> Track:
+        """The track that was sailed."""
+
+    @property
+    def legs(self) -> Mapping[str, FloatArray]:
+        """Results per leg."""
+
+    @property
+    def samples(self) -> Mapping[str, FloatArray]:
+        """Results at the fine samples."""
+
+    @property
+    def cost_name(self) -> str:
+        """Name of the column of costs."""
+
+
+def none_if_nan(value: float) -> float | None:
+    """Return the number, or None for NaN and infinities, which JSON does not have."""
+    return float(value) if np.isfinite(value) else None
+
+
+def waypoint_rows(route: SailedRoute) -> list[dict[str, Any]]:
+    """Return one plain dictionary per waypoint; None where a value is unknown.
 
     ``time`` is the arrival at the waypoint; a ship leaves it ``waiting_h`` later. Courses, headings
     and conditions are those on leaving (at the last waypoint: on arriving); speeds are means over
@@ -37,7 +63,7 @@ def waypoint_rows(route: Route) -> list[dict[str, Any]]:
     ]
 
 
-def waypoint_frame(route: Route) -> pd.DataFrame:
+def waypoint_frame(route: SailedRoute) -> pd.DataFrame:
     """Return a pandas table with one row per waypoint; see `waypoint_rows`."""
     import pandas as pd
 
@@ -48,7 +74,7 @@ def waypoint_frame(route: Route) -> pd.DataFrame:
     return pd.DataFrame({"lat": columns["lat"], "lon": columns["lon"], "time": stamps} | columns)
 
 
-def waypoint_columns(route: Route) -> dict[str, FloatArray]:
+def waypoint_columns(route: SailedRoute) -> dict[str, FloatArray]:
     """Return the columns of the table of waypoints; ``time`` in seconds since 1970."""
     track, legs, samples = route.track, route.legs, route.samples
     at = _sample_of_waypoint(samples["leg"])
@@ -87,7 +113,7 @@ def _sample_of_waypoint(leg: FloatArray) -> np.ndarray:
     return np.append(first, len(leg) - 1)
 
 
-def _mean_over_time(route: Route) -> FloatArray:
+def _mean_over_time(route: SailedRoute) -> FloatArray:
     """Return the mean speed through water of every leg, weighted by time [m/s]."""
     samples, count = route.samples, len(route.legs["length"])
     time, leg, speed = samples["time"], samples["leg"], samples["speed_through_water"]
@@ -100,7 +126,7 @@ def _mean_over_time(route: Route) -> FloatArray:
         return np.bincount(which, weights=sailed, minlength=count) / total
 
 
-def _conditions(route: Route, at: np.ndarray) -> dict[str, FloatArray]:
+def _conditions(route: SailedRoute, at: np.ndarray) -> dict[str, FloatArray]:
     samples = {name: values[at] for name, values in route.samples.items()}
     found: dict[str, FloatArray] = {}
     for name, east, north, origin in (

@@ -10,13 +10,13 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance, inverse
+from thalweg.core.interrupt import InterruptGuard, SearchInterrupted
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network, shortest_path
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
-from thalweg.planning.interrupt_guard import InterruptGuard, SearchInterrupted
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
 from thalweg.planning.pareto.objective import ConsumptionRate, Criterion
 from thalweg.planning.request.voyage_endpoints import Endpoint

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 
+from thalweg.core.interrupt import SearchInterrupted
 from thalweg.network import EdgeWeights, Network, alternative_paths, fixed_route
 from thalweg.network.alternatives.alternative_path import AlternativePath as TautWay
-from thalweg.planning.interrupt_guard import SearchInterrupted
 from thalweg.planning.network_selection.network_choice import lattice_between
 from thalweg.planning.pareto.exploration import (
     TrackCandidate,

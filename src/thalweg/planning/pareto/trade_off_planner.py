@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.interrupt import InterruptGuard
 from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
     evenly_spaced_subset,
@@ -19,7 +20,6 @@ from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
 from thalweg.network import shortest_path
-from thalweg.planning.interrupt_guard import InterruptGuard
 from thalweg.planning.network_selection.route_alternatives import find_route_alternatives
 from thalweg.planning.pareto.baseline import (
     compare_with_baseline,

@@ -1,4 +1,8 @@
-"""Feeling one's way along obstacles: waypoints try steps in all directions, ever smaller."""
+"""Compass search: points try steps in eight directions, where derivatives do not help.
+
+Direct search by patterns (Kolda, Lewis & Torczon 2003, "Optimization by direct search", SIAM Review
+45, 385-482). It needs no derivatives, so coasts, closed cells and depth contours may bind.
+"""
 
 from __future__ import annotations
 
@@ -6,18 +10,29 @@ import math
 
 import numpy as np
 
-from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths
-from thalweg.core.types import FloatArray
+from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths, wrap_longitude
+from thalweg.core.types import FloatArray, IntArray
+from thalweg.kernels.leg import population_sailing as columns
+from thalweg.kernels.leg.population_sailing import LAT, LON
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
 from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.population import concatenated_populations
 from thalweg.route.evaluators.time_evaluator import (
     TimeEvaluator,
     TrackBatch,
 )
+from thalweg.route.refinement.point_edits import isolated_maxima, trial_subsets
+from thalweg.route.refinement.scored_tracks import (
+    ScoredTracks,
+    delay_effects,
+    legs_as_tracks,
+    sail_legs_alone,
+)
+from thalweg.route.refinement.track_geometry import displaced_positions
 
 _DIRECTIONS = 8
-_INITIAL_STEP_SHARE = 0.3  # first step as a share of the shorter leg beside a waypoint
-_GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))  # turns the compass differently every round
+_INITIAL_STEP_SHARE = 0.3  # first step, as a share of the shorter adjacent leg
+_GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))  # by which the directions turn every round
 
 
 def compass_search(
@@ -27,23 +42,23 @@ def compass_search(
     rounds: int = 30,
     smallest: float = 1.0,
 ) -> Polyline:
-    """Return a line with waypoints moved, one by one, wherever that lowers the cost.
+    """Return a line with waypoints moved wherever that lowers the cost.
 
     Parameters
     ----------
-    line : Line
-        One that can be sailed.
-    evaluator : Sailor
+    line : Polyline
+        One that can be sailed; any other is returned unchanged.
+    evaluator : TimeEvaluator or CostEvaluator
     rounds : int
         Rounds over all waypoints at most.
     smallest : float
-        The work ends when all steps are below this [m].
+        The search ends when all steps are shorter than this [m].
 
     Notes
     -----
-    A compass search for each waypoint on its two legs, every other waypoint at a time. To be
-    earlier at the next waypoint is never worse at the goal, so two legs are enough to judge. It
-    needs no derivatives, so coasts, closed cells and depth contours may bind.
+    Every second waypoint moves at a time, each compared on its two adjacent legs alone: an earlier
+    arrival at the next waypoint is never worse at the goal. Steps grow by 1.3 after a gain and
+    halve otherwise.
     """
     if len(line) < 3 or not math.isfinite(evaluator.sail(line.batch())[1][0]):
         return line
@@ -70,7 +85,7 @@ def _try_steps(
     step: FloatArray,
     number: int,
 ) -> tuple[Polyline, np.ndarray]:
-    """Move each of some waypoints to the best of its trial places; tell which moved."""
+    """Move each of some waypoints to the best of its trial positions; return also which moved."""
     angle = number * _GOLDEN_ANGLE + np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
     east = np.concatenate([[0.0], np.sin(angle)])
     north = np.concatenate([[0.0], np.cos(angle)])
@@ -105,3 +120,75 @@ def _try_steps(
 
 def _adjacent_triples(values: FloatArray, moving: np.ndarray) -> FloatArray:
     return np.stack([values[moving - 1], values[moving], values[moving + 1]], axis=1)
+
+
+def compass_search_of_tracks(lines: ScoredTracks, *, radius: float) -> ScoredTracks:
+    """Return tracks after a trial step of each of their points in eight directions.
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    radius : float
+        Step as a share of the mean length of the two adjacent legs.
+
+    Returns
+    -------
+    ScoredTracks
+        Nowhere worse.
+    """
+    row, place = np.nonzero(lines.free)
+    if not len(row):
+        return lines
+    lengths = lines.lengths()
+    reach = radius * 0.5 * (lengths[row, place - 1] + lengths[row, place])
+    angle = 2.0 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    point = lines.population.genes[row, place][:, None, :]
+    lat, lon = displaced_positions(
+        point[..., LAT],
+        point[..., LON],
+        reach[:, None] * np.sin(angle),
+        reach[:, None] * np.cos(angle),
+    )
+    lat, lon = np.clip(lat, -90.0, 90.0), wrap_longitude(lon)
+    value, base = _moved_values(lines, row, place, lat, lon)
+    best = np.argmin(value, axis=1)
+    every = np.arange(len(row))
+    gain = np.zeros(lengths.shape)
+    gain[row, place] = np.where(np.isfinite(base), base, 0.0) - value[every, best]
+    gain[~np.isfinite(gain)] = 0.0
+    target = np.zeros((*lengths.shape, 2))
+    target[row, place] = np.stack([lat[every, best], lon[every, best]], axis=1)
+    trials, rows = [], []
+    for chosen, index in trial_subsets(isolated_maxima(gain)):
+        copy = lines.population.take(index)
+        copy.genes[:, :, LAT][chosen] = target[index, :, 0][chosen]
+        copy.genes[:, :, LON][chosen] = target[index, :, 1][chosen]
+        touched = chosen.copy()
+        touched[:, :-1] |= chosen[:, 1:]
+        copy.genes[:, :, columns.IS_LOOKED_UP][touched] = 0.0
+        trials.append(copy)
+        rows.append(index)
+    return (
+        lines.chosen(concatenated_populations(*trials), np.concatenate(rows)) if trials else lines
+    )
+
+
+@np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
+def _moved_values(
+    lines: ScoredTracks, row: IntArray, place: IntArray, lat: FloatArray, lon: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the value of the legs beside points (P,) at trial positions (P, D), and unmoved."""
+    late = delay_effects(lines).priced(lines.price)
+    times = lat.shape[1]
+    total, base = np.zeros(lat.shape), np.zeros(len(row))
+    for first, end in ((place - 1, 1), (place, 0)):
+        pairs, depart = legs_as_tracks(lines, row, first)
+        still = sail_legs_alone(lines.evaluator, pairs, depart)
+        base += still[1] + late[row, first + 1] * still[0]
+        every = np.repeat(pairs, times, axis=0)
+        every[:, end, LAT], every[:, end, LON] = lat.ravel(), lon.ravel()
+        every[:, 0, columns.IS_LOOKED_UP] = 0.0
+        time, cost = sail_legs_alone(lines.evaluator, every, np.repeat(depart, times))
+        value = cost + np.repeat(late[row, first + 1], times) * time
+        total += value.reshape(lat.shape)
+    return total, base

@@ -15,16 +15,14 @@ from thalweg.kernels.leg import population_sailing
 from thalweg.route.evaluators.calm_water_rates import calm_water_values
 from thalweg.route.evaluators.population import Population, concatenated_populations
 from thalweg.route.evaluators.population_evaluator import Evaluator
+from thalweg.route.refinement.compass_search import compass_search_of_tracks
 from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
-from thalweg.route.refinement.population_moves import (
-    choose_speeds_of_tracks,
-    compass_search_of_tracks,
-    leg_times_and_costs_by_setting,
-    points_between,
-    remove_points,
-    split_long_legs,
-)
+from thalweg.route.refinement.point_edits import points_between, remove_points, split_long_legs
 from thalweg.route.refinement.scored_tracks import ScoredTracks, delay_effects, feasible_front
+from thalweg.route.refinement.speed_profile import (
+    choose_speeds_of_tracks,
+    leg_times_and_costs_by_setting,
+)
 
 REFINEMENT_LEVELS = (12, 24, 40)  #: legs of a track, level by level
 _REMOVAL_PASSES = 8  # passes that leave points out at first ...

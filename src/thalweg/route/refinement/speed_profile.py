@@ -1,4 +1,4 @@
-"""Which setting on which leg: the cheapest choice that is in time."""
+"""Speed settings of the legs: the cheapest that arrive in time, or for a price of time."""
 
 from __future__ import annotations
 
@@ -11,46 +11,58 @@ import numpy as np
 from thalweg.core.geodesy import direct, inverse, unwrap_longitude
 from thalweg.core.pareto_fronts import lower_hull, non_dominated_indices
 from thalweg.core.types import FloatArray, IntArray
+from thalweg.kernels.leg import population_sailing as columns
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
 from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.population import concatenated_populations
 from thalweg.route.evaluators.time_evaluator import TrackBatch
-
-_MAX_ROUNDS = 4  # choices, each at the times of the one before
-_SLOPE_TOLERANCE = (
-    1e-3  # slopes that differ by less than this share count as one: neighbours go first
+from thalweg.route.refinement.point_edits import trial_subsets
+from thalweg.route.refinement.scored_tracks import (
+    DelayEffects,
+    ScoredTracks,
+    delay_effects,
+    fix_piece_counts,
+    legs_as_tracks,
+    sail_legs_alone,
 )
-_MIN_LEG_SHARE = 0.02  # of a leg that is worth a waypoint
+
+_MAX_ROUNDS = 4  # choices, each at the times of passage of the one before
+_SLOPE_TOLERANCE = (
+    1e-3  # relative difference below which slopes count as equal; then the first leg comes first
+)
+_MIN_LEG_SHARE = 0.02  # least share of a leg that gets a waypoint of its own
 
 
 def choose_speeds(
     line: Polyline, evaluator: CostEvaluator, latest: float, *, whole: bool = False
 ) -> tuple[Polyline, float]:
-    """Return the line with the cheapest settings that arrive by a time, and the worth of a second.
+    """Return the line with the cheapest settings that arrive in time, and the value of a second.
 
     Parameters
     ----------
-    line : Line
-    evaluator : Purse
+    line : Polyline
+    evaluator : CostEvaluator
     latest : float
-        [s after the origin].
+        Latest arrival [s after the origin].
     whole : bool
-        Leave legs whole, so that the line has the same waypoints.
+        Do not split legs: the line keeps its waypoints.
 
     Returns
     -------
-    Line
-        Perhaps with one more waypoint, where the setting changes within a leg. At the fastest
-        settings if even those are late.
+    line : Polyline
+        With one more waypoint if a setting changes within a leg. At the fastest settings if even
+        those are late.
     per_second : float
-        What the next second saved costs (the slope of cost over time); 0 if all legs are at their
-        cheapest.
+        Cost of the next second saved (the slope of cost over time); 0 if all legs are at their
+        cheapest setting.
 
     Notes
     -----
-    The time of a leg buys less fuel; on the lower convex hull of (time, cost) of every leg the
-    steps are taken in the order of what they save per second (the linear relaxation of the
-    multiple-choice knapsack, Sinha & Zoltners 1979), the last one on a part of its leg. Times of
-    passage shift with the choice, so it is repeated.
+    The linear relaxation of the multiple-choice knapsack problem (Sinha & Zoltners 1979, "The
+    multiple-choice knapsack problem", Operations Research 27, 503-515): with every leg at its
+    fastest setting, steps to slower settings on the lower convex hull of (time, cost) of each leg
+    are taken in the order of the cost saved per second, the last one on a part of its leg. Times
+    of passage depend on the choice, so it is repeated.
     """
     budget, slope = latest, 0.0
     base = line
@@ -71,7 +83,7 @@ def choose_speeds(
 
 
 def _departure_plus_waiting(line: Polyline, evaluator: CostEvaluator) -> float:
-    """Return departure plus the time lain still [s after the origin]."""
+    """Return departure plus the waiting times [s after the origin]."""
     arrive = evaluator.sail(line.batch(), check=False)[0][0]
     waits = np.maximum(line.leave[:-1] - arrive[:-1], 0.0)
     return line.depart + float(waits[np.isfinite(waits)].sum())
@@ -82,7 +94,7 @@ def _times_and_costs_by_setting(
 ) -> tuple[FloatArray, FloatArray]:
     """Return (time, cost) of every leg (legs, settings) at the times of passage of the line.
 
-    Cost has the price of time in it; both are +inf where a leg cannot be sailed.
+    Cost includes the price of time; both are +inf where a leg cannot be sailed.
     """
     legs, settings = len(line) - 1, evaluator.settings
     arrive = evaluator.sail(line.batch(), check=False)[0][0]
@@ -129,7 +141,7 @@ def _knapsack(
 
 
 def _rounded_slope(slope: float) -> float:
-    """Return a slope rounded on a logarithmic scale, so that like ones are equal."""
+    """Return a slope rounded on a logarithmic scale, so that similar ones are equal."""
     return (
         math.exp(round(math.log(slope) / _SLOPE_TOLERANCE) * _SLOPE_TOLERANCE)
         if slope > 0.0
@@ -162,3 +174,67 @@ def _with_slower_part(line: Polyline, part: tuple[int, int, float] | None) -> Po
         setting.astype(np.int64),
         line.depart,
     )
+
+
+def choose_speeds_of_tracks(lines: ScoredTracks, *, rounds: int = 3) -> ScoredTracks:
+    """Return tracks with the setting of every leg chosen for its own cost and its delay.
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    rounds : int
+        Choices at most, each at the times of passage of the one before.
+
+    Returns
+    -------
+    ScoredTracks
+        Nowhere worse.
+    """
+    for _ in range(rounds):
+        before = lines.value
+        row, place = lines.legs
+        value = leg_values_by_setting(lines, delay_effects(lines), row, place)
+        now = lines.population.genes[row, place, columns.SETTING].astype(np.int64)
+        best = np.argmin(value, axis=1)
+        gain = np.full(lines.population.genes.shape[:2], 0.0)
+        with np.errstate(invalid="ignore"):
+            better = value[np.arange(len(row)), now] - value[np.arange(len(row)), best]
+        gain[row, place] = np.where(np.isfinite(better), better, 0.0)
+        wanted = np.zeros(gain.shape)
+        wanted[row, place] = best
+        trials, rows = [], []
+        for chosen, index in trial_subsets(gain):
+            copy = lines.population.take(index)
+            setting = copy.genes[:, :, columns.SETTING]
+            setting[chosen] = wanted[index][chosen]
+            trials.append(copy)
+            rows.append(index)
+        if not trials:
+            break
+        lines = lines.chosen(concatenated_populations(*trials), np.concatenate(rows))
+        if not (lines.value < before * (1.0 - 1e-7)).any():
+            break
+    return lines
+
+
+@np.errstate(invalid="ignore")  # infinite where a leg cannot be sailed
+def leg_values_by_setting(
+    lines: ScoredTracks, delays: DelayEffects, row: IntArray, place: IntArray
+) -> FloatArray:
+    """Return the value (L, settings) of every leg at every setting; +inf where it cannot sail."""
+    time, cost = leg_times_and_costs_by_setting(lines, row, place)
+    late = delays.priced(lines.price)[row, place + 1]
+    return np.where(np.isfinite(time), cost + late[:, None] * time, math.inf)
+
+
+def leg_times_and_costs_by_setting(
+    lines: ScoredTracks, row: IntArray, place: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return (time, cost) (L, settings) of every leg at every setting."""
+    settings = lines.evaluator.settings
+    pairs, depart = legs_as_tracks(lines, row, place)
+    fix_piece_counts(lines.evaluator, pairs)
+    every = np.repeat(pairs, settings, axis=0)
+    every[:, 0, columns.SETTING] = np.tile(np.arange(settings), len(row))
+    time, cost = sail_legs_alone(lines.evaluator, every, np.repeat(depart, settings), blocked=True)
+    return time.reshape(-1, settings), cost.reshape(-1, settings)
