@@ -200,9 +200,9 @@ def test_genomes_go_to_tracks_and_back():
     assert genome.setting.tolist() == [4, 2]
     assert genome.via.tolist() == [True, True, True]
     population = concatenated_populations(
-        Population.of([genome]), Population.of([wavy(9)], room=20)
+        Population.of([genome]), Population.of([wavy(9)], capacity=20)
     )
-    assert population.room == 20
+    assert population.capacity == 20
     back = population.genome(0)
     assert back.to_track(0.0) == track.replaced(setting=[4, 2])
     assert population.take([1]).genome(0).lat.tolist() == wavy(9).lat.tolist()

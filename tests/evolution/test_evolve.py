@@ -174,7 +174,7 @@ def test_a_front_has_settled_when_its_distances_vary_no_more():
 def test_asking_and_telling_is_all_there_is():
     evaluator = jet.evaluator()
     rng = np.random.default_rng(0)
-    first = evaluator.population([jet.straight(s) for s in range(12)], room=40)
+    first = evaluator.population([jet.straight(s) for s in range(12)], capacity=40)
     strategy = Nsga2(evaluator, first, size=8, variation_settings=VariationSettings(), rng=rng)
     assert strategy.ask() is first
     for _ in range(3):

@@ -24,10 +24,10 @@ def only(name: str, **more) -> VariationSettings:
     return VariationSettings(mix=OperatorWeights(**{**NONE, name: 1.0}), crossover=0.0, **more)
 
 
-def bred(genomes, variation_settings, count, *, room=64, seed=0, chart=None):
+def offspring_of(genomes, variation_settings, count, *, capacity=64, seed=0, chart=None):
     """Return ``count`` children of each pair of neighbours in a list of genomes."""
     evaluator = jet.evaluator(chart=chart)
-    population = evaluator.population(genomes, room=room)
+    population = evaluator.population(genomes, capacity=capacity)
     pairs = np.tile([[0, len(genomes) - 1]], (count // 2, 1))
     rng = np.random.default_rng(seed)
     return reproduce(
@@ -43,7 +43,9 @@ def test_inserted_points_have_the_spread_of_their_shape(shape, share, lat):
     leg = Genome([lat, lat + 0.2], [10.0, 10.3], [3])  # a slanting leg of some 25 km
     length, course, _ = (float(x) for x in inverse(lat, 10.0, lat + 0.2, 10.3))
     a, b = 0.5 * length, 0.5 * length * 0.4
-    offspring = bred([leg], only("insert", shape=shape, insert_width=0.4, changes=1e-6), DRAWS)
+    offspring = offspring_of(
+        [leg], only("insert", shape=shape, insert_width=0.4, changes=1e-6), DRAWS
+    )
     assert all(len(g) == 3 and g.setting.tolist() == [3, 3] for g in offspring)
     far, bearing, _ = inverse(
         lat, 10.0, [g.lat[1] for g in offspring], [g.lon[1] for g in offspring]
@@ -58,7 +60,7 @@ def test_inserted_points_have_the_spread_of_their_shape(shape, share, lat):
 
 def test_translations_are_even_in_a_disc():
     track = Genome([50.0, 50.1, 50.0], [0.0, 0.2, 0.4], [1, 2])
-    offspring = bred([track], only("translate", radius=(0.3, 0.3)), DRAWS)
+    offspring = offspring_of([track], only("translate", radius=(0.3, 0.3)), DRAWS)
     legs, _, _ = inverse(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
     radius = 0.3 * float(legs.mean())
     far, bearing, _ = inverse(
@@ -73,8 +75,8 @@ def test_translations_are_even_in_a_disc():
 @pytest.mark.parametrize("scale", [0.25, 2.0])
 def test_number_of_changes_falls_off_exponentially(scale):
     points = 41
-    offspring = bred(
-        [jet.straight(2, points)], only("insert", changes=scale * (points - 1)), DRAWS, room=99
+    offspring = offspring_of(
+        [jet.straight(2, points)], only("insert", changes=scale * (points - 1)), DRAWS, capacity=99
     )
     told = np.bincount([len(g) - points for g in offspring], minlength=points)[1:] / DRAWS
     expected = np.exp(-np.arange(1, points) / scale)
@@ -85,14 +87,14 @@ def test_number_of_changes_falls_off_exponentially(scale):
 
 def test_legs_are_drawn_by_length():
     lat, lon = np.zeros(4), np.array([0.0, 0.1, 0.4, 1.0])
-    offspring = bred([Genome(lat, lon, [0, 1, 2])], only("insert", changes=1e-6), DRAWS)
+    offspring = offspring_of([Genome(lat, lon, [0, 1, 2])], only("insert", changes=1e-6), DRAWS)
     where = [int(g.setting[np.flatnonzero(np.diff(g.setting) == 0)[0]]) for g in offspring]
     assert np.bincount(where) / DRAWS == pytest.approx([0.1, 0.3, 0.6], abs=0.04)
 
 
 def test_turning_points_move_more():
     track = Genome([0.0, 0.0, 0.0, 0.3], [0.0, 0.1, 0.2, 0.2], [0, 0, 0])  # a right angle at 2
-    offspring = bred([track], only("translate", changes=1e-6), DRAWS)
+    offspring = offspring_of([track], only("translate", changes=1e-6), DRAWS)
     moved = np.array([[g.lat[k] != track.lat[k] for k in (1, 2)] for g in offspring]).mean(axis=0)
     weight = np.array([0.05, math.pi / 2 + 0.05])
     assert moved == pytest.approx(weight / weight.sum(), abs=0.03)
@@ -100,15 +102,15 @@ def test_turning_points_move_more():
 
 def test_deleting_keeps_the_setting_before_merging_either():
     track = Genome([0.0, 0.1, 0.0], [0.0, 0.1, 0.2], [4, 9])
-    assert {tuple(g.setting) for g in bred([track], only("delete"), 50)} == {(4,)}
-    kept = [int(g.setting[0]) for g in bred([track], only("merge"), 1000)]
+    assert {tuple(g.setting) for g in offspring_of([track], only("delete"), 50)} == {(4,)}
+    kept = [int(g.setting[0]) for g in offspring_of([track], only("merge"), 1000)]
     assert set(kept) == {4, 9}
     assert 0.4 < np.mean(np.array(kept) == 4) < 0.6
 
 
 def test_runs_of_legs_get_one_other_speed():
     track = jet.straight(5, 9)
-    offspring = bred([track], only("speed"), DRAWS)
+    offspring = offspring_of([track], only("speed"), DRAWS)
     changed = [np.flatnonzero(g.setting != 5) for g in offspring]
     assert all(len(c) and len(c) == c[-1] - c[0] + 1 for c in changed)
     assert all(len(set(g.setting[c])) == 1 for g, c in zip(offspring, changed))
@@ -123,7 +125,7 @@ def test_runs_of_legs_get_one_other_speed():
 
 def test_splitting_cuts_a_leg_on_its_great_circle():
     track = Genome([40.0, 45.0], [-70.0, -20.0], [5])
-    for g in bred([track], only("split"), 100):
+    for g in offspring_of([track], only("split"), 100):
         assert sorted(g.setting.tolist())[0] != sorted(g.setting.tolist())[1]
         assert 5 in g.setting
         via = inverse(g.lat[:-1], g.lon[:-1], g.lat[1:], g.lon[1:])[0].sum()
@@ -132,7 +134,7 @@ def test_splitting_cuts_a_leg_on_its_great_circle():
 
 def test_pauses_change_waits_only():
     track = Genome([0.0, 0.1, 0.0], [0.0, 0.1, 0.2], [4, 9], [0.0, 100.0, 0.0])
-    offspring = bred([track], only("pause"), DRAWS)
+    offspring = offspring_of([track], only("pause"), DRAWS)
     waits = np.array([g.wait[1] for g in offspring])
     assert waits.min() == 0.0
     assert np.mean(waits == 0.0) == pytest.approx(0.2, abs=0.03)
@@ -150,7 +152,7 @@ def test_children_are_tracks_from_start_to_goal(first, second, seed):
         lat = np.array(base.lat)
         lat[1:-1] += random.normal(0.0, 0.003, points - 2)
         parents.append(Genome(lat, base.lon, random.integers(0, 12, points - 1)))
-    for g in bred(parents, VariationSettings(crossover=0.7), 16, seed=seed, room=40):
+    for g in offspring_of(parents, VariationSettings(crossover=0.7), 16, seed=seed, capacity=40):
         assert (g.lat[0], g.lon[0]) == (parents[0].lat[0], parents[0].lon[0])
         assert (g.lat[-1], g.lon[-1]) == (parents[0].lat[-1], parents[0].lon[-1])
         assert 2 <= len(g) <= 40
@@ -168,7 +170,7 @@ def test_crossover_joins_neighbouring_points_and_keeps_via_points():
     bent[1:4] += 0.002
     bent[5:8] -= 0.002
     b = Genome(bent, straight.lon, np.full(8, 7), via=via)
-    offspring = bred([a, b], VariationSettings(crossover=1.0, mutation=0.0), 200)
+    offspring = offspring_of([a, b], VariationSettings(crossover=1.0, mutation=0.0), 200)
     kinds = {tuple(g.setting) for g in offspring}
     assert len(kinds) > 2
     for g in offspring:
@@ -186,7 +188,7 @@ def test_new_legs_keep_clear_of_land_and_canals_stay():
     places = [jet.position(*p) for p in ((100, 200), (215, 270), (265, 270), (400, 300))]
     lat, lon = np.array(places).T
     evaluator = jet.evaluator(chart=chart)
-    population = evaluator.population([Genome(lat, lon, [6, 6, 6])], room=32)
+    population = evaluator.population([Genome(lat, lon, [6, 6, 6])], capacity=32)
     evaluator.look_up_legs(population)
     population.genes[0, 1, population_sailing.FIXED_TIME] = 50.0
     pairs = np.zeros((200, 2), dtype=np.int64)
@@ -221,6 +223,6 @@ def test_random_numbers_are_those_of_splitmix():
         {"changes": 0.0},
     ],
 )
-def test_habits_that_make_no_sense_are_errors(wrong):
+def test_invalid_variation_settings_are_refused(wrong):
     with pytest.raises(InputError):
         VariationSettings(**wrong)

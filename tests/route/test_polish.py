@@ -174,7 +174,7 @@ def test_never_worse_and_told_when_it_cannot_be_asked():
     same = polished(start)
     assert same.cost <= start.cost
     assert same.arrive <= start.arrive + 1e-6
-    with pytest.raises(InputError, match="polished for 'speed'"):
+    with pytest.raises(InputError, match="refined for 'speed'"):
         polished(start, objective="speed")
     unpriced = Ship.from_dict({k: v for k, v in BULKER.data.items() if k != "fuel"})
     with pytest.raises(InputError, match="price of the fuel is unknown"):

@@ -1,4 +1,4 @@
-"""Evolution of tracks: populations scored by the shared kernel, their operators and fronts."""
+"""Multi-objective evolution of tracks: algorithms, variation operators and quality indicators."""
 
 from thalweg.deprecated_names import renamed
 from thalweg.evolution.evolve import EvolutionProgress, EvolutionResult, evolve

@@ -1,4 +1,4 @@
-"""What NSGA-II, SPEA2 and M-PAES have in common: asking for scores and being told them."""
+"""The common interface of NSGA-II, SPEA2 and M-PAES: they ask for scores and are given them."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ ScoreRequests = Generator[Population, FloatArray, None]
 
 
 class EvolutionaryAlgorithm(ABC):
-    """A search by evolution, driven from outside.
+    """An evolutionary algorithm whose steps are called from outside.
 
     Parameters
     ----------
     evaluator : Evaluator
-        For its chart and settings; it is not called.
+        Its chart and settings are used; it is not called.
     first : Population
-        To begin with; the best of it are kept if it is larger than ``size``.
+        The first population; its best tracks are kept if it is larger than ``size``.
     size : int
         Tracks in the population (and the archive), at least 4.
-    variation_settings : Habits
+    variation_settings : VariationSettings
     rng : numpy.random.Generator
 
     Examples
     --------
-    ``asked = strategy.ask()`` returns the tracks that are to be scored next,
-    ``strategy.tell(evaluator.score(asked))`` goes on.
+    ``asked = strategy.ask()`` returns the tracks that are to be scored next;
+    ``strategy.tell(evaluator.score(asked))`` continues with their scores.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class EvolutionaryAlgorithm(ABC):
 
     @abstractmethod
     def _search(self) -> ScoreRequests:
-        """Yield populations, be sent their scores; keep ``population`` and ``scores`` current."""
+        """Yield populations and receive their scores; update ``population`` and ``scores``."""
 
     def _children(
         self, pairs: IntArray, variation_settings: VariationSettings | None = None
@@ -80,21 +80,21 @@ class EvolutionaryAlgorithm(ABC):
             rng=self.rng,
         )
 
-    def _keep(self, chosen: IntArray, offspring: Population, told: FloatArray) -> None:
-        """Keep some of the population and its young (counted on from it)."""
-        both = np.concatenate([self.scores, told])
+    def _keep(self, chosen: IntArray, offspring: Population, scores: FloatArray) -> None:
+        """Keep the chosen tracks of the population followed by its offspring."""
+        both = np.concatenate([self.scores, scores])
         self.population = concatenated_populations(self.population, offspring).take(chosen)
         self.scores = both[chosen]
 
     def _binary_tournament(self, better: IntArray, count: int) -> IntArray:
-        """Return winners (count,) of binary tournaments; ``better`` is each track's place."""
+        """Return winners (count,) of binary tournaments; ``better`` is the rank of each track."""
         drawn = self.rng.integers(0, len(better), size=(count, 2))
         first, second = better[drawn[:, 0]], better[drawn[:, 1]]
         return np.where(first <= second, drawn[:, 0], drawn[:, 1])
 
 
 def check_size(size: int) -> None:
-    """Raise if a population is too small."""
+    """Raise `InputError` if a population is too small."""
     if size < MIN_SIZE:
         raise InputError(
             f"A population of {size} is too small.",

@@ -1,4 +1,4 @@
-"""Evolution from seeds to a front: the loop, when it ends, and what it hands back."""
+"""Evolution from seeds to a front: the loop, its stopping criteria and its result."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ SETTLED_VARIANCE = (
     3e-4  #: its variance below which it has, in units of the front's mean spacing squared
 )
 MAX_GENERATIONS = 500  #: if nothing else limits a run
-_VERIFICATION_REFINEMENT = 4.0  # the front is looked at again with pieces so many times shorter
+_VERIFICATION_REFINEMENT = 4.0  # the front is verified with pieces shorter by this factor
 
 Cancel: TypeAlias = Callable[[], bool]
 
 
 @dataclass(frozen=True)
 class EvolutionProgress:
-    """How far an evolution is.
+    """Progress of an evolution.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class EvolutionProgress:
 
 @dataclass(frozen=True)
 class StoppingCriteria:
-    """When an evolution ends, whichever comes first; None: not by that.
+    """Criteria that end an evolution, whichever is met first; None: not used.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class StoppingCriteria:
                 )
 
     def reached(self, generation: int, evaluations: int, seconds: float) -> str:
-        """Return which of the counted limits is reached, or nothing."""
+        """Return the name of the limit that is reached; empty if none is."""
         counted = {"generations": generation, "evaluations": evaluations, "seconds": seconds}
         for name, value in counted.items():
             most = getattr(self, name)
@@ -102,15 +102,15 @@ class EvolutionResult:
     Attributes
     ----------
     genomes : tuple of Genome
-        Feasible tracks that nothing found dominates, by ascending time.
+        Feasible tracks that no other one dominates, by ascending time.
     time, cost : float64 array (n,)
         As compared: by the kernel, not the referee [s, unit of the prices].
     origin : tuple of str
-        What each comes from: the method, or the stage of `refine_front`.
+        Origin of each: the method, or the stage of `refine_front`.
     generations, evaluations : int
     seconds : float
     stopped : str
-        What ended it: "generations", "evaluations", "seconds", "settled" or "cancelled".
+        Its criterion: "generations", "evaluations", "seconds", "settled" or "cancelled".
     """
 
     genomes: tuple[Genome, ...]
@@ -158,7 +158,7 @@ def evolve(
     ----------
     evaluator : Evaluator
     seeds : sequence of Genome or Track
-        To begin with, best one for each way round.
+        First tracks, preferably one for each alternative route.
     method : {"nsga2", "spea2", "mpaes"}
     size : int
         Tracks in the population or archive, at least 4.
@@ -170,19 +170,19 @@ def evolve(
         the one before, objectives as shares of its range, times the number of points: in units
         of the mean spacing of the front) is below this; None: never.
     seed : int
-        Of the random numbers: the same run again, to the bit.
+        Of the random numbers: equal seeds give equal runs, to the bit.
     progress : callable, optional
-        Called with a `EvolutionProgress` after every generation.
+        Called with an `EvolutionProgress` after every generation.
     cancel : callable, optional
-        Asked after every generation; true ends the run with the best so far. Without it, Ctrl-C
-        does so, with a warning; pressed again it interrupts.
-    operators : Habits, optional
-        How children are made.
+        Called after every generation; true ends the run with the best front so far. Without it
+        Ctrl-C does so, with a warning; pressed again it interrupts.
+    operators : VariationSettings, optional
+        Variation operators and their probabilities.
 
     Returns
     -------
-    Evolution
-        Its front is empty if nothing feasible was found.
+    EvolutionResult
+        Its front is empty if no feasible track was found.
 
     Raises
     ------
@@ -219,7 +219,7 @@ def evolve(
 
 @dataclass(frozen=True)
 class RunSummary:
-    """What a run took and why it ended (see `EvolutionResult`)."""
+    """Work of a run and the criterion that ended it (see `EvolutionResult`)."""
 
     generations: int
     evaluations: int
@@ -234,7 +234,7 @@ def run_algorithm(
     progress: Callable[[EvolutionProgress], None] | None = None,
     cancel: Cancel | None = None,
 ) -> RunSummary:
-    """Drive a strategy until it has settled, a limit is reached or it is cancelled."""
+    """Run an algorithm until it has settled, a limit is reached or it is cancelled."""
     begun, settling = clock.perf_counter(), ConvergenceTest(limits.settled)
     generation = evaluations = 0
     while True:
@@ -256,7 +256,7 @@ def run_algorithm(
 def with_wait_mutations(
     variation_settings: VariationSettings, population: Population
 ) -> VariationSettings:
-    """Return habits that change waits too, if a population has any."""
+    """Return settings that vary waits too, if a population has any."""
     waits = bool((population.genes[:, :, population_sailing.WAITING_TIME] > 0.0).any())
     if not waits or variation_settings.mix.pause > 0.0:
         return variation_settings
@@ -272,7 +272,7 @@ class ConvergenceTest:
         self._distances: deque[float] = deque(maxlen=SETTLING_WINDOW)
 
     def settled(self, front: FloatArray) -> bool:
-        """Take the front of a generation and return whether it has settled."""
+        """Return whether the fronts have settled, the front of a new generation being the last."""
         if len(front) and len(self._before):
             apart = generational_distance(front, self._before)
             self._distances.append(apart * len(front))
@@ -285,7 +285,7 @@ class ConvergenceTest:
 def verified_at_finer_spacing(
     evaluator: Evaluator, population: Population, scores: FloatArray, origin: Sequence[str]
 ) -> tuple[Population, FloatArray, list[str]]:
-    """Return the tracks that stay feasible when looked at in shorter pieces."""
+    """Return the tracks that stay feasible when they are sailed in shorter pieces."""
     still = np.flatnonzero(scores[:, 2] == 0.0)
     if len(still):
         closer = evaluator.finer(_VERIFICATION_REFINEMENT).score(population.take(still))

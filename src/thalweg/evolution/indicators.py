@@ -1,6 +1,6 @@
-"""How good a front is: hypervolume and its ratios, coverage, distances, crowding.
+"""Quality indicators of fronts: hypervolume and its ratios, coverage, distances, crowding.
 
-Everywhere a front is an array (n, 2) of two objectives that are both to be made small.
+A front is an array (n, 2) of two objectives that are both minimised.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ def hypervolume(points: ArrayLike, reference: ArrayLike) -> float:
     Parameters
     ----------
     points : array_like, shape (n, 2)
-        Objectives; points that do not lie below the reference in both add nothing.
+        Objectives; points that are not below the reference in both add nothing.
     reference : array_like, shape (2,)
-        The worst values that count.
+        The largest values that count.
 
     Notes
     -----
@@ -51,8 +51,8 @@ def hypervolume(points: ArrayLike, reference: ArrayLike) -> float:
     if not np.isfinite(corner).all():
         raise InputError(
             f"The reference point {tuple(corner.tolist())} of a hypervolume is not finite.",
-            "It is the worst value of each objective that still counts.",
-            "Give two numbers.",
+            "It holds the largest value of each objective that still counts.",
+            "Give two finite numbers.",
         )
     front = points[non_dominated_indices(points[:, 0], points[:, 1])]
     front = front[(front < corner).all(axis=1)]
@@ -128,7 +128,7 @@ def generational_distance(
 
 
 def crowding_distance(points: ArrayLike) -> FloatArray:
-    """Return how far the neighbours of each point of a front lie apart.
+    """Return the crowding distance of each point of a front.
 
     The sum over the objectives of the gap between the neighbours on both sides, as a share of
     the objective's range; infinite at the ends (Deb et al. 2002, "A fast and elitist

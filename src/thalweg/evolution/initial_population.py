@@ -27,7 +27,7 @@ def as_genomes(evaluator: Evaluator, seeds: Sequence[Genome | Track]) -> list[Ge
         raise InputError(
             "There is no track to begin with.",
             "Evolution starts from at least one, such as the shortest on a network.",
-            "Give one for each way round.",
+            "Give one for each alternative route.",
         )
     return [
         seed if isinstance(seed, Genome) else Genome.from_track(seed, settings=evaluator.settings)
@@ -45,13 +45,13 @@ def initial_population(
 ) -> Population:
     """Return seeds, each also at the fastest and at the thriftiest setting, and their mutants.
 
-    At least ``size`` tracks (more if there are more seeds). Room is left for points to come.
+    At least ``size`` tracks (more if there are more seeds). Rows have space for further points.
     """
     genomes = as_genomes(evaluator, seeds)
     top, thrifty = evaluator.settings - 1, least_cost_setting(evaluator)
     fast = [_at_setting(genome, top) for genome in genomes]
     slow = [_at_setting(genome, thrifty) for genome in genomes]
-    population = evaluator.population([*genomes, *fast, *slow], room=capacity_for(genomes))
+    population = evaluator.population([*genomes, *fast, *slow], capacity=capacity_for(genomes))
     base, missing = population, size - len(population)
     mix = replace(
         INITIAL_OPERATOR_WEIGHTS,
@@ -72,7 +72,7 @@ def initial_population(
 
 
 def capacity_for(tracks: Sequence[Genome] | IntArray) -> int:
-    """Return the room for points that tracks (or tracks of so many points) need to grow."""
+    """Return the capacity for tracks (or numbers of points), with space for further points."""
     if isinstance(tracks, np.ndarray):
         longest = int(tracks.max())
     else:
@@ -81,7 +81,7 @@ def capacity_for(tracks: Sequence[Genome] | IntArray) -> int:
 
 
 def least_cost_setting(evaluator: Evaluator) -> int:
-    """Return the setting of least cost a metre in calm water."""
+    """Return the setting with the least cost per metre in calm water."""
     prices, fuel = evaluator.prices, calm_water_values(evaluator.world.fuel)
     speeds = calm_water_values(evaluator.world.table)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -1,4 +1,4 @@
-"""From seeds to a refined front: explored, polished for many prices of time, filled, evolved."""
+"""Memetic refinement of a front: exploration, local search for many prices of time, evolution."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ from thalweg.route.refinement.scalarised_search import (
 from thalweg.route.refinement.scored_tracks import feasible_front
 from thalweg.route.track import Track
 
-TIME_PRICES = 48  #: prices of time that are polished for
+TIME_PRICES = 48  #: prices of time of the local search
 FRONT_SIZE = 300  #: tracks on the front
-DEFAULT_GENERATIONS = 50  #: of evolution after polishing, if no limit is given
-_LOCAL_SEARCH_SHARE = 0.6  # share of the seconds that polishing may take
-EXPLORATION_SIZE = 200  #: tracks that explore before polishing, at most
-EXPLORATION_GENERATIONS = 60  #: generations they do it for
-EXPLORATION_SEEDS = 24  #: of their front that are polished
+DEFAULT_GENERATIONS = 50  #: of evolution after the local search, if no limit is given
+_LOCAL_SEARCH_SHARE = 0.6  # share of the seconds that the local search may take
+EXPLORATION_SIZE = 200  #: tracks of the first evolution, at most
+EXPLORATION_GENERATIONS = 60  #: generations of the first evolution
+EXPLORATION_SEEDS = 24  #: tracks of its front that the local search refines
 
 
 @cancel_on_interrupt
@@ -66,43 +66,46 @@ def refine_front(
     ----------
     evaluator : Evaluator
     seeds : sequence of Genome or Track
-        With their settings; every way round that matters should be among them.
+        With their settings; every relevant alternative route should be among them.
     size : int
         Tracks on the front, about.
     lines : int
-        Prices of time for which a track is polished, besides every seed at its own.
+        Prices of time for which a track is refined, in addition to every seed at its own.
     generations : int, optional
-        Of NSGA-II after polishing; 50 by default if there is no limit of seconds. 0: none.
+        Of NSGA-II after the local search; 50 by default if there is no limit of seconds. 0: none.
     seconds : float, optional
-        Limit of the whole; polishing takes at most three fifths of it. A run that this ends is
-        not repeatable.
+        Limit of the whole run; the local search takes at most three fifths of it. A run that ends
+        by this limit is not repeatable.
     settled : float or None
         As for `evolve`.
     seed : int
         Of the random numbers.
     progress : callable, optional
-        Called after every stage of polishing and every generation.
+        Called after every stage of the local search and every generation.
     cancel : callable, optional
-        Asked between steps; true ends the run with the best so far. Without it, Ctrl-C does so.
-    operators : Habits, optional
+        Called between steps; true ends the run with the best front so far. Without it Ctrl-C does
+        so.
+    operators : VariationSettings, optional
 
     Returns
     -------
-    Evolution
-        ``origin`` tells for each track whether it is a "seed", or from "polish" or "nsga2".
+    EvolutionResult
+        ``origin`` is "seed", "polish" (local search) or "nsga2" for each track.
 
     Notes
     -----
-    First a short run of NSGA-II (200 tracks, 60 generations) explores round the seeds; then the
-    seeds and a part of what it found are polished.
+    A memetic algorithm: evolution combined with local search (Moscato 1989).
 
-    A track that is best for some price of time lies on the lower convex hull of the front. For
-    one price the problem is smooth but for the settings: Newton's method bends the track (see
-    `thalweg.route.refinement.newton_offsets`), the setting of each leg is chosen anew, points
-    are left out or put between, and points at coasts and limits feel their way. Between two such
-    tracks the cheapest seconds are exchanged first, and the last leg in part, so the front can be
-    filled evenly. What that misses, tracks off the hull among them, is left to evolution. Of all
-    that was found the front is handed back, thinned where that loses the least area.
+    1. A short run of NSGA-II (200 tracks, 60 generations) explores from the seeds.
+    2. Local search. A track that is best for some price of time is on the lower convex hull of the
+       front. For one price the problem is smooth except for the settings: Newton's method moves the
+       points sideways (`thalweg.route.refinement.newton_offsets`), settings are chosen per leg,
+       points are removed or added, and a compass search moves points at coasts and limits.
+    3. Between two such tracks the front is filled evenly: the cheapest seconds are exchanged first
+       by changes of settings, the last one on a part of its leg.
+    4. NSGA-II finds what this misses, among others tracks above the hull.
+
+    The result is the front of all tracks found, thinned where that loses the least area.
     """
     check_size(size)
     begun = clock.perf_counter()
@@ -110,7 +113,7 @@ def refine_front(
     variation_settings, rng = operators or VariationSettings(), np.random.default_rng(seed)
     genomes = as_genomes(evaluator, seeds)
     pool = _CandidatePool(evaluator)
-    pool.add("seed", evaluator.population(genomes, room=capacity_for(genomes)))
+    pool.add("seed", evaluator.population(genomes, capacity=capacity_for(genomes)))
     first = initial_population(
         evaluator,
         genomes,
@@ -139,7 +142,7 @@ def refine_front(
         held = scalarised_local_search(
             seeds_with_time_prices(evaluator, pool.population, count=lines), stop=watch.stop
         )
-        watch.tell(held.scores)
+        watch.report(held.scores)
         pool.add("polish", concatenated_populations(held.population, fill_front(held, size)))
     limits = _stopping_criteria(generations, seconds, settled, begun)
     work = RunSummary(0, work.evaluations, "cancelled" if watch.cancelled else "generations")
@@ -165,7 +168,7 @@ def refine_front(
 
 
 class _CandidatePool:
-    """All tracks worth keeping, with the stage they come from."""
+    """All candidate tracks, with the stage they come from."""
 
     def __init__(self, evaluator: Evaluator) -> None:
         self._evaluator = evaluator
@@ -174,14 +177,14 @@ class _CandidatePool:
         self.origin: list[str] = []
 
     def add(self, stage: str, population: Population) -> None:
-        """Score tracks and keep them."""
+        """Score tracks and add them."""
         self._scores.append(self._evaluator.score(population))
         self._parts.append(population)
         self.origin += [stage] * len(population)
 
     @property
     def population(self) -> Population:
-        """All of them."""
+        """All candidate tracks."""
         return concatenated_populations(*self._parts)
 
     @property
@@ -191,7 +194,7 @@ class _CandidatePool:
 
 
 class _LocalSearchMonitor:
-    """Whether to go on polishing, and telling how far it is."""
+    """Stopping criteria and progress reports of the local search."""
 
     def __init__(
         self,
@@ -205,15 +208,15 @@ class _LocalSearchMonitor:
         self.cancelled = False
 
     def stop(self) -> bool:
-        """Return whether polishing is to end."""
+        """Return whether the local search is to end."""
         self.cancelled = self.cancelled or (self.cancel is not None and bool(self.cancel()))
         spent = clock.perf_counter() - self.begun
         return self.cancelled or (
             self.seconds is not None and spent > _LOCAL_SEARCH_SHARE * self.seconds
         )
 
-    def tell(self, scores: FloatArray) -> None:
-        """Tell the front of a stage."""
+    def report(self, scores: FloatArray) -> None:
+        """Report the front of a stage."""
         if self.progress is not None:
             front = scores[feasible_front(scores)][:, :2]
             spent = clock.perf_counter() - self.begun

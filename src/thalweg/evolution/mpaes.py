@@ -38,7 +38,7 @@ class HillClimber:
 
     @property
     def is_active(self) -> bool:
-        """Whether it goes on."""
+        """Whether the climb continues."""
         return self.failures < MAX_FAILURES and self.moves < MAX_MOVES
 
     def judge(self, tried: FloatArray, most: int) -> bool:
@@ -93,10 +93,10 @@ class Mpaes(EvolutionaryAlgorithm):
     """
 
     def _search(self) -> ScoreRequests:
-        told = yield self.population
-        self.scores = told
-        chosen, _, _ = select_survivors(told, self.size)
-        self.population, self.scores = self.population.take(chosen), told[chosen]
+        scores = yield self.population
+        self.scores = scores
+        chosen, _, _ = select_survivors(scores, self.size)
+        self.population, self.scores = self.population.take(chosen), scores[chosen]
         count = max(2, self.size // _ARCHIVE_PER_CLIMBER)
         base = self._spread_over_archive(count)
         while True:
@@ -126,19 +126,19 @@ class Mpaes(EvolutionaryAlgorithm):
                 return
             pairs = np.resize(climb.track[active], 2 * ((len(active) + 1) // 2)).reshape(-1, 2)
             offspring = self._children(pairs, alone)
-            told = yield offspring
+            scores = yield offspring
             before = len(self.scores)
             for place, k in enumerate(active):
-                if climb.climbers[k].judge(told[place], self.size):
+                if climb.climbers[k].judge(scores[place], self.size):
                     climb.track[k] = before + place
-            self._update(climb.track, offspring, told)
+            self._update(climb.track, offspring, scores)
 
-    def _update(self, track: IntArray, offspring, told: FloatArray) -> None:  # type: ignore[no-untyped-def]
-        """Update the archive with all the young; keep it and what climbers stand on."""
-        both = np.concatenate([self.scores, told])
+    def _update(self, track: IntArray, offspring, scores: FloatArray) -> None:  # type: ignore[no-untyped-def]
+        """Update the archive with all offspring; keep it and the positions of the climbers."""
+        both = np.concatenate([self.scores, scores])
         kept = select_survivors(both, self.size)[0]
         chosen = np.concatenate([kept, np.setdiff1d(track, kept)])
-        self._keep(chosen, offspring, told)
+        self._keep(chosen, offspring, scores)
         where = np.full(len(both), -1, dtype=np.int64)
         where[chosen] = np.arange(len(chosen))
         track[:] = where[track]
@@ -156,12 +156,14 @@ class Mpaes(EvolutionaryAlgorithm):
             missing = count - len(base)
             pairs = self.rng.integers(0, len(self.scores), size=((missing + 1) // 2, 2))
             offspring = self._children(pairs, sure)
-            told = yield offspring
+            scores = yield offspring
             archive = self.scores[self._archive()]
-            fit = [k for k in range(len(told)) if self._can_join(told[k], archive, pairs[k // 2])]
+            fit = [
+                k for k in range(len(scores)) if self._can_join(scores[k], archive, pairs[k // 2])
+            ]
             before = len(self.scores)
             self.population = concatenated_populations(self.population, offspring)
-            self.scores = np.concatenate([self.scores, told])
+            self.scores = np.concatenate([self.scores, scores])
             base += [before + k for k in fit[:missing]]
             if len(base) == count:
                 break

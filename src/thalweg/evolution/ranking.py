@@ -16,8 +16,8 @@ TIME, COST, VIOLATION = 0, 1, 2
 def ranks_and_crowding(scores: FloatArray) -> tuple[IntArray, FloatArray]:
     """Return (rank, crowding distance) of scores (N, 3).
 
-    Feasible tracks are sorted into non-dominated fronts, 0 the first; those that break something
-    come after them, the one that breaks least first. Of equal ones the first is the better.
+    Feasible tracks are sorted into non-dominated fronts, 0 the first; those with violations
+    come after them, the smallest violation first. Of equal ones the first is the better.
     """
     n = len(scores)
     rank, crowding = np.zeros(n, dtype=np.int64), np.full(n, math.inf)
@@ -43,8 +43,8 @@ def select_survivors(scores: FloatArray, size: int) -> tuple[IntArray, IntArray,
 def strength_fitness(scores: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return SPEA2's (strength S, raw fitness R, fitness F) of scores (N, 3).
 
-    F is R plus the density 1 / (distance to the k-th neighbour + 2), k = floor(sqrt(N)); below 1
-    is what nothing dominates (Zitzler, Laumanns & Thiele 2001). Distances are between objectives
+    F is R plus the density 1 / (distance to the k-th neighbour + 2), k = floor(sqrt(N)); values
+    below 1 are not dominated (Zitzler, Laumanns & Thiele 2001). Distances are between objectives
     as given.
     """
     first, second, violation = (np.ascontiguousarray(scores[:, c]) for c in range(3))
@@ -59,7 +59,7 @@ def strength_fitness(scores: FloatArray) -> tuple[FloatArray, FloatArray, FloatA
 def least_crowded_front(scores: FloatArray, size: int) -> IntArray:
     """Return at most ``size`` tracks of the front, by ascending time.
 
-    The one whose loss takes the least from the dominated area goes first; the ends stay.
+    Tracks whose removal loses the least dominated area are removed first; both ends are kept.
     """
     front = feasible_front(scores)
     time, cost = scores[front, TIME], scores[front, COST]

@@ -17,15 +17,17 @@ class Spea2(EvolutionaryAlgorithm):
     """
 
     def _search(self) -> ScoreRequests:
-        told = yield self.population
-        chosen, place = environmental_selection(told, self.size)
-        self.population, self.scores = self.population.take(chosen), told[chosen]
+        scores = yield self.population
+        chosen, place = environmental_selection(scores, self.size)
+        self.population, self.scores = self.population.take(chosen), scores[chosen]
         while True:
             pairs = self._binary_tournament(place, 2 * ((self.size + 1) // 2)).reshape(-1, 2)
             offspring = self._children(pairs)
-            told = yield offspring
-            chosen, place = environmental_selection(np.concatenate([self.scores, told]), self.size)
-            self._keep(chosen, offspring, told)
+            scores = yield offspring
+            chosen, place = environmental_selection(
+                np.concatenate([self.scores, scores]), self.size
+            )
+            self._keep(chosen, offspring, scores)
 
 
 def environmental_selection(scores: FloatArray, size: int) -> tuple[IntArray, IntArray]:

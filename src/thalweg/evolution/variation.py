@@ -1,4 +1,4 @@
-"""How children are made: the habits of breeding, and breeding a whole population at once."""
+"""Variation of tracks: settings of crossover and mutation, and the offspring of a population."""
 
 from __future__ import annotations
 
@@ -31,11 +31,12 @@ class OperatorWeights:
     Attributes
     ----------
     insert, translate, delete, speed, split, merge : float
-        Chance of each, in proportion. Inserted points lie beside legs drawn by length, moved
-        ones are drawn by how the track turns, deleted ones evenly; a run of legs gets a new
-        speed; a leg is split in two speeds; a point where the track turns little is merged away.
+        Relative probability of each. ``insert`` adds a point beside a leg drawn by length;
+        ``translate`` moves a point drawn by how much the track turns there; ``delete`` removes a
+        point; ``speed`` gives several consecutive legs a new setting; ``split`` divides a leg into
+        two with different settings; ``merge`` removes a point where the track turns little.
     pause : float
-        Of changing one of the waits; only where there are any.
+        Of changing one of the waits; only for tracks with waits.
     """
 
     insert: float = 1.0
@@ -47,7 +48,7 @@ class OperatorWeights:
     pause: float = 0.0
 
 
-#: What the first mutants are made with (Seuren 2020): tracks from networks have too many points.
+#: For the initial population (Seuren 2020): tracks from networks have too many points.
 INITIAL_OPERATOR_WEIGHTS = OperatorWeights(
     insert=1.0, translate=1.0, delete=3.0, speed=1.0, split=0.0, merge=0.0
 )
@@ -55,24 +56,24 @@ INITIAL_OPERATOR_WEIGHTS = OperatorWeights(
 
 @dataclass(frozen=True)
 class VariationSettings:
-    """How children are made.
+    """Parameters of crossover and mutation.
 
     Attributes
     ----------
-    mix : Mix
+    mix : OperatorWeights
     changes : float
-        The number k of changed places of one mutation has P(k) ~ exp(-k / scale), the scale being
-        this over the number of legs.
+        The number k of changed places of a mutation has P(k) ~ exp(-k / scale), with the scale
+        ``changes`` divided by the number of legs.
     shape : {"ellipse", "rhombus", "gaussian"}
         Region of inserted points, as long as the leg.
     insert_width : float
         Its width over its length.
     radius : (float, float)
-        Least and largest radius of translations, as a share of the mean length of the two legs
-        beside; drawn between them evenly in the logarithm.
+        Smallest and largest radius of translations, as a share of the mean length of the two
+        adjacent legs; drawn between them evenly in the logarithm.
     crossover, mutation : float
-        Chances of a crossover and of a mutation after it; a child without crossover is always
-        mutated.
+        Probabilities of a crossover and of a mutation after it; a child without crossover is
+        always mutated.
     """
 
     mix: OperatorWeights = OperatorWeights()
@@ -97,14 +98,14 @@ class VariationSettings:
         right = min(weights) >= 0.0 and sum(weights) > 0.0 and 0.0 < low <= high and chances
         if not (right and self.changes > 0.0 and self.insert_width >= 0.0):
             raise InputError(
-                f"These habits cannot be bred with: {self}.",
-                "Weights are zero or more and not all zero, radii ascend from above zero, "
-                "chances lie between 0 and 1.",
+                f"These variation settings are not valid: {self}.",
+                "Weights are zero or more and not all zero, radii ascend and are above zero, "
+                "probabilities are between 0 and 1.",
                 "Correct them.",
             )
 
     def array(self) -> FloatArray:
-        """Return them as the kernel takes them."""
+        """Return the settings as the kernel takes them."""
         out = np.empty(mutation.VARIATION_SETTING_COUNT)
         weights = [getattr(self.mix, field.name) for field in fields(OperatorWeights)]
         out[: mutation.OPERATOR_COUNT] = weights
@@ -129,7 +130,7 @@ def reproduce(
     variation_settings: VariationSettings,
     rng: np.random.Generator,
 ) -> Population:
-    """Return two children of each pair of parents, not scored yet.
+    """Return two children of each pair of parents, without scores.
 
     Parameters
     ----------
@@ -138,15 +139,15 @@ def reproduce(
         Indices of the parents.
     evaluator : Evaluator
         For its chart and number of settings.
-    variation_settings : Habits
+    variation_settings : VariationSettings
     rng : numpy.random.Generator
-        Gives each pair a seed of its own, so that threads do not matter.
+        Gives each pair its own seed, so that results do not depend on threads.
     """
-    n, room = len(pairs), population.room
+    n, capacity = len(pairs), population.capacity
     states: NDArray[np.uint64] = rng.integers(0, 2**64, size=(n, 1), dtype=np.uint64)
-    born = np.empty((n, 2), dtype=np.int64)
-    offspring = np.zeros((n, 2, room, GENE_COLUMNS))
-    work, weights = np.empty((n, room, GENE_COLUMNS)), np.empty((n, 2 * room))
+    child_counts = np.empty((n, 2), dtype=np.int64)
+    offspring = np.zeros((n, 2, capacity, GENE_COLUMNS))
+    work, weights = np.empty((n, capacity, GENE_COLUMNS)), np.empty((n, 2 * capacity))
     given = (evaluator.settings, variation_settings.array())
     count = np.ascontiguousarray(population.count)
     genes = np.ascontiguousarray(population.genes)
@@ -161,14 +162,14 @@ def reproduce(
             coast,
             *given,
             states[piece],
-            born[piece],
+            child_counts[piece],
             offspring[piece],
             work[piece],
             weights[piece],
         )
 
     run_in_threads(part, n)
-    return Population(born.reshape(-1), offspring.reshape(2 * n, room, GENE_COLUMNS))
+    return Population(child_counts.reshape(-1), offspring.reshape(2 * n, capacity, GENE_COLUMNS))
 
 
 @cache

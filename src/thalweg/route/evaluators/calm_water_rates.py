@@ -1,4 +1,4 @@
-"""What a ship does in calm conditions, read from its tables."""
+"""Speed and fuel rate of a ship in calm water, read from its tables."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ def calm_water_value(table: TableArrays, setting: int) -> float:
 
 
 def calm_water_values(table: TableArrays) -> FloatArray:
-    """Return the calm value of every setting."""
+    """Return the calm-water value of every setting."""
     return np.array([calm_water_value(table, setting) for setting in range(table.n_settings)])
 
 
 def _calm_axis_values(table: TableArrays) -> tuple[float, ...]:
-    """Return a calm value for every axis: the nearest to zero, but the greatest depth."""
+    """Return a calm-water value for every axis: the nearest to zero, but the greatest depth."""
     values = np.zeros(AXIS_COUNT)
     for part, ids in enumerate(table.part_axes):
         for k, axis in enumerate(ids):

@@ -1,4 +1,4 @@
-"""A track in the hands of the refinement: plain arrays, times from an origin."""
+"""Polylines: tracks as plain arrays that refinement works on, times counted from an origin."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from thalweg.route.track import Track
 
 @dataclass(frozen=True)
 class Polyline:
-    """Waypoints with moments not to leave before.
+    """Waypoints with earliest departures.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Polyline:
         )
 
     def moved(self, lat: FloatArray, lon: FloatArray) -> Polyline:
-        """Return the line with its points elsewhere."""
+        """Return the line with its points at other positions."""
         return replace(self, lat=lat, lon=lon)
 
     def kept(self, index: IntArray) -> Polyline:
@@ -72,7 +72,7 @@ class Polyline:
     def required_points(self, evaluator: TimeEvaluator | CostEvaluator) -> NDArray[np.bool_]:
         """Return which points must stay: the ends and where the setting changes.
 
-        Sailors that price fuel have settings chosen anew, so those do not bind them; canals do.
+        Evaluators of cost choose settings, so that only the ends and canals are kept.
         """
         kept = evaluator.fixed_points(self.lat, self.lon)
         if not evaluator.chooses_settings:
@@ -109,7 +109,7 @@ class Polyline:
 
 
 def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
-    """Return a track as a line; its waits become moments of leaving."""
+    """Return a track as a polyline; its waits become earliest departures."""
     line = Polyline(
         np.array(track.lat),
         unwrap_longitude(track.lon),
@@ -126,7 +126,7 @@ def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) ->
 
 
 def track_of_polyline(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Track:
-    """Return a line as a track, its moments of leaving as waits."""
+    """Return a polyline as a track; its earliest departures become waits."""
     arrive, leave, _ = evaluator.sail_and_wait(line.batch())
     wait = np.maximum(0.0, leave[0] - arrive[0])
     wait[~np.isfinite(wait)] = 0.0

@@ -1,4 +1,4 @@
-"""Genomes: tracks as evolution sees them, alone and as a population."""
+"""Populations: many tracks in one array, and single tracks (genomes) of them."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Genome:
     setting : int64 array (n - 1,)
         Setting of each leg, counted from 0.
     wait : float64 array (n,), optional
-        Time lain still at each point [s]; none by default.
+        Waiting time at each point [s]; zeros by default.
     via : bool array (n,), optional
-        Points that every track must pass, in this order; the ends always are.
+        Points that every track must pass, in this order; both ends always are.
     """
 
     lat: FloatArray
@@ -47,8 +47,8 @@ class Genome:
             raise InputError(
                 f"A genome has {count} latitudes, {len(lon)} longitudes, {len(setting)} settings, "
                 f"{len(wait)} waits and {len(via)} marks of via points.",
-                "It has at least two points and one setting less than points.",
-                "Give arrays that fit together.",
+                "It has at least two points, and one setting less than points.",
+                "Give arrays of matching lengths.",
             )
         via[[0, -1]] = True
         made = {"lat": lat, "lon": wrap_longitude(lon), "setting": setting, "wait": wait}
@@ -111,14 +111,14 @@ class Population:
     genes: FloatArray
 
     @classmethod
-    def of(cls, genomes: Sequence[Genome], *, room: int = 0) -> Population:
-        """Put genomes into arrays with room for at least ``room`` points each."""
+    def of(cls, genomes: Sequence[Genome], *, capacity: int = 0) -> Population:
+        """Put genomes into arrays with space for at least ``capacity`` points each."""
         if not len(genomes):
             raise InputError(
-                "There is no genome.", "A population has at least one.", "Give a track to begin."
+                "No genome is given.", "A population has at least one.", "Give at least one track."
             )
         count = np.array([len(genome) for genome in genomes], dtype=np.int64)
-        genes = np.zeros((len(genomes), max(int(count.max()), room), columns.GENE_COLUMNS))
+        genes = np.zeros((len(genomes), max(int(count.max()), capacity), columns.GENE_COLUMNS))
         genes[:, :, columns.FIXED_TIME] = np.nan
         for row, genome in zip(genes, genomes):
             n = len(genome)
@@ -131,8 +131,8 @@ class Population:
         return len(self.count)
 
     @property
-    def room(self) -> int:
-        """Most points a track can have."""
+    def capacity(self) -> int:
+        """Largest number of points of a track."""
         return int(self.genes.shape[1])
 
     def genome(self, index: int) -> Genome:
@@ -156,20 +156,20 @@ class Population:
         chosen = np.asarray(index)
         return Population(self.count[chosen], self.genes[chosen])
 
-    def with_capacity(self, room: int) -> Population:
-        """Return the population with room for exactly so many points (or as many as it needs)."""
-        room = max(room, int(self.count.max(initial=0)))
-        genes = np.zeros((len(self), room, columns.GENE_COLUMNS))
+    def with_capacity(self, capacity: int) -> Population:
+        """Return the population with space for ``capacity`` points, or as many as it has."""
+        capacity = max(capacity, int(self.count.max(initial=0)))
+        genes = np.zeros((len(self), capacity, columns.GENE_COLUMNS))
         genes[:, :, columns.FIXED_TIME] = np.nan
-        both = min(room, self.room)
+        both = min(capacity, self.capacity)
         genes[:, :both] = self.genes[:, :both]
         return Population(self.count, genes)
 
 
 def concatenated_populations(*populations: Population) -> Population:
-    """Return one population of all the tracks of several."""
-    room = max(population.room for population in populations)
-    same = [p if p.room == room else p.with_capacity(room) for p in populations]
+    """Return one population with all the tracks of several."""
+    capacity = max(population.capacity for population in populations)
+    same = [p if p.capacity == capacity else p.with_capacity(capacity) for p in populations]
     return Population(
         np.concatenate([p.count for p in same]), np.concatenate([p.genes for p in same])
     )

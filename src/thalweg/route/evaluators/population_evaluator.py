@@ -122,15 +122,15 @@ class Evaluator:
         score = self.score(population)
         return score[:, 0].copy(), score[:, 1].copy(), score[:, 2].copy()
 
-    def population(self, genomes: Sequence[Genome], *, room: int = 0) -> Population:
+    def population(self, genomes: Sequence[Genome], *, capacity: int = 0) -> Population:
         """Return genomes as a population, checked against the ship's settings."""
-        population = Population.of(genomes, room=room)
+        population = Population.of(genomes, capacity=capacity)
         for number, genome in enumerate(genomes, start=1):
             if genome.setting.min() < 0 or genome.setting.max() >= self.settings:
                 raise InputError(
-                    f"Track {number} asks for a speed setting that the ship does not have.",
+                    f"Track {number} has a speed setting that the ship does not have.",
                     f"It has {self.settings} settings, 0 to {self.settings - 1}.",
-                    "Give the settings of this ship.",
+                    "Use the settings of this ship.",
                 )
         return population
 
@@ -146,9 +146,9 @@ class Evaluator:
         ``depart`` [s after ``self.depart``] may differ from track to track; by default 0.
         """
         self.look_up_legs(population)
-        n, room = len(population), population.room
+        n, capacity = len(population), population.capacity
         start = np.zeros(n) if depart is None else np.ascontiguousarray(depart, float)
-        score, arrive = np.empty((n, columns.SCORE_COUNT)), np.full((n, room), math.nan)
+        score, arrive = np.empty((n, columns.SCORE_COUNT)), np.full((n, capacity), math.nan)
         scratch = np.empty((n, columns.SCRATCH_SIZE))
         count, genes = np.ascontiguousarray(population.count), population.genes
 
@@ -171,7 +171,7 @@ class Evaluator:
 
         Without ``obstacles`` land, no-go zones and charted depth are left out.
         """
-        legs = np.arange(population.room) < (population.count - 1)[:, None]
+        legs = np.arange(population.capacity) < (population.count - 1)[:, None]
         row, place = np.nonzero(legs & (population.genes[:, :, columns.IS_LOOKED_UP] == 0.0))
         if not len(row):
             return
@@ -337,7 +337,7 @@ def make_evaluator(
         raise InputError(
             f"The table of fuel has {rates.n_settings} settings, that of speed "
             f"{time_evaluator.table.n_settings}.",
-            "Both are of one ship.",
+            "Both must be of one ship.",
             "Tabulate both for the same speeds.",
         )
     terms = np.empty(columns.TERM_COUNT)
@@ -372,7 +372,7 @@ def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
     if not all(math.isfinite(value) and value >= 0.0 for value in terms):
         raise InputError(
             f"A price is negative or not a number: {', '.join(f'{x:g}' for x in terms)}.",
-            "Weights of fuel and the price of time are zero or more.",
+            "Prices of fuel and time must be zero or more.",
             "Correct the prices.",
         )
     if not latest > depart:

@@ -148,9 +148,9 @@ class TimeEvaluator:
             np.empty(count),
             np.empty(count, dtype=np.int64),
         )
-        room = np.zeros(codes.CHANNEL_COUNT), np.zeros(3)
+        work = np.zeros(codes.CHANNEL_COUNT), np.zeros(3)
         sail_polylines(
-            lines, self.raster, self.table, self.limits, self.waiting_parameters, out, *room
+            lines, self.raster, self.table, self.limits, self.waiting_parameters, out, *work
         )
         arrive = out.arrive.reshape(count, size)
         cost = out.length.copy() if self.by_length else arrive[:, -1].copy()

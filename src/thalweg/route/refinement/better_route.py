@@ -1,4 +1,4 @@
-"""A better route than a given one, by the referee's own word."""
+"""A better route than a given one, as evaluated by the referee."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ _RASTER_MARGINS = (
     0.2,
     0.4,
     0.6,
-)  # room around the track, as a share of its box; more when it is used up
-_RASTER_EDGE_SHARE = 0.04  # nearness to the rim of the raster at which it counts as used up
-# (share by which limits are tightened, whether it may wait anywhere) while the referee objects
+)  # margins around the track, as shares of its box, tried while a track comes near the edge
+_RASTER_EDGE_SHARE = 0.04  # distance to the edge that counts as near, as a share of the raster
+# (share by which limits are tightened, whether it may wait anywhere) while the referee finds violations
 _ATTEMPTS = ((0.0, True), (0.005, True), (0.02, True), (0.06, True), (0.0, False), (0.02, False))
-_ATTEMPTS_WITHOUT_WAITING = 4  # of them differ for a ship that does not wait
+_ATTEMPTS_WITHOUT_WAITING = 4  # those that differ for a ship that does not wait
 _WAIT_TOLERANCE = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
 _WAIT_TOLERANCE_SHARE = 1e-5
 _WAIT_EXTENSIONS = (
@@ -47,7 +47,7 @@ _WAIT_EXTENSIONS = (
     120.0,
     600.0,
     1800.0,
-)  # seconds by which a wait may grow when the referee objects
+)  # seconds by which a wait may grow when the referee finds violations
 
 ScoreFunction = Callable[[Track], Route]
 
@@ -64,12 +64,12 @@ def better_route(
     objective: str = "time",
     wait: bool | None = None,
 ) -> Route:
-    """Smooth a route and return whichever of the two the referee prefers.
+    """Smooth a route and return the better of the two, as evaluated by the referee.
 
     Parameters
     ----------
     scored : Route
-        As the referee found it.
+        As evaluated by the referee.
     ship : Ship
     sea : Sea
     chart : Chart or None
@@ -86,8 +86,7 @@ def better_route(
     Returns
     -------
     Route
-        Scored by the referee; never worse than the given one, and within every limit if the given
-        one is.
+        Evaluated by the referee; not worse than the given one, and feasible if the given one is.
     """
 
     def score(track: Track) -> Route:
@@ -107,12 +106,12 @@ def better_route(
         )
         refined = _refine_between_canals(scored, chart, score, better)
         return min(scored, refined, key=lambda item: comparison_key(item, objective, chart))
-    best, wished = scored, None
+    best, infeasible = scored, None
     may_wait = bool(scored.track.wait.any()) if wait is None else wait
     for margin, patient in _ATTEMPTS[: None if may_wait else _ATTEMPTS_WITHOUT_WAITING]:
         track = scored.track
-        for room in _RASTER_MARGINS:
-            fields = freeze_around_track(scored, track, room, ship=ship, sea=sea, limits=limits)
+        for edge in _RASTER_MARGINS:
+            fields = freeze_around_track(scored, track, edge, ship=ship, sea=sea, limits=limits)
             track = smooth(
                 track,
                 table=table,
@@ -129,9 +128,9 @@ def better_route(
         if route.feasible:
             break
         if best is scored and scored.feasible and math.isfinite(route.arrive):
-            wished = track if wished is None else wished
-    if best is scored and wished is not None:
-        best = bisect_to_feasible(scored, wished, score)
+            infeasible = track if infeasible is None else infeasible
+    if best is scored and infeasible is not None:
+        best = bisect_to_feasible(scored, infeasible, score)
     best = shorten_waits(best, score)
     most = comparison_key(scored, objective, chart)[1] if scored.feasible else math.inf
     return simplified_route(
@@ -158,30 +157,30 @@ def _refine_between_canals(
 def freeze_around_track(
     route: Route,
     track: Track,
-    room: float,
+    margin: float,
     *,
     ship: Ship,
     sea: Sea,
     limits: ArrayLike,
     until: float | None = None,
 ) -> GridFields:
-    """Freeze the sea on a raster around a track, as fine as the data or a size limit allows.
+    """Freeze the sea on a raster around a track, as fine as the data and a size limit allow.
 
     Parameters
     ----------
     route : Route
-        Tells how long the voyage takes.
+        For the duration of the voyage.
     track : Track
-    room : float
-        Room on all sides, as a share of the longer side of the track's box.
+    margin : float
+        Margin on all sides, as a share of the longer side of the box around the track.
     until : float, optional
         Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
     """
     lon = unwrap_longitude(track.lon)
     extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
-    margin = room * extent
-    south, north = max(track.lat.min() - margin, -89.9), min(track.lat.max() + margin, 89.9)
-    width = min(np.ptp(lon) + 2.0 * margin, 359.0)
+    edge = margin * extent
+    south, north = max(track.lat.min() - edge, -89.9), min(track.lat.max() + edge, 89.9)
+    width = min(np.ptp(lon) + 2.0 * edge, 359.0)
     west = 0.5 * (lon.min() + lon.max() - width)
     start = track.depart
     arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
@@ -200,7 +199,7 @@ def freeze_around_track(
 
 
 def _touches_raster_edge(track: Track, fields: GridFields) -> bool:
-    """Return whether a track comes so near to the rim of a raster that it may have been held up."""
+    """Return whether a track is so near to the edge of a raster that this may constrain it."""
     rows, columns = fields.values.shape[1:3]
     y = (track.lat - fields.lat0) / (fields.dlat * (rows - 1))
     x = ((track.lon - fields.lon0) % 360.0) / (fields.dlon * (columns - 1))
@@ -208,10 +207,10 @@ def _touches_raster_edge(track: Track, fields: GridFields) -> bool:
 
 
 def shorten_waits(route: Route, score: ScoreFunction) -> Route:
-    """Return the route with every wait as short as the referee allows, to half a second.
+    """Return the route with every wait as short as is feasible for the referee, to half a second.
 
-    Frozen fields blur the moment at which a bar opens by up to one of their time steps; the
-    referee knows it. A wait that turns out too short is made longer first.
+    Frozen fields blur the time at which a bar opens by up to one of their time steps; the referee
+    knows it exactly. A wait that is too short is extended first.
     """
     waiting = np.flatnonzero(route.track.wait)
     if not waiting.size:
@@ -230,7 +229,7 @@ def shorten_waits(route: Route, score: ScoreFunction) -> Route:
 
 
 def _shorten_wait(route: Route, index: int, score: ScoreFunction) -> Route:
-    """Halve the interval between a wait that is too short and one that is long enough."""
+    """Bisect between a wait that is too short and one that is long enough."""
     long_enough = float(route.track.wait[index])
     none = score(_with_wait(route.track, index, -long_enough))
     if none.feasible:
@@ -259,7 +258,7 @@ def _with_wait(track: Track, index: int, change: float) -> Track:
 
 
 def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
-    """Return what routes are compared by: limits kept first, then the objective, then time."""
+    """Return the key by which routes are compared: feasibility, then the objective, then time."""
     if not math.isfinite(route.arrive):
         return True, math.inf, math.inf
     sailed = route.legs["arrive"] - route.legs["depart"]
@@ -286,7 +285,7 @@ def _usual(route: Route, ship: Ship) -> float:
 
 
 def _channels(ship: Ship, sea: Sea, limits: FloatArray) -> list[int]:
-    """Return the channels the kernels look at."""
+    """Return the channels that the kernels need."""
     names = {CHANNEL_VARIABLES[codes.CURRENT_EAST], CHANNEL_VARIABLES[codes.CURRENT_NORTH]}
     names |= ship.needs
     if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]) or "depth" in ship.reads:

@@ -1,4 +1,4 @@
-"""Tightening: corners of a line are cut off as far as obstacles allow, until it lies taut."""
+"""Corner cutting: corners of a line are cut off as far as obstacles allow, again and again."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from thalweg.route.refinement.string_pulling import string_pull
 
 _MAX_ROUNDS = 24
 _TRIAL_CUTS = 12  # cuts tried at once
-_SCAN_LEVELS = 6  # scans, each inside the interval of the one before: 12^-6 of a leg
-_GAIN_TOLERANCE = 1e-7  # relative gain of a round that ends the work
+_SCAN_LEVELS = 6  # scans, each within the interval of the one before: to 12^-6 of a leg
+_GAIN_TOLERANCE = 1e-7  # relative gain of a round below which the search ends
 
 
 def cut_corners(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
-    """Return a line pulled tight around what it must keep clear of.
+    """Return a line shortened around the obstacles it passes.
 
     Parameters
     ----------
-    line : Line
+    line : Polyline
         One that can be sailed.
-    evaluator : Sailor
+    evaluator : TimeEvaluator or CostEvaluator
 
     Notes
     -----
-    Each waypoint where the ship does not wait or change its setting is replaced by two, one back
-    along the leg that comes in and one on along the leg that goes out, as far as the leg between
-    them stays clear; waypoints that have become needless are dropped. Repeated, this converges to
-    the taut string of the same way round, corners of polygons and round capes alike, without
-    knowing their outlines.
+    Each waypoint where the ship does not wait or change its setting is replaced by two: one on the
+    incoming leg and one on the outgoing leg, as far from the corner as the leg between them stays
+    clear. Waypoints that are then needless are removed. Repeated, this converges to the shortest
+    line of the same homotopy class, around corners of polygons and round capes, without using
+    their outlines.
     """
     cost = float(evaluator.sail(line.batch())[1][0])
     for _ in range(_MAX_ROUNDS):
@@ -58,15 +58,15 @@ def cut_corners(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Pol
 def merge_short_legs(
     line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, shortest: float
 ) -> Polyline:
-    """Return the line with the two ends of every very short leg made one, if that can be sailed.
+    """Return the line with the two ends of every very short leg merged, where that is feasible.
 
-    Cutting a corner down to a point of the coast leaves two waypoints a hand apart; they become the
-    point where the legs beside them meet when they are drawn on.
+    Cutting a corner at a point of the coast leaves two waypoints very close together; they become
+    the intersection of the two adjacent legs when these are extended.
 
     Parameters
     ----------
-    line : Line
-    evaluator : Sailor
+    line : Polyline
+    evaluator : TimeEvaluator or CostEvaluator
     shortest : float
         Legs below this length [m] are merged.
     """
@@ -106,7 +106,7 @@ def _merged(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, k: int) ->
 
 
 def _leg_intersection(line: Polyline, k: int) -> tuple[float, float] | None:
-    """Return where leg k - 1 drawn on meets leg k + 1 drawn back; None if that is not near."""
+    """Return the intersection of legs k - 1 and k + 1 extended; None if it is far away."""
     lat, lon = line.lat[k - 1 : k + 3], line.lon[k - 1 : k + 3]
     gaps, starts, ends = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
     x, y = gaps[1] * math.sin(starts[1]), gaps[1] * math.cos(starts[1])
@@ -172,7 +172,7 @@ def _feasible_cuts(
     )
     clear = np.isfinite(evaluator.sail(batch)[1])
     factor = penalty_factors(evaluator.chart, batch.lat, batch.lon)
-    if factor is not None:  # a cut must not enter a zone that neither of its legs was in
+    if factor is not None:  # a cut must not enter a zone that both of its legs avoid
         own = penalty_factors(evaluator.chart, line.lat, line.lon)
         allowed = np.maximum(own[which - 1], own[which])  # type: ignore[index]
         clear &= factor[:, 0] <= allowed + 1e-9
@@ -182,7 +182,7 @@ def _feasible_cuts(
 def _positions_along(
     line: Polyline, start: IntArray, end: IntArray, share: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the positions a share of the way along the geodesics between waypoints."""
+    """Return the positions at shares of the geodesics between waypoints."""
     length, course, _ = inverse(line.lat[start], line.lon[start], line.lat[end], line.lon[end])
     return direct(line.lat[start], line.lon[start], course, share * length)
 

@@ -1,4 +1,4 @@
-"""Polishing: the same passage in the same time for less fuel, money or CO2."""
+"""Cost refinement: the same passage in the same time for less fuel, money or CO2."""
 
 from __future__ import annotations
 
@@ -42,16 +42,22 @@ if TYPE_CHECKING:
     from thalweg.ship.fuel_prices import FuelTerms
 
 _OBJECTIVE_COLUMNS = {"fuel": "fuel", "cost": "cost", "co2": "co2"}
-_LIMIT_MARGINS = (0.0, 0.005, 0.02)  # by which limits are tightened while the referee objects
+_LIMIT_MARGINS = (
+    0.0,
+    0.005,
+    0.02,
+)  # by which limits are tightened while the referee finds violations
 _MIN_LEGS_OF_LEVEL = (6, 12, 24, 48)  # least number of legs of each level
-_PASSES_PER_LEVEL = 2  # choices of settings and bendings of a level
-_NEWTON_STEPS = 4  # steps of a bending
+_PASSES_PER_LEVEL = 2  # choices of settings, each followed by Newton's method
+_NEWTON_STEPS = 4  # iterations of Newton's method
 _COARSE_START_TOLERANCE = (
-    1.02  # a coarse start is worked on if it costs no more than this times the own one
+    1.02  # a coarse start is refined too if it costs no more than this times the line itself
 )
-_MAX_ARRIVAL_CORRECTIONS = 4  # referees asked until the arrival fits
+_MAX_ARRIVAL_CORRECTIONS = 4  # evaluations by the referee until the arrival fits
 _ARRIVAL_TOLERANCE = 2e-6  # share of the passage by which it may come early
-_MIN_ZONE_SHARE = 0.02  # share of a leg in a control area, and out of it, that is worth a waypoint
+_MIN_ZONE_SHARE = (
+    0.02  # least share of a leg inside and outside a control area that gets a waypoint
+)
 
 
 def polish(
@@ -70,38 +76,38 @@ def polish(
     fields: GridFields | None = None,
     thin: bool = True,
 ) -> Route:
-    """Return a route of the same way that costs less and arrives no later.
+    """Return a route past the same obstacles that costs less and arrives no later.
 
     Parameters
     ----------
     scored : Route
-        As the referee found it, with the same terms.
+        As evaluated by the referee, with the same terms.
     ship : Ship
     sea : Sea
     chart : Chart or None
     table, fuel : PerformanceTable or TableArrays
         Of the ship: speed through water [m/s] and fuel rate [kg/s] (`Ship.tabulate_fuel`). Where
-        the cost is that of time and cubed speed (`FuelTerms.by_speed`) fuel is not looked at.
+        the cost is that of time and cubed speed (`FuelTerms.by_speed`) ``fuel`` is not used.
     limits : array_like of float
         Required depth [m], wave height [m] and wind speed [m/s] for the kernels.
     objective : {"fuel", "cost", "co2"}
     arrive_by : time, optional
         Latest arrival; by default when the given route arrives, and never earlier than that.
     terms : FuelTerms, optional
-        What fuel and time cost; by default what the ship file says.
+        Prices of fuel and time; by default those of the ship file.
     min_ukc : float or None
         As for `evaluate`.
     fields : GridFields, optional
-        The sea frozen around the route, to be used for many; by default frozen anew.
+        The sea frozen around the route, if it is used for several calls.
     thin : bool
-        Leave out waypoints that make no difference (up to five more evaluations).
+        Remove waypoints that make no difference (up to five more evaluations).
 
     Returns
     -------
     Route
-        Scored by the referee; never worse than the given one: it keeps every limit, costs no more
-        and arrives no later than ``arrive_by``. The given one if nothing better is found.
-        Canals, waits and the order of the way stay.
+        Evaluated by the referee and not worse than the given one: it keeps every limit, costs no
+        more and arrives no later than ``arrive_by``. The given one if no better route is found.
+        Canals and waits are kept.
 
     Raises
     ------
@@ -110,11 +116,10 @@ def polish(
 
     Notes
     -----
-    Level by level legs are halved, the settings chosen anew (`choose_speeds`) and the waypoints
-    bent sideways by Newton's method on cost plus the worth of time, which is the slope of cost
-    over time that the settings leave. All this on frozen fields; the referee has the last word,
-    and the time of arrival it finds is met by choosing settings again, to a few millionths of the
-    passage.
+    Level by level legs are halved, settings are chosen (`choose_speeds`) and the waypoints move
+    sideways by Newton's method on cost plus the value of time, which is the slope of cost over time
+    at the chosen settings. All this uses frozen fields; the referee evaluates the result, and
+    settings are chosen again until its time of arrival is met to a few millionths of the passage.
     """
     terms = ship.fuel_terms if terms is None else terms
     prices = objective_prices(objective, terms, ship.waiting_fuel_rate)
@@ -167,10 +172,10 @@ def _best_attempt(
     score: Callable[[Track], Route],
     value: Callable[[Route], float],
 ) -> Route:
-    """Return the best of a route and what comes of working on it.
+    """Return the best of a route and its refinements.
 
-    A slower ship may meet weather that the route does not: if it cannot use the time it has, the
-    route is worked on at its own arrival first.
+    A slower ship may meet other weather than the route: if it cannot use the available time, the
+    route is refined for its own arrival first.
     """
 
     def attempt(start: Route, target: float) -> Route:
@@ -197,7 +202,7 @@ def _best_attempt(
 
 
 def _objective_value(route: Route, objective: str, chart: Chart | None) -> float:
-    """Return what is made least, with what penalty zones add; inf where it is unknown."""
+    """Return the objective with the additions of penalty zones; inf where it is unknown."""
     legs = route.legs
     spent = legs[_OBJECTIVE_COLUMNS[objective]] + (
         legs["waiting_fuel"] if objective == "fuel" else 0.0
@@ -208,7 +213,7 @@ def _objective_value(route: Route, objective: str, chart: Chart | None) -> float
 
 
 def _optimised(line: Polyline, evaluator: CostEvaluator, latest: float) -> Polyline | None:
-    """Return the cheapest line found that is in time; None if the given one cannot be sailed."""
+    """Return the cheapest line that arrives in time; None if the given one cannot be sailed."""
     paced, value_of_time = choose_speeds(line, evaluator, latest)
     own = _cost_with_time_value(paced, evaluator, value_of_time)
     if not math.isfinite(own):
@@ -235,14 +240,14 @@ def _fixed_waypoints(line: Polyline, evaluator: CostEvaluator) -> np.ndarray:
 
 
 def _cost_with_time_value(line: Polyline, evaluator: CostEvaluator, value_of_time: float) -> float:
-    """Return cost plus the worth of the time."""
+    """Return the cost plus the value of the time."""
     return float(evaluator.with_value_of_time(value_of_time).sail(line.batch())[1][0])
 
 
 def _cost_with_lateness(
     line: Polyline, evaluator: CostEvaluator, latest: float, value_of_time: float
 ) -> float:
-    """Return the cost at the best settings, lateness at its worth (and then some)."""
+    """Return the cost at the best settings, plus twice the value of the lateness."""
     arrive, cost, _ = evaluator.cost_and_time(choose_speeds(line, evaluator, latest)[0].batch())
     late = max(float(arrive[0, -1]) - latest, 0.0)
     return float(cost[0]) + (2.0 * value_of_time * late if late > 0.0 else 0.0)
@@ -272,7 +277,7 @@ def _refine_by_levels(
 
 
 def _split_long_legs(line: Polyline, evaluator: CostEvaluator, longest: float) -> Polyline:
-    """Halve the legs longer than that, but not canals."""
+    """Halve the legs that are longer than ``longest`` [m], except canals."""
     canal = evaluator.canal_legs(line.lat, line.lon)
     return line.split(longest, ~canal)
 
@@ -310,7 +315,7 @@ def _score_on_time(
     score: Callable[[Track], Route],
     value: Callable[[Route], float],
 ) -> Route:
-    """Let the referee score a line, its settings chosen so that it arrives when it should."""
+    """Return the route of a line with settings chosen so that it arrives in time."""
     target = latest - evaluator.origin
     budget, exact = target, _ARRIVAL_TOLERANCE * target
     found: list[Route] = []

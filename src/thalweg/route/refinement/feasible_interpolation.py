@@ -1,4 +1,4 @@
-"""Between a route that can be sailed and a better one that cannot quite."""
+"""Bisection between a feasible route and a better track that is not quite feasible."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from thalweg.route.track import Track
 _BISECTIONS = 7
 
 
-def bisect_to_feasible(sound: Route, wished: Track, score: Callable[[Track], Route]) -> Route:
-    """Return the route nearest to a wished track that the referee still allows.
+def bisect_to_feasible(feasible: Route, better: Track, score: Callable[[Track], Route]) -> Route:
+    """Return the feasible route nearest to a better track that violates a limit.
 
-    Rasters blur edges: round a bank with a steep rim the smoothed track can cut a corner by less
-    than a cell. Both tracks are walked at equal shares of their lengths, and the share of the
-    sound one is halved as long as the referee agrees.
+    Rasters blur edges: around a bank with a steep slope the smoothed track may cut a corner by less
+    than a cell. Both tracks are interpolated at equal shares of their lengths, and the share of the
+    feasible one is bisected.
 
     Parameters
     ----------
-    sound : Route
+    feasible : Route
         A route within every limit.
-    wished : Track
-        A better track that breaks one.
+    better : Track
+        A better track that violates one.
     score : callable
-        The referee.
+        The referee: a track to its route.
     """
-    if sound.track.wait.any() or wished.wait.any() or np.ptp(sound.track.setting):
-        return sound
-    best, too_little, enough = sound, 0.0, 1.0
+    if feasible.track.wait.any() or better.wait.any() or np.ptp(feasible.track.setting):
+        return feasible
+    best, too_little, enough = feasible, 0.0, 1.0
     for _ in range(_BISECTIONS):
         share = 0.5 * (too_little + enough)
-        route = score(_interpolated_track(sound.track, wished, share))
+        route = score(_interpolated_track(feasible.track, better, share))
         if route.feasible:
             enough = share
             best = min(best, route, key=lambda item: item.arrive)
@@ -44,25 +44,25 @@ def bisect_to_feasible(sound: Route, wished: Track, score: Callable[[Track], Rou
     return best
 
 
-def _interpolated_track(sound: Track, wished: Track, share: float) -> Track:
-    """Return the track that lies ``share`` of the way from the wished one to the sound one."""
-    at = np.union1d(_length_fractions(sound), _length_fractions(wished))
+def _interpolated_track(feasible: Track, better: Track, share: float) -> Track:
+    """Return the track at a share between the better one (0) and the feasible one (1)."""
+    at = np.union1d(_length_fractions(feasible), _length_fractions(better))
     at = at[np.concatenate([[True], np.diff(at) > 1e-9])]
-    lat = (1 - share) * _values_at_fractions(wished, wished.lat, at) + share * _values_at_fractions(
-        sound, sound.lat, at
+    lat = (1 - share) * _values_at_fractions(better, better.lat, at) + share * _values_at_fractions(
+        feasible, feasible.lat, at
     )
-    lon = unwrap_longitude(np.concatenate([wished.lon, sound.lon]))
-    wished_lon, sound_lon = lon[: len(wished.lon)], lon[len(wished.lon) :]
-    sound_lon = sound_lon + 360.0 * np.round((wished_lon[0] - sound_lon[0]) / 360.0)
-    lon = (1 - share) * _values_at_fractions(wished, wished_lon, at) + share * _values_at_fractions(
-        sound, sound_lon, at
+    lon = unwrap_longitude(np.concatenate([better.lon, feasible.lon]))
+    better_lon, feasible_lon = lon[: len(better.lon)], lon[len(better.lon) :]
+    feasible_lon = feasible_lon + 360.0 * np.round((better_lon[0] - feasible_lon[0]) / 360.0)
+    lon = (1 - share) * _values_at_fractions(better, better_lon, at) + share * _values_at_fractions(
+        feasible, feasible_lon, at
     )
-    lat[[0, -1]], lon[[0, -1]] = sound.lat[[0, -1]], sound.lon[[0, -1]]
-    return Track(lat, lon, sound.depart, None, np.full(len(at) - 1, sound.setting[0]))  # type: ignore[arg-type]
+    lat[[0, -1]], lon[[0, -1]] = feasible.lat[[0, -1]], feasible.lon[[0, -1]]
+    return Track(lat, lon, feasible.depart, None, np.full(len(at) - 1, feasible.setting[0]))  # type: ignore[arg-type]
 
 
 def _length_fractions(track: Track) -> FloatArray:
-    """Return how much of the length lies before each waypoint."""
+    """Return the share of the length before each waypoint."""
     along = np.concatenate([[0.0], np.cumsum(track.lengths)])
     return np.asarray(along / along[-1])
 

@@ -1,4 +1,8 @@
-"""Polishing: every seed made better for a price of time, and the front between them filled."""
+"""Local search on a scalarised objective: tracks refined for a price of time, and a front filled.
+
+For a price of time p the value of a track is cost + p * time; its minimum is a point on the lower
+convex hull of the front.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +28,11 @@ from thalweg.route.refinement.speed_profile import (
     leg_times_and_costs_by_setting,
 )
 
-REFINEMENT_LEVELS = (12, 24, 40)  #: legs of a track, level by level
-_REMOVAL_PASSES = 8  # passes that leave points out at first ...
-_REMOVAL_LOSS = 2e-4  # ... which bring less than this share of the value
-_SEARCH_RADII = (0.3, 0.08, 0.02)  # of points that feel their way, as shares of the legs beside
-_PRICE_RANGE_FACTOR = 4.0  # prices of time reach so far beyond those that calm water suggests
+REFINEMENT_LEVELS = (12, 24, 40)  #: least number of legs of a track, level by level
+_REMOVAL_PASSES = 8  # passes at most that remove points at first
+_REMOVAL_LOSS = 2e-4  # share of the value that may be lost with a removed point
+_SEARCH_RADII = (0.3, 0.08, 0.02)  # steps of compass searches, as shares of the adjacent legs
+_PRICE_RANGE_FACTOR = 4.0  # by which prices of time exceed those of calm water, on both sides
 
 
 def scalarised_local_search(
@@ -37,9 +41,25 @@ def scalarised_local_search(
     stop: Callable[[], bool] = lambda: False,
     levels: tuple[int, ...] = REFINEMENT_LEVELS,
 ) -> ScoredTracks:
-    """Return better tracks: fewer points first, then bent at ever more of them, and re-timed.
+    """Return tracks refined for their prices of time.
 
-    ``stop`` is asked between steps.
+    Parameters
+    ----------
+    lines : ScoredTracks
+    stop : callable
+        Called between steps; true ends the search.
+    levels : tuple of int
+        Least number of legs, level by level.
+
+    Returns
+    -------
+    ScoredTracks
+        Nowhere worse.
+
+    Notes
+    -----
+    First needless points are removed. Then, level by level, long legs are split, points move
+    sideways by Newton's method and by compass search, and settings are chosen.
     """
     lines = choose_speeds_of_tracks(lines)
     for _ in range(_REMOVAL_PASSES):
@@ -59,10 +79,10 @@ def scalarised_local_search(
 
 
 def time_prices(evaluator: Evaluator, count: int) -> FloatArray:
-    """Return prices of time that lead from the thriftiest to the fastest passage.
+    """Return prices of time [cost/s] (count,) that lead from the cheapest to the fastest passage.
 
-    Those at which the ship would change its setting in calm water, with room on both sides;
-    spread evenly in the logarithm.
+    They cover those at which the ship would change its setting in calm water, with a margin on
+    both sides, evenly in the logarithm.
     """
     speeds, prices = calm_water_values(evaluator.world.table), evaluator.prices
     cost = calm_water_values(evaluator.world.fuel) * prices.outside + prices.time
@@ -84,8 +104,10 @@ def hull_slopes(points: FloatArray) -> list[float]:
 
 
 def seeds_with_time_prices(evaluator: Evaluator, seeds: Population, *, count: int) -> ScoredTracks:
-    """Return what to polish: each seed at the price of time its neighbours on the front suggest,
-    and for each of ``count`` prices the seed that is best at it.
+    """Return the tracks to refine, with their prices of time.
+
+    Each seed at the price of time that follows from its neighbours on the front, and for each of
+    ``count`` prices the best seed at that price.
     """
     scores = evaluator.score(seeds)
     good = np.flatnonzero(scores[:, 2] == 0.0)
@@ -117,13 +139,13 @@ def _own_prices(scores: FloatArray, prices: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class SpeedExchanges:
-    """What a leg's next setting on its hull brings, by ascending price.
+    """Changes of settings of a track along the hulls of its legs, in the order to take them.
 
     Attributes
     ----------
     place, setting : int64 array (n,)
     time, cost : float64 array (n,)
-        Changes at the goal; time is positive.
+        Changes of time and cost at the goal.
     """
 
     place: IntArray
@@ -133,11 +155,10 @@ class SpeedExchanges:
 
 
 def fill_front(lines: ScoredTracks, size: int) -> Population:
-    """Return tracks between those of a front, each from its nearest one by changing speeds.
+    """Return about ``size`` tracks evenly along a front, each made of its nearest track.
 
-    About ``size`` tracks, spread evenly over the front. On one geometry the cheapest way to gain
-    or lose time is to change settings in the order of what a second costs, and the last leg in
-    part.
+    For the same geometry the cheapest change of time is to change settings in the order of the
+    cost of a second, the last one on a part of its leg.
     """
     front = feasible_front(lines.scores)
     if len(front) < 2:
@@ -162,18 +183,20 @@ def fill_front(lines: ScoredTracks, size: int) -> Population:
 
 
 def _speed_exchanges(lines: ScoredTracks) -> list[tuple[SpeedExchanges, SpeedExchanges]]:
-    """Return for every track what it can exchange to become (faster, slower)."""
+    """Return the changes of settings that make every track (faster, slower)."""
     row, place = lines.legs
     time, cost = leg_times_and_costs_by_setting(lines, row, place)
     delays = delay_effects(lines)
     ahead, dearer = delays.time[row, place + 1], delays.cost[row, place + 1]
     with np.errstate(invalid="ignore"):
-        at_goal, paid = ahead[:, None] * time, cost + dearer[:, None] * time
+        at_goal, cost_at_goal = ahead[:, None] * time, cost + dearer[:, None] * time
     now = lines.population.genes[row, place, population_sailing.SETTING].astype(np.int64)
     out = []
     for k in range(len(lines)):
         legs = np.flatnonzero(row == k)
-        steps = [_speed_steps(at_goal[i], paid[i], int(now[i]), int(place[i])) for i in legs]
+        steps = [
+            _speed_steps(at_goal[i], cost_at_goal[i], int(now[i]), int(place[i])) for i in legs
+        ]
         faster = _sorted_exchanges([s for a, _ in steps for s in a], cheapest=True)
         slower = _sorted_exchanges([s for _, b in steps for s in b], cheapest=False)
         out.append((faster, slower))
@@ -195,15 +218,15 @@ def _speed_steps(
         return [], []
     at = int(np.flatnonzero(hull == now)[0])
     found: tuple[list[SpeedStep], list[SpeedStep]] = ([], [])
-    for side, way in ((0, hull[at::-1]), (1, hull[at:])):
-        for a, b in itertools.pairwise(way):
+    for side, chain in ((0, hull[at::-1]), (1, hull[at:])):
+        for a, b in itertools.pairwise(chain):
             dt, dc = float(time[b] - time[a]), float(cost[b] - cost[a])
             found[side].append((-dc / dt if dt else math.inf, place, int(b), dt, dc))
     return found
 
 
 def _sorted_exchanges(steps: list[SpeedStep], *, cheapest: bool) -> SpeedExchanges:
-    """Return steps in the order to take them: cheap seconds gained first, dear ones saved first."""
+    """Return steps in the order to take them: by ascending price, or by descending price."""
     steps = sorted(steps, key=lambda step: step[0] if cheapest else -step[0])
     table = np.array(steps, dtype=float).reshape(-1, 5)
     return SpeedExchanges(
@@ -234,7 +257,7 @@ def _with_changed_time(
 def _split_leg_by_speed(one: Population, place: int, share: float, setting: int) -> Population:
     """Return a track with the first share of a leg sailed at another setting."""
     n = int(one.count[0])
-    wide = one.with_capacity(max(one.room, n + 1))
+    wide = one.with_capacity(max(one.capacity, n + 1))
     genes = wide.genes
     point = points_between(genes[0, [place]], genes[0, [place + 1]], np.array([share]))
     genes[0, place + 1 : n + 1] = np.insert(genes[0, place + 1 : n], 0, point[0], axis=0)

@@ -64,7 +64,7 @@ class ScoredTracks:
     @property
     def legs(self) -> tuple[IntArray, IntArray]:
         """Row and place of every leg."""
-        sailed = np.arange(self.population.room) < (self.population.count - 1)[:, None]
+        sailed = np.arange(self.population.capacity) < (self.population.count - 1)[:, None]
         row, place = np.nonzero(sailed)
         return row, place
 
@@ -72,7 +72,7 @@ class ScoredTracks:
     def free(self) -> BoolArray:
         """Which points (R, M) may move: not the ends, via points and ends of canals."""
         genes = self.population.genes
-        free = np.arange(self.population.room) < (self.population.count - 1)[:, None]
+        free = np.arange(self.population.capacity) < (self.population.count - 1)[:, None]
         free &= genes[:, :, columns.IS_REQUIRED] == 0.0
         fixed = ~np.isnan(genes[:, :, columns.FIXED_TIME]) & free
         fixed[:, 0] |= ~np.isnan(genes[:, 0, columns.FIXED_TIME])
@@ -86,7 +86,7 @@ class ScoredTracks:
         genes = self.population.genes
         out = np.zeros(genes.shape[:2])
         out[:, :-1] = rough_lengths(genes[:, :, LAT], genes[:, :, LON])
-        beyond = np.arange(self.population.room) >= (self.population.count - 1)[:, None]
+        beyond = np.arange(self.population.capacity) >= (self.population.count - 1)[:, None]
         return np.where(beyond, 0.0, out)
 
     @property
@@ -144,7 +144,7 @@ class ScoredTracks:
         """Return the points (R, M) at the ends of legs that touch land in any trial."""
         held = np.zeros(self.population.genes.shape[:2], dtype=bool)
         bad = trials.genes[:, :, columns.IS_BLOCKED] != 0.0
-        bad &= np.arange(trials.room) < (trials.count - 1)[:, None]
+        bad &= np.arange(trials.capacity) < (trials.count - 1)[:, None]
         row, place = np.nonzero(bad)
         held[whose[row], place] = True
         held[whose[row], place + 1] = True
@@ -164,16 +164,16 @@ class ScoredTracks:
         if not len(better):
             return self
         population = self.population
-        if other.room > population.room:
-            population = population.with_capacity(other.room)
-        room = population.room
+        if other.capacity > population.capacity:
+            population = population.with_capacity(other.capacity)
+        capacity = population.capacity
         count, genes = population.count.copy(), population.genes.copy()
-        now, passed = self.scores.copy(), np.full((len(self), room), math.nan)
+        now, passed = self.scores.copy(), np.full((len(self), capacity), math.nan)
         passed[:, : self.arrive.shape[1]] = self.arrive
         target = rows[better]
         count[target], now[target] = other.count[better], scores[better]
-        genes[target, : other.room] = other.genes[better]
-        passed[target, : other.room] = arrive[better]
+        genes[target, : other.capacity] = other.genes[better]
+        passed[target, : other.capacity] = arrive[better]
         return replace(self, population=Population(count, genes), scores=now, arrive=passed)
 
 

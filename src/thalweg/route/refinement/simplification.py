@@ -1,4 +1,4 @@
-"""Thinning: waypoints that make no difference are left out, by the referee's word."""
+"""Simplification of routes: waypoints that make almost no difference are removed."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from thalweg.core.geodesy import MEAN_RADIUS, unit_vectors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
-_NOT_SIMPLIFIED_UP_TO = 16  # waypoints that nobody minds
-#: How far the route may move aside, as shares of its length, widest first.
+_NOT_SIMPLIFIED_UP_TO = 16  # waypoints; shorter routes are kept as they are
+#: Largest lateral offset of the route, as shares of its length, widest first.
 _OFFSET_TOLERANCES = (1e-3, 2e-4, 4e-5, 1e-5, 2e-6)
-_MAX_COST_INCREASE = 6e-5  # share by which the thinned route may cost more
+_MAX_COST_INCREASE = 6e-5  # relative increase of the cost of the simplified route
 
 
 def simplified_route(
@@ -26,26 +26,26 @@ def simplified_route(
     most: float,
     held: NDArray[np.bool_] | None = None,
 ) -> Route:
-    """Return the route with as few waypoints as it takes.
+    """Return the route with fewer waypoints, as far as its cost hardly changes.
 
     Parameters
     ----------
     route : Route
-        As the referee found it.
+        As evaluated by the referee.
     score : callable
-        The referee.
+        The referee: a track to its route.
     cost : callable
-        What is made least, of a scored route.
+        The objective of a route, which is minimised.
     most : float
-        What the thinned route may cost at most, whatever the given one costs.
+        Largest cost of the simplified route.
     held : bool array, optional
-        Waypoints that stay, such as ends of canals.
+        Waypoints that are kept, such as ends of canals.
 
     Returns
     -------
     Route
         The given one, or one through some of its waypoints that keeps every limit and costs at
-        most 6e-5 more. Waypoints where the ship waits or changes its setting stay.
+        most 6e-5 more. Waypoints where the ship waits or changes its setting are kept.
     """
     track = route.track
     if len(track.lat) <= _NOT_SIMPLIFIED_UP_TO or not route.feasible:
@@ -71,7 +71,10 @@ def _track_through(track: Track, keep: NDArray[np.bool_]) -> Track:
 def _douglas_peucker(
     track: Track, aside: float, held: NDArray[np.bool_] | None
 ) -> NDArray[np.bool_]:
-    """Return which waypoints to keep so that none lies farther [m] aside (Douglas-Peucker)."""
+    """Return which waypoints to keep for a largest offset ``aside`` [m] of the others.
+
+    The algorithm of Douglas & Peucker (1973), on the sphere.
+    """
     points = unit_vectors(track.lat, track.lon)
     keep = np.zeros(len(points), bool)
     keep[[0, -1]] = True

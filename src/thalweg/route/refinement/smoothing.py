@@ -1,4 +1,4 @@
-"""From the staircase of a network to a route: pulled taut, then bent to the sea."""
+"""Smoothing: from a path on a network to a track that is free of it, and faster."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def smooth(
     wait: bool | None = None,
     finest: int = MAX_LEGS,
 ) -> Track:
-    """Return a better track than a given one, in the same water.
+    """Return a better track than a given one, with the same passages between obstacles.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def smooth(
     limits : array_like of float
         Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
     chart : Chart, optional
-        Land, zones and charted depth to keep clear of.
+        Land, zones and charted depth that are kept clear.
     objective : {"time", "distance"}
     wait : bool, optional
         Whether the ship may wait where it did not before; by default only if it waits somewhere.
@@ -79,14 +79,14 @@ def smooth(
     Returns
     -------
     Track
-        The given track if nothing better is found or it cannot be sailed through these fields. It
-        was compared on frozen fields: let the referee score both (see `better_route`).
+        The given track if no better one is found, or if it cannot be sailed through these fields.
+        Tracks are compared on frozen fields; the referee evaluates them (see `better_route`).
 
     Notes
     -----
-    String pulling over the waypoints; then, level by level, legs are halved and the waypoints
-    bent sideways by Newton's method, feeling their way where obstacles bind. At last
-    waypoints that bring less than a 5e-5 share of the cost together are left out.
+    First string pulling over the waypoints. Then, level by level, legs are halved and the waypoints
+    moved sideways by Newton's method, and by compass search where obstacles bind. At last
+    waypoints are removed that together lower the cost by less than a share of 5e-5.
     """
     if canal_legs(track, chart).any:
         smoothed = partial(
@@ -121,7 +121,7 @@ def smooth(
     if _may_be_constrained(line, evaluator):
         line = cut_corners(line, evaluator)
     line = _shortened_waits(line, evaluator)
-    if evaluator.by_length:  # a taut line cannot be bent any shorter
+    if evaluator.by_length:  # sideways moves cannot shorten it
         best = _simplified(compass_search(line, evaluator), evaluator)
     else:
         lines = [
@@ -137,7 +137,7 @@ def smooth(
 def _duration_function(
     table: PerformanceTable | TableArrays, fields: GridFields, limits: ArrayLike
 ) -> Callable[[Track], float]:
-    """Return a function that tells how long a track at sea takes [s]; inf if it cannot sail."""
+    """Return a function of the duration of a track at sea [s]; inf if it cannot be sailed."""
 
     def duration(track: Track) -> float:
         evaluator = make_time_evaluator(
@@ -160,7 +160,7 @@ def _smooth_between_canals(
     smoothed: Callable[[Track], Track],
     duration: Callable[[Track], float],
 ) -> Track:
-    """Return the track with its stretches between canals smoothed; from a loss of time on as is."""
+    """Return the track with its stretches between canals smoothed, as far as it can be sailed."""
     depart, at = track.depart, 0
     for number in range(len(sea_stretches(track, chart))):
         first, last = sea_stretches(track, chart)[number]
@@ -175,7 +175,7 @@ def _smooth_between_canals(
 
 
 def _made_feasible(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
-    """Return the line with longer waits, or with those the quick sailor finds of itself."""
+    """Return the line with longer waits, or with those that the evaluator finds."""
     longer = _shortened_waits(line, evaluator, longer=3600.0)
     if math.isfinite(_cost(longer, evaluator)):
         return longer
@@ -209,7 +209,7 @@ def resampled_polyline(line: Polyline, count: int) -> Polyline:
 def _refine_by_levels(
     line: Polyline, evaluator: TimeEvaluator | CostEvaluator, finest: int
 ) -> Polyline:
-    """Refine a line level by level, and thin it at the end."""
+    """Refine a line level by level, and remove needless waypoints at the end."""
     total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
     bound = _may_be_constrained(line, evaluator)
@@ -230,24 +230,24 @@ def _refine_by_levels(
 
 
 def _refined(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, bound: bool) -> Polyline:
-    """Bend a line, and feel along obstacles where they may bind."""
-    bent = optimise_line_offsets(line, evaluator)
+    """Move the waypoints by Newton's method, and by compass search where obstacles may bind."""
+    moved = optimise_line_offsets(line, evaluator)
     if not bound:
-        return bent
+        return moved
     smallest = max(1.0, 1e-6 * float(rough_lengths(line.lat, line.lon).sum()))
     return optimise_line_offsets(
-        compass_search(bent, evaluator, smallest=smallest), evaluator, rounds=3
+        compass_search(moved, evaluator, smallest=smallest), evaluator, rounds=3
     )
 
 
 def _may_be_constrained(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> bool:
-    """Return whether any obstacle could bind a line: land on the chart, or limits of any kind."""
+    """Return whether an obstacle may bind a line: a chart, or limits of any kind."""
     limited = np.isfinite(evaluator.limits).any()
     return bool(limited) or evaluator.chart is not None
 
 
 def _simplified(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
-    """Leave out waypoints that bring almost nothing, and bend what is left once more."""
+    """Remove waypoints that gain almost nothing, and move the others once more."""
     spent = _elapsed_cost(line, evaluator)
     if not math.isfinite(spent) or len(line) < 3:
         return line
@@ -265,12 +265,12 @@ def _simplified(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Pol
 def _shortened_waits(
     line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, longer: float = 0.0
 ) -> Polyline:
-    """Return the line with every moment of leaving as early as serves the arrival best.
+    """Return the line with every departure from a wait as early as is best for the arrival.
 
     Parameters
     ----------
     longer : float
-        How much longer [s] than now a wait may become.
+        Longest extension of a wait [s].
     """
     if isinstance(evaluator, CostEvaluator):
         return line

@@ -69,8 +69,8 @@ def choose_speeds(
     rounds = _MAX_ROUNDS // 2 if whole else _MAX_ROUNDS
     for number in range(rounds):
         times, costs = _times_and_costs_by_setting(base, evaluator)
-        room = budget - _departure_plus_waiting(base, evaluator)
-        setting, slope, part = _knapsack(times, costs, room)
+        available = budget - _departure_plus_waiting(base, evaluator)
+        setting, slope, part = _knapsack(times, costs, available)
         base = replace(base, setting=setting)
         if number == rounds - 1 and not whole:
             line = _with_slower_part(base, part)
@@ -115,7 +115,7 @@ def _times_and_costs_by_setting(
 
 
 def _knapsack(
-    times: FloatArray, costs: FloatArray, room: float
+    times: FloatArray, costs: FloatArray, available: float
 ) -> tuple[IntArray, float, tuple[int, int, float] | None]:
     """Return (setting of every leg, slope, (leg, slower setting, share of the leg) or None)."""
     legs = len(times)
@@ -127,16 +127,16 @@ def _knapsack(
         for a, b in itertools.pairwise(hull):
             seconds = float(times[leg, b] - times[leg, a])
             steps.append(((costs[leg, a] - costs[leg, b]) / seconds, leg, a, b, seconds))
-    room -= float(times[np.arange(legs), setting].sum())
-    if not room > 0.0:
+    available -= float(times[np.arange(legs), setting].sum())
+    if not available > 0.0:
         return setting, (steps and max(steps)[0]) or 0.0, None
     steps.sort(key=lambda step: (-_rounded_slope(step[0]), step[1]))
     for slope, leg, before, after, seconds in steps:
         if setting[leg] != before:
             continue
-        if seconds > room:
-            return setting, slope, (leg, after, room / seconds)
-        setting[leg], room = after, room - seconds
+        if seconds > available:
+            return setting, slope, (leg, after, available / seconds)
+        setting[leg], available = after, available - seconds
     return setting, 0.0, None
 
 

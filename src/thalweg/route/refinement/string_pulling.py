@@ -1,4 +1,4 @@
-"""String pulling: which waypoints of a line are worth keeping."""
+"""String pulling: the best line through a subset of the waypoints."""
 
 from __future__ import annotations
 
@@ -22,23 +22,24 @@ def string_pull(
 
     Parameters
     ----------
-    line : Line
-    evaluator : Sailor
+    line : Polyline
+    evaluator : TimeEvaluator or CostEvaluator
     penalty : float
-        What a waypoint costs [s, or m when tracks compare by length]: a line with fewer waypoints
-        may be worse by this much for each that is left out.
+        Cost of a waypoint [unit of the cost]: a line with fewer waypoints may be worse by this much
+        for each that is removed.
 
     Returns
     -------
-    Line
-        Through the points where the setting changes, unless settings are chosen anew afterwards.
-        Never worse than the line, but for the penalty; the line itself if it cannot be sailed.
+    Polyline
+        Through the points where the setting changes, unless the evaluator chooses settings.
+        Not worse than the line, except for the penalty; the line itself if it cannot be sailed.
 
     Notes
     -----
     An exact search for the earliest arrival (or least length) on the directed graph of all hops
-    from a waypoint to a later one; right for time because a ship that may slow down never loses by
-    being earlier. Unlike deleting one waypoint after the other it sees shortcuts past many.
+    from a waypoint to a later one. For time this is exact because a ship that may slow down never
+    loses by an earlier arrival. Unlike the removal of one waypoint after the other it finds
+    shortcuts past many.
     """
     for _ in range(_PASSES):
         index = _best_subset(line, evaluator, penalty)
