@@ -169,7 +169,7 @@ def test_the_least_clearance_is_that_of_a_wait_over_low_water():
     assert route.min_ukc_m == pytest.approx(1.0, abs=0.15)  # looked at every five minutes
 
 
-def test_a_gap_is_told_with_its_place():
+def test_a_gap_is_reported_with_its_position():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: np.where(o > 0.2, np.nan, 0.5), UN: lambda t, a, o: 0.0 * a}
     )
@@ -187,7 +187,7 @@ def test_a_gap_is_told_with_its_place():
     assert route.waypoints()[-1]["time"] is None
 
 
-def test_running_past_the_end_of_the_data_is_told_as_such():
+def test_sailing_beyond_the_end_of_the_data_is_reported():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: 0.5 + 0 * a, UN: lambda t, a, o: 0.0 * a}, period=(0.0, 3600.0)
     )
@@ -205,7 +205,7 @@ def test_a_ship_that_needs_what_the_sea_lacks_is_refused():
         )
 
 
-def test_no_currents_at_all_is_an_assumption_that_is_told():
+def test_missing_currents_are_a_stated_assumption():
     route = evaluate([(0, 0), (0, 1)], ship=ship(5.0), sea=Sea.from_functions({}), depart=0)
     assert any("still water is assumed" in text for text in route.assumptions)
     assert route.time_h == pytest.approx(float(distance(0, 0, 0, 1)) / 5.0 / 3600, rel=1e-12)
@@ -288,7 +288,7 @@ def test_table_has_the_promised_columns():
 @pytest.mark.parametrize(
     "wrong", [{"ship": "handysize-bulker"}, {"sea": None}, {"min_ukc": -1.0}, {"min_ukc": math.nan}]
 )
-def test_what_cannot_be_asked(wrong):
+def test_invalid_arguments_are_refused(wrong):
     given = {"ship": Ship.simple(speed_kn=8.0, draught_m=5.0), "sea": Sea.calm(), "depart": 0.0}
     with pytest.raises(InputError):
         evaluate([(51.0, 1.0), (51.5, 2.0)], **{**given, **wrong})

@@ -1,4 +1,4 @@
-"""Routes: tracks to sail, the referee that scores them, and the formats they travel in."""
+"""Routes: tracks, the referee that evaluates them, their refinement and file formats."""
 
 from thalweg.deprecated_names import renamed
 from thalweg.route.ensemble_evaluation import (

@@ -44,7 +44,7 @@ class CanalLegs:
 
     @property
     def any(self) -> bool:
-        """Whether there is a canal at all."""
+        """Whether any leg is a canal."""
         return bool((self.number >= 0).any())
 
     @property
@@ -84,7 +84,7 @@ class CanalLegs:
         return self._filled(lambda canal: ship.speeds[canal_setting(ship, canal)])
 
     def places(self, leg: int, along: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return (lat, lon [deg], course [rad]) at distances [m] from where a leg begins."""
+        """Return (lat, lon [deg], course [rad]) at distances [m] from the start of a leg."""
         path = np.array(self.of(leg).path, float)
         if self.backward[leg]:
             path = path[::-1]

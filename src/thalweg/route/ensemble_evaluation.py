@@ -38,12 +38,12 @@ def cvar(values: ArrayLike, alpha: float = ALPHA) -> float:
     values : array_like
         One number per member; the larger the worse.
     alpha : float, optional
-        Share of the members that is not looked at, 0 (the mean of all) up to but not 1.
+        Share of the members that is left out: from 0 (the mean of all) to less than 1.
 
     Returns
     -------
     float
-        Where ``(1 - alpha) n`` is no whole number, the last member of the tail counts in part;
+        Where ``(1 - alpha) n`` is not a whole number, the last member of the tail counts in part;
         a tail of less than one member is the worst one. NaN without values.
 
     Raises
@@ -60,7 +60,9 @@ def cvar(values: ArrayLike, alpha: float = ALPHA) -> float:
     """
     if not 0.0 <= alpha < 1.0:
         raise InputError(
-            f"A tail beyond {alpha!r} cannot be taken.", "alpha lies in [0, 1).", "Give 0.9."
+            f"A tail beyond {alpha!r} is not possible.",
+            "alpha is in [0, 1).",
+            "Use 0.9, for example.",
         )
     ordered = np.sort(np.asarray(values, float))[::-1]
     if not ordered.size:
@@ -79,11 +81,11 @@ class MemberStatistics:
     Attributes
     ----------
     mean, p10, p90 : float
-        Mean, and what one in ten falls below and exceeds (linear between members).
+        Mean, 10th and 90th percentile (linear between members).
     cvar : float
         Mean of the worst tail (see `cvar`).
     count : int
-        How many members it is of.
+        Number of members.
     """
 
     mean: float
@@ -94,7 +96,7 @@ class MemberStatistics:
 
     @classmethod
     def of(cls, values: FloatArray, alpha: float) -> MemberStatistics:
-        """Return the spread of one number or more."""
+        """Return the statistics of one value or more."""
         low, high = np.percentile(values, [10.0, 90.0])
         return cls(
             float(np.mean(values)), float(low), float(high), cvar(values, alpha), int(values.size)
@@ -107,7 +109,7 @@ class MemberStatistics:
 
 @dataclass(frozen=True, eq=False)
 class EnsembleResult:
-    """A route as the referee found it in every member of an ensemble.
+    """A route as evaluated by the referee in every member of an ensemble.
 
     Attributes
     ----------
@@ -122,7 +124,7 @@ class EnsembleResult:
 
     @property
     def infeasible(self) -> tuple[int, ...]:
-        """Numbers of the members in which the route breaks a limit or cannot be sailed out."""
+        """Numbers of the members in which the route violates a limit or cannot be completed."""
         return tuple(k for k, route in enumerate(self.routes) if not route.feasible)
 
     @property
@@ -146,10 +148,9 @@ class EnsembleResult:
         return self.spread("co2_t")
 
     def spread(self, quantity: str) -> MemberStatistics | None:
-        """Return how one of `QUANTITIES` varies over the feasible members.
+        """Return the statistics of one of `QUANTITIES` over the feasible members.
 
-        What is infeasible has no number of its own to take part; `infeasible` and `notes` tell it
-        and `risk` counts it.
+        Infeasible members have no value; `infeasible` and `notes` list them and `risk` counts them.
         """
         values = self.values(quantity)
         values = values[np.isfinite(values)]
@@ -219,11 +220,11 @@ class EnsembleResult:
         time = self.time_h
         if time is None:
             return f"Distribution: infeasible in all {len(self.routes)} members"
-        told = (
+        text = (
             f"Distribution over {len(self.routes)} members: {time.mean:.3f} h, p10 {time.p10:.3f}, "
             f"p90 {time.p90:.3f}, worst {100 * (1 - self.alpha):.0f} % {time.cvar:.3f}"
         )
-        return told + (f"; infeasible in {len(self.infeasible)}" if self.infeasible else "")
+        return text + (f"; infeasible in {len(self.infeasible)}" if self.infeasible else "")
 
 
 def evaluate_members(
@@ -236,7 +237,7 @@ def evaluate_members(
     progress: Callable[[int, int], None] | None = None,
     **options: Any,
 ) -> EnsembleResult:
-    """Sail one route in every member of an ensemble by the referee.
+    """Evaluate one route in every member of an ensemble with the referee.
 
     Parameters
     ----------
@@ -248,26 +249,26 @@ def evaluate_members(
     terms : FuelTerms, optional
         Prices, as in `evaluate`.
     alpha : float, optional
-        Share of the members that the worst tail leaves out.
+        Share of the members outside the worst tail.
     progress : callable, optional
-        Called with members done and members in all.
+        Called with the number of members done and of all members.
     **options
         ``chart``, ``depart``, ``min_ukc``, ``step``, ``load_factor`` and ``speed_kn`` of
         `evaluate`. Data that end before the route does make a member infeasible.
 
     Returns
     -------
-    Distribution
+    EnsembleResult
 
     Raises
     ------
     InputError
-        If the sea is no ensemble, alpha is not in [0, 1), or `evaluate` cannot be asked so.
+        If the sea is not an ensemble, alpha is not in [0, 1), or an option of `evaluate` is wrong.
     """
     count = _checked_member_count(sea, alpha)
     if "strict" in options:
         raise InputError(
-            "strict is given.", "Members whose data end too early are told.", "Leave it out."
+            "strict is given.", "Members whose data end too early are reported.", "Leave it out."
         )
     asked: Mapping[str, Any] = options if terms is None else {**options, "terms": terms}
     routes: list[Route] = []
@@ -284,7 +285,7 @@ def _checked_member_count(sea: Sea, alpha: float) -> int:
     if count:
         return count
     raise InputError(
-        "The sea is no ensemble: there is only one of it.",
+        "The sea is not an ensemble: it has one member only.",
         "Ensembles come from files with a dimension such as number or realization, or from "
         "Sea.ensemble.",
         "Use evaluate for one sea.",
@@ -293,7 +294,7 @@ def _checked_member_count(sea: Sea, alpha: float) -> int:
 
 
 def _quantile(values: FloatArray, share: float) -> float:
-    """Return a quantile, linear between members; inf where an infinite one has part in it."""
+    """Return a quantile, linear between members; inf where an infinite value is part of it."""
     ordered = np.sort(values)
     place = share * (ordered.size - 1)
     low = int(place)
@@ -306,5 +307,5 @@ def _quantile(values: FloatArray, share: float) -> float:
 
 
 def _listed(numbers: tuple[int, ...], most: int = 8) -> str:
-    told = ", ".join(map(str, numbers[:most]))
-    return told + (", ..." if len(numbers) > most else "")
+    text = ", ".join(map(str, numbers[:most]))
+    return text + (", ..." if len(numbers) > most else "")

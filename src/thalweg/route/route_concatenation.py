@@ -1,4 +1,4 @@
-"""Joining routes end to end: the passages of a voyage by way of other places."""
+"""Routes joined end to end: the passages of a voyage with via points or calls."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from thalweg.route.route import Route
 from thalweg.route.track import Track
 
 _POSITION_TOLERANCE = 1e-9  # degrees between the end of a route and the start of the next
-_TIME_TOLERANCE = 1e-3  # seconds between them that are no wait
+_TIME_TOLERANCE = 1e-3  # seconds between them that do not count as a wait
 _QUANTITIES_OF_WAITS = {"waiting_fuel", "waiting_energy", "fuel_in_eca", "co2", "cost"}
 
 
@@ -22,17 +22,19 @@ def join(routes: Sequence[Route]) -> Route:
     Parameters
     ----------
     routes : sequence of Route
-        Each starts where the one before ends, not before it gets there; time lain in between
-        becomes a wait. What is burnt in it no route tells, so that fuel, energy, CO2 and cost
-        become unknown: let the referee score the joined track.
+        Each starts where the one before ends, and not before its arrival; the time between becomes
+        a wait. Fuel, energy, CO2 and cost of such a wait are unknown: evaluate the joined track
+        with the referee to get them.
 
     Raises
     ------
     InputError
-        If there are none, or they do not follow each other.
+        If no route is given, or they do not follow each other.
     """
     if not routes:
-        raise InputError("There are no routes to join.", "", "Give one or more.")
+        raise InputError(
+            "No routes are given.", "One or more routes can be joined.", "Give at least one."
+        )
     for before, after in itertools.pairwise(routes):
         _check_consecutive(before, after)
     if len({route.currency for route in routes}) > 1:
@@ -44,12 +46,12 @@ def join(routes: Sequence[Route]) -> Route:
     first = np.cumsum([0, *(len(route.legs["length"]) for route in routes)])
     length = np.cumsum([0.0, *(route.legs["length"].sum() for route in routes)])
     legs = {name: np.concatenate([route.legs[name] for route in routes]) for name in routes[0].legs}
-    lain = [
+    waits = [
         after.depart - before.arrive > _TIME_TOLERANCE
         for before, after in itertools.pairwise(routes)
     ]
     for name in _QUANTITIES_OF_WAITS & legs.keys():
-        legs[name][first[1:-1][lain]] = np.nan
+        legs[name][first[1:-1][waits]] = np.nan
     names = [name for name in routes[0].samples if all(name in r.samples for r in routes)]
     samples = {name: np.concatenate([route.samples[name] for route in routes]) for name in names}
     sizes = [len(route.samples["leg"]) for route in routes]

@@ -1,4 +1,4 @@
-"""A track: what to sail, not yet scored."""
+"""A track: waypoints, departure, waits and speeds, before it is evaluated."""
 
 from __future__ import annotations
 
@@ -29,15 +29,16 @@ class Track:
     lat, lon : array_like of float, shape (n,)
         Waypoints [deg], n >= 2; longitudes are wrapped to [-180, 180).
     wait : array_like of float, shape (n,), optional
-        Time lain still at each waypoint before leaving it [s], >= 0; the last is 0. None: no waits.
+        Waiting time at each waypoint before departure from it [s], >= 0; the last is 0. None: no
+        waits.
     depart : float
         Departure [s since 1970-01-01T00:00Z]. The wait at the first waypoint comes after it.
     setting : array_like of int, shape (n - 1,), optional
         Index into the ship's speeds for each leg; negative numbers count from the top as in
         Python. None: the highest on every leg.
     speed : array_like of float, shape (n - 1,), optional
-        Ordered calm-water speed on each leg [m/s], which goes before its setting; NaN (or None):
-        the setting tells. Files tell speeds, as they know no ship.
+        Ordered calm-water speed on each leg [m/s]; it overrides the setting. NaN (or None): the
+        setting is used. Files contain speeds, since they are independent of a ship.
 
     Raises
     ------
@@ -209,6 +210,6 @@ def _check_speeds(count: int, speed: FloatArray) -> None:
     if speed.shape != (count - 1,) or not np.all(np.isnan(speed) | (speed > 0.0)):
         raise InputError(
             f"A track of {count} waypoints has ordered speeds {speed.tolist()!r}.",
-            f"It needs {count - 1}, above zero, NaN where the setting tells.",
+            f"It needs {count - 1}, above zero, NaN where the setting is used.",
             "Leave them out, or give one speed per leg [m/s].",
         )

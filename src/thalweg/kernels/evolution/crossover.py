@@ -113,10 +113,10 @@ def make_offspring(
     pairs : int64[K, 2]
         Which of them meet.
     coast : CoastArrays
-        Land and no-go zones. New legs keep clear of them if a few tries find a way.
+        Land and no-go zones. New legs keep clear of them if a few tries succeed.
     settings : int
         Number of settings of the ship.
-    variation_settings : float64[HABITS]
+    variation_settings : float64[VARIATION_SETTING_COUNT]
     states : uint64[K, 1]
         A seed for each pair.
     born : int64[K, 2]
@@ -125,7 +125,7 @@ def make_offspring(
         The children; filled.
     work : float64[K, M, COLUMNS]
     weights : float64[K, 2 * M]
-        Room to work in.
+        Work space.
     """
     for k in range(pairs.shape[0]):
         first, second = pairs[k, 0], pairs[k, 1]

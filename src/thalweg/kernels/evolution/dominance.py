@@ -19,7 +19,7 @@ def assign_fronts(order, second, tails, rank):
     second : float64[N]
         The second objective.
     tails : float64[n]
-        Room to work in.
+        Work space.
     rank : int64[N]
         Filled for the points in ``order``: 0 for the first front. Of equal points one is taken to
         dominate the next.
@@ -31,7 +31,7 @@ def assign_fronts(order, second, tails, rank):
 
     Notes
     -----
-    In that order a point is dominated by a front if and only if the front's last point is no
+    In that order a point is dominated by a front if and only if the front's last point is not
     worse in the second objective, and the fronts' last values ascend: a binary search for each
     point, O(n log n) (Jensen 2003, "Reducing the run-time complexity of multiobjective EAs").
     """
@@ -56,7 +56,7 @@ def assign_fronts(order, second, tails, rank):
 def assign_crowding(order, first, second, rank, ends, crowding):
     """Fill the crowding distance of every point within its front.
 
-    ``order`` as for `assign_fronts`; ``ends`` int64[fronts, 4], filled with -1, is room to work in.
+    ``order`` as for `assign_fronts`; ``ends`` int64[fronts, 4], filled with -1, is work space.
     """
     for place in range(order.shape[0]):
         front = rank[order[place]]
@@ -83,8 +83,8 @@ def assign_crowding(order, first, second, rank, ends, crowding):
 def strengths(first, second, violation, strength, raw):
     """Fill how many points each dominates, and the summed strength of those that dominate it.
 
-    A feasible point dominates every other that is not, of two that are not the one that breaks
-    less.
+    A feasible point dominates every other that is not, of two infeasible
+    ones the one with the smaller violation.
     """
     n = first.shape[0]
     beats = np.zeros((n, n), dtype=np.bool_)
@@ -122,7 +122,7 @@ def neighbour_distances(first, second):
 
 @jit
 def truncate(first, second, keep):
-    """Return which points are left when the most crowded one is removed again and again.
+    """Return the points that remain when the most crowded one is removed repeatedly.
 
     The next to go is the point whose sorted distances to the others left are lexicographically
     smallest (Zitzler, Laumanns & Thiele 2001, "SPEA2").

@@ -38,7 +38,7 @@ MERGE: Final = 5
 PAUSE: Final = 6
 OPERATOR_COUNT: Final = 7
 
-# Habits: first a weight for each operator, then
+# Variation settings: first a weight for each operator, then
 CHANGE_SCALE: Final = 7  # the scale of the number of changes is this over the number of legs
 OFFSET_SHAPE: Final = (
     8  # of the region of inserted points, of `thalweg.kernels.evolution.random_numbers`
@@ -60,7 +60,7 @@ _MAX_TRIES = 4  # of a mutation, while its legs touch land
 
 @kernel_only
 def offset_position(lat, lon, east, north):
-    """Return the place [deg] that lies (east, north) [m] in the tangent plane of another."""
+    """Return the position [deg] displaced by (east, north) [m] in the tangent plane of another."""
     d = math.sqrt(east * east + north * north)
     if d == 0.0:
         return lat, lon

@@ -1,4 +1,4 @@
-"""Routes as files: CSV, GeoJSON (RFC 7946) and GPX 1.1, in and out."""
+"""Route files: reading and writing CSV, GeoJSON (RFC 7946) and GPX 1.1."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ def read_track(path: str | Path, *, depart: TimeLike | None = None) -> Track:
     Returns
     -------
     Track
-        With the waits and ordered speeds the file tells, as files written here do; else without
-        waits, at the ship's highest setting. Repeated positions are merged.
+        With the waits and ordered speeds of the file, which files of this package have; otherwise
+        without waits, at the highest setting of the ship. Repeated positions are merged.
 
     Raises
     ------
     InputError
-        If the file is missing, too large, not readable, of another kind, holds fewer than two
-        waypoints or positions that cannot be, or nothing tells the departure.
+        If the file is missing, too large, not readable or of another kind, has fewer than two
+        waypoints or impossible positions, or if there is no departure.
     """
     path = Path(path)
     parser = _PARSERS.get(path.suffix.lower())

@@ -60,10 +60,10 @@ def parse_csv(text: str) -> ParsedTrack:
     first = (
         rows[1][time].strip() if time is not None and len(rows) > 1 and len(rows[1]) > time else ""
     )
-    told = [name for name in (*WAITS, *SPEEDS) if name in header]
+    given = [name for name in (*WAITS, *SPEEDS) if name in header]
     orders = [
-        waypoint_order({name: _cell_of(row, header.index(name)) for name in told}, number)
-        for number, row in enumerate(rows[1:] if told else (), start=1)
+        waypoint_order({name: _cell_of(row, header.index(name)) for name in given}, number)
+        for number, row in enumerate(rows[1:] if given else (), start=1)
     ]
     return ParsedTrack(positions, parse_time(first) if first else None, orders)
 

@@ -22,7 +22,7 @@ _KINDS = "LineString, MultiLineString or Points"
 def parse_geojson(text: str) -> ParsedTrack:
     """Read the first line of a GeoJSON text, or its points in order.
 
-    Lines that go on where the one before ends are one, and lines cut at the antimeridian are joined
+    Lines that continue from the end of the one before are one, and lines cut at the antimeridian are joined
     again; other lines are other routes. Where there are both lines and points, the
     points are taken if there are two or more (they are the waypoints, with their ``waiting_h`` and
     ``ordered_speed_kn``), else the lines.
@@ -61,12 +61,12 @@ def parse_geojson(text: str) -> ParsedTrack:
     positions = [_position(item, i) for i, (item, _) in enumerate(chosen, start=1)]
     if chosen is on_line:
         return ParsedTrack(_without_cuts(positions), first_time)
-    orders = [waypoint_order(told, i) for i, (_, told) in enumerate(chosen, start=1)]
+    orders = [waypoint_order(properties, i) for i, (_, properties) in enumerate(chosen, start=1)]
     return ParsedTrack(positions, first_time, orders)
 
 
 def _first_line(lines: list[list[list[Any]]]) -> list[Any]:
-    """Return the positions of the first line, with the lines that go on where it ends."""
+    """Return the positions of the first line, with the lines that continue from its end."""
     found: list[Any] = []
     for parts in lines:
         line = [position for part in parts for position in part]
@@ -136,7 +136,7 @@ def _position(item: Any, number: int) -> Position:
 
 
 def _without_cuts(positions: list[Position]) -> list[Position]:
-    """Leave out the points where a line was cut at the antimeridian."""
+    """Return points without those where a line was cut at the antimeridian."""
     kept: list[Position] = []
     for index, (lat, lon) in enumerate(positions):
         beside = positions[max(index - 1, 0) : index] + positions[index + 1 : index + 2]

@@ -74,10 +74,10 @@ def write_gpx(route: Route, path: str | Path) -> None:
 
 def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:
     """Add the wait and the ordered speed, which GPX has no elements for."""
-    told = {name: row[name] for name in (*WAITS, *SPEEDS) if row.get(name)}
-    if told:
+    given = {name: row[name] for name in (*WAITS, *SPEEDS) if row.get(name)}
+    if given:
         extensions = ElementTree.SubElement(point, "extensions")
-        for name, value in told.items():
+        for name, value in given.items():
             ElementTree.SubElement(extensions, f"{{{_OWN_NAMESPACE}}}{name}").text = repr(value)
 
 

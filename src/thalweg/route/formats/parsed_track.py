@@ -1,4 +1,4 @@
-"""What every format yields, and how it becomes a track."""
+"""The contents of a route file of any format, and the track made of them."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from thalweg.route.track import Track
 
 @dataclass(frozen=True)
 class ParsedTrack:
-    """What a file holds of a route.
+    """The contents of a route file.
 
     Attributes
     ----------
     positions : list of (lat, lon)
         In order [deg].
     first_time : float or None
-        [s]; None: not told.
-    orders : list of Order
-        By position; empty where the file tells none.
+        [s since 1970-01-01T00:00Z]; None: not given.
+    orders : list of WaypointOrder
+        By position; empty where the file has none.
     """
 
     positions: list[Position]
@@ -116,8 +116,8 @@ def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
         )
     if depart is None and parsed.first_time is None:
         raise InputError(
-            f"The route file {name!r} tells no departure.",
-            "Its first waypoint may have a time.",
+            f"The route file {name!r} has no departure.",
+            "The departure is the time of its first waypoint, or an argument.",
             "Give depart, such as 2026-01-01T06:00Z.",
             file=name,
             field="depart",

@@ -1,7 +1,7 @@
-"""The referee: re-sails any track in small steps with the ship's own formulas.
+"""The referee: evaluates any track in small steps with the formulas of the ship.
 
-No tables, no network, no frozen fields: what it says about time, distance, fuel and clearance is
-what gets published. Its own error is told with every route.
+It uses no tables, no network and no frozen fields; its time, distance, fuel and clearance are the
+published results. Every route states the numerical error of its time.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ RouteLike: TypeAlias = "Track | Route | str | Path | Iterable[Sequence[float]]"
 
 MIN_PIECES = 8  #: of every leg
 MAX_STEP = 0.5 * NAUTICAL_MILE  #: [m]
-MAX_PIECES = 2000  #: of a route at the coarser of its two step sizes (besides `MIN_PIECES`)
+MAX_PIECES = 2000  #: of a route at the coarser of its two step sizes (`MIN_PIECES` come first)
 _SPEED_TOLERANCE = 1e-6  # relative, for speeds that went through a file
 
 
@@ -54,20 +54,21 @@ def evaluate(
     strict: bool = True,
     terms: FuelTerms | None = None,
 ) -> Route:
-    """Sail a route in small steps with the ship's own formulas, and check every limit.
+    r"""Sail a route in small steps with the formulas of the ship, and check every limit.
 
     Parameters
     ----------
     route : Track, Route, path, or iterable of (lat, lon)
-        What to sail along geodesics of WGS 84. Files are CSV, GeoJSON or GPX.
+        Legs are geodesics of WGS 84. Files are CSV, GeoJSON or GPX.
     ship : Ship
     sea : Sea
     chart : Chart, optional
-        Land, zones and charted depth; without one they are not checked, which is told.
+        Land, zones and charted depth; without one they are not checked, and the
+        route states this assumption.
     depart : time, optional
-        Departure; needed unless the track or the file tells it.
+        Departure; required unless the track or the file gives it.
     min_ukc : float or None
-        Least under-keel clearance [m], checked wherever the chart or the sea tells depth;
+        Least under-keel clearance [m], checked wherever the chart or the sea gives a depth;
         None: not checked.
     step : float, optional
         Length of a piece [m]. By default the least of an eighth of the leg, half a nautical mile
@@ -76,12 +77,12 @@ def evaluate(
         0 empty to 1 full; by default as the ship is loaded.
     speed_kn : float, optional
         Ordered calm-water speed on every leg [kn]; by default the track's own speeds and settings,
-        those a file tells, and the ship's highest for positions and other files.
+        those given in a file, and the highest of the ship for positions and other files.
     strict : bool
-        Raise if the data end before the route does. Otherwise that is listed among the violations
-        and the totals are NaN.
+        Raise if the data end before the route does. Otherwise this is a violation and the totals
+        are NaN.
     terms : FuelTerms, optional
-        What fuel and time cost; by default what the ship file says. Unknown prices make the cost
+        Prices of fuel and time; by default those of the ship file. Without them the cost is
         unknown.
 
     Returns
@@ -91,29 +92,32 @@ def evaluate(
     Raises
     ------
     CoverageError
-        If strict and the route runs where or when a variable that is needed is not known.
+        If strict and a required variable is not known somewhere along the route.
     MissingVariableError
-        If the ship needs a variable that the sea does not hold.
+        If the ship needs a variable that the sea does not have.
     InputError
         If the route cannot be read, there is no departure, or a setting does not exist.
 
     Notes
     -----
-    The time of passage solves ``dT/ds = 1 / SOG(s, T)`` by the two-stage Gauss method (order 4 in
-    smooth fields, 2 across the kinks of gridded data), first with pieces of ``step``, then of half
-    that; the second is what is told and the difference is its ``tolerance_s``. Limits are looked at
-    more closely, at up to 10,000 places; for a route that waits, the time between two of them is
-    part of the tolerance, as its waits can be that much too short. Wind acts relative
-    to the moving water, weather at angles from the heading. Waiting burns the hotel load, and the
-    ship does not drift (it lies at anchor); only its clearance is checked meanwhile, and
-    not at the first waypoint, where it lies at its berth. Without currents in the sea (no such
-    variable at all) still water is assumed, which is told.
+    The time of passage T along the distance s solves
 
-    Fuel is priced per piece: the exact share of each inside the chart's emission control areas at
-    the terms inside, the rest at those outside, times the factor of price zones. A leg from one end
-    of a canal of the chart to the other takes the canal's length, time and dues, at the fuel rate
-    of calm water at the slowest setting that keeps up; sea, land and depth are not looked at there,
-    but the canal's limits of draught and beam are.
+    .. math:: \frac{dT}{ds} = \frac{1}{SOG(s, T)}
+
+    by the two-stage Gauss method (order 4 in smooth fields, 2 across the kinks of gridded data),
+    first with pieces of ``step``, then of half that. The second solution is the result, and the
+    difference is its ``tolerance_s``. Limits are checked at up to 10,000 further points; for a
+    route that waits, the time between two of them is part of the tolerance, since its waits may be
+    too short by as much. Wind is relative to the moving water; angles of wind and waves are from
+    the heading. A waiting ship burns the fuel of its hotel load and does not drift (it is at
+    anchor); only its clearance is checked, and not at the first waypoint, where it is at its berth.
+    If the sea has no current variables, still water is assumed, and the route states this.
+
+    Fuel is priced per piece: the exact share inside the emission control areas of the chart at the
+    terms inside, the rest at those outside, times the factor of price zones. A leg from one end of
+    a canal of the chart to the other takes the length, time and dues of the canal, at the fuel rate
+    in calm water of the slowest setting that reaches its mean speed. Sea, land and depth are not
+    checked there; the limits of draught and beam of the canal are.
     """
     _check_given(ship, sea, min_ukc)
     terms = _checked_terms(ship, terms)
@@ -137,7 +141,7 @@ def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
     Raises
     ------
     InputError
-        If it cannot be read or nothing tells the departure.
+        If it cannot be read, or no departure is given.
     """
     if isinstance(route, Route):
         route = route.track
@@ -150,7 +154,7 @@ def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
     if depart is None:
         raise InputError(
             "The route has no departure.",
-            "A list of positions tells no times.",
+            "A list of positions has no times.",
             "Give depart, such as 2026-01-01T06:00Z.",
             field="depart",
         )
@@ -158,9 +162,9 @@ def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
 
 
 def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) -> tuple[Ship, Track]:
-    """Return the ship and the track with every setting an index from the bottom, by its speeds.
+    """Return the ship and the track with every setting an index from 0, the lowest.
 
-    Where the track orders speeds that are none of the ship's, the ship gets these.
+    Where the track orders speeds that the ship does not have, the ship gets these.
 
     Raises
     ------
@@ -175,9 +179,9 @@ def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) ->
     by_speed = np.isfinite(track.speed)
     if np.any((setting < 0) | (setting >= count)):
         raise InputError(
-            f"The track asks for a speed setting that {ship.name!r} does not have.",
+            f"The track has a speed setting that {ship.name!r} does not have.",
             f"It has {count} settings, 0 to {count - 1}.",
-            "Give the settings of this ship, or an ordered speed.",
+            "Use the settings of this ship, or an ordered speed.",
         )
     if not by_speed.any():
         return ship, _with_settings(track, setting)
@@ -205,15 +209,15 @@ def _check_given(ship: Ship, sea: Sea, min_ukc: float | None) -> None:
     for name, value, kind in (("ship", ship, Ship), ("sea", sea, Sea)):
         if not isinstance(value, kind):
             raise InputError(
-                f"The {name} is {value!r}, which is no {kind.__name__}.",
-                f"It is made by thalweg.{kind.__name__}.",
+                f"The {name} is {value!r}, which is not a {kind.__name__}.",
+                f"It must be a thalweg.{kind.__name__}.",
                 f"Give a {kind.__name__}.",
                 field=name,
             )
     if min_ukc is not None and not 0.0 <= min_ukc < 100.0:
         raise InputError(
-            f"An under-keel clearance of {min_ukc!r} m cannot be.",
-            "It lies between 0 and 100 m.",
+            f"An under-keel clearance of {min_ukc!r} m is not possible.",
+            "It is between 0 and 100 m.",
             "Correct it.",
             field="min_ukc",
         )
@@ -224,8 +228,8 @@ def _checked_terms(ship: Ship, terms: FuelTerms | None) -> FuelTerms:
         return ship.fuel_terms
     if not isinstance(terms, FuelTerms):
         raise InputError(
-            f"The terms are {terms!r}, which are no FuelTerms.",
-            "A ship tells its own (ship.fuel_terms); with_prices changes them.",
+            f"The terms are {terms!r}, which are not FuelTerms.",
+            "A ship has its own terms (ship.fuel_terms); with_prices changes them.",
             "Give ship.fuel_terms.with_prices(...).",
             field="terms",
         )

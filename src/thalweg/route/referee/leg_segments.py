@@ -24,7 +24,7 @@ GAUSS_NODES = np.array([0.5 - math.sqrt(3.0) / 6.0, 0.5 + math.sqrt(3.0) / 6.0])
 
 @dataclass(frozen=True)
 class TrackPoints:
-    """Places on a track where a ship is looked at.
+    """Points on a track where the motion of a ship is evaluated.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class TrackPieces:
     length, course : float64 array (legs,)
         Length [m] and course at the start [rad] of each leg.
     leg : int64 array (p,)
-        The leg each piece lies on.
+        Index of the leg of each piece.
     start : float64 array (p,)
         Distance of its start from the start of the leg [m].
     step : float64 array (p,)

@@ -1,4 +1,4 @@
-"""Which limits a sailed track breaks, and where the data do not reach."""
+"""Checks of a sailed track: violated limits and gaps in the data."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from thalweg.ship.condition_variables import (
 )
 from thalweg.ship.conditions import Conditions
 
-_LIMIT_TOLERANCE = 1e-9  # rounding allowed on every limit, in its own unit
+_LIMIT_TOLERANCE = 1e-9  # for rounding, on every limit, in its own unit
 
 
 def limit_violations(
@@ -40,21 +40,21 @@ def limit_violations(
     depth: FloatArray,
     min_ukc: float | None,
 ) -> list[Violation]:
-    """Return the limits broken and the gaps met, one record for each stretch and reason.
+    """Return the violated limits and the gaps in the data, one for each stretch and reason.
 
     Parameters
     ----------
-    world : World
-    points : Points
+    world : SailingEnvironment
+    points : TrackPoints
         In the order of sailing.
     time : ndarray
-        [s since 1970-01-01T00:00Z]; NaN behind a point the ship does not get past.
+        [s since 1970-01-01T00:00Z]; NaN beyond a point the ship cannot pass.
     sampled : mapping of str to ndarray
-        The sea there and then.
+        The sea at these points and times.
     depth : ndarray
-        Water depth there and then [m].
+        Water depth at these points and times [m].
     min_ukc : float or None
-        Least under-keel clearance [m]; None: depth is not looked at.
+        Least under-keel clearance [m]; None: depth is not checked.
     """
     reached = np.isfinite(time)
     found: list[Violation] = []
@@ -95,7 +95,7 @@ def canal_violations(
 
 
 def coverage_error(violation: Violation) -> CoverageError:
-    """Return the error for a route that runs off the data."""
+    """Return the error for a route that leaves the data."""
     place = f"{format_position(violation.lat, violation.lon)} at {format_time(violation.time)}"
     what = violation.reason.partition(": ")[2]
     kind = CoverageError
@@ -104,9 +104,9 @@ def coverage_error(violation: Violation) -> CoverageError:
     elif violation.reason.endswith("(area)"):
         kind = OutsideAreaError
     return kind(
-        f"The route runs to {place}, where the data do not know {what}.",
-        "Up to there it can be scored.",
-        "Add a dataset that covers it, sail elsewhere, or ask for a partial answer (strict=False).",
+        f"The route runs to {place}, where {what} is missing in the data.",
+        "Up to there it can be evaluated.",
+        "Add data that cover it, change the route, or ask for a partial result (strict=False).",
         lat=violation.lat,
         lon=violation.lon,
         time=violation.time,
@@ -121,7 +121,7 @@ def is_data_gap(violation: Violation) -> bool:
 def stoppage_violations(
     world: SailingEnvironment, points: TrackPoints, time: FloatArray, motion: SailingState
 ) -> list[Violation]:
-    """Return where and why the ship cannot go on."""
+    """Return where the ship cannot continue, and the reason."""
     stopped = np.isnan(motion.speed_over_ground) & np.isfinite(time)
     known = ~np.isnan(motion.depth)
     for values in motion.sampled.values():
@@ -141,7 +141,7 @@ def stoppage_violations(
 def seaway_violations(
     world: SailingEnvironment, points: TrackPoints, time: FloatArray, motion: SailingState
 ) -> list[Violation]:
-    """Return where the ship does what it must not in waves: its limits of safety and comfort."""
+    """Return where the ship exceeds its limits of safety and comfort in waves."""
     safety = world.ship.limits.safety
     if safety is None:
         return []
@@ -193,7 +193,7 @@ def _data_gap_violations(
     time: FloatArray,
     sampled: Mapping[str, FloatArray],
 ) -> list[Violation]:
-    """Return the stretches where something is not known, each at its first point."""
+    """Return the stretches where data are missing, each at its first point."""
     reached = np.isfinite(time)
     missing = {name: np.isnan(values) for name, values in sampled.items()}
     if world.charted:

@@ -1,4 +1,4 @@
-"""When a ship passes each piece of a track: quadrature of time that depends on itself."""
+"""Times of passage of the pieces of a track: the two-stage Gauss method for dT/ds = 1/SOG(s, T)."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from thalweg.core.types import FloatArray
 
 #: ``(index of the first point, one past the last, times, speeds through water guessed or None) ->
-#: (slowness [s/m], NaN where it cannot go, speed through water [m/s])`` at the Gauss points
+#: (slowness [s/m], NaN where the ship cannot sail, speed through water [m/s])`` at the Gauss points
 SlownessFunction = Callable[
     [int, int, FloatArray, "FloatArray | None"], tuple[FloatArray, FloatArray]
 ]
 
 TIME_TOLERANCE = 1e-5  #: change of any time [s] that ends the iteration
 _MAX_ITERATIONS = 14  # iterations before a stretch is cut
-_MIN_WINDOW = 64  # pieces that are looked at next behind one that did not settle, at least
+_MIN_WINDOW = 64  # least number of pieces solved next, after one that did not converge
 _MAX_ITERATIONS_SINGLE_PIECE = 60  # iterations on a single piece
 # Butcher's matrix of the two-stage Gauss method (Hairer, Norsett & Wanner 1993, table II.7.3)
 _GAUSS_MATRIX = np.array([[0.25, 0.25 - math.sqrt(3.0) / 6.0], [0.25 + math.sqrt(3.0) / 6.0, 0.25]])
@@ -27,7 +27,7 @@ _GAUSS_MATRIX = np.array([[0.25, 0.25 - math.sqrt(3.0) / 6.0], [0.25 + math.sqrt
 
 @dataclass
 class PassageTimes:
-    """Times of passage of consecutive pieces, being worked out.
+    """Times of passage of consecutive pieces, while they are solved.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class PassageTimes:
     water : float64 array (p, 2)
         Speeds through water at the Gauss points [m/s].
     bad : bool array (p, 2)
-        Where the ship cannot go on, or nothing is known.
+        Where the ship cannot continue, or data are missing.
     """
 
     step: FloatArray
@@ -67,7 +67,7 @@ def solve_passage_times(
     depart: float,
     guess: FloatArray,
 ) -> PassageTimes:
-    """Work out when a ship passes each piece.
+    r"""Solve the times of passage of each piece.
 
     Parameters
     ----------
@@ -76,22 +76,26 @@ def solve_passage_times(
     step, wait : ndarray, shape (p,)
         Length of each piece [m] and the wait after it [s].
     depart : float
-        When the ship leaves the start of the first piece [s].
+        Departure from the start of the first piece [s].
     guess : ndarray, shape (p, 2)
-        Slowness to begin with [s/m], finite and positive; also used past a bad point, so that the
-        arithmetic goes on.
+        First guess of the slowness [s/m], finite and positive; also used after a bad point, so that
+        all numbers stay finite.
 
     Returns
     -------
-    Passage
+    PassageTimes
 
     Notes
     -----
-    Solves ``dT/ds = 1 / SOG(s, T)`` by the two-stage Gauss method, of order 4 in the length of
-    the pieces where the fields are smooth. All pieces are solved at once: Picard iteration, made
-    quick by the slope of slowness in time, which the last two iterates tell at every point.
-    Of a stretch that does not settle (a field with jumps) the pieces before the first that does not
-    are done, that piece is solved by itself, and the search goes on behind it.
+    Solves
+
+    .. math:: \frac{dT}{ds} = \frac{1}{SOG(s, T)}
+
+    by the two-stage Gauss method, of order 4 in the length of the pieces where the fields are
+    smooth. All pieces are solved at once: Picard iteration, accelerated by the slope of slowness in
+    time, which follows from the last two iterates at every point. Where a stretch does not converge
+    (a field with jumps), the pieces before the first that does not are final, that piece is solved
+    by itself, and the iteration continues after it.
     """
     count = len(step)
     passage = PassageTimes(
@@ -127,7 +131,7 @@ def solve_passage_times(
 def _iterate_pieces(
     passage: PassageTimes, slowness_at: SlownessFunction, first: int, last: int
 ) -> int:
-    """Iterate one stretch of pieces from its known start; return how many settled from there on.
+    """Iterate one stretch of pieces from its known start; return how many converged.
 
     A single piece always counts as settled: it is creeped up on.
     """
@@ -150,7 +154,7 @@ def _iterate_pieces(
         if seen_at is not None:
             slope = _slowness_time_derivative(held - before, inside - seen_at, slope, step)
         seen_at, before = inside, held
-        if turn > 20:  # a jump inside one piece: creep up on it
+        if turn > 20:  # a jump inside one piece: shorter steps
             slope = np.zeros_like(slope)
             held = 0.5 * (held + passage.slowness[part])
             passage.slowness[part] = held

@@ -1,4 +1,4 @@
-"""What a sailed track takes, burns, emits and costs: per piece of a leg, by the zone it is in."""
+"""Fuel, emissions and cost of a sailed track: per piece of a leg, by the zone it is in."""
 
 from __future__ import annotations
 
@@ -17,25 +17,23 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.ship.fuel_prices import FuelTerms
 
-OUTSIDE_ZONES = (
-    "outside"  #: what lies in no emission control area, among the zones of `CostBreakdown`
-)
+OUTSIDE_ZONES = "outside"  #: outside all emission control areas, among the zones of `CostBreakdown`
 
 
 @dataclass(frozen=True)
 class CostBreakdown:
-    """What the legs of a track burn and cost.
+    """Fuel, energy, emissions and cost of the legs of a track.
 
     Attributes
     ----------
     legs : dict of str to float64 array (legs,)
-        ``fuel`` (of sailing) and ``waiting_fuel`` (lying still before it) [kg], ``fuel_in_eca``
+        ``fuel`` (of sailing) and ``waiting_fuel`` (of waiting before it) [kg], ``fuel_in_eca``
         (of both) [kg], ``co2`` [kg], ``cost`` [currency], ``energy`` (of sailing) and
         ``waiting_energy`` [J]; NaN where unknown.
     zones : dict of str to float
         Fuel [kg] by emission control area, and ``outside`` them.
     notes : tuple of str
-        What was taken for granted.
+        Assumptions where data are missing.
     """
 
     legs: dict[str, FloatArray]
@@ -45,7 +43,7 @@ class CostBreakdown:
 
 @dataclass(frozen=True)
 class ConsumptionRates:
-    """What a ship spends at the Gauss points of its track; NaN where unknown.
+    """Fuel rate and power at the Gauss points of a track; NaN where unknown.
 
     Attributes
     ----------
@@ -61,7 +59,7 @@ class ConsumptionRates:
 
 @dataclass(frozen=True)
 class _FuelByPart:
-    """Fuel as the ship's model tells it [kg], and where: of pieces, then of waits."""
+    """Fuel by the model of the ship [kg] and its zones: of pieces, then of waits."""
 
     fuel: FloatArray
     leg: NDArray[np.int64]
@@ -71,7 +69,7 @@ class _FuelByPart:
 
 
 def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerms) -> CostBreakdown:
-    """Add up what a track takes, burns and costs.
+    """Return the fuel, energy, emissions and cost of a track.
 
     Parameters
     ----------
@@ -137,7 +135,7 @@ def _ordered_speeds(sailed: SailedTrack) -> FloatArray:
 
 
 def _fuel_by_part(sailed: SailedTrack, rate: FloatArray) -> _FuelByPart:
-    """Return what is burnt on every piece, and then in the wait before every leg."""
+    """Return the fuel of every piece, and then of the wait before every leg."""
     pieces, world = sailed.pieces, sailed.world
     burnt = _integral_over_time(sailed, rate)
     legs = np.arange(len(pieces.length))
@@ -165,7 +163,7 @@ def _waits_before_legs(sailed: SailedTrack) -> FloatArray:
 def _weighted_fuel(
     parts: _FuelByPart, terms: FuelTerms, what: str
 ) -> tuple[FloatArray, FloatArray]:
-    """Return a sum of fuel of every part, and how much of it lies inside control areas."""
+    """Return a sum of fuel over all parts, and over those inside control areas."""
     within = np.where(parts.inside > 0.0, parts.inside * terms.per_kg(what, True), 0.0)
     beyond = np.where(parts.inside < 1.0, (1.0 - parts.inside) * terms.per_kg(what, False), 0.0)
     return parts.fuel * (within + beyond), parts.fuel * within
@@ -198,7 +196,7 @@ def _zones_of_pieces(
 def _zones_of_positions(
     chart: Chart | None, lat: FloatArray, lon: FloatArray
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Return the same of places."""
+    """Return (share, price factor, number of the area or -1) of positions."""
     share, price, zone = np.zeros(len(lat)), np.ones(len(lat)), np.full(len(lat), -1)
     if chart is not None and chart.zones.price:
         price = chart.zone_factor(lat, lon, lat, lon)[1]
@@ -209,7 +207,7 @@ def _zones_of_positions(
 
 
 def _control_area_of(chart: Chart, lat: FloatArray, lon: FloatArray) -> NDArray[np.int64]:
-    """Return the first control area that positions lie in; -1 for none."""
+    """Return the first control area that contains each position; -1 for none."""
     zone = np.full(len(lat), -1)
     for number, area in enumerate(chart.zones.eca):
         rest = np.flatnonzero(zone < 0)
@@ -235,7 +233,7 @@ def _fuel_by_zone(
 def _canal_dues(
     sailed: SailedTrack, terms: FuelTerms, cost: FloatArray
 ) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return the dues of every leg, and what is to be said; NaN in another currency than USD."""
+    """Return the dues of every leg, and notes; NaN in another currency than USD."""
     fee = sailed.pieces.canals.fee
     if not np.isfinite(cost).all():
         return fee, ()
@@ -243,5 +241,5 @@ def _canal_dues(
         return fee, ("The prices name no currency: US dollars are assumed.",)
     if terms.currency in ("", "USD") or not fee.any():
         return fee, ()
-    told = f"Canal dues are in USD, prices in {terms.currency}: the cost is not told."
-    return np.where(fee > 0.0, math.nan, 0.0), (told,)
+    note = f"Canal dues are in USD, prices in {terms.currency}: the cost is not known."
+    return np.where(fee > 0.0, math.nan, 0.0), (note,)

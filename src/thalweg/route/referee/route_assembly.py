@@ -1,4 +1,4 @@
-"""The referee's verdict: every number of a sailed track, and every limit it breaks."""
+"""Assembly of a route: all results of a sailed track, and the limits it violates."""
 
 from __future__ import annotations
 
@@ -29,31 +29,31 @@ from thalweg.route.route import Route, Violation
 from thalweg.route.track import Track
 from thalweg.ship.fuel_prices import FuelTerms
 
-MAX_CHECK_POINTS = 10_000  #: points at which limits are looked at besides (fewer on coarse data)
+MAX_CHECK_POINTS = 10_000  #: further points at which limits are checked (fewer on coarse data)
 CHECK_POINTS_PER_CELL = 8  #: of gridded data
-_MAX_CHECK_INTERVAL = 300.0  # longest time between two looks at the depth while waiting [s]
+_MAX_CHECK_INTERVAL = 300.0  # longest time between two checks of the depth while waiting [s]
 
 
 def assemble_route(
     sailed: SailedTrack, min_ukc: float | None, tolerance: float, terms: FuelTerms
 ) -> Route:
-    """Look at every point once more, check the limits and put the route together.
+    """Return the route of a sailed track, with every limit checked.
 
     Parameters
     ----------
-    sailed : Sailed
+    sailed : SailedTrack
     min_ukc : float or None
-        Least under-keel clearance [m]; None: depth is not looked at.
+        Least under-keel clearance [m]; None: depth is not checked.
     tolerance : float
         Of the time of sailing [s].
     terms : FuelTerms
-        What fuel and time cost.
+        Prices of fuel and time.
     """
     world, pieces = sailed.world, sailed.pieces
     points, time, order = _all_points(sailed)
-    looked_at = np.where(np.isfinite(time), time, pieces.track.depart)
-    motion = sailing_state_along(world, pieces.canals, points, looked_at)
-    power, rate = _rates(world, pieces, points, time=looked_at, motion=motion)
+    sampled_time = np.where(np.isfinite(time), time, pieces.track.depart)
+    motion = sailing_state_along(world, pieces.canals, points, sampled_time)
+    power, rate = _rates(world, pieces, points, time=sampled_time, motion=motion)
     near, moments = _check_points(sailed, points, time)
     violations, least = _check_limits(sailed, near, moments, min_ukc)
     violations += stoppage_violations(world, points, time, motion)
@@ -72,14 +72,14 @@ def assemble_route(
     if np.any(pieces.track.wait) and world.has_depth:
         tolerance += float(np.max(np.diff(moments), initial=0.0, where=np.diff(near.leg) == 0))
     samples = _samples(sailed, points, time, motion=motion, rates=(power, rate))
-    told = (*world.assumptions, *spent.notes)
+    assumptions = (*world.assumptions, *spent.notes)
     return Route(
         pieces.track,
         {**legs, **spent.legs},
         samples,
         tuple(violations),
         tolerance,
-        told,
+        assumptions,
         spent.zones,
         terms.currency or "USD",
     )
@@ -88,7 +88,7 @@ def assemble_route(
 def _check_limits(
     sailed: SailedTrack, near: TrackPoints, moments: FloatArray, min_ukc: float | None
 ) -> tuple[list[Violation], FloatArray]:
-    """Return the limits broken at close looks, and the least clearance of every leg [m]."""
+    """Return the violations at close points, and the least clearance of every leg [m]."""
     world, track = sailed.world, sailed.pieces.track
     sampled, depth = sample_sea_and_depth(
         world, near, np.where(np.isfinite(moments), moments, track.depart)
@@ -114,7 +114,7 @@ def _samples(
     motion: SailingState,
     rates: tuple[FloatArray, FloatArray],
 ) -> dict[str, FloatArray]:
-    """Return the columns of the fine samples; NaN where the ship does not get."""
+    """Return the columns of the fine samples; NaN beyond the last point that is reached."""
     start = np.concatenate([[0.0], np.cumsum(sailed.pieces.length)])
     varying = {
         **motion.sampled,
@@ -197,7 +197,7 @@ def _least_by_leg(leg: IntArray, values: FloatArray, time: FloatArray, count: in
 def _check_points(
     sailed: SailedTrack, points: TrackPoints, time: FloatArray
 ) -> tuple[TrackPoints, FloatArray]:
-    """Return closely spaced points where limits are looked at, and when they are passed."""
+    """Return closely spaced points where limits are checked, and their times of passage."""
     world, pieces = sailed.world, sailed.pieces
     spacing = float(pieces.length.sum()) / MAX_CHECK_POINTS
     spacing = max(spacing, min(data_spacings(world, 1.0 / CHECK_POINTS_PER_CELL), default=0.0))
@@ -230,7 +230,7 @@ def _finite(values: FloatArray) -> FloatArray:
 
 
 def _wait_clearances(sailed: SailedTrack) -> list[tuple[int, FloatArray, FloatArray]]:
-    """Return (waypoint, times, clearances [m]) of every wait but that at the berth."""
+    """Return (waypoint, times, clearances [m]) of every wait but that at the first waypoint."""
     world, track = sailed.world, sailed.pieces.track
     if not world.has_depth:
         return []

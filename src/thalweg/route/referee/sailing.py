@@ -1,4 +1,4 @@
-"""Sailing a track at one step size: cut, looked at and timed."""
+"""Sailing a track at one step size: pieces, conditions and times of passage."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ class SailedTrack:
 
     @property
     def arrive(self) -> float:
-        """The arrival [s]; NaN if the ship does not get there."""
+        """The arrival [s]; NaN if the ship does not reach the end."""
         arrives = self.passage.first_infeasible == len(self.pieces)
         return float(self.passage.start[-1]) if arrives else math.nan
 
     def leg_times(self) -> tuple[FloatArray, FloatArray]:
-        """Return when each leg is begun and ended [s]; NaN from where the ship cannot go on."""
+        """Return the start and end time of each leg [s]; NaN where the ship does not arrive."""
         passage, last = self.passage, self.pieces.last_of_leg()
         first = np.concatenate([[True], last[:-1]])
         depart = passage.start[:-1][first]
@@ -67,7 +67,7 @@ class SailedTrack:
 def sail_track(
     world: SailingEnvironment, track: Track, step: float, least: int, coarse: SailedTrack | None
 ) -> SailedTrack:
-    """Cut and sail a track; a coarser answer gives the first guess."""
+    """Cut and sail a track; a coarser solution gives the first guess."""
     pieces = cut_into_pieces(track, step, least, world.chart)
     charted = _least_charted_depths(world, pieces)
     gauss = replace(pieces.gauss_points(), charted=np.repeat(charted, 2))
@@ -97,9 +97,9 @@ def sailing_state_along(
     time: FloatArray,
     guess: FloatArray | None = None,
 ) -> SailingState:
-    """Return what the ship does at points of a track, some of which may lie in canals.
+    """Return the motion of the ship at points of a track, some of which may be in canals.
 
-    There the speed is the canal's, whatever the sea does, and nothing of the sea is told.
+    In canals the speed is that of the canal, and the sea is not sampled.
     """
     fixed = canals.speed[points.leg]
     free = np.flatnonzero(np.isnan(fixed))
@@ -124,7 +124,7 @@ def sailing_state_along(
 def _first_guess(
     world: SailingEnvironment, pieces: TrackPieces, coarse: SailedTrack | None
 ) -> FloatArray:
-    """Return a slowness to begin with at the Gauss points of every piece [s/m]."""
+    """Return a first guess of the slowness at the Gauss points of every piece [s/m]."""
     canal = pieces.canals.speed[pieces.leg]
     if coarse is not None:
         middle = pieces.start + 0.5 * pieces.step
@@ -151,7 +151,7 @@ def _least_charted_depths(world: SailingEnvironment, pieces: TrackPieces) -> Flo
 
 
 def data_spacings(world: SailingEnvironment, share: float) -> list[float]:
-    """Return a share of the spacing of every source of data that is looked at [m]."""
+    """Return a share of the spacing of every source of data that is sampled [m]."""
     return [
         row.spacing_deg * METRES_PER_DEGREE * share
         for row in world.sea.coverage()

@@ -35,7 +35,7 @@ _SPEED_NOISE = 1e-5  # ... or one below this that shrinks no more: ships that so
 
 @dataclass(frozen=True)
 class SailingEnvironment:
-    """A ship, the sea and the chart, and which of their variables are looked at.
+    """A ship, the sea and the chart, and the variables that are sampled.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class SailingEnvironment:
     names : tuple of str
         Variables of the sea to sample.
     assumptions : tuple of str
-        What is taken for granted.
+        Assumptions where data are missing.
     """
 
     ship: Ship
@@ -56,23 +56,23 @@ class SailingEnvironment:
 
     @property
     def has_current(self) -> bool:
-        """Whether the sea tells currents."""
+        """Whether the sea has currents."""
         return EASTWARD_CURRENT in self.names
 
     @property
     def charted(self) -> bool:
-        """Whether the chart tells depth."""
+        """Whether the chart has depths."""
         return self.chart is not None and bool(self.chart.has_depth)
 
     @property
     def has_depth(self) -> bool:
-        """Whether the chart or the sea tells depth."""
+        """Whether the chart or the sea has depths."""
         return self.charted or BED_DEPTH in self.names
 
 
 @dataclass(frozen=True)
 class SailingState:
-    """What a ship does at points and times.
+    """Motion of a ship, and the sea, at points and times.
 
     Attributes
     ----------
@@ -95,27 +95,27 @@ class SailingState:
 
 
 def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> SailingEnvironment:
-    """Find which variables a ship needs, and check that the sea holds them.
+    """Find the variables that a ship needs, and check that the sea has them.
 
     Raises
     ------
     MissingVariableError
-        If a model or a limit of the ship needs what no source tells.
+        If a model or a limit of the ship needs a variable that no source has.
     """
     missing = sorted(name for name in ship.needs if name not in sea.variables)
     if missing:
         raise MissingVariableError(
-            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not hold.",
-            f"The sea holds: {', '.join(sorted(sea.variables)) or 'nothing'}.",
-            "Add data with it, or ask for a filling by name (Sea.filled).",
+            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not have.",
+            f"The sea has: {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            "Add data with it, or fill it by name (Sea.filled).",
             missing=missing,
         )
     names = set(ship.needs)
-    told = list(getattr(sea, "assumptions", ()))
+    assumptions = list(getattr(sea, "assumptions", ()))
     if all(name in sea.variables for name in CURRENTS):
         names |= set(CURRENTS)
     else:
-        told.append("No currents in the data: still water is assumed.")
+        assumptions.append("No currents in the data: still water is assumed.")
     charted = chart is not None and bool(chart.has_depth)
     if BED_DEPTH in sea.variables:
         names.add(BED_DEPTH)
@@ -123,12 +123,14 @@ def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> Saili
         if WATER_LEVEL in sea.variables:
             names.add(WATER_LEVEL)
         else:
-            told.append("No water levels in the data: depths are taken at chart datum.")
+            assumptions.append("No water levels in the data: depths are taken at chart datum.")
     else:
-        told.append("No depth in the data: under-keel clearance was not checked.")
+        assumptions.append("No depth in the data: under-keel clearance was not checked.")
     if chart is None:
-        told.append("No chart: land was not checked.")
-    return SailingEnvironment(ship, sea, chart, tuple(sorted(names)), tuple(dict.fromkeys(told)))
+        assumptions.append("No chart: land was not checked.")
+    return SailingEnvironment(
+        ship, sea, chart, tuple(sorted(names)), tuple(dict.fromkeys(assumptions))
+    )
 
 
 def sample_sea_and_depth(

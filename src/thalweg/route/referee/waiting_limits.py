@@ -17,7 +17,7 @@ WAITING_NOT_ALLOWED = "waiting not allowed"
 
 
 def waiting_violations(chart: Chart | None, track: Track, arrive: FloatArray) -> list[Violation]:
-    """Return the waits at waypoints where the chart allows none; the first is a berth.
+    """Return the waits at waypoints where the chart allows none; the first waypoint is a berth.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Wind of which only the speed is known, for ships that look at nothing else of it."""
+"""Wind of which only the speed is known, for ships that need only its speed."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from thalweg.ship import Ship
 from thalweg.ship.condition_variables import EASTWARD_WIND, NORTHWARD_WIND
 
 WIND_SPEED_NAME = "wind_speed"
-#: What is told when it is done.
-WIND_ASSUMPTION = "wind: only its speed is known and only that is looked at; taken as from the west"
+#: The assumption that a sea then states.
+WIND_ASSUMPTION = (
+    "wind: only its speed is known, and only its speed is used; taken as from the west"
+)
 
 
 def with_wind_speed(ship: Ship, sea: Sea) -> Sea:
@@ -21,8 +23,8 @@ def with_wind_speed(ship: Ship, sea: Sea) -> Sea:
     ----------
     ship : Ship
     sea : Sea
-        If it holds ``wind_speed`` without a direction, and the ship needs wind but reads no angle
-        of it, the wind blows from the west at that speed; else it comes back as it is.
+        If it has ``wind_speed`` without a direction, and the ship needs wind but no angle of it,
+        the wind blows from the west at that speed; otherwise it is returned unchanged.
     """
     wind = {EASTWARD_WIND, NORTHWARD_WIND}
     needed = bool(wind & set(ship.needs)) and "wind_angle" not in ship.reads

@@ -37,7 +37,7 @@ _RASTER_MARGINS = (
     0.6,
 )  # margins around the track, as shares of its box, tried while a track comes near the edge
 _RASTER_EDGE_SHARE = 0.04  # distance to the edge that counts as near, as a share of the raster
-# (share by which limits are tightened, whether it may wait anywhere) while the referee finds violations
+# (share by which limits are tightened, whether it may wait anywhere), in the order of attempts
 _ATTEMPTS = ((0.0, True), (0.005, True), (0.02, True), (0.06, True), (0.0, False), (0.02, False))
 _ATTEMPTS_WITHOUT_WAITING = 4  # those that differ for a ship that does not wait
 _WAIT_TOLERANCE = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:

@@ -1,4 +1,4 @@
-"""Polishing: cheaper in the same time, never worse; settings, control areas, canals."""
+"""Cost refinement: cheaper in the same time, never worse; settings, control areas, canals."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ def _cheapest(length, speeds, rate, time):
     return best * length
 
 
-def test_never_worse_and_told_when_it_cannot_be_asked():
+def test_never_worse_and_invalid_objectives_are_refused():
     start = evaluate([(0, 0), (0, 2)], ship=BULKER, sea=Sea.calm(), chart=OPEN, depart=0)
     same = polished(start)
     assert same.cost <= start.cost
@@ -330,7 +330,7 @@ def test_canals_count_by_cubed_speed_where_the_rest_does(world):
     assert start.cost - route.cost >= 0.999 * saved
 
 
-def test_polishing_keeps_the_canal(world):
+def test_cost_refinement_keeps_the_canal(world):
     start = suez_route(world)
     assert start.feasible, start.violations
     route = polished(start, chart=world, arrive_by=1.3 * start.arrive)

@@ -1,4 +1,4 @@
-"""Metrics of fronts: worked values, properties, and pymoo as an independent opinion."""
+"""Quality indicators of fronts: worked values, properties, and pymoo as an independent check."""
 
 import numpy as np
 import pytest
@@ -75,7 +75,7 @@ def test_hypervolume_agrees_with_counting_cells(points):
 
 
 @given(POINTS, POINTS)
-def test_metrics_keep_their_order(first, second):
+def test_indicators_keep_their_order(first, second):
     corner = (13.0, 13.0)
     both = np.concatenate([first, second])
     assert hypervolume(both, corner) >= max(hypervolume(first, corner), hypervolume(second, corner))

@@ -1,4 +1,4 @@
-"""The fitness of a population: the shared kernel, the same numbers as the referee's."""
+"""Scores of a population: the same numbers as those of the referee and of the time evaluator."""
 
 import math
 from dataclasses import replace
@@ -36,7 +36,7 @@ def test_the_referee_agrees():
     assert (violation == 0.0).all()
 
 
-def test_the_quick_sailor_agrees_to_rounding():
+def test_the_time_evaluator_agrees_to_rounding():
     evaluator = jet.evaluator()
     genome = wavy(seed=3)
     n = len(genome)

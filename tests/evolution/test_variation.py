@@ -1,4 +1,4 @@
-"""Operators: unbiased draws, shapes with the variances of their formulas, tracks kept whole."""
+"""Variation: unbiased draws, shapes with the variances of their formulas, valid tracks."""
 
 import math
 

@@ -57,7 +57,7 @@ def test_time_in_every_member_is_that_of_the_referee_and_of_the_sum() -> None:
     assert math.isnan(found.risk("fuel_t"))
 
 
-def test_members_the_route_cannot_be_sailed_in_are_told_and_count() -> None:
+def test_infeasible_members_are_listed_and_count() -> None:
     sea = Sea.ensemble(current(0.0), current(0.0, bed=5.0), current(-9.0), current(0.5))
     ship = Ship.simple(speed_kn=10.0, draught_m=6.0)
     found = evaluate_members(TRACK, ship=ship, sea=sea, depart=0.0)
@@ -120,9 +120,9 @@ def test_the_tail_is_the_least_of_its_definition(values, alpha) -> None:
     assert x.mean() - 1e-6 <= cvar(x, alpha) <= x.max() + 1e-6
 
 
-def test_what_cannot_be_asked() -> None:
+def test_invalid_arguments_are_refused() -> None:
     sea = Sea.ensemble(current(0.0), current(1.0))
-    with pytest.raises(InputError, match="no ensemble"):
+    with pytest.raises(InputError, match="not an ensemble"):
         evaluate_members(TRACK, ship=SHIP, sea=current(0.0), depart=0.0)
     with pytest.raises(InputError, match=r"sea\.member\(i\)"):
         evaluate(TRACK, ship=SHIP, sea=sea, depart=0.0)

@@ -141,7 +141,7 @@ def test_unknown_prices_are_unknown_never_nothing():
     assert route.fuel_by_zone_t is None
 
 
-def test_the_currency_is_told():
+def test_the_currency_is_stated():
     euros = terms_of({"fuel": {"type": "hfo", "price_per_t": 500.0, "currency": "EUR"}})
     route = evaluate([(0, 0), (0, 1)], ship=BULKER, sea=CALM, depart=0, terms=euros)
     assert route.currency == "EUR"
@@ -151,7 +151,7 @@ def test_the_currency_is_told():
     route = evaluate([(0, 0), (0, 1)], ship=BULKER, sea=CALM, depart=0, terms=unnamed)
     assert route.currency == "USD"
     assert any("name no currency" in text for text in route.assumptions)
-    with pytest.raises(InputError, match="no FuelTerms"):
+    with pytest.raises(InputError, match="not FuelTerms"):
         evaluate([(0, 0), (0, 1)], ship=BULKER, sea=CALM, depart=0, terms=300.0)
 
 

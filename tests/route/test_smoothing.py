@@ -161,7 +161,7 @@ def test_cycloid_of_a_speed_field():
         [(-3, 0), (0, 5), (3, 0.3)],
     ],
 )
-def test_string_round_a_square_island_is_taut(points, objective):
+def test_the_route_around_a_square_island_is_shortest(points, objective):
     plane, boat = Plane(unit=1000.0), ship(5.0)
     chart = Islands(rectangle(plane, -1, -1, 1, 1))
     track = Track.from_positions([plane.place(*p) for p in points], depart=0)
@@ -233,7 +233,7 @@ def test_a_limit_in_the_field_is_kept():
     assert max(better.samples["sea_surface_wave_significant_height"]) <= 3.0 + 1e-6
 
 
-def test_quick_sailor_measures_like_the_geodesic():
+def test_the_time_evaluator_measures_like_the_geodesic():
     from thalweg.core.geodesy import distance
     from thalweg.route.evaluators.time_evaluator import TrackBatch
 
@@ -260,7 +260,7 @@ def test_quick_sailor_measures_like_the_geodesic():
     assert np.max(np.abs(arrive[:, 1] * 5.0 / exact - 1)) < 1e-6
 
 
-def test_quick_sailor_knows_the_edges_of_its_raster():
+def test_the_time_evaluator_respects_the_edges_of_its_raster():
     from thalweg.route.evaluators.time_evaluator import TrackBatch
 
     fields = Sea.calm().freeze_grid(-1, 1, -1, 1, 0, 1e4, [0, 1], spacing_deg=0.5)

@@ -1,4 +1,4 @@
-"""Thinning of refined routes."""
+"""Simplification of refined routes."""
 
 import numpy as np
 import pytest
