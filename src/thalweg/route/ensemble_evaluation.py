@@ -62,7 +62,7 @@ def cvar(values: ArrayLike, alpha: float = ALPHA) -> float:
         raise InputError(
             f"A tail beyond {alpha!r} is not possible.",
             "alpha is in [0, 1).",
-            "Use 0.9, for example.",
+            "Use 0.9.",
         )
     ordered = np.sort(np.asarray(values, float))[::-1]
     if not ordered.size:

@@ -22,8 +22,8 @@ _KINDS = "LineString, MultiLineString or Points"
 def parse_geojson(text: str) -> ParsedTrack:
     """Read the first line of a GeoJSON text, or its points in order.
 
-    Lines that continue from the end of the one before are one, and lines cut at the antimeridian are joined
-    again; other lines are other routes. Where there are both lines and points, the
+    Lines that continue from the end of the one before are one line, and lines cut at the
+    antimeridian are joined; other lines are other routes. Where there are both lines and points, the
     points are taken if there are two or more (they are the waypoints, with their ``waiting_h`` and
     ``ordered_speed_kn``), else the lines.
 
