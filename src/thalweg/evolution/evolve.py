@@ -234,7 +234,22 @@ def run_algorithm(
     progress: Callable[[EvolutionProgress], None] | None = None,
     cancel: Cancel | None = None,
 ) -> RunSummary:
-    """Run an algorithm until it has settled, a limit is reached or it is cancelled."""
+    """Run an algorithm until it has settled, a limit is reached or it is cancelled.
+
+    Parameters
+    ----------
+    strategy : EvolutionaryAlgorithm
+    evaluator : Evaluator
+    limits : StoppingCriteria
+    progress : callable, optional
+        Called with an `EvolutionProgress` after every generation.
+    cancel : callable, optional
+        Called after every generation; true ends the run.
+
+    Returns
+    -------
+    RunSummary
+    """
     begun, settling = clock.perf_counter(), ConvergenceTest(limits.settled)
     generation = evaluations = 0
     while True:
@@ -285,7 +300,21 @@ class ConvergenceTest:
 def verified_at_finer_spacing(
     evaluator: Evaluator, population: Population, scores: FloatArray, origin: Sequence[str]
 ) -> tuple[Population, FloatArray, list[str]]:
-    """Return the tracks that stay feasible when they are sailed in shorter pieces."""
+    """Return the tracks that stay feasible when they are sailed in shorter pieces.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+    population : Population
+    scores : float64 array (N, 3)
+    origin : sequence of str
+        Of each track.
+
+    Returns
+    -------
+    population, scores, origin
+        Of the tracks that are feasible.
+    """
     still = np.flatnonzero(scores[:, 2] == 0.0)
     if len(still):
         closer = evaluator.finer(_VERIFICATION_REFINEMENT).score(population.take(still))

@@ -61,7 +61,23 @@ def hypervolume(points: ArrayLike, reference: ArrayLike) -> float:
 
 
 def hypervolume_ratio(points: ArrayLike, *others: ArrayLike, reference: ArrayLike) -> float:
-    """Return the hypervolume of a front over that of its union with others (at most 1)."""
+    """Return the hypervolume of a front over that of its union with others (at most 1).
+
+    Parameters
+    ----------
+    points, *others : array_like, shape (n, 2)
+    reference : array_like, shape (2,)
+        The largest values that count.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        If no point is below the reference.
+    """
     union = np.concatenate([_checked(points), *(_checked(other) for other in others)])
     whole = hypervolume(union, reference)
     if whole <= 0.0:
@@ -90,6 +106,20 @@ def c_metric(first: ArrayLike, second: ArrayLike) -> float:
 
     A point is covered by one that is nowhere worse (Zitzler & Thiele 1999); the share is of the
     second front's points.
+
+    Parameters
+    ----------
+    first, second : array_like, shape (n, 2)
+
+    Returns
+    -------
+    float
+        0 to 1.
+
+    Raises
+    ------
+    InputError
+        If the second front is empty.
     """
     a, b = _checked(first), _checked(second)
     if not len(b):

@@ -109,62 +109,53 @@ def refine_front(
     """
     check_size(size)
     begun = clock.perf_counter()
-    watch = _LocalSearchMonitor(begun, seconds, cancel, progress)
+    monitor = _LocalSearchMonitor(begun, seconds, cancel, progress)
     variation_settings, rng = operators or VariationSettings(), np.random.default_rng(seed)
     genomes = as_genomes(evaluator, seeds)
     pool = _CandidatePool(evaluator)
     pool.add("seed", evaluator.population(genomes, capacity=capacity_for(genomes)))
+    explored = min(size, EXPLORATION_SIZE)
     first = initial_population(
-        evaluator,
-        genomes,
-        size=min(size, EXPLORATION_SIZE),
-        variation_settings=variation_settings,
-        rng=rng,
+        evaluator, genomes, size=explored, variation_settings=variation_settings, rng=rng
     )
-    strategy = Nsga2(
-        evaluator,
-        first,
-        size=min(size, EXPLORATION_SIZE),
-        variation_settings=with_wait_mutations(variation_settings, first),
-        rng=rng,
-    )
-    work = run_algorithm(
-        strategy,
-        evaluator,
-        StoppingCriteria(EXPLORATION_GENERATIONS),
-        progress=progress,
-        cancel=watch.stop,
-    )
-    pool.add(
-        "nsga2", strategy.population.take(least_crowded_front(strategy.scores, EXPLORATION_SEEDS))
-    )
-    if not watch.stop():
-        held = scalarised_local_search(
-            seeds_with_time_prices(evaluator, pool.population, count=lines), stop=watch.stop
-        )
-        watch.report(held.scores)
-        pool.add("polish", concatenated_populations(held.population, fill_front(held, size)))
+    algorithm = _nsga2(evaluator, first, explored, variation_settings, rng)
+    exploration = StoppingCriteria(EXPLORATION_GENERATIONS)
+    work = run_algorithm(algorithm, evaluator, exploration, progress=progress, cancel=monitor.stop)
+    best = least_crowded_front(algorithm.scores, EXPLORATION_SEEDS)
+    pool.add("nsga2", algorithm.population.take(best))
+    if not monitor.stop():
+        priced = seeds_with_time_prices(evaluator, pool.population, count=lines)
+        refined = scalarised_local_search(priced, stop=monitor.stop)
+        monitor.report(refined.scores)
+        filled = fill_front(refined, size)
+        pool.add("polish", concatenated_populations(refined.population, filled))
     limits = _stopping_criteria(generations, seconds, settled, begun)
-    work = RunSummary(0, work.evaluations, "cancelled" if watch.cancelled else "generations")
-    if not watch.cancelled and limits.generations != 0:
+    work = RunSummary(0, work.evaluations, "cancelled" if monitor.cancelled else "generations")
+    if not monitor.cancelled and limits.generations != 0:
         whole = pool.population
         whole = whole.with_capacity(capacity_for(whole.count))
-        strategy = Nsga2(
-            evaluator,
-            whole,
-            size=size,
-            variation_settings=with_wait_mutations(variation_settings, whole),
-            rng=rng,
-        )
-        last = run_algorithm(strategy, evaluator, limits, progress=progress, cancel=cancel)
+        algorithm = _nsga2(evaluator, whole, size, variation_settings, rng)
+        last = run_algorithm(algorithm, evaluator, limits, progress=progress, cancel=cancel)
         work = RunSummary(last.generations, work.evaluations + last.evaluations, last.stopped)
-        pool.add("nsga2", strategy.population)
+        pool.add("nsga2", algorithm.population)
     population, scores, origin = verified_at_finer_spacing(
         evaluator, pool.population, pool.scores, pool.origin
     )
     return evolution_result(
         population, scores, origin, work=work, seconds=clock.perf_counter() - begun, size=size
     )
+
+
+def _nsga2(
+    evaluator: Evaluator,
+    first: Population,
+    size: int,
+    variation_settings: VariationSettings,
+    rng: np.random.Generator,
+) -> Nsga2:
+    """Return NSGA-II for a first population, with mutations of waits if it has any."""
+    variation_settings = with_wait_mutations(variation_settings, first)
+    return Nsga2(evaluator, first, size=size, variation_settings=variation_settings, rng=rng)
 
 
 class _CandidatePool:

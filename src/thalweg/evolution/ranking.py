@@ -35,7 +35,19 @@ def ranks_and_crowding(scores: FloatArray) -> tuple[IntArray, FloatArray]:
 
 
 def select_survivors(scores: FloatArray, size: int) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return (indices of the ``size`` best, rank, crowding): NSGA-II's choice of survivors."""
+    """Return (indices of the ``size`` best, rank, crowding): NSGA-II's choice of survivors.
+
+    Parameters
+    ----------
+    scores : float64 array (N, 3)
+    size : int
+
+    Returns
+    -------
+    chosen : int64 array (size,)
+    rank : int64 array (N,)
+    crowding : float64 array (N,)
+    """
     rank, crowding = ranks_and_crowding(scores)
     return np.lexsort((-crowding, rank))[:size], rank, crowding
 
@@ -60,6 +72,16 @@ def least_crowded_front(scores: FloatArray, size: int) -> IntArray:
     """Return at most ``size`` tracks of the front, by ascending time.
 
     Tracks whose removal loses the least dominated area are removed first; both ends are kept.
+
+    Parameters
+    ----------
+    scores : float64 array (N, 3)
+    size : int
+        Largest number of tracks, at least 2.
+
+    Returns
+    -------
+    int64 array
     """
     front = feasible_front(scores)
     time, cost = scores[front, TIME], scores[front, COST]

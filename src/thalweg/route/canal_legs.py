@@ -101,7 +101,17 @@ class CanalLegs:
 
 
 def canal_legs(track: Track, chart: Chart | None) -> CanalLegs:
-    """Return which legs of a track run from one end of a canal of the chart to the other."""
+    """Return which legs of a track run from one end of a canal of the chart to the other.
+
+    Parameters
+    ----------
+    track : Track
+    chart : Chart or None
+
+    Returns
+    -------
+    CanalLegs
+    """
     none = np.full(len(track) - 1, -1, np.int64)
     if chart is None or not chart.canals:
         return CanalLegs(none, (), none < -1)
@@ -116,7 +126,17 @@ def canal_legs(track: Track, chart: Chart | None) -> CanalLegs:
 
 
 def sea_stretches(track: Track, chart: Chart | None) -> list[tuple[int, int]]:
-    """Return (first waypoint, last waypoint) of the stretches of a track between canals."""
+    """Return (first waypoint, last waypoint) of the stretches of a track between canals.
+
+    Parameters
+    ----------
+    track : Track
+    chart : Chart or None
+
+    Returns
+    -------
+    list of (int, int)
+    """
     number = canal_legs(track, chart).number
     edges = [
         0,
@@ -127,13 +147,34 @@ def sea_stretches(track: Track, chart: Chart | None) -> list[tuple[int, int]]:
 
 
 def canal_ends(track: Track, chart: Chart | None) -> NDArray[np.bool_]:
-    """Return which waypoints are ends of canal legs."""
+    """Return which waypoints are ends of canal legs.
+
+    Parameters
+    ----------
+    track : Track
+    chart : Chart or None
+
+    Returns
+    -------
+    bool array (n,)
+    """
     canal = canal_legs(track, chart).number >= 0
     return np.append(canal, False) | np.append(False, canal)
 
 
 def canal_setting(ship: Ship, canal: Canal) -> int:
-    """Return the slowest setting that reaches a canal's mean speed; the highest if none does."""
+    """Return the slowest setting that reaches a canal's mean speed; the highest if none does.
+
+    Parameters
+    ----------
+    ship : Ship
+    canal : Canal
+
+    Returns
+    -------
+    int
+        From 0.
+    """
     speeds = np.asarray(ship.speeds, float)
     fast = np.flatnonzero(speeds >= canal.length / canal.transit_time)
     return int(fast[0]) if len(fast) else len(speeds) - 1
@@ -144,6 +185,15 @@ def canal_rates(ship: Ship, canal: Canal) -> tuple[float, float]:
 
     Those of calm, deep water at the canal's setting. Ships whose speed is a field take their only
     one.
+
+    Parameters
+    ----------
+    ship : Ship
+    canal : Canal
+
+    Returns
+    -------
+    power, fuel_rate : float
     """
     calm = {name: np.zeros(1) for name in ship.needs}
     calm |= {

@@ -10,7 +10,20 @@ from thalweg.kernels.leg.table_lookup import TableArrays, table_value
 
 
 def calm_water_value(table: TableArrays, setting: int) -> float:
-    """Return a table's value without wind and waves in deep water; NaN if it has none."""
+    """Return a table's value without wind and waves in deep water; NaN if it has none.
+
+    Parameters
+    ----------
+    table : TableArrays
+        Speed [m/s] or fuel rate [kg/s].
+    setting : int
+        From 0.
+
+    Returns
+    -------
+    float
+        In the unit of the table.
+    """
     value, ok = table_value(table, _calm_axis_values(table), setting)
     return float(value) if ok else float("nan")
 

@@ -109,7 +109,18 @@ class Polyline:
 
 
 def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
-    """Return a track as a polyline; its waits become earliest departures."""
+    """Return a track as a polyline; its waits become earliest departures.
+
+    Parameters
+    ----------
+    track : Track
+    evaluator : TimeEvaluator or CostEvaluator
+        Its origin is that of the times.
+
+    Returns
+    -------
+    Polyline
+    """
     line = Polyline(
         np.array(track.lat),
         unwrap_longitude(track.lon),
@@ -126,7 +137,17 @@ def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) ->
 
 
 def track_of_polyline(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Track:
-    """Return a polyline as a track; its earliest departures become waits."""
+    """Return a polyline as a track; its earliest departures become waits.
+
+    Parameters
+    ----------
+    line : Polyline
+    evaluator : TimeEvaluator or CostEvaluator
+
+    Returns
+    -------
+    Track
+    """
     arrive, leave, _ = evaluator.sail_and_wait(line.batch())
     wait = np.maximum(0.0, leave[0] - arrive[0])
     wait[~np.isfinite(wait)] = 0.0

@@ -280,6 +280,15 @@ def raster_arrays(fields: GridFields, origin: float) -> RasterArrays:
     """Return a frozen raster as kernels take it; times count from ``origin``.
 
     ``origin`` is in seconds since 1970-01-01T00:00Z.
+
+    Parameters
+    ----------
+    fields : GridFields
+    origin : float
+
+    Returns
+    -------
+    RasterArrays
     """
     index = np.asarray(fields.channel_index, np.int64)
     channels = np.zeros(fields.values.shape[3], dtype=np.int64)
@@ -294,7 +303,18 @@ def raster_arrays(fields: GridFields, origin: float) -> RasterArrays:
 
 
 def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> FloatArray | None:
-    """Return the penalty factor of every leg of polylines (..., n); None if there are no zones."""
+    """Return the penalty factor of every leg of polylines (..., n); None if there are no zones.
+
+    Parameters
+    ----------
+    chart : Chart or None
+    lat, lon : float64 array (..., n)
+        [deg].
+
+    Returns
+    -------
+    float64 array (..., n - 1) or None
+    """
     if chart is None or not chart.zones.penalty:
         return None
     ends = lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:]

@@ -69,7 +69,13 @@ def parse_csv(text: str) -> ParsedTrack:
 
 
 def write_csv(route: Route, path: str | Path) -> None:
-    """Write the table of waypoints of a route; unknown values are left empty."""
+    """Write the table of waypoints of a route; unknown values are left empty.
+
+    Parameters
+    ----------
+    route : Route
+    path : str or Path
+    """
     rows = route.waypoints()
     with Path(path).open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)

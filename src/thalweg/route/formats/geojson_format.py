@@ -23,9 +23,9 @@ def parse_geojson(text: str) -> ParsedTrack:
     """Read the first line of a GeoJSON text, or its points in order.
 
     Lines that continue from the end of the one before are one line, and lines cut at the
-    antimeridian are joined; other lines are other routes. Where there are both lines and points, the
-    points are taken if there are two or more (they are the waypoints, with their ``waiting_h`` and
-    ``ordered_speed_kn``), else the lines.
+    antimeridian are joined; other lines are other routes. Where there are both lines and points,
+    the points are taken if there are two or more (they are the waypoints, with their ``waiting_h``
+    and ``ordered_speed_kn``), else the lines.
 
     Raises
     ------
@@ -81,7 +81,13 @@ def _continues(end: Position, start: Position) -> bool:
 
 
 def write_geojson(route: Route, path: str | Path) -> None:
-    """Write a route: one (Multi)LineString with the totals, one Point per waypoint."""
+    """Write a route: one (Multi)LineString with the totals, one Point per waypoint.
+
+    Parameters
+    ----------
+    route : Route
+    path : str or Path
+    """
     totals = {k: v for k, v in route.as_dict().items() if k not in ("waypoints", "violations")}
     parts = _line_parts(route)
     line = (

@@ -55,7 +55,13 @@ def parse_gpx(text: str) -> ParsedTrack:
 
 
 def write_gpx(route: Route, path: str | Path) -> None:
-    """Write a route as a GPX 1.1 route with the time of arrival at every waypoint."""
+    """Write a route as a GPX 1.1 route with the time of arrival at every waypoint.
+
+    Parameters
+    ----------
+    route : Route
+    path : str or Path
+    """
     root = ElementTree.Element("gpx", {"version": "1.1", "creator": "Thalweg", "xmlns": _NAMESPACE})
     line = ElementTree.SubElement(root, "rte")
     ElementTree.SubElement(line, "name").text = "Thalweg route"

@@ -101,6 +101,18 @@ def position_of(lat: object, lon: object, number: int) -> Position:
 def track_of(parsed: ParsedTrack, depart: TimeLike | None, name: str) -> Track:
     """Make a track from what a file held.
 
+    Parameters
+    ----------
+    parsed : ParsedTrack
+    depart : time or None
+        Departure; None: that of the file.
+    name : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    Track
+
     Raises
     ------
     InputError

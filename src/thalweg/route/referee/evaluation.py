@@ -138,6 +138,15 @@ def evaluate(
 def as_track(route: RouteLike, depart: TimeLike | None = None) -> Track:
     """Return the track of a route, a file or positions, with the departure if one is given.
 
+    Parameters
+    ----------
+    route : Track, Route, path, or iterable of (lat, lon)
+    depart : time, optional
+
+    Returns
+    -------
+    Track
+
     Raises
     ------
     InputError
@@ -165,6 +174,19 @@ def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) ->
     """Return the ship and the track with every setting an index from 0, the lowest.
 
     Where the track orders speeds that the ship does not have, the ship gets these.
+
+    Parameters
+    ----------
+    ship : Ship
+    track : Track
+    speed_kn : float, optional
+        Ordered calm-water speed on every leg [kn].
+
+    Returns
+    -------
+    ship : Ship
+    track : Track
+        With a setting for every leg and no speeds.
 
     Raises
     ------

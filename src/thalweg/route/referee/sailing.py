@@ -67,7 +67,23 @@ class SailedTrack:
 def sail_track(
     world: SailingEnvironment, track: Track, step: float, least: int, coarse: SailedTrack | None
 ) -> SailedTrack:
-    """Cut and sail a track; a coarser solution gives the first guess."""
+    """Cut and sail a track; a coarser solution gives the first guess.
+
+    Parameters
+    ----------
+    world : SailingEnvironment
+    track : Track
+    step : float
+        Longest piece [m].
+    least : int
+        Least number of pieces of a leg.
+    coarse : SailedTrack or None
+        A coarser solution.
+
+    Returns
+    -------
+    SailedTrack
+    """
     pieces = cut_into_pieces(track, step, least, world.chart)
     charted = _least_charted_depths(world, pieces)
     gauss = replace(pieces.gauss_points(), charted=np.repeat(charted, 2))

@@ -97,6 +97,16 @@ class SailingState:
 def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> SailingEnvironment:
     """Find the variables that a ship needs, and check that the sea has them.
 
+    Parameters
+    ----------
+    ship : Ship
+    sea : Sea
+    chart : Chart or None
+
+    Returns
+    -------
+    SailingEnvironment
+
     Raises
     ------
     MissingVariableError

@@ -211,6 +211,18 @@ def shorten_waits(route: Route, score: ScoreFunction) -> Route:
 
     Frozen fields blur the time at which a bar opens by up to one of their time steps; the referee
     knows it exactly. A wait that is too short is extended first.
+
+    Parameters
+    ----------
+    route : Route
+        As evaluated by the referee.
+    score : callable
+        The referee: a track to its route.
+
+    Returns
+    -------
+    Route
+        The given one if it has no waits.
     """
     waiting = np.flatnonzero(route.track.wait)
     if not waiting.size:
@@ -258,7 +270,24 @@ def _with_wait(track: Track, index: int, change: float) -> Track:
 
 
 def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[bool, float, float]:
-    """Return the key by which routes are compared: feasibility, then the objective, then time."""
+    """Return the key by which routes are compared: feasibility, then the objective, then time.
+
+    Parameters
+    ----------
+    route : Route
+    objective : str
+        "distance", or time for all others.
+    chart : Chart or None
+        Its penalty zones count.
+
+    Returns
+    -------
+    infeasible : bool
+    objective : float
+        [m] or [s], with the additions of penalty zones.
+    arrive : float
+        [s since 1970-01-01T00:00Z].
+    """
     if not math.isfinite(route.arrive):
         return True, math.inf, math.inf
     sailed = route.legs["arrive"] - route.legs["depart"]

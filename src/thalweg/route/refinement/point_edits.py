@@ -27,6 +27,16 @@ def remove_points(lines: ScoredTracks, *, allowance: float) -> ScoredTracks:
     """Return tracks without the points that improve them little.
 
     ``allowance`` is the share of the value that may be lost with each point.
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    allowance : float
+        Share of the value of a track.
+
+    Returns
+    -------
+    ScoredTracks
     """
     row, place = np.nonzero(lines.free)
     if not len(row):
@@ -95,6 +105,16 @@ def split_long_legs(lines: ScoredTracks, *, legs: int) -> ScoredTracks:
     """Return tracks with legs longer than a share 1 / ``legs`` of the length cut in the middle.
 
     The values stay the same; the tracks have more points to move.
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    legs : int
+        Least number of legs of equal length.
+
+    Returns
+    -------
+    ScoredTracks
     """
     population = lines.population
     lengths = lines.lengths()
@@ -120,7 +140,20 @@ def _middles(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def points_between(a: FloatArray, b: FloatArray, share: FloatArray) -> FloatArray:
-    """Return points (n, GENE_COLUMNS) at shares of legs, free and not looked up."""
+    """Return points (n, GENE_COLUMNS) at shares of legs, free and not looked up.
+
+    Parameters
+    ----------
+    a, b : float64 array (n, GENE_COLUMNS)
+        Ends of legs.
+    share : float64 array (n,)
+        Share of the arc from ``a``.
+
+    Returns
+    -------
+    float64 array (n, GENE_COLUMNS)
+        With the leg of ``a``.
+    """
     u, v = unit_vectors(a[:, LAT], a[:, LON]), unit_vectors(b[:, LAT], b[:, LON])
     arc = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(u - v, axis=1), 1.0))
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -83,6 +83,12 @@ def time_prices(evaluator: Evaluator, count: int) -> FloatArray:
 
     They cover those at which the ship would change its setting in calm water, with a margin on
     both sides, evenly in the logarithm.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+    count : int
+        Number of prices.
     """
     speeds, prices = calm_water_values(evaluator.world.table), evaluator.prices
     cost = calm_water_values(evaluator.world.fuel) * prices.outside + prices.time
@@ -108,6 +114,17 @@ def seeds_with_time_prices(evaluator: Evaluator, seeds: Population, *, count: in
 
     Each seed at the price of time that follows from its neighbours on the front, and for each of
     ``count`` prices the best seed at that price.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+    seeds : Population
+    count : int
+        Number of prices of time.
+
+    Returns
+    -------
+    ScoredTracks
     """
     scores = evaluator.score(seeds)
     good = np.flatnonzero(scores[:, 2] == 0.0)
@@ -159,6 +176,16 @@ def fill_front(lines: ScoredTracks, size: int) -> Population:
 
     For the same geometry the cheapest change of time is to change settings in the order of the
     cost of a second, the last one on a part of its leg.
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    size : int
+        Number of tracks, about.
+
+    Returns
+    -------
+    Population
     """
     front = feasible_front(lines.scores)
     if len(front) < 2:

@@ -196,7 +196,19 @@ class DelayEffects:
 
 
 def scalarised_values(scores: FloatArray, price: FloatArray) -> FloatArray:
-    """Return cost + price * time; +inf where a track is not feasible."""
+    """Return cost + price * time; +inf where a track is not feasible.
+
+    Parameters
+    ----------
+    scores : float64 array (R, 3)
+        Time [s], cost and violation.
+    price : float64 array (R,)
+        Price of time [cost/s].
+
+    Returns
+    -------
+    float64 array (R,)
+    """
     value = scores[:, 1] + price * scores[:, 0]
     return np.where((scores[:, 2] == 0.0) & np.isfinite(value), value, math.inf)
 
@@ -212,7 +224,21 @@ def feasible_front(scores: FloatArray) -> IntArray:
 def legs_as_tracks(
     lines: ScoredTracks, row: IntArray, place: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return legs as tracks of two points (L, 2, GENE_COLUMNS), and their departures [s]."""
+    """Return legs as tracks of two points (L, 2, GENE_COLUMNS), and their departures [s].
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    row, place : int64 array (L,)
+        Track and first point of each leg.
+
+    Returns
+    -------
+    pairs : float64 array (L, 2, GENE_COLUMNS)
+        Without the wait at the first point.
+    depart : float64 array (L,)
+        [s after the departure of the evaluator], after that wait.
+    """
     genes = lines.population.genes
     pairs = np.stack([genes[row, place], genes[row, place + 1]], axis=1)
     depart = lines.arrive[row, place] + pairs[:, 0, columns.WAITING_TIME]
@@ -233,6 +259,20 @@ def sail_legs_alone(
     """Return (time, cost) of legs alone; +inf where one cannot be sailed.
 
     With ``blocked`` legs that touch land are sailed too, so that they can be differenced.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+    pairs : float64 array (L, 2, GENE_COLUMNS)
+    depart : float64 array (L,)
+        [s after the departure of the evaluator].
+    blocked : bool
+        Sail legs that touch land too.
+
+    Returns
+    -------
+    time, cost : float64 array (L,)
+        [s] and in the unit of the prices.
     """
     evaluator = without_latest_arrival(evaluator)
     population = Population(np.full(len(pairs), 2), np.ascontiguousarray(pairs))
@@ -275,7 +315,14 @@ def delay_effects(lines: ScoredTracks) -> DelayEffects:
 
 
 def shift_points(genes: FloatArray, east: FloatArray, north: FloatArray) -> None:
-    """Displace points (..., GENE_COLUMNS) east and north [m], in place."""
+    """Displace points (..., GENE_COLUMNS) east and north [m], in place.
+
+    Parameters
+    ----------
+    genes : float64 array (..., GENE_COLUMNS)
+    east, north : float64 array (...)
+        [m].
+    """
     lat, lon = displaced_positions(genes[..., LAT], genes[..., LON], east, north)
     genes[..., LAT], genes[..., LON] = np.clip(lat, -90.0, 90.0), wrap_longitude(lon)
 

@@ -198,7 +198,19 @@ def _initial_polylines(
 
 
 def resampled_polyline(line: Polyline, count: int) -> Polyline:
-    """Return points at equal shares of the length of a line without waits."""
+    """Return points at equal shares of the length of a line without waits.
+
+    Parameters
+    ----------
+    line : Polyline
+        Without waits.
+    count : int
+        Number of points.
+
+    Returns
+    -------
+    Polyline
+    """
     along = np.concatenate([[0.0], np.cumsum(rough_lengths(line.lat, line.lon))])
     at = np.linspace(0.0, along[-1], count)
     index = np.minimum(np.searchsorted(along, at[:-1], side="right") - 1, len(line.setting) - 1)

@@ -221,7 +221,19 @@ def choose_speeds_of_tracks(lines: ScoredTracks, *, rounds: int = 3) -> ScoredTr
 def leg_values_by_setting(
     lines: ScoredTracks, delays: DelayEffects, row: IntArray, place: IntArray
 ) -> FloatArray:
-    """Return the value (L, settings) of every leg at every setting; +inf where it cannot sail."""
+    """Return the value (L, settings) of every leg at every setting; +inf where it cannot sail.
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    delays : DelayEffects
+    row, place : int64 array (L,)
+        Track and first point of each leg.
+
+    Returns
+    -------
+    float64 array (L, settings)
+    """
     time, cost = leg_times_and_costs_by_setting(lines, row, place)
     late = delays.priced(lines.price)[row, place + 1]
     return np.where(np.isfinite(time), cost + late[:, None] * time, math.inf)
@@ -230,7 +242,19 @@ def leg_values_by_setting(
 def leg_times_and_costs_by_setting(
     lines: ScoredTracks, row: IntArray, place: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return (time, cost) (L, settings) of every leg at every setting."""
+    """Return (time, cost) (L, settings) of every leg at every setting.
+
+    Parameters
+    ----------
+    lines : ScoredTracks
+    row, place : int64 array (L,)
+        Track and first point of each leg.
+
+    Returns
+    -------
+    time, cost : float64 array (L, settings)
+        [s] and in the unit of the prices; +inf where a leg cannot be sailed.
+    """
     settings = lines.evaluator.settings
     pairs, depart = legs_as_tracks(lines, row, place)
     fix_piece_counts(lines.evaluator, pairs)
