@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from thalweg.core.geodesy import METRES_PER_DEGREE
 from thalweg.core.types import FloatArray
 from thalweg.route.canal_legs import CanalLegs
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
@@ -17,8 +18,6 @@ from thalweg.route.referee.sailing_physics import (
     solve_sailing_state,
 )
 from thalweg.route.track import Track
-
-METRES_PER_DEGREE = 111_000.0
 
 
 @dataclass(frozen=True)
