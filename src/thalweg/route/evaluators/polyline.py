@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,8 @@ from thalweg.route.evaluators.time_evaluator import (
     TrackBatch,
 )
 from thalweg.route.track import Track
+
+PolylineEvaluator: TypeAlias = TimeEvaluator | CostEvaluator
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class Polyline:
             self.depart,
         )
 
-    def required_points(self, evaluator: TimeEvaluator | CostEvaluator) -> NDArray[np.bool_]:
+    def required_points(self, evaluator: PolylineEvaluator) -> NDArray[np.bool_]:
         """Return which points must stay: the ends and where the setting changes.
 
         Evaluators of cost choose settings, so that only the ends and canals are kept.
@@ -108,7 +111,7 @@ class Polyline:
         )
 
 
-def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
+def polyline_of_track(track: Track, evaluator: PolylineEvaluator) -> Polyline:
     """Return a track as a polyline; its waits become earliest departures.
 
     Parameters
@@ -136,7 +139,7 @@ def polyline_of_track(track: Track, evaluator: TimeEvaluator | CostEvaluator) ->
     return line
 
 
-def track_of_polyline(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Track:
+def track_of_polyline(line: Polyline, evaluator: PolylineEvaluator) -> Track:
     """Return a polyline as a track; its earliest departures become waits.
 
     Parameters

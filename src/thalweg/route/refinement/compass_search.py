@@ -14,11 +14,9 @@ from thalweg.core.geodesy import METRES_PER_DEGREE, rough_lengths, wrap_longitud
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import LAT, LON
-from thalweg.route.evaluators.cost_evaluator import CostEvaluator
-from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
 from thalweg.route.evaluators.population import concatenated_populations
 from thalweg.route.evaluators.time_evaluator import (
-    TimeEvaluator,
     TrackBatch,
 )
 from thalweg.route.refinement.point_edits import isolated_maxima, trial_subsets
@@ -37,7 +35,7 @@ _GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))  # by which the directions turn
 
 def compass_search(
     line: Polyline,
-    evaluator: TimeEvaluator | CostEvaluator,
+    evaluator: PolylineEvaluator,
     *,
     rounds: int = 30,
     smallest: float = 1.0,
@@ -80,7 +78,7 @@ def compass_search(
 
 def _try_steps(
     line: Polyline,
-    evaluator: TimeEvaluator | CostEvaluator,
+    evaluator: PolylineEvaluator,
     moving: np.ndarray,
     step: FloatArray,
     number: int,

@@ -8,10 +8,8 @@ import numpy as np
 
 from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.route.evaluators.cost_evaluator import CostEvaluator
-from thalweg.route.evaluators.polyline import Polyline
+from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
 from thalweg.route.evaluators.time_evaluator import (
-    TimeEvaluator,
     TrackBatch,
     penalty_factors,
 )
@@ -23,7 +21,7 @@ _SCAN_LEVELS = 6  # scans, each within the interval of the one before: to 12^-6 
 _GAIN_TOLERANCE = 1e-7  # relative gain of a round below which the search ends
 
 
-def cut_corners(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
+def cut_corners(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
     """Return a line shortened around the obstacles it passes.
 
     Parameters
@@ -55,9 +53,7 @@ def cut_corners(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Pol
     return line
 
 
-def merge_short_legs(
-    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, shortest: float
-) -> Polyline:
+def merge_short_legs(line: Polyline, evaluator: PolylineEvaluator, *, shortest: float) -> Polyline:
     """Return the line with the two ends of every very short leg merged, where that is feasible.
 
     Cutting a corner at a point of the coast leaves two waypoints very close together; they become
@@ -84,7 +80,7 @@ def merge_short_legs(
     return line
 
 
-def _merged(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, k: int) -> Polyline | None:
+def _merged(line: Polyline, evaluator: PolylineEvaluator, k: int) -> Polyline | None:
     """Return the line with one point for points k and k + 1, the nearest that can be sailed."""
     apex = _leg_intersection(line, k)
     if apex is None:
@@ -122,7 +118,7 @@ def _leg_intersection(line: Polyline, k: int) -> tuple[float, float] | None:
     return float(apex[0]), float(lon[1] + (apex[1] - lon[1] + 180.0) % 360.0 - 180.0)
 
 
-def _cut_every_corner(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
+def _cut_every_corner(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
     """Return the line with every corner cut off as far as possible."""
     corners = np.arange(1, len(line) - 1)
     fixed = line.required_points(evaluator)
@@ -152,7 +148,7 @@ def _cut_every_corner(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) 
 
 def _feasible_cuts(
     line: Polyline,
-    evaluator: TimeEvaluator | CostEvaluator,
+    evaluator: PolylineEvaluator,
     corners: IntArray,
     arrive: FloatArray,
     back: FloatArray,

@@ -10,8 +10,8 @@ import numpy as np
 from thalweg.core.geodesy import rough_lengths
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
-from thalweg.route.evaluators.polyline import Polyline
-from thalweg.route.evaluators.time_evaluator import TimeEvaluator, TrackBatch
+from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
+from thalweg.route.evaluators.time_evaluator import TrackBatch
 from thalweg.route.refinement.delay_effects import accumulated_delay_effects
 from thalweg.route.refinement.newton_offsets import (
     DIFFERENCE_STEP,
@@ -27,7 +27,7 @@ _ABSORBED_DELAY = 1e-3  # share of the time saved before a wait that counts
 
 def optimise_line_offsets(
     line: Polyline,
-    evaluator: TimeEvaluator | CostEvaluator,
+    evaluator: PolylineEvaluator,
     *,
     rounds: int = 12,
     tolerance: float = 1e-7,
@@ -68,11 +68,11 @@ class SailedPolyline:
     """
 
     line: Polyline
-    evaluator: TimeEvaluator | CostEvaluator
+    evaluator: PolylineEvaluator
     cost: float
 
     @classmethod
-    def of(cls, line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> SailedPolyline:
+    def of(cls, line: Polyline, evaluator: PolylineEvaluator) -> SailedPolyline:
         """Sail a line and keep it with its cost."""
         return cls(line, evaluator, float(evaluator.sail(line.batch())[1][0]))
 

@@ -15,9 +15,13 @@ from thalweg.core.geodesy import rough_lengths
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
-from thalweg.route.evaluators.polyline import Polyline, polyline_of_track, track_of_polyline
+from thalweg.route.evaluators.polyline import (
+    Polyline,
+    PolylineEvaluator,
+    polyline_of_track,
+    track_of_polyline,
+)
 from thalweg.route.evaluators.time_evaluator import (
-    TimeEvaluator,
     make_time_evaluator,
 )
 from thalweg.route.refinement.compass_search import compass_search
@@ -174,7 +178,7 @@ def _smooth_between_canals(
     return track
 
 
-def _made_feasible(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
+def _made_feasible(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
     """Return the line with longer waits, or with those that the evaluator finds."""
     longer = _shortened_waits(line, evaluator, longer=3600.0)
     if math.isfinite(_cost(longer, evaluator)):
@@ -183,7 +187,7 @@ def _made_feasible(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> 
 
 
 def _initial_polylines(
-    first: Polyline, pulled: Polyline, evaluator: TimeEvaluator | CostEvaluator
+    first: Polyline, pulled: Polyline, evaluator: PolylineEvaluator
 ) -> list[Polyline]:
     """Return the lines to refine: the pulled one, and a coarse resampling if it can be sailed."""
     starts = [pulled]
@@ -218,9 +222,7 @@ def resampled_polyline(line: Polyline, count: int) -> Polyline:
     return Polyline(lat, lon, np.full(count, -math.inf), line.setting[index], line.depart)
 
 
-def _refine_by_levels(
-    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, finest: int
-) -> Polyline:
+def _refine_by_levels(line: Polyline, evaluator: PolylineEvaluator, finest: int) -> Polyline:
     """Refine a line level by level, and remove needless waypoints at the end."""
     total = float(rough_lengths(line.lat, line.lon).sum())
     longest, idle = total / 2.0, 0
@@ -241,7 +243,7 @@ def _refine_by_levels(
     return _simplified(line, evaluator)
 
 
-def _refined(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, bound: bool) -> Polyline:
+def _refined(line: Polyline, evaluator: PolylineEvaluator, bound: bool) -> Polyline:
     """Move the waypoints by Newton's method, and by compass search where obstacles may bind."""
     moved = optimise_line_offsets(line, evaluator)
     if not bound:
@@ -252,13 +254,13 @@ def _refined(line: Polyline, evaluator: TimeEvaluator | CostEvaluator, bound: bo
     )
 
 
-def _may_be_constrained(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> bool:
+def _may_be_constrained(line: Polyline, evaluator: PolylineEvaluator) -> bool:
     """Return whether an obstacle may bind a line: a chart, or limits of any kind."""
     limited = np.isfinite(evaluator.limits).any()
     return bool(limited) or evaluator.chart is not None
 
 
-def _simplified(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Polyline:
+def _simplified(line: Polyline, evaluator: PolylineEvaluator) -> Polyline:
     """Remove waypoints that gain almost nothing, and move the others once more."""
     spent = _elapsed_cost(line, evaluator)
     if not math.isfinite(spent) or len(line) < 3:
@@ -275,7 +277,7 @@ def _simplified(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> Pol
 
 
 def _shortened_waits(
-    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, longer: float = 0.0
+    line: Polyline, evaluator: PolylineEvaluator, *, longer: float = 0.0
 ) -> Polyline:
     """Return the line with every departure from a wait as early as is best for the arrival.
 
@@ -316,10 +318,10 @@ def _shortened_waits(
     return line
 
 
-def _cost(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> float:
+def _cost(line: Polyline, evaluator: PolylineEvaluator) -> float:
     return float(evaluator.sail(line.batch())[1][0])
 
 
-def _elapsed_cost(line: Polyline, evaluator: TimeEvaluator | CostEvaluator) -> float:
+def _elapsed_cost(line: Polyline, evaluator: PolylineEvaluator) -> float:
     """Return the cost from departure: seconds or metres."""
     return _cost(line, evaluator) - (0.0 if evaluator.by_length else line.depart)

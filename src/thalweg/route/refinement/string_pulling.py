@@ -7,17 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.route.evaluators.cost_evaluator import CostEvaluator
-from thalweg.route.evaluators.polyline import Polyline
-from thalweg.route.evaluators.time_evaluator import TimeEvaluator, TrackBatch
+from thalweg.route.evaluators.polyline import Polyline, PolylineEvaluator
+from thalweg.route.evaluators.time_evaluator import TrackBatch
 
 _MAX_HOP = 48  # waypoints a single hop may skip
 _PASSES = 4
 
 
-def string_pull(
-    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, *, penalty: float = 0.0
-) -> Polyline:
+def string_pull(line: Polyline, evaluator: PolylineEvaluator, *, penalty: float = 0.0) -> Polyline:
     """Return the best line through a subset of the waypoints, in their order.
 
     Parameters
@@ -52,7 +49,7 @@ def string_pull(
 
 
 def _best_subset(
-    line: Polyline, evaluator: TimeEvaluator | CostEvaluator, penalty: float
+    line: Polyline, evaluator: PolylineEvaluator, penalty: float
 ) -> NDArray[np.int64] | None:
     count = len(line)
     arrive, label = np.full(count, math.inf), np.full(count, math.inf)
