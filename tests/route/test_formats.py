@@ -172,7 +172,7 @@ def test_geojson_lines_that_go_on_are_one_route_and_others_are_not(tmp_path):
         ("a.geojson", "{", "cannot be read"),
         ("a.geojson", "[]", "no route"),
         ("a.geojson", '{"type": "Polygon", "coordinates": []}', "no route"),
-        ("a.geojson", '{"type": "LineString", "coordinates": 3}', "no list"),
+        ("a.geojson", '{"type": "LineString", "coordinates": 3}', "not lists"),
         ("a.geojson", '{"type": "LineString", "coordinates": [[1], [2, 3]]}', "not a position"),
         ("a.gpx", "<gpx", "cannot be read"),
         ("a.gpx", "<gpx><wpt lat='1' lon='2'/></gpx>", "no route and no track"),

@@ -103,7 +103,7 @@ class Population:
     ----------
     count : int64 array (N,)
         Points of each track.
-    genes : float64 array (N, M, COLUMNS)
+    genes : float64 array (N, M, GENE_COLUMNS)
         Points and the legs that start there, see `thalweg.kernels.leg.population_sailing`.
     """
 

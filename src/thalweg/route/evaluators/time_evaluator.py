@@ -218,13 +218,13 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     if not len(legs):
         return np.empty(0)
-    part, way = (length / count)[leg], course[leg]
-    a = direct(lat1[leg], lon1[leg], way, number * part)
-    b = direct(lat1[leg], lon1[leg], way, (number + 1) * part)
+    part, direction = (length / count)[leg], course[leg]
+    a = direct(lat1[leg], lon1[leg], direction, number * part)
+    b = direct(lat1[leg], lon1[leg], direction, (number + 1) * part)
     beside = np.minimum(_CORRIDOR_HALF_WIDTH, 1e-3 * length)[leg]
     depth = np.full(len(leg), math.inf)
     for side in (-0.5 * math.pi, 0.5 * math.pi):  # a corridor: the same however legs are cut
-        ends = *direct(*a, way + side, beside), *direct(*b, way + side, beside)
+        ends = *direct(*a, direction + side, beside), *direct(*b, direction + side, beside)
         depth = np.minimum(depth, np.asarray(chart.depth_along(*ends), dtype=np.float64))
     least: FloatArray = np.minimum.reduceat(depth, first)
     return least

@@ -126,7 +126,7 @@ def _geometries(data: Any) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
 def _listed(value: Any) -> list[Any]:
     if not isinstance(value, list):
         raise InputError(
-            "The GeoJSON has coordinates or features that are no list.", "", "Check the file."
+            "The GeoJSON has coordinates or features that are not lists.", "", "Check the file."
         )
     return value
 

@@ -73,8 +73,8 @@ def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerm
 
     Parameters
     ----------
-    sailed : Sailed
-    rates : Rates
+    sailed : SailedTrack
+    rates : ConsumptionRates
     terms : FuelTerms
 
     Notes

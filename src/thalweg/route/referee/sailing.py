@@ -26,13 +26,13 @@ class SailedTrack:
 
     Attributes
     ----------
-    world : World
-    pieces : Pieces
+    world : SailingEnvironment
+    pieces : TrackPieces
     charted : float64 array (p,)
         Least charted depth along every piece [m below datum]; +inf without a chart of depth.
-    gauss : Points
+    gauss : TrackPoints
         The two Gauss points of every piece.
-    passage : Passage
+    passage : PassageTimes
         When they are passed.
     """
 

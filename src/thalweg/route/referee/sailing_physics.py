@@ -170,8 +170,8 @@ def solve_sailing_state(
 
     Parameters
     ----------
-    world : World
-    points : Points
+    world : SailingEnvironment
+    points : TrackPoints
     time : ndarray
         [s since 1970-01-01T00:00Z].
     guess : ndarray, optional
