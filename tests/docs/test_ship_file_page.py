@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from thalweg.ship.file.part_builders import SPEED_LOSSES
 from thalweg.ship.file.resistance_ship_builder import RUDDER_METHODS
-from thalweg.ship.file.ship_builder import SPEED_LOSSES
-from thalweg.ship.file.ship_schema import SECTIONS, TOP_LEVEL_KEYS
+from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.methods.engine.specific_consumption import BASE_SFOC
 from thalweg.ship.models.added_resistance_model import WAVE_METHODS, WIND_METHODS
 from thalweg.ship.models.calm_water_model import (
@@ -37,9 +37,11 @@ NAMES = {
 
 
 def test_every_key_is_on_the_page_and_no_other():
-    keys = {key for section in SECTIONS.values() for key in section}
-    told = set(ROWS) | {"name", "description", "sources"}
-    assert told - {"table"} == keys | set(TOP_LEVEL_KEYS)
+    schema = ShipFile.model_json_schema()
+    sections = {name.removesuffix("Section").lower() for name in schema["$defs"]}
+    keys = {key for section in schema["$defs"].values() for key in section["properties"]}
+    described = set(ROWS) | {"name", "description", "sources"}
+    assert described - {"table"} == keys | set(schema["properties"]) - sections
 
 
 @pytest.mark.parametrize("key", NAMES)

@@ -16,8 +16,7 @@ from thalweg.evolution import Evaluator, Genome, make_evaluator
 from thalweg.kernels import codes
 from thalweg.route import evaluate
 from thalweg.sea import Sea
-from thalweg.ship import Ship
-from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 
 SHRINK = 100.0
 METRES_PER_LON = 111319.49079327358  # on the equator, WGS 84

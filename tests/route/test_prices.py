@@ -18,7 +18,14 @@ from thalweg.route import Track, evaluate
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-from thalweg.ship.fuel_prices import fuel_terms
+from thalweg.ship.file.ship_schema import ShipFile
+from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+
+
+def terms_of(sections: dict) -> FuelTerms:
+    """Fuels and prices of a ship file with these sections."""
+    return fuel_terms(ShipFile.of({"name": "ship", **sections}))
+
 
 BULKER = Ship.load("handysize-bulker")
 STEADY = Ship.from_dict(
@@ -87,7 +94,7 @@ def test_price_zones_multiply_and_another_fuel_burns_inside():
     both = OPEN.with_zones(
         [zone(0, -1, 2, 1, name="eca"), zone(0, -1, 2, 1, kind="price", factor=2.0)]
     )
-    terms = fuel_terms(
+    terms = terms_of(
         {"fuel": {"type": "hfo", "eca_type": "mgo", "price_per_t": 500.0, "eca_price_per_t": 800.0}}
     )
     route = evaluate([(0, 0.5), (0, 1)], ship=BULKER, sea=CALM, chart=both, depart=0, terms=terms)
@@ -135,7 +142,7 @@ def test_unknown_prices_are_unknown_never_nothing():
 
 
 def test_the_currency_is_told():
-    euros = fuel_terms({"fuel": {"type": "hfo", "price_per_t": 500.0, "currency": "EUR"}})
+    euros = terms_of({"fuel": {"type": "hfo", "price_per_t": 500.0, "currency": "EUR"}})
     route = evaluate([(0, 0), (0, 1)], ship=BULKER, sea=CALM, depart=0, terms=euros)
     assert route.currency == "EUR"
     assert route.as_dict()["cost_eur"] == pytest.approx(500.0 * route.fuel_t)
@@ -233,7 +240,7 @@ def test_a_canal_faster_than_the_ship_takes_its_highest_setting(world):
 
 
 def test_dues_in_another_currency_leave_the_cost_unknown(world):
-    euros = fuel_terms({"fuel": {"type": "hfo", "price_per_t": 500.0, "currency": "EUR"}})
+    euros = terms_of({"fuel": {"type": "hfo", "price_per_t": 500.0, "currency": "EUR"}})
     places = through(SUEZ, (31.6, 32.3), (29.5, 32.5))
     route = evaluate(places, ship=BULKER, sea=CALM, chart=world, depart=0, terms=euros)
     assert route.cost is None and route.fuel_t > 0.0

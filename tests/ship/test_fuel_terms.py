@@ -8,7 +8,13 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.ship import Ship
-from thalweg.ship.fuel_prices import fuel_terms
+from thalweg.ship.file.ship_schema import ShipFile
+from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+
+
+def terms_of(sections: dict) -> FuelTerms:
+    """Fuels and prices of a ship file with these sections."""
+    return fuel_terms(ShipFile.of({"name": "ship", **sections}))
 
 
 def test_what_a_kilogram_stands_for():
@@ -23,7 +29,7 @@ def test_what_a_kilogram_stands_for():
 
 
 def test_another_fuel_inside_burns_by_the_same_heat():
-    terms = fuel_terms(
+    terms = terms_of(
         {"fuel": {"type": "hfo", "eca_type": "mgo", "price_per_t": 500.0, "eca_price_per_t": 800.0}}
     )
     assert terms.per_kg("fuel", True) == pytest.approx(40.2 / 42.7)
@@ -47,7 +53,7 @@ def test_prices_are_given_and_kept():
 
 def test_a_factor_waits_for_a_price():
     """A ship file with a factor but no price keeps the factor until a price comes."""
-    terms = fuel_terms({"fuel": {"type": "hfo", "eca_price_factor": 1.4}})
+    terms = terms_of({"fuel": {"type": "hfo", "eca_price_factor": 1.4}})
     assert math.isnan(terms.per_kg("cost", True))
     assert terms.with_prices(500.0).price_inside == pytest.approx(0.7)
     with pytest.raises(InputError, match="fuel has no price"):
@@ -55,7 +61,7 @@ def test_a_factor_waits_for_a_price():
 
 
 def test_unknown_prices_stay_unknown():
-    terms = fuel_terms({})
+    terms = terms_of({})
     assert math.isnan(terms.per_kg("cost", False)) and math.isnan(terms.per_kg("co2", True))
     assert math.isnan(terms.with_prices().per_kg("cost", True))
 
@@ -72,28 +78,28 @@ def test_prices_that_make_no_sense_are_refused(bad):
 
 
 def test_price_of_time_from_the_ship_file():
-    assert fuel_terms({"costs": {"hire_per_day": 8640.0}}).time_price == pytest.approx(0.1)
-    assert fuel_terms({"costs": {"per_week": 604800.0}}).time_price == pytest.approx(1.0)
+    assert terms_of({"costs": {"hire_per_day": 8640.0}}).time_price == pytest.approx(0.1)
+    assert terms_of({"costs": {"per_week": 604800.0}}).time_price == pytest.approx(1.0)
     with pytest.raises(InputError, match="given twice"):
-        fuel_terms({"costs": {"hire_per_day": 1.0, "per_week": 7.0}})
+        terms_of({"costs": {"hire_per_day": 1.0, "per_week": 7.0}})
 
 
 def test_one_currency():
     euros = {"fuel": {"price_per_t": 500.0, "currency": "EUR"}}
-    assert fuel_terms(euros).currency == "EUR"
+    assert terms_of(euros).currency == "EUR"
     with pytest.raises(InputError, match=r"EUR and USD"):
-        fuel_terms({**euros, "costs": {"hire_per_day": 1.0, "currency": "USD"}})
-    assert fuel_terms(euros).with_prices(600.0).currency == "USD"
+        terms_of({**euros, "costs": {"hire_per_day": 1.0, "currency": "USD"}})
+    assert terms_of(euros).with_prices(600.0).currency == "USD"
     with pytest.raises(InputError, match="prices in EUR"):
-        fuel_terms(euros).with_prices(time_usd_per_day=100.0)
+        terms_of(euros).with_prices(time_usd_per_day=100.0)
 
 
 def test_the_price_of_speed_stands_for_fuel_only_where_fuel_has_no_price():
     costs = {"per_week": 604800.0, "per_second_per_cubed_speed": 0.008, "currency": "EUR"}
-    terms = fuel_terms({"costs": costs})
+    terms = terms_of({"costs": costs})
     assert terms.by_speed and terms.cubed_speed_price == 0.008
-    assert not fuel_terms({"costs": {"per_week": 604800.0}}).by_speed
-    assert not fuel_terms({"costs": costs, "fuel": {"price_per_t": 500.0}}).by_speed
+    assert not terms_of({"costs": {"per_week": 604800.0}}).by_speed
+    assert not terms_of({"costs": costs, "fuel": {"price_per_t": 500.0}}).by_speed
     with pytest.raises(InputError, match="prices in EUR"):
         terms.with_prices(time_usd_per_day=100.0)
     dollars = terms.with_prices(600.0, time_usd_per_day=100.0)

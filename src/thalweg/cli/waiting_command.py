@@ -201,8 +201,7 @@ def _sea(arguments: argparse.Namespace, ends: tuple[Position, Position], draught
 def _hotel_power(arguments: argparse.Namespace) -> float:
     if arguments.hotel_kw is not None:
         return 1000.0 * float(arguments.hotel_kw)
-    engine = options.open_ship(arguments).data.get("engine", {})
-    return 1000.0 * float(engine.get("hotel_load_kw", 0.0))
+    return options.open_ship(arguments).hotel_power
 
 
 def _kilowatts(power: float) -> float | None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Any, Final
+from typing import Final
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import DAY, TONNE
+from thalweg.ship.file.ship_schema import CostsSection, ShipFile
 from thalweg.ship.methods.engine.fuel_properties import Fuel, fuel_named
 
 FUEL_QUANTITIES: Final = ("fuel", "cost", "co2")
@@ -173,7 +173,7 @@ class FuelTerms:
             )
 
 
-def fuel_terms(data: Mapping[str, Any]) -> FuelTerms:
+def fuel_terms(file: ShipFile) -> FuelTerms:
     """Read fuels and prices from a ship file.
 
     Without ``eca_type`` the ship burns the same fuel inside; the price inside is
@@ -186,53 +186,56 @@ def fuel_terms(data: Mapping[str, Any]) -> FuelTerms:
     InputError
         For unknown fuels, two prices for the same thing, and two currencies.
     """
-    given, costs = data.get("fuel", {}), data.get("costs", {})
-    outside = fuel_named(given["type"]) if "type" in given else None
-    inside = fuel_named(given["eca_type"]) if "eca_type" in given else outside
-    if "eca_price_per_t" in given and "eca_price_factor" in given:
+    given, costs = file.fuel, file.costs
+    outside = None if given.type is None else fuel_named(given.type)
+    inside = outside if given.eca_type is None else fuel_named(given.eca_type)
+    if given.eca_price_per_t is not None and given.gives("eca_price_factor"):
         raise InputError(
             "The price inside control areas is given twice.",
             "It is fuel.eca_price_per_t, or fuel.price_per_t times fuel.eca_price_factor.",
             "Keep one of them.",
             key="fuel.eca_price_factor",
         )
-    price = given.get("price_per_t", math.nan)
-    factor = math.nan if "eca_price_per_t" in given else given.get("eca_price_factor", 1.0)
-    own = given.get("carbon_factor")
+    price = math.nan if given.price_per_t is None else given.price_per_t
+    own = given.eca_price_per_t
+    factor = given.eca_price_factor if own is None else math.nan
+    cubed = costs.per_second_per_cubed_speed
     return FuelTerms(
         outside=outside,
         inside=outside if inside == outside else inside,
         price_outside=price / TONNE,
-        price_inside=given.get("eca_price_per_t", price * factor) / TONNE,
+        price_inside=(price * factor if own is None else own) / TONNE,
         eca_price_factor=factor,
-        own_carbon_factor=None if own is None else float(own),
-        currency=_currency(given, costs),
+        own_carbon_factor=given.carbon_factor,
+        currency=_currency(file),
         time_price=_time_price(costs),
-        cubed_speed_price=float(costs.get("per_second_per_cubed_speed", math.nan)),
+        cubed_speed_price=math.nan if cubed is None else cubed,
     )
 
 
-def _time_price(costs: Mapping[str, Any]) -> float:
-    if "hire_per_day" in costs and "per_week" in costs:
+def _time_price(costs: CostsSection) -> float:
+    """Return the price of time [currency/s]; 0 when the file gives none."""
+    if costs.hire_per_day is not None and costs.per_week is not None:
         raise InputError(
             "The price of time is given twice.",
             "It is costs.hire_per_day or costs.per_week.",
             "Keep one of them.",
             key="costs.hire_per_day",
         )
-    return float(costs.get("hire_per_day", costs.get("per_week", 0.0) / 7.0)) / DAY
+    per_day = (costs.per_week or 0.0) / 7.0 if costs.hire_per_day is None else costs.hire_per_day
+    return per_day / DAY
 
 
-def _currency(given: Mapping[str, Any], costs: Mapping[str, Any]) -> str:
-    named = {section["currency"] for section in (given, costs) if "currency" in section}
+def _currency(file: ShipFile) -> str:
+    named = {file.fuel.currency, file.costs.currency} - {None}
     if len(named) > 1:
         raise InputError(
-            f"The ship file gives prices in {' and '.join(sorted(named))}.",
+            f"The ship file gives prices in {' and '.join(sorted(str(one) for one in named))}.",
             "All prices of a ship are in one currency.",
             "Give fuel and costs in the same one.",
             key="costs.currency",
         )
-    return named.pop() if named else ""
+    return named.pop() or "" if named else ""
 
 
 def _carbon_factor(fuel: Fuel | None, own: float | None) -> float:

@@ -10,7 +10,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import AXIS_OF_CONDITION
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.model_protocol import ShipModel
+from thalweg.ship.model_protocol import ShipModel, Tabulation
 from thalweg.ship.models.function_model import FunctionModel
 from thalweg.ship.ship import Ship
 from thalweg.ship.tables.performance_table import PerformanceTable
@@ -171,9 +171,8 @@ def _top_speed_holds(model: ShipModel, conditions: Conditions, load_factor: floa
 
 def _table_error_holds(model: ShipModel, load_factor: float, tolerance: float) -> list[str]:
     """The table's parts, summed, stray no further than the table says."""
-    parts, error, *more = model.tabulate(load_factor, tolerance)
-    finish = more[0] if more else None
-    table = PerformanceTable(parts, model.speeds(load_factor), "", error, finish)
+    parts, error, curve = Tabulation(*model.tabulate(load_factor, tolerance))
+    table = PerformanceTable(parts, model.speeds(load_factor), "", error, curve)
     undeclared = table.axes - model.reads
     if undeclared:
         return [f"the table has axes {', '.join(sorted(undeclared))}, which it does not read"]

@@ -1,10 +1,14 @@
-"""What a ship model must offer: the protocol that built-in and third-party models follow."""
+"""The protocol of ship models: what every model offers, and what a model may offer besides.
+
+`ShipModel` is required of built-in and third-party models alike. The other protocols are optional
+capabilities: `Ship` uses them where a model offers them, by ``isinstance``. The capability of
+models with a resistance is `thalweg.ship.models.resistance_protocol.ResistanceBased`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,35 +16,40 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.tables.output_curve import OutputCurve
-from thalweg.ship.tables.performance_table import TableError, TablePart
+from thalweg.ship.tables.table_parts import TableError, TablePart
+
+#: The parts of a table, their error, and the output curve where there is one.
+ModelTables: TypeAlias = (
+    tuple[tuple[TablePart, ...], TableError]
+    | tuple[tuple[TablePart, ...], TableError, OutputCurve | None]
+)
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """A particular that was not given and was estimated.
+class Tabulation(NamedTuple):
+    """What ``tabulate`` of a model returns, with names: ``Tabulation(*model.tabulate(...))``.
 
     Attributes
     ----------
-    key : str
-        Its key in a ship file, with the unit.
-    value : float or str
-        A word for choices.
-    method : str
-        What it was estimated by.
+    parts : tuple of TablePart
+    error : TableError
+    curve : OutputCurve, optional
+        Applied to the sum of the parts.
     """
 
-    key: str
-    value: float | str
-    method: str
+    parts: tuple[TablePart, ...]
+    error: TableError
+    curve: OutputCurve | None = None
 
 
+@runtime_checkable
 class ShipModel(Protocol):
-    """How fast a ship goes, what it burns and what power it takes, in given conditions.
+    """Speed, power and fuel of a ship in given conditions.
 
-    All arrays are SI. A model never changes, reads only the conditions it declares and answers
-    arrays of conditions with arrays of their shape; NaN conditions give NaN.
+    All arrays are SI. A model does not change after construction and reads only the conditions
+    that it declares. It returns arrays of the shape of the conditions; NaN conditions give NaN.
     """
 
     @property
@@ -50,7 +59,7 @@ class ShipModel(Protocol):
 
     @property
     def identity(self) -> Mapping[str, object]:
-        """Plain data that tell this model from any other; goes into the fingerprint."""
+        """Plain data that distinguish this model from others; part of the ship's fingerprint."""
         ...
 
     def speeds(self, load_factor: float) -> FloatArray:
@@ -73,22 +82,94 @@ class ShipModel(Protocol):
         """Upper bound of the speed through water [m/s]; None when unknown."""
         ...
 
-    def tabulate(
-        self, load_factor: float, tolerance: float
-    ) -> (
-        tuple[tuple[TablePart, ...], TableError]
-        | tuple[tuple[TablePart, ...], TableError, OutputCurve | None]
-    ):
-        """Parts whose sum is, or leads to, the speed through water [m/s]; their measured error.
+    def tabulate(self, load_factor: float, tolerance: float) -> ModelTables:
+        """Tabulate the speed through water [m/s].
 
-        Third comes what follows the sum, if anything does. A model whose fuel does not follow from
-        its setting alone may offer ``tabulate_fuel`` in the same form, and ``tabulate_power`` for
-        its brake power; one that finds both together may offer ``power_and_fuel``.
+        Parameters
+        ----------
+        load_factor : float
+            0 empty to 1 full.
+        tolerance : float
+            Relative error that 99 % of random conditions should meet.
+
+        Returns
+        -------
+        tuple
+            Parts whose sum is the speed, the measured error, and optionally the `OutputCurve` that
+            turns the sum into the speed.
         """
         ...
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
-        """Where a method is used outside its range."""
+        """Return where a method is used outside its range."""
+        ...
+
+
+@runtime_checkable
+class DraughtModel(Protocol):
+    """Capability: a model of a plug-in that gives its own draught."""
+
+    @property
+    def draught(self) -> float:
+        """Draught [m]."""
+        ...
+
+
+@runtime_checkable
+class EstimatingModel(Protocol):
+    """Capability: a model that estimated particulars which the ship file does not give."""
+
+    @property
+    def estimated(self) -> tuple[Estimate, ...]:
+        """The estimates."""
+        ...
+
+
+@runtime_checkable
+class AdjustableModel(Protocol):
+    """Capability: a model whose settings can be replaced."""
+
+    def with_speeds(self, speeds: FloatArray, load_factor: float) -> ShipModel:
+        """Return the model with other settings, by their calm-water speeds [m/s]."""
+        ...
+
+
+@runtime_checkable
+class CrabAngleModel(Protocol):
+    """Capability: a model that may depend on the angle between heading and course."""
+
+    @property
+    def depends_on_crab_angle(self) -> bool:
+        """Whether it does, as with rudder drag."""
+        ...
+
+
+@runtime_checkable
+class JointPowerAndFuelModel(Protocol):
+    """Capability: a model that finds brake power and fuel rate in one computation."""
+
+    def power_and_fuel(
+        self, conditions: Conditions, setting: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return brake power [W] and fuel rate [kg/s]; NaN where unknown."""
+        ...
+
+
+@runtime_checkable
+class FuelTableModel(Protocol):
+    """Capability: a model that tabulates its fuel rate itself."""
+
+    def tabulate_fuel(self, load_factor: float, tolerance: float) -> ModelTables:
+        """Tabulate the fuel rate [kg/s]; parameters as in `ShipModel.tabulate`."""
+        ...
+
+
+@runtime_checkable
+class PowerTableModel(Protocol):
+    """Capability: a model that tabulates its brake power itself."""
+
+    def tabulate_power(self, load_factor: float, tolerance: float) -> ModelTables:
+        """Tabulate the brake power [W]; parameters as in `ShipModel.tabulate`."""
         ...
 
 

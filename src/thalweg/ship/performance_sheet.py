@@ -19,7 +19,9 @@ from thalweg.ship.methods.carbon_intensity import (
     required_cii,
 )
 from thalweg.ship.methods.seakeeping.wave_spectra import pierson_moskowitz_period
+from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import unused_efficiencies
+from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.performance_sheet_seaway import ShipInSeaway
 from thalweg.ship.ship import Ship
 
@@ -74,7 +76,7 @@ def performance_sheet(
             ship=ship.name,
         )
     conditions = _conditions(ship, weather or {})
-    composed = hasattr(ship.model, "power_at_speed")
+    model = ship.model
     speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _default_speeds(ship)
     if speeds.size == 0 or not (np.isfinite(speeds) & (speeds > 0)).all():
         raise InputError(
@@ -82,8 +84,12 @@ def performance_sheet(
             "Speeds are in knots, such as 8:16 or 10,12,14.",
             "Correct them.",
         )
-    speeds, left_out = (speeds, []) if composed else _admissible_speeds(ship, speeds)
-    rows = (_resistance_model_rows if composed else _known_speed_rows)(ship, conditions, speeds)
+    left_out: list[str] = []
+    if isinstance(model, ResistanceBased):
+        rows = _resistance_model_rows(ship, model, conditions, speeds)
+    else:
+        speeds, left_out = _admissible_speeds(ship, speeds)
+        rows = _known_speed_rows(ship, conditions, speeds)
     seaway = ShipInSeaway.of(ship, conditions)
     for row in rows:
         _add_seaway(row, seaway)
@@ -106,8 +112,8 @@ def performance_sheet(
         "missing": _missing_results(ship, rows),
         "settings": _settings(ship, conditions),
         "estimated": [{"key": e.key, "value": e.value, "method": e.method} for e in ship.estimated],
-        "sources": list(ship.data.get("sources", ())),
-        "description": ship.data.get("description", ""),
+        "sources": list(ship.file.sources),
+        "description": ship.file.description,
         "fingerprint": ship.fingerprint(),
     }
 
@@ -213,20 +219,20 @@ def _add_seaway(row: dict[str, Any], seaway: ShipInSeaway) -> None:
 
 def _default_speeds(ship: Ship) -> FloatArray:
     own = ship.speeds
-    if not hasattr(ship.model, "power_at_speed") or len(own) > 4:
+    if not ship.is_resistance_based or len(own) > 4:
         return own
     return np.linspace(0.6, 1.1, 6) * own.max()
 
 
 def _resistance_model_rows(
-    ship: Ship, conditions: Conditions, speeds: FloatArray
+    ship: Ship, model: ResistanceBased, conditions: Conditions, speeds: FloatArray
 ) -> list[dict[str, Any]]:
     parts = ship.resistance(conditions, speeds)
     parts["wave_making"] = parts["wave_making"] + parts.pop("residuary")
     power = ship.power_at_speed(conditions, speeds)
-    plant = ship.model.plant  # type: ignore[attr-defined]
-    loss, loaded = getattr(ship.model, "loss", None), ship.loading.load_factor
-    balance = ship.model.balance(loaded)  # type: ignore[attr-defined]
+    plant, loaded = model.plant, ship.loading.load_factor
+    loss = model.loss if isinstance(model, KwonResistanceModel) else None
+    balance = model.balance(loaded)
     weather = conditions.with_values(load_factor=loaded)
     fuel = np.where(power <= plant.largest_power, plant.fuel(power), np.nan)
     rows = []
@@ -287,14 +293,14 @@ def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
 
 def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
     """Carbon intensity of sailing at this speed all the time, and its rating in 2026."""
-    hull = ship.data.get("hull", {})
-    kind = str(hull.get("type", "")).casefold().replace(" ", "_").replace("-", "_")
+    hull = ship.file.hull
+    kind = (hull.type or "").casefold().replace(" ", "_").replace("-", "_")
     try:
         by_tonnage = cii_ship_type(kind).capacity == "gt"
         known = True
     except InputError:
         by_tonnage = known = False
-    capacity = hull.get("gross_tonnage" if by_tonnage else "deadweight_t")
+    capacity = hull.gross_tonnage if by_tonnage else hull.deadweight_t
     if capacity is None or not (speed > 0 and np.isfinite(co2)):
         return None
     attained = float(attained_cii(co2, capacity=capacity, distance_nm=speed / 1852.0))
@@ -314,27 +320,27 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
 
 def _unused_entries(ship: Ship) -> list[str]:
     """Say what a ship file gives that its calm-water method does not look at."""
-    data = ship.data
-    method = data.get("models", {}).get("calm_water", "none")
-    if not hasattr(ship.model, "power_at_speed"):
-        table = method in ("none", "cubic") and {"table", "speeds_kn"} <= data.keys()
+    file = ship.file
+    method = file.models.calm_water or "none"
+    if not ship.is_resistance_based:
+        table = method in ("none", "cubic") and {"table", "speeds_kn"} <= file.model_fields_set
         return [f"calm_water: {method} leaves the table aside"] if table else []
-    given = {"table": "table" in data}
-    given["speeds under loading"] = "speeds_full_kn" in data.get("loading", {})
-    given["reference point"] = "reference_power_kw" in data.get(
-        "engine", {}
-    ) or "reference_t_per_day" in data.get("fuel", {})
+    given = {
+        "table": file.table is not None,
+        "speeds under loading": file.loading.speeds_full_kn is not None,
+        "reference point": file.engine.reference_power_kw is not None
+        or file.fuel.reference_t_per_day is not None,
+    }
     found = [f"calm_water: {method} leaves the {w} aside" for w, there in given.items() if there]
-    chain = data.get("models", {}).get("propulsion", "efficiencies")
-    idle = unused_efficiencies(data.get("propulsion", {}), chain)
+    idle = unused_efficiencies(file.propulsion, file.models.propulsion)
     return [*found, *(f"propulsion.{key} is left aside" for key in idle)]
 
 
 def _load_factor_without_effect(ship: Ship) -> list[str]:
     """Say that a ship with one draught is the same at every load factor."""
-    own, given = ship.loading, ship.data.get("loading", {})
-    differs = {"draught_empty_m", "speeds_empty_kn", "displacement_empty_m3", "weight_empty_t"}
-    if not ship.data or own.load_factor == 1.0 or differs & given.keys():
+    own, given = ship.loading, ship.file.loading
+    differs = ("draught_empty_m", "speeds_empty_kn", "displacement_empty_m3", "weight_empty_t")
+    if ship.file.is_empty or own.load_factor == 1.0 or given.gives(*differs):
         return []
     return [f"load factor {own.load_factor:g} changes nothing: the ship file tells no empty ship"]
 
@@ -345,10 +351,10 @@ def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]
     def known(name: str) -> bool:
         return any(row[name] is not None for row in rows)
 
-    if not ship.data:
+    if ship.file.is_empty:
         return []
     found: list[str] = []
-    if hasattr(ship.model, "power_at_speed") and not known("brake_power_kw"):
+    if ship.is_resistance_based and not known("brake_power_kw"):
         return found  # it is the water or the weather that leaves no number
     if not known("brake_power_kw"):
         found.append("power: models.calm_water with a hull, table.power_kw, or the cubic law")

@@ -18,6 +18,7 @@ from thalweg.ship.methods.seakeeping.motion_sickness import (
 from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, motions_validity, ship_response
 from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import dangerous_situations
 from thalweg.ship.methods.shallow_water.squat import dynamic_under_keel_clearance, squat_validity
+from thalweg.ship.models.resistance_protocol import ResistanceBased
 from thalweg.ship.models.seaway_limits import (
     EXPOSURE_TIME,
     MEAN_TO_PEAK_PERIOD_RATIO,
@@ -53,18 +54,17 @@ class ShipInSeaway:
     @classmethod
     def of(cls, ship: Ship, conditions: Conditions) -> ShipInSeaway:
         """Take the hull's particulars as the ship's model has them, at the ship's draught."""
-        balance = getattr(ship.model, "balance", None)
-        if balance is not None:
-            return cls(ship, balance(ship.loading.load_factor).calm.hull, conditions)
-        hull = complete_hull(ship.data.get("hull", {}))
-        afloat, sunk = {"draught_m": ship.draught}, squat_model_of(ship.data, hull, ship.loading)
+        if isinstance(ship.model, ResistanceBased):
+            return cls(ship, ship.model.balance(ship.loading.load_factor).calm.hull, conditions)
+        hull = complete_hull(ship.file.hull.plain())
+        afloat, sunk = {"draught_m": ship.draught}, squat_model_of(ship.file, hull, ship.loading)
         if sunk is not None and ship.draught > 0.0:
             afloat["block_coefficient"] = sunk.block_coefficient
         return cls(ship, Hull({**hull.values, **afloat}), conditions)
 
     def squat(self, speed: float) -> tuple[dict[str, Any] | None, list[str]]:
         """Squat and clearance [m] at a speed [m/s] where the depth is known, and warnings."""
-        squat: SquatModel | None = squat_model_of(self.ship.data, self.hull, self.ship.loading)
+        squat: SquatModel | None = squat_model_of(self.ship.file, self.hull, self.ship.loading)
         depth = float(self.conditions.depth)
         if squat is None or not np.isfinite(depth):
             return None, []

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, ModelRangeError
@@ -11,7 +9,8 @@ from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import ShipModel
+from thalweg.ship.model_protocol import JointPowerAndFuelModel, ShipModel
+from thalweg.ship.models.resistance_protocol import ResistanceBased
 
 
 class ShipQueries:
@@ -55,11 +54,9 @@ class ShipQueries:
         self, conditions: Conditions, setting: ArrayLike = 0
     ) -> tuple[FloatArray, FloatArray]:
         """Brake power [W] and fuel rate [kg/s] at once, for models that find them together."""
-        both = getattr(self.model, "power_and_fuel", None)
-        if both is None:
-            return self.power(conditions, setting), self.fuel_rate(conditions, setting)
-        power, fuel = both(self._loaded(conditions), setting)
-        return power, fuel
+        if isinstance(self.model, JointPowerAndFuelModel):
+            return self.model.power_and_fuel(self._loaded(conditions), setting)
+        return self.power(conditions, setting), self.fuel_rate(conditions, setting)
 
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
         """Brake power [W] that holds speeds through water [m/s], whatever the engines can give.
@@ -93,8 +90,13 @@ class ShipQueries:
         """
         return self._resistance_model("resistance").resistance(self._loaded(conditions), speed)
 
-    def _resistance_model(self, what: str) -> Any:
-        if not hasattr(self.model, "power_at_speed"):
+    @property
+    def is_resistance_based(self) -> bool:
+        """Whether the model knows the resistance, so that `power_at_speed` is available."""
+        return isinstance(self.model, ResistanceBased)
+
+    def _resistance_model(self, what: str) -> ResistanceBased:
+        if not isinstance(self.model, ResistanceBased):
             raise InputError(
                 f"The {what} of {self.name!r} at a speed is not known.",
                 "Ships with models.calm_water such as holtrop_1984 know it.",

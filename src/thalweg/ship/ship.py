@@ -1,14 +1,14 @@
-"""`Ship`: a name, a model, a loading and limits; what the rest of the house sees of a ship."""
+"""`Ship`: a name, a model, a loading and limits; what other packages see of a ship."""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,20 +18,24 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.ship.condition_variables import HEADING_DEPENDENT, needed_variables
-from thalweg.ship.file.ship_builder import (
-    build_limits,
-    build_loading,
-    build_model,
-    estimates_of_known_speeds,
-    simple_data,
-    with_safety_limits,
-)
+from thalweg.ship.file.known_speed_ship_builder import estimates_of_known_speeds
+from thalweg.ship.file.part_builders import build_limits, build_loading, with_safety_limits
+from thalweg.ship.file.ship_builder import build_model, simple_data
 from thalweg.ship.file.ship_file import library_names, read_ship
-from thalweg.ship.file.ship_schema import check_ship_data
+from thalweg.ship.file.ship_schema import ShipFile, empty_ship_file
 from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import complete_hull
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.model_protocol import Estimate, ShipModel
+from thalweg.ship.methods.engine.specific_consumption import GRAM_PER_KILOWATT_HOUR
+from thalweg.ship.model_protocol import (
+    AdjustableModel,
+    CrabAngleModel,
+    DraughtModel,
+    EstimatingModel,
+    ShipModel,
+    Tabulation,
+)
 from thalweg.ship.models.fuel_from_power import hotel_load_fuel_rate, hotel_power
 from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.plugins import load_plugin
@@ -44,7 +48,7 @@ _SINGLE_PRECISION = 2.0**-23
 
 @dataclass(frozen=True, eq=False)
 class Ship(ShipQueries):
-    """A ship: how fast it goes and what it burns in given conditions, and what it must not meet.
+    """A ship: its speed, power and fuel in given conditions, and its limits of weather.
 
     Made by `Ship.load`, `Ship.from_dict`, `Ship.simple` or `Ship.from_speed_function`.
 
@@ -57,8 +61,8 @@ class Ship(ShipQueries):
         Draught and load factor.
     limits : ShipLimits
         Greatest waves and wind.
-    data : mapping
-        The ship file it came from, checked.
+    file : ShipFile
+        The contents of its ship file; empty for a ship without one.
     estimated : tuple of Estimate
         Particulars that were not given.
 
@@ -73,7 +77,7 @@ class Ship(ShipQueries):
     model: ShipModel
     loading: Loading
     limits: ShipLimits = field(default_factory=ShipLimits)
-    data: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    file: ShipFile = field(default_factory=empty_ship_file)
     estimated: tuple[Estimate, ...] = ()
 
     @classmethod
@@ -83,7 +87,7 @@ class Ship(ShipQueries):
         Raises
         ------
         InputError
-            If there is none (with near matches), or the file holds what cannot be.
+            If there is no such ship (with near matches), or the file has a fault.
         """
         known = not isinstance(name_or_path, str) or name_or_path in library_names()
         offered = None if known else load_plugin(str(name_or_path))
@@ -94,13 +98,13 @@ class Ship(ShipQueries):
 
     @classmethod
     def _of_plugin(cls, name: str, offered: Any) -> Ship:
-        """What a plug-in offers, as a ship."""
+        """Make a ship of what a plug-in offers."""
         if isinstance(offered, Ship):
             return offered
         if isinstance(offered, Mapping):
             return cls.from_dict(offered, source=f"plug-in ship {name!r}")
-        if hasattr(offered, "speed_through_water") and hasattr(offered, "tabulate"):
-            draught = float(getattr(offered, "draught", 0.0))
+        if isinstance(offered, ShipModel):
+            draught = float(offered.draught) if isinstance(offered, DraughtModel) else 0.0
             return cls(name, offered, Loading(draught, draught))
         if callable(offered):
             return cls.from_speed_function(offered, name=name)
@@ -108,7 +112,7 @@ class Ship(ShipQueries):
             f"The plug-in ship {name!r} is {type(offered).__name__}.",
             "A plug-in offers a Ship, a mapping like a ship file, a ship model, or a function of "
             "conditions that returns speeds.",
-            "Tell its author.",
+            "Report this to the author of the plug-in.",
         )
 
     @classmethod
@@ -118,21 +122,21 @@ class Ship(ShipQueries):
         Raises
         ------
         InputError
-            For unknown or missing keys, numbers out of range and hulls that cannot be.
+            For unknown or missing keys, numbers out of range and impossible hulls.
         """
-        checked = check_ship_data(data, source)
-        hull = complete_hull(checked.get("hull", {}))
-        loading = build_loading(checked, hull)
-        model = build_model(checked, hull, loading)
+        file = ShipFile.of(data, source)
+        hull = complete_hull(file.hull.plain())
+        loading = build_loading(file, hull)
+        model = build_model(file, hull, loading)
         return cls(
-            name=checked["name"],
+            name=file.name,
             model=model,
             loading=loading,
-            limits=with_safety_limits(build_limits(checked), checked, hull, loading),
-            data=MappingProxyType(checked),
-            estimated=getattr(
-                model, "estimated", estimates_of_known_speeds(checked, hull, loading)
-            ),
+            limits=with_safety_limits(build_limits(file), file, hull, loading),
+            file=file,
+            estimated=model.estimated
+            if isinstance(model, EstimatingModel)
+            else estimates_of_known_speeds(file, hull, loading),
         )
 
     @classmethod
@@ -250,10 +254,35 @@ class Ship(ShipQueries):
         return self.model.reads
 
     @property
+    def data(self) -> dict[str, Any]:
+        """The keys of its ship file as plain data, for a changed ship by `Ship.from_dict`."""
+        return self.file.plain()
+
+    @property
+    def breadth(self) -> float | None:
+        """Breadth [m]; None if the ship file does not give it."""
+        return self.file.hull.breadth_m
+
+    @property
+    def min_under_keel_clearance(self) -> float:
+        """Least under-keel clearance of the ship file [m]; 0 if it gives none."""
+        return self.file.limits.min_under_keel_clearance_m
+
+    @property
+    def specific_fuel_consumption(self) -> float:
+        """Specific fuel consumption of the ship file [kg/J]; NaN if it gives none."""
+        given = self.file.engine.sfoc_g_per_kwh
+        return math.nan if given is None else given * GRAM_PER_KILOWATT_HOUR
+
+    @property
+    def depends_on_crab_angle(self) -> bool:
+        """Whether the speed depends on the angle between heading and course."""
+        return isinstance(self.model, CrabAngleModel) and self.model.depends_on_crab_angle
+
+    @property
     def heading_matters(self) -> bool:
         """Whether the speed depends on the heading, or on its angle to the course."""
-        crab = bool(getattr(self.model, "depends_on_crab_angle", False))
-        return crab or bool(self.model.reads & HEADING_DEPENDENT)
+        return self.depends_on_crab_angle or bool(self.model.reads & HEADING_DEPENDENT)
 
     @property
     def needs(self) -> frozenset[str]:
@@ -276,7 +305,7 @@ class Ship(ShipQueries):
     @property
     def fuel_terms(self) -> FuelTerms:
         """Fuels inside and outside emission control areas, their carbon and prices."""
-        return fuel_terms(self.data)
+        return fuel_terms(self.file)
 
     def with_load_factor(self, load_factor: float) -> Ship:
         """Return the ship loaded differently, 0 empty to 1 full."""
@@ -295,13 +324,12 @@ class Ship(ShipQueries):
             If a speed is not positive, is outside the ship's range, or the model has one speed.
         """
         wanted = np.unique(np.atleast_1d(np.asarray(speeds, float)))
-        change = getattr(self.model, "with_speeds", None)
-        if change is None:
+        if not isinstance(self.model, AdjustableModel):
             raise InputError(
-                f"The ship {self.name!r} goes as its model says; no speed can be ordered.",
+                f"The speed of {self.name!r} follows from its model; no speed can be ordered.",
                 remedy="Leave the ordered speed out.",
             )
-        return replace(self, model=change(wanted, self.loading.load_factor))
+        return replace(self, model=self.model.with_speeds(wanted, self.loading.load_factor))
 
     def top_speed(self, setting: int = 0) -> float | None:
         """Upper bound of the speed through water [m/s]; None for a field that nothing bounds.
@@ -323,9 +351,15 @@ class Ship(ShipQueries):
         -------
         PerformanceTable
         """
-        parts, error, *more = self.model.tabulate(self.loading.load_factor, tolerance)
-        finish, safety = (more[0] if more else None), self.limits.safety
-        return PerformanceTable(parts, self.speeds, self.fingerprint(), error, finish, safety)
+        found = Tabulation(*self.model.tabulate(self.loading.load_factor, tolerance))
+        return PerformanceTable(
+            found.parts,
+            self.speeds,
+            self.fingerprint(),
+            found.error,
+            found.curve,
+            self.limits.safety,
+        )
 
     def tabulate_fuel(self, *, tolerance: float = 0.01) -> PerformanceTable:
         """Tabulate the fuel rate [kg/s] at the ship's load factor, hotel load included.
@@ -347,7 +381,8 @@ class Ship(ShipQueries):
         """
         from thalweg.ship.tables.tabulate_fuel import fuel_table
 
-        return fuel_table(self, tolerance)
+        found = fuel_table(self.model, self.loading.load_factor, tolerance, ship=self.name)
+        return replace(found, fingerprint=self.fingerprint())
 
     def tabulate_power(self, *, tolerance: float = 0.01) -> PerformanceTable:
         """Tabulate the brake power with the hotel load [W]; parameters as in `tabulate_fuel`.
@@ -359,20 +394,27 @@ class Ship(ShipQueries):
         """
         from thalweg.ship.tables.tabulate_fuel import power_table
 
-        return power_table(self, tolerance)
+        found = power_table(
+            self.model,
+            self.loading.load_factor,
+            tolerance,
+            hotel_power=self.hotel_power,
+            ship=self.name,
+        )
+        return replace(found, fingerprint=self.fingerprint())
 
     @property
     def hotel_power(self) -> float:
-        """Power besides propulsion, under way and lying still [W]; 0 if the ship states none."""
-        return hotel_power(self.data)
+        """Hotel load, under way and at anchor [W]; 0 if the ship file gives none."""
+        return hotel_power(self.file.engine)
 
     @property
     def waiting_fuel_rate(self) -> float:
-        """Fuel rate while lying still [kg/s]: the hotel load; 0 if the ship states none."""
-        return hotel_load_fuel_rate(self.data)
+        """Fuel rate at anchor [kg/s]: that of the hotel load; 0 if the ship file gives none."""
+        return hotel_load_fuel_rate(self.file.engine)
 
     def fingerprint(self) -> str:
-        """Return a text that is the same for ships that behave the same, and for no others."""
+        """Return a text that is equal for two ships only if they have the same performance."""
         return self._fingerprint
 
     @cached_property

@@ -200,11 +200,11 @@ def _energy_and_fuel(
     cycles: list[DredgingCycle], project: Project, ship: Ship
 ) -> dict[str, float | None]:
     """Return energy, fuel, CO2 and cost; None where the ship file does not tell."""
-    work, engine = project.work, ship.data.get("engine", {})
+    work, own = project.work, ship.specific_fuel_consumption
     hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
     pumps = sum(c.loading * work.loading.power + c.unloading * work.unloading.power for c in cycles)
     propulsion = sum(leg.energy for c in cycles for leg in c.legs)
-    sfoc = float(engine.get("sfoc_g_per_kwh", _PRIME_MOVER_SFOC)) / 3.6e9  # kg/J
+    sfoc = _PRIME_MOVER_SFOC / 3.6e9 if math.isnan(own) else own  # kg/J
     at_work = sum(c.loading + c.unloading for c in cycles) * ship.waiting_fuel_rate + pumps * sfoc
     fuel = at_work + sum(leg.fuel for c in cycles for leg in c.legs)
     co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
@@ -221,11 +221,12 @@ def _energy_and_fuel(
 
 def _cost(cycles: list[DredgingCycle], ship: Ship) -> float:
     """Return van Halem's cost, lambda_t t + lambda_f t V^3 while sailing; NaN if not given."""
-    costs = ship.data.get("costs", {})
-    if not costs:
+    terms = ship.fuel_terms
+    unpriced = math.isnan(terms.cubed_speed_price)
+    if unpriced and terms.time_price == 0.0:
         return math.nan
-    total = costs.get("per_week", 0.0) / WEEK * (cycles[-1].end - cycles[0].start)
-    per_cube = costs.get("per_second_per_cubed_speed", 0.0)
+    total = terms.time_price * (cycles[-1].end - cycles[0].start)
+    per_cube = 0.0 if unpriced else terms.cubed_speed_price
     for cycle in cycles:
         for load_factor, leg in ((cycle.load_factor, cycle.out), (0.0, cycle.back)):
             speed = float(ship.with_load_factor(load_factor).speeds[-1])

@@ -111,7 +111,7 @@ def speeds_at_measured_power(
     The ship is taken to head along its course over ground. By bisection, as the power of a ship in
     shallow water may jump.
     """
-    if "power" not in log.values or not hasattr(ship.model, "power_at_speed"):
+    if "power" not in log.values or not ship.is_resistance_based:
         return None
     power = segment_means(log, pieces, "power")
     world = make_sailing_environment(ship, with_wind_speed(ship, sea), None)

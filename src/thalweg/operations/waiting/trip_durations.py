@@ -269,7 +269,7 @@ class _TrackSimulation:
     def _speed_and_power(self, here: TrackPoints, time: FloatArray) -> _SpeedAndPower:
         """Return how the ship fares at points and times."""
         motion = solve_sailing_state(self.world, here, time)
-        if self.world.ship.data.get("models", {}).get("rudder", "none") != "none":
+        if self.world.ship.depends_on_crab_angle:
             motion, conditions = self._with_crab_angle(here, time, motion)
         else:
             conditions = self._conditions(here, time, motion)

@@ -37,7 +37,7 @@ def exclude_closed_canals(
     """
     if voyage.forbid:
         chart = chart.without_canals(*voyage.forbid)
-    beam = ship.data.get("hull", {}).get("breadth_m")
+    beam = ship.breadth
     currency = _foreign_currency(voyage, ship)
     notes, closed = [], []
     for canal in chart.canals:

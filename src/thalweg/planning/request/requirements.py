@@ -100,7 +100,7 @@ def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
     """Return the least under-keel clearance [m]: the voyage's, else the ship file's own limit."""
     if voyage.min_ukc_m is not None:
         return voyage.min_ukc_m
-    return float(ship.data.get("limits", {}).get("min_under_keel_clearance_m", 0.0))
+    return ship.min_under_keel_clearance
 
 
 def check_period(voyage: Voyage, sea: Sea, needs: Requirements) -> float:

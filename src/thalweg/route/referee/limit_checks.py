@@ -84,7 +84,7 @@ def canal_violations(
     world: SailingEnvironment, pieces: TrackPieces, times: FloatArray
 ) -> list[Violation]:
     """Return the canals that the ship may not pass, each at the entrance it takes."""
-    beam = world.ship.data.get("hull", {}).get("breadth_m")
+    beam = world.ship.breadth
     found = []
     for leg in pieces.canals.legs:
         why = pieces.canals.of(leg).transit_restriction(draught=world.ship.draught, beam=beam)

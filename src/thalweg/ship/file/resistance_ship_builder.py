@@ -2,47 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import GRAVITY, KNOT
-from thalweg.ship.file.ship_builder import (
-    RESISTANCE_MODEL_KEYS,
+from thalweg.ship.file.part_builders import (
     build_limits,
     build_speed_loss,
     lightship_estimate,
+    resistance_methods,
 )
+from thalweg.ship.file.ship_schema import ShipFile
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_particulars, hull_at_load_factor
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.model_protocol import Estimate
 from thalweg.ship.models.added_resistance_model import build_wave_resistance, build_wind_resistance
 from thalweg.ship.models.calm_water_model import CALM_WATER_METHODS, build_calm_water
-from thalweg.ship.models.engine_plant import EnginePlant, build_engine_plant
+from thalweg.ship.models.engine_plant import EngineOrders, EnginePlant, build_engine_plant
 from thalweg.ship.models.force_balance import ForceBalance
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import build_propulsion
-from thalweg.ship.models.resistance_model import EngineOrders, ResistanceModel
+from thalweg.ship.models.resistance_model import ResistanceModel
 from thalweg.ship.models.squat_model import build_squat_model
 
 RUDDER_METHODS = ("none", "schless_2023")
-_MODEL_SECTIONS = ("hull", "propulsion", "engine", "loading", "models", "water")
+_MODEL_SECTIONS = {"hull", "propulsion", "engine", "loading", "models", "water"}
 
 
 def build_resistance_model(
-    data: Mapping[str, Any], hull: Hull, loading: Loading
+    file: ShipFile, hull: Hull, loading: Loading
 ) -> ResistanceModel | KwonResistanceModel:
     """Return the model of a ship file that chooses a calm-water resistance.
 
     Parameters
     ----------
-    data : mapping
-        Checked data of the ship file.
+    file : ShipFile
     hull : Hull
     loading : Loading
 
@@ -51,15 +49,14 @@ def build_resistance_model(
     InputError
         For unknown methods (with near matches), methods that do not go together, and missing data.
     """
-    models = data.get("models", {})
-    calm = models.get("calm_water", "none")
+    calm = file.models.calm_water or "none"
     if calm in CALM_WATER_METHODS:
-        return _assemble_resistance_model(data, hull, loading)
+        return _assemble_resistance_model(file, hull, loading)
     if calm not in ("none", "cubic", "table"):
         raise unknown_name_error(
             "calm-water model", calm, ("none", "cubic", "table", *CALM_WATER_METHODS)
         )
-    idle = [name for name in RESISTANCE_MODEL_KEYS if models.get(name, "none") != "none"]
+    idle = resistance_methods(file)
     raise InputError(
         f"The ship file chooses {', '.join(f'models.{name}' for name in idle)}, but has no "
         "resistance they could act on.",
@@ -70,28 +67,32 @@ def build_resistance_model(
 
 
 def _assemble_resistance_model(
-    data: Mapping[str, Any], hull: Hull, loading: Loading
+    file: ShipFile, hull: Hull, loading: Loading
 ) -> ResistanceModel | KwonResistanceModel:
-    models = data.get("models", {})
-    loss = build_speed_loss(data, hull, loading)
-    twice = [name for name in ("waves", "wind") if models.get(name, "none") != "none"]
+    models = file.models
+    loss = build_speed_loss(file, hull, loading)
+    twice = [
+        name
+        for name, method in (("waves", models.waves), ("wind", models.wind))
+        if method != "none"
+    ]
     if loss is not None and twice:
         raise InputError(
-            f"speed_loss: {models['speed_loss']} is chosen together with "
+            f"speed_loss: {models.speed_loss} is chosen together with "
             f"{' and '.join(f'models.{name}' for name in twice)}.",
             "Kwon's loss holds what wind and waves take; both would count the weather twice.",
             "Leave out the one or the other.",
             key="models.speed_loss",
         )
-    if build_squat_model(data, hull, loading) is not None:
+    if build_squat_model(file, hull, loading) is not None:
         raise InputError(
-            f"squat: {models['squat']} is for ships with known calm-water speeds.",
+            f"squat: {models.squat} is for ships with known calm-water speeds.",
             "Ships with a resistance feel the bed by models.shallow_water.",
             "Leave squat out; the sinkage is shown for every ship whose particulars are known.",
             key="models.squat",
         )
-    if models.get("rudder", "none") not in RUDDER_METHODS:
-        raise unknown_name_error("rudder method", models["rudder"], RUDDER_METHODS)
+    if models.rudder not in RUDDER_METHODS:
+        raise unknown_name_error("rudder method", models.rudder, RUDDER_METHODS)
     _check_draught(loading)
     full = estimate_particulars(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
     if full.number("draught_m") is None:
@@ -109,17 +110,17 @@ def _assemble_resistance_model(
                 floated = hull_at_load_factor(
                     estimate_particulars(full, wanted), loading, load_factor
                 )
-            balance = _build_force_balance(data, floated)
+            balance = _build_force_balance(file, floated)
         _check_calm_water_power(balance, _moderate_speed(balance), load_factor)
         return balance
 
-    plant = build_engine_plant(data)
-    orders, guessed = _build_engine_orders(data, balance_at(1.0), plant)
+    plant = build_engine_plant(file)
+    orders, guessed = _build_engine_orders(file, balance_at(1.0), plant)
     light = hull_at_load_factor(full, loading, 0.0).number("displacement_m3")
-    guessed = (*guessed, *lightship_estimate(data, light or np.nan))
+    guessed = (*guessed, *lightship_estimate(file.loading, light or np.nan))
     plant = replace(plant, estimated=(*plant.estimated, *guessed))
-    facts = {name: data[name] for name in _MODEL_SECTIONS if name in data}
-    model = ResistanceModel(balance_at, plant, orders, facts, build_limits(data))
+    facts = file.model_dump(include=_MODEL_SECTIONS, exclude_unset=True)
+    model = ResistanceModel(balance_at, plant, orders, facts, build_limits(file))
     with np.errstate(all="ignore"):
         speeds = model.speeds(1.0)
     _check_calm_water_power(model.balance(1.0), speeds, 1.0)
@@ -189,25 +190,25 @@ def _with_loading_displacement(hull: Hull, loading: Loading) -> Hull:
     return estimate_particulars(Hull(values, hull.estimated), ("block_coefficient",))
 
 
-def _build_force_balance(data: Mapping[str, Any], hull: Hull) -> ForceBalance:
-    calm = build_calm_water(data, hull)
-    rudder = data.get("models", {}).get("rudder", "none")
+def _build_force_balance(file: ShipFile, hull: Hull) -> ForceBalance:
+    calm = build_calm_water(file, hull)
+    rudder = file.models.rudder
     if rudder != "none":
         required_particulars(hull, ("rudder_area_m2",), rudder, instead="rudder: none")
     return ForceBalance(
         calm=calm,
-        propulsion=build_propulsion(data, calm.hull),
-        waves=build_wave_resistance(data, calm.hull),
-        wind=build_wind_resistance(data, calm.hull),
+        propulsion=build_propulsion(file, calm.hull),
+        waves=build_wave_resistance(file.models, calm.hull),
+        wind=build_wind_resistance(file.models, calm.hull),
         rudder_area=(hull.number("rudder_area_m2") or 0.0) if rudder != "none" else 0.0,
     )
 
 
 def _build_engine_orders(
-    data: Mapping[str, Any], balance: ForceBalance, plant: EnginePlant
+    file: ShipFile, balance: ForceBalance, plant: EnginePlant
 ) -> tuple[EngineOrders, tuple[Estimate, ...]]:
     """Powers or speeds that can be ordered, and whether they were our guess."""
-    powers, speeds = data.get("powers_kw"), data.get("speeds_kn")
+    powers, speeds = file.powers_kw, file.speeds_kn
     if powers is not None and speeds is not None:
         raise InputError(
             "The ship file gives both powers_kw and speeds_kn.",

@@ -1,371 +1,340 @@
-"""What a ship file may hold: every key with its kind and range, and the check of a file."""
+"""`ShipFile`: what a ship file may hold, as typed sections; every key with its kind and range."""
 
 from __future__ import annotations
 
-import math
-import reprlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from numbers import Real
-from types import MappingProxyType
-from typing import Any, Final
+from functools import cache
+from typing import Annotated, Any, Literal, Self
 
-from thalweg.core.errors import InputError, close_matches, unknown_name_error
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
-
-@dataclass(frozen=True)
-class KeyRule:
-    """One key of a ship file.
-
-    Attributes
-    ----------
-    kind : {"number", "numbers", "text", "texts", "flag", "word", "word_or_number", "count"}
-        What its value is; ``numbers`` is one number or a list of them.
-    low, high : float
-        Range of a number, both ends allowed.
-    above : float
-        A number must be greater than this.
-    words : tuple of str
-        What a ``word`` may be.
-    """
-
-    kind: str = "number"
-    low: float = -math.inf
-    high: float = math.inf
-    above: float = -math.inf
-    words: tuple[str, ...] = ()
-
-
-def _positive(high: float = math.inf) -> KeyRule:
-    return KeyRule(above=0.0, high=high)
-
-
-def _non_negative(high: float = math.inf) -> KeyRule:
-    return KeyRule(low=0.0, high=high)
-
-
-STERN_SHAPE_NAMES: Final = ("pram", "v", "v_shaped", "normal", "u", "u_shaped")
-_HULL: Final = {
-    "length_overall_m": _positive(500.0),
-    "length_waterline_m": _positive(500.0),
-    "length_between_perpendiculars_m": _positive(500.0),
-    "length_over_surface_m": _positive(500.0),
-    "length_bow_m": _positive(500.0),
-    "breadth_m": _positive(100.0),
-    "depth_m": _positive(60.0),
-    "draught_m": _non_negative(40.0),
-    "draught_fore_m": _non_negative(40.0),
-    "draught_aft_m": _non_negative(40.0),
-    "displacement_m3": _positive(1e6),
-    "displacement_t": _positive(1e6),
-    "deadweight_t": _positive(1e6),
-    "gross_tonnage": _positive(1e6),
-    "block_coefficient": _positive(1.0),
-    "midship_coefficient": _positive(1.0),
-    "prismatic_coefficient": _positive(1.0),
-    "waterplane_coefficient": _positive(1.0),
-    "lcb_percent": KeyRule(low=-10.0, high=10.0),
-    "wetted_surface_m2": _positive(1e5),
-    "bulb_area_m2": _non_negative(500.0),
-    "bulb_centre_height_m": _non_negative(40.0),
-    "transom_area_m2": _non_negative(2000.0),
-    "appendage_area_m2": _non_negative(5000.0),
-    "appendage_factor": KeyRule(low=1.0, high=10.0),
-    "stern_shape": KeyRule("word_or_number", -25.0, 10.0, words=STERN_SHAPE_NAMES),
-    "half_entrance_angle_deg": _positive(90.0),
-    "length_entrance_m": _positive(500.0),
-    "length_run_m": _positive(500.0),
-    "frontal_area_m2": _positive(1e4),
-    "lateral_area_m2": _positive(2e4),
-    "superstructure_lateral_area_m2": _non_negative(2e4),
-    "superstructure_height_m": _positive(100.0),
-    "lateral_centre_height_m": _positive(100.0),
-    "lateral_centre_offset_m": KeyRule(low=-250.0, high=250.0),
-    "rudder_area_m2": _non_negative(500.0),
-    "pitch_gyration": _positive(0.5),
-    "metacentric_height_m": _positive(20.0),
-    "roll_period_s": _positive(100.0),
-    "rudders": KeyRule("count", low=0, high=4),
-    "brackets": KeyRule("count", low=0, high=8),
-    "bosses": KeyRule("count", low=0, high=8),
-    "thrusters": KeyRule("count", low=0, high=8),
-    "type": KeyRule("text"),
-}
-_PROPULSION: Final = {
-    "propellers": KeyRule("count", low=1, high=4),
-    "propeller_diameter_m": _positive(15.0),
-    "propeller_pitch_ratio": KeyRule(low=0.3, high=2.0),
-    "propeller_blades": KeyRule("count", low=2, high=7),
-    "propeller_area_ratio": KeyRule(low=0.2, high=1.5),
-    "propeller_rpm": _positive(2000.0),
-    "wake_fraction": KeyRule(low=-0.5, high=0.9),
-    "thrust_deduction": KeyRule(low=-0.5, high=0.9),
-    "open_water_efficiency": _positive(1.0),
-    "relative_rotative_efficiency": _positive(1.3),
-    "hull_efficiency": _positive(2.0),
-    "shaft_efficiency": _positive(1.0),
-    "gear_efficiency": _positive(1.0),
-    "propulsive_efficiency": _positive(1.5),
-}
-_ENGINE: Final = {
-    "count": KeyRule("count", low=1, high=12),
-    "type": KeyRule("text"),
-    "power_kw": _positive(2e5),
-    "rpm": _positive(3000.0),
-    "sfoc_g_per_kwh": _positive(1000.0),
-    "sfoc_load": KeyRule("numbers", above=0.0, high=1.5),
-    "sfoc_curve_g_per_kwh": KeyRule("numbers", above=0.0, high=1000.0),
-    "least_load": _non_negative(1.0),
-    "largest_load": _positive(1.1),
-    "hotel_load_kw": _non_negative(1e5),
-    "hotel_sfoc_g_per_kwh": _positive(1000.0),
-    "reference_speed_kn": _positive(80.0),
-    "reference_power_kw": _positive(2e5),
-    "sea_margin_percent": _non_negative(100.0),
-    "year": KeyRule(low=1900, high=2100),
-}
-_FUEL: Final = {
-    "type": KeyRule("text"),
-    "eca_type": KeyRule("text"),
-    "reference_t_per_day": _positive(1000.0),
-    "carbon_factor": _non_negative(5.0),
-    "price_per_t": _non_negative(1e5),
-    "eca_price_per_t": _non_negative(1e5),
-    "eca_price_factor": _positive(100.0),
-    "currency": KeyRule("text"),
-}
-_LOADING: Final = {
-    "draught_full_m": _non_negative(40.0),
-    "draught_empty_m": _non_negative(40.0),
-    "load_factor": KeyRule(low=0.0, high=1.0),
-    "condition": KeyRule("word", words=("loaded", "normal", "ballast")),
-    "speeds_full_kn": KeyRule("numbers", above=0.0, high=80.0),
-    "speeds_empty_kn": KeyRule("numbers", above=0.0, high=80.0),
-    "weight_full_t": _positive(1e6),
-    "weight_empty_t": _positive(1e6),
-    "displacement_full_m3": _positive(1e6),
-    "displacement_empty_m3": _positive(1e6),
-    "capacity_m3": _positive(1e6),
-}
-_LIMITS: Final = {
-    "max_significant_wave_height_m": _positive(40.0),
-    "max_wind_speed_kn": _positive(300.0),
-    "max_wind_speed_m_s": _positive(150.0),
-    "min_under_keel_clearance_m": _non_negative(50.0),
-    "msc_circ_1228": KeyRule("texts"),
-    "danger_from_wave_height_m": _non_negative(40.0),
-    "roll_period_tolerance": KeyRule(above=0.0, high=0.5),
-    "max_vertical_acceleration_m_s2": _positive(20.0),
-    "acceleration_at_m": KeyRule(low=-300.0, high=300.0),
-    "max_motion_sickness_percent": _positive(100.0),
-    "motion_sickness_hours": _positive(24.0),
-    "motion_sickness_at_m": KeyRule(low=-300.0, high=300.0),
-}
-_WATER: Final = {
-    "density_kg_m3": KeyRule(low=990.0, high=1040.0),
-    "kinematic_viscosity_m2_s": KeyRule(low=6e-7, high=2.2e-6),
-}
-_COSTS: Final = {
-    "hire_per_day": _non_negative(1e9),
-    "per_week": _non_negative(1e9),
-    "per_second_per_cubed_speed": _non_negative(1e6),
-    "currency": KeyRule("text"),
-}
-_TABLE: Final = {
-    "speed_kn": KeyRule("numbers", above=0.0, high=80.0),
-    "fuel_t_per_day": KeyRule("numbers", above=0.0, high=1000.0),
-    "power_kw": KeyRule("numbers", above=0.0, high=2e5),
-    "power_percent": KeyRule("numbers", above=0.0, high=120.0),
-    "engines": KeyRule("numbers", low=1.0, high=12.0),
-}
-_MODELS: Final = (
-    {
-        name: KeyRule("text")
-        for name in ("calm_water", "waves", "wind", "shallow_water", "speed_loss", "propulsion")
-    }
-    | {name: KeyRule("text") for name in ("friction", "squat", "rudder", "wind_type")}
-    | {
-        "kwon_sign": KeyRule("word", words=("plus", "printed", "minus")),
-        "kwon_classes": KeyRule("flag"),
-        "wave_push": KeyRule("flag"),
-        "correlation_area": KeyRule("word", words=("hull_and_appendages", "hull")),
-        "kwon_ship_type": KeyRule("word", words=("other", "container")),
-    }
-)
-
-SECTIONS: Final[Mapping[str, Mapping[str, KeyRule]]] = MappingProxyType(
-    {
-        "hull": _HULL,
-        "propulsion": _PROPULSION,
-        "engine": _ENGINE,
-        "fuel": _FUEL,
-        "loading": _LOADING,
-        "limits": _LIMITS,
-        "costs": _COSTS,
-        "water": _WATER,
-        "table": _TABLE,
-        "models": _MODELS,
-    }
-)
-TOP_LEVEL_KEYS: Final[Mapping[str, KeyRule]] = MappingProxyType(
-    {
-        "name": KeyRule("text"),
-        "description": KeyRule("text"),
-        "sources": KeyRule("texts"),
-        "speeds_kn": KeyRule("numbers", above=0.0, high=80.0),
-        "powers_kw": KeyRule("numbers", above=0.0, high=2e5),
-    }
+from thalweg.core.errors import InputError
+from thalweg.ship.file.schema_errors import input_error
+from thalweg.ship.file.value_types import (
+    AppendageCount,
+    Coefficient,
+    Consumption,
+    Draught,
+    EngineLoad,
+    Flag,
+    FuelPrice,
+    HotelLoad,
+    HullInteraction,
+    LateralArea,
+    Length,
+    Number,
+    OneOrMore,
+    Percent,
+    Position,
+    Power,
+    SmallArea,
+    Speed,
+    SternShape,
+    SuperstructureHeight,
+    Text,
+    Texts,
+    TimePrice,
+    Volume,
+    WaveHeight,
+    WholeNumber,
+    Word,
 )
 
 
-def check_ship_data(data: Any, source: str = "ship") -> dict[str, Any]:
-    """Check plain data against the keys a ship file may hold.
+class Section(BaseModel):
+    """A section of a ship file: its keys are checked, unknown keys are refused."""
 
-    Parameters
-    ----------
-    data : mapping
-        As read from YAML.
-    source : str
-        What to call it in errors.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
-    Returns
-    -------
-    dict
-        The same data with numbers as floats, lists as tuples and the table as columns.
+    @model_validator(mode="before")
+    @classmethod
+    def _keys_have_values(cls, data: Any) -> Any:
+        """Refuse keys without a value; None stands for "not given" in the typed sections only."""
+        if isinstance(data, Mapping):
+            for key, value in data.items():
+                if value is None and key in cls.model_fields:
+                    raise PydanticCustomError("no_value", "has no value", {"key": key})
+        return data
 
-    Raises
-    ------
-    InputError
-        For unknown keys (with near matches), wrong kinds, numbers that are NaN or out of range.
-    """
-    if not isinstance(data, Mapping):
-        raise InputError(
-            f"The {source} holds {_abbreviated(data)}, not keys with values.",
-            f"Its keys are among: {', '.join([*TOP_LEVEL_KEYS, *SECTIONS])}.",
-            "Write 'name: ...', 'hull: ...' and so on.",
-        )
-    checked: dict[str, Any] = {}
-    for name, value in data.items():
-        if name in TOP_LEVEL_KEYS:
-            checked[name] = _check_value(str(name), value, TOP_LEVEL_KEYS[name])
-        elif name in SECTIONS:
-            rows = _columns(value) if name == "table" else value
-            checked[name] = _check_section(str(name), rows, SECTIONS[name])
-        else:
-            raise _unknown_key_error(name, [*TOP_LEVEL_KEYS, *SECTIONS], "a ship file")
-    if "name" not in checked:
-        raise InputError(
-            f"The {source} has no name.", "Every ship has one.", "Add 'name: ...'.", key="name"
-        )
-    return checked
+    def plain(self) -> dict[str, Any]:
+        """Return the keys that the file gives as plain data, with numbers as floats."""
+        return self.model_dump(exclude_unset=True)
+
+    def gives(self, *keys: str) -> bool:
+        """Return whether the file gives any of these keys."""
+        return not self.model_fields_set.isdisjoint(keys)
 
 
-def _check_section(section: str, values: Any, keys: Mapping[str, KeyRule]) -> dict[str, Any]:
-    if not isinstance(values, Mapping):
-        raise InputError(
-            f"'{section}' holds {_abbreviated(values)}, not keys with values.",
-            f"Its keys are among: {', '.join(keys)}.",
-            "Indent the keys under it.",
-            key=section,
-        )
-    for name in values:
-        if name not in keys:
-            raise _unknown_key_error(name, keys, f"'{section}'")
-    return {
-        name: _check_value(f"{section}.{name}", value, keys[name]) for name, value in values.items()
-    }
+class HullSection(Section):
+    """Particulars of the hull; `thalweg.ship.hull` completes them."""
+
+    length_overall_m: Length | None = None
+    length_waterline_m: Length | None = None
+    length_between_perpendiculars_m: Length | None = None
+    length_over_surface_m: Length | None = None
+    length_bow_m: Length | None = None
+    breadth_m: Annotated[Number, Field(gt=0.0, le=100.0)] | None = None
+    depth_m: Annotated[Number, Field(gt=0.0, le=60.0)] | None = None
+    draught_m: Draught | None = None
+    draught_fore_m: Draught | None = None
+    draught_aft_m: Draught | None = None
+    displacement_m3: Volume | None = None
+    displacement_t: Volume | None = None
+    deadweight_t: Volume | None = None
+    gross_tonnage: Volume | None = None
+    block_coefficient: Coefficient | None = None
+    midship_coefficient: Coefficient | None = None
+    prismatic_coefficient: Coefficient | None = None
+    waterplane_coefficient: Coefficient | None = None
+    lcb_percent: Annotated[Number, Field(ge=-10.0, le=10.0)] | None = None
+    wetted_surface_m2: Annotated[Number, Field(gt=0.0, le=1e5)] | None = None
+    bulb_area_m2: SmallArea | None = None
+    bulb_centre_height_m: Draught | None = None
+    transom_area_m2: Annotated[Number, Field(ge=0.0, le=2000.0)] | None = None
+    appendage_area_m2: Annotated[Number, Field(ge=0.0, le=5000.0)] | None = None
+    appendage_factor: Annotated[Number, Field(ge=1.0, le=10.0)] | None = None
+    stern_shape: SternShape | None = None
+    half_entrance_angle_deg: Annotated[Number, Field(gt=0.0, le=90.0)] | None = None
+    length_entrance_m: Length | None = None
+    length_run_m: Length | None = None
+    frontal_area_m2: Annotated[Number, Field(gt=0.0, le=1e4)] | None = None
+    lateral_area_m2: LateralArea | None = None
+    superstructure_lateral_area_m2: Annotated[Number, Field(ge=0.0, le=2e4)] | None = None
+    superstructure_height_m: SuperstructureHeight | None = None
+    lateral_centre_height_m: SuperstructureHeight | None = None
+    lateral_centre_offset_m: Annotated[Number, Field(ge=-250.0, le=250.0)] | None = None
+    rudder_area_m2: SmallArea | None = None
+    pitch_gyration: Annotated[Number, Field(gt=0.0, le=0.5)] | None = None
+    metacentric_height_m: Annotated[Number, Field(gt=0.0, le=20.0)] | None = None
+    roll_period_s: Annotated[Number, Field(gt=0.0, le=100.0)] | None = None
+    rudders: Annotated[WholeNumber, Field(ge=0, le=4)] | None = None
+    brackets: AppendageCount | None = None
+    bosses: AppendageCount | None = None
+    thrusters: AppendageCount | None = None
+    type: Text | None = None
 
 
-def _columns(rows: Any) -> Any:
-    """Turn a table given as a list of rows into columns."""
-    if not isinstance(rows, Sequence) or isinstance(rows, str):
-        return rows
-    if not rows or not all(
-        isinstance(row, Mapping) and row.keys() == rows[0].keys() for row in rows
-    ):
-        raise InputError(
-            "The rows of 'table' do not all have the same keys.",
-            f"A row holds keys among: {', '.join(_TABLE)}.",
-            "Give every row the same keys, or give columns.",
-            key="table",
-        )
-    return {name: [row[name] for row in rows] for name in rows[0]}
+class PropulsionSection(Section):
+    """Propellers, and efficiencies from thrust to the engines."""
+
+    propellers: Annotated[WholeNumber, Field(ge=1, le=4)] = 1
+    propeller_diameter_m: Annotated[Number, Field(gt=0.0, le=15.0)] | None = None
+    propeller_pitch_ratio: Annotated[Number, Field(ge=0.3, le=2.0)] | None = None
+    propeller_blades: Annotated[WholeNumber, Field(ge=2, le=7)] | None = None
+    propeller_area_ratio: Annotated[Number, Field(ge=0.2, le=1.5)] | None = None
+    propeller_rpm: Annotated[Number, Field(gt=0.0, le=2000.0)] | None = None
+    wake_fraction: HullInteraction | None = None
+    thrust_deduction: HullInteraction | None = None
+    open_water_efficiency: Coefficient | None = None
+    relative_rotative_efficiency: Annotated[Number, Field(gt=0.0, le=1.3)] | None = None
+    hull_efficiency: Annotated[Number, Field(gt=0.0, le=2.0)] | None = None
+    shaft_efficiency: Coefficient | None = None
+    gear_efficiency: Coefficient | None = None
+    propulsive_efficiency: Annotated[Number, Field(gt=0.0, le=1.5)] | None = None
 
 
-def _check_value(where: str, value: Any, key: KeyRule) -> Any:
-    if key.kind in ("number", "count") or (
-        key.kind == "word_or_number" and not isinstance(value, str)
-    ):
-        return _number(where, value, key)
-    if key.kind == "numbers":
-        many = value if isinstance(value, (list, tuple)) else [value]
-        if not many:
-            raise _invalid_value_error(where, value, "at least one number")
-        return tuple(_number(where, one, key) for one in many)
-    if key.kind == "flag":
-        if not isinstance(value, bool):
-            raise _invalid_value_error(where, value, "true or false")
-        return value
-    if key.kind == "texts":
-        many = value if isinstance(value, (list, tuple)) else [value]
-        if not all(isinstance(one, str) for one in many):
-            raise _invalid_value_error(where, value, "text, or a list of texts")
-        return tuple(many)
-    if not isinstance(value, str) or not value.strip():
-        raise _invalid_value_error(where, value, "text")
-    if not key.words:
-        return value
-    word = value.strip().casefold().replace("-", "_").replace(" ", "_")
-    if word not in key.words:
-        raise unknown_name_error(f"{where}", value, key.words)
-    return word
+class EngineSection(Section):
+    """Engines, their specific consumption, and the hotel load."""
+
+    count: Annotated[WholeNumber, Field(ge=1, le=12)] = 1
+    type: Text | None = None
+    power_kw: Power | None = None
+    rpm: Annotated[Number, Field(gt=0.0, le=3000.0)] | None = None
+    sfoc_g_per_kwh: Consumption | None = None
+    sfoc_load: Annotated[tuple[EngineLoad, ...], OneOrMore] = ()
+    sfoc_curve_g_per_kwh: Annotated[tuple[Consumption, ...], OneOrMore] = ()
+    least_load: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.0
+    largest_load: Annotated[Number, Field(gt=0.0, le=1.1)] = 1.0
+    hotel_load_kw: HotelLoad = 0.0
+    hotel_sfoc_g_per_kwh: Consumption = 195.0
+    reference_speed_kn: Speed | None = None
+    reference_power_kw: Power | None = None
+    sea_margin_percent: Annotated[Number, Field(ge=0.0, le=100.0)] = 0.0
+    year: Annotated[Number, Field(ge=1900, le=2100)] = 2010
 
 
-def _number(where: str, value: Any, key: KeyRule) -> float:
-    if isinstance(value, bool) or not isinstance(value, (Real, str)):
-        raise _invalid_value_error(where, value, "a number")
-    try:
-        number = float(value)
-    except (ValueError, OverflowError):
-        raise _invalid_value_error(where, value, "a number") from None
-    if not math.isfinite(number):
-        raise _invalid_value_error(where, value, "a finite number")
-    if key.kind == "count" and number != round(number):
-        raise _invalid_value_error(where, value, "a whole number")
-    if not (key.low <= number <= key.high and number > key.above):
-        raise _invalid_value_error(where, value, _range_words(key))
-    return number
+class FuelSection(Section):
+    """Fuels outside and inside emission control areas, and their prices."""
+
+    type: Text | None = None
+    eca_type: Text | None = None
+    reference_t_per_day: Consumption | None = None
+    carbon_factor: Annotated[Number, Field(ge=0.0, le=5.0)] | None = None
+    price_per_t: FuelPrice | None = None
+    eca_price_per_t: FuelPrice | None = None
+    eca_price_factor: Annotated[Number, Field(gt=0.0, le=100.0)] = 1.0
+    currency: Text | None = None
 
 
-def _range_words(key: KeyRule) -> str:
-    above = f"greater than {key.above:g}" if math.isfinite(key.above) else ""
-    low = f"at least {key.low:g}" if math.isfinite(key.low) else ""
-    high = f"at most {key.high:g}" if math.isfinite(key.high) else ""
-    return " and ".join(part for part in (above, low, high) if part)
+class LoadingSection(Section):
+    """Draught, displacement and speeds of the full and the empty ship."""
+
+    draught_full_m: Draught | None = None
+    draught_empty_m: Draught | None = None
+    load_factor: Annotated[Number, Field(ge=0.0, le=1.0)] = 1.0
+    condition: Annotated[Literal["loaded", "normal", "ballast"], Word] = "loaded"
+    speeds_full_kn: Annotated[tuple[Speed, ...], OneOrMore] | None = None
+    speeds_empty_kn: Annotated[tuple[Speed, ...], OneOrMore] | None = None
+    weight_full_t: Volume | None = None
+    weight_empty_t: Volume | None = None
+    displacement_full_m3: Volume | None = None
+    displacement_empty_m3: Volume | None = None
+    capacity_m3: Volume | None = None
 
 
-def _invalid_value_error(where: str, value: Any, wanted: str) -> InputError:
-    return InputError(
-        f"'{where}' is {_abbreviated(value)}.",
-        f"It must be {wanted}.",
-        "Correct it in the ship file.",
-        key=where,
+class LimitsSection(Section):
+    """Waves, wind, clearance and motions that the ship must not exceed."""
+
+    max_significant_wave_height_m: Annotated[Number, Field(gt=0.0, le=40.0)] | None = None
+    max_wind_speed_kn: Annotated[Number, Field(gt=0.0, le=300.0)] | None = None
+    max_wind_speed_m_s: Annotated[Number, Field(gt=0.0, le=150.0)] | None = None
+    min_under_keel_clearance_m: Annotated[Number, Field(ge=0.0, le=50.0)] = 0.0
+    msc_circ_1228: Texts = ()
+    danger_from_wave_height_m: WaveHeight | None = None
+    roll_period_tolerance: Annotated[Number, Field(gt=0.0, le=0.5)] = 0.1
+    max_vertical_acceleration_m_s2: Annotated[Number, Field(gt=0.0, le=20.0)] | None = None
+    acceleration_at_m: Position | None = None
+    max_motion_sickness_percent: Percent | None = None
+    motion_sickness_hours: Annotated[Number, Field(gt=0.0, le=24.0)] = 2.0
+    motion_sickness_at_m: Position = 0.0
+
+
+class CostsSection(Section):
+    """Prices of time, and of speed where fuel has no price."""
+
+    hire_per_day: TimePrice | None = None
+    per_week: TimePrice | None = None
+    per_second_per_cubed_speed: Annotated[Number, Field(ge=0.0, le=1e6)] | None = None
+    currency: Text | None = None
+
+
+class WaterSection(Section):
+    """Properties of the water; the sea at 15 degC where a key is not given."""
+
+    density_kg_m3: Annotated[Number, Field(ge=990.0, le=1040.0)] | None = None
+    kinematic_viscosity_m2_s: Annotated[Number, Field(ge=6e-7, le=2.2e-6)] | None = None
+
+
+class TableSection(Section):
+    """Columns over speed; in a file also given as rows."""
+
+    speed_kn: Annotated[tuple[Speed, ...], OneOrMore] | None = None
+    fuel_t_per_day: Annotated[tuple[Consumption, ...], OneOrMore] | None = None
+    power_kw: Annotated[tuple[Power, ...], OneOrMore] | None = None
+    power_percent: (
+        Annotated[tuple[Annotated[Number, Field(gt=0.0, le=120.0)], ...], OneOrMore] | None
+    ) = None
+    engines: Annotated[tuple[Annotated[Number, Field(ge=1.0, le=12.0)], ...], OneOrMore] | None = (
+        None
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _rows_as_columns(cls, rows: Any) -> Any:
+        """Turn a table given as a list of rows into columns."""
+        if not isinstance(rows, Sequence) or isinstance(rows, str):
+            return rows
+        if not rows or not all(
+            isinstance(row, Mapping) and row.keys() == rows[0].keys() for row in rows
+        ):
+            raise InputError(
+                "The rows of 'table' do not all have the same keys.",
+                f"A row holds keys among: {', '.join(cls.model_fields)}.",
+                "Give every row the same keys, or give columns.",
+                key="table",
+            )
+        return {name: [row[name] for row in rows] for name in rows[0]}
 
-def _unknown_key_error(name: Any, known: Any, place: str) -> InputError:
-    near = close_matches(str(name)[:80], [str(k) for k in known])
-    remedy = f"Did you mean {' or '.join(repr(n) for n in near)}?" if near else "Leave it out."
-    return InputError(
-        f"{_abbreviated(name)} is not a key of {place}.",
-        f"Keys are: {', '.join(str(k) for k in known)}.",
-        remedy,
-        key=str(name)[:80],
-        near=near,
+    @property
+    def columns(self) -> dict[str, tuple[float, ...]]:
+        """The columns that the file gives, by key."""
+        return self.plain()
+
+
+class ModelsSection(Section):
+    """Methods for each part of the ship's performance; "none" leaves the part out."""
+
+    calm_water: Text | None = None
+    waves: Text = "none"
+    wind: Text = "none"
+    shallow_water: Text = "none"
+    speed_loss: Text = "none"
+    propulsion: Text = "efficiencies"
+    friction: Text = "ittc_1957"
+    squat: Text = "none"
+    rudder: Text = "none"
+    wind_type: Text = ""
+    kwon_sign: Annotated[Literal["plus", "printed", "minus"], Word] = "plus"
+    kwon_classes: Flag = False
+    wave_push: Flag = False
+    correlation_area: Annotated[Literal["hull_and_appendages", "hull"], Word] = (
+        "hull_and_appendages"
     )
+    kwon_ship_type: Annotated[Literal["other", "container"], Word] = "other"
 
 
-def _abbreviated(value: Any) -> str:
-    if isinstance(value, (Mapping, list, tuple)):
-        return f"a {type(value).__name__} of {len(value)}"
-    return reprlib.repr(value)
+class ShipFile(Section):
+    """The contents of a ship file, checked.
+
+    Keys that the file does not give are None or have the value that every method takes for them;
+    ``model_fields_set`` of a section holds the keys that the file gives.
+
+    Examples
+    --------
+    >>> file = ShipFile.of({"name": "barge", "hull": {"breadth_m": 11}, "speeds_kn": 8})
+    >>> file.hull.breadth_m, file.speeds_kn, file.models.waves
+    (11.0, (8.0,), 'none')
+    """
+
+    name: Text
+    description: Text = ""
+    sources: Texts = ()
+    speeds_kn: Annotated[tuple[Speed, ...], OneOrMore] | None = None
+    powers_kw: Annotated[tuple[Power, ...], OneOrMore] | None = None
+    hull: HullSection = Field(default_factory=HullSection)
+    propulsion: PropulsionSection = Field(default_factory=PropulsionSection)
+    engine: EngineSection = Field(default_factory=EngineSection)
+    fuel: FuelSection = Field(default_factory=FuelSection)
+    loading: LoadingSection = Field(default_factory=LoadingSection)
+    limits: LimitsSection = Field(default_factory=LimitsSection)
+    costs: CostsSection = Field(default_factory=CostsSection)
+    water: WaterSection = Field(default_factory=WaterSection)
+    table: TableSection | None = None
+    models: ModelsSection = Field(default_factory=ModelsSection)
+
+    @classmethod
+    def of(cls, data: Any, source: str = "ship") -> Self:
+        """Check plain data against the keys that a ship file may hold.
+
+        Parameters
+        ----------
+        data : mapping
+            As read from YAML.
+        source : str
+            Name of the data in errors.
+
+        Returns
+        -------
+        ShipFile
+
+        Raises
+        ------
+        InputError
+            For unknown keys (with near matches), wrong kinds, numbers that are NaN or out of range.
+        """
+        try:
+            return cls.model_validate(data)
+        except ValidationError as problem:
+            raise input_error(problem, cls, data, source) from None
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the ship was made without a ship file."""
+        return self.model_fields_set <= {"name"}
+
+
+@cache
+def empty_ship_file() -> ShipFile:
+    """Return the file of a ship that was made without one."""
+    return ShipFile(name="ship")

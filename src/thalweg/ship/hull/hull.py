@@ -9,6 +9,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.units import SEA_WATER_DENSITY, TONNE
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull_checks import (
     check_depth,
     check_ends_and_surface,
@@ -16,7 +17,6 @@ from thalweg.ship.hull.hull_checks import (
     check_prismatic,
 )
 from thalweg.ship.methods.displacement import block_at_draught
-from thalweg.ship.model_protocol import Estimate
 
 #: how keys of a hull end; a regression from anything else cannot be fed by a ship file
 _UNITS = ("_m", "_m2", "_m3", "_t", "_coefficient", "_percent")

@@ -7,10 +7,10 @@ from typing import Final
 
 import numpy as np
 
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars, volume_at
 from thalweg.ship.hull.particulars_regressions import ESTIMATORS, ESTIMATORS_IF_FITTED, Estimator
 from thalweg.ship.loading_state import Loading
-from thalweg.ship.model_protocol import Estimate
 
 _MIDSHIP_FROM_PRISMATIC: Final = Estimator(
     lambda block, prismatic: np.minimum(block / prismatic, 1.0),

@@ -11,6 +11,8 @@ import numpy as np
 
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import FloatArray
+from thalweg.ship.file.ship_schema import ModelsSection
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.added_resistance.snnm import SnnmHull, snnm_validity
@@ -36,7 +38,6 @@ from thalweg.ship.methods.added_resistance.wind_resistance import (
 )
 from thalweg.ship.methods.resistance.holtrop_form import length_of_run
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import Estimate
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of
 
 #: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
@@ -293,7 +294,7 @@ WIND_METHODS: Final[Mapping[str, Callable[[Hull, str], WindResistance]]] = Mappi
 )
 
 
-def build_wave_resistance(data: Mapping[str, Any], hull: Hull) -> AddedWaveResistance | None:
+def build_wave_resistance(models: ModelsSection, hull: Hull) -> AddedWaveResistance | None:
     """Return the wave part chosen in a ship file; None for ``none``.
 
     A method that lets waves from astern push the ship is cut off at zero unless the file says
@@ -304,14 +305,13 @@ def build_wave_resistance(data: Mapping[str, Any], hull: Hull) -> AddedWaveResis
     ------
     InputError
     """
-    models = data.get("models", {})
-    name = models.get("waves", "none")
+    name = models.waves
     if name == "none":
         return None
     if name not in WAVE_METHODS:
         raise unknown_name_error("wave method", name, ("none", *WAVE_METHODS))
     waves = WAVE_METHODS[name](hull)
-    return waves if models.get("wave_push", False) else _without_negative_resistance(waves)
+    return waves if models.wave_push else _without_negative_resistance(waves)
 
 
 def _without_negative_resistance(waves: AddedWaveResistance) -> AddedWaveResistance:
@@ -321,17 +321,16 @@ def _without_negative_resistance(waves: AddedWaveResistance) -> AddedWaveResista
     return replace(waves, force=force)
 
 
-def build_wind_resistance(data: Mapping[str, Any], hull: Hull) -> WindResistance | None:
+def build_wind_resistance(models: ModelsSection, hull: Hull) -> WindResistance | None:
     """Return the wind part chosen in a ship file; None for ``none``.
 
     Raises
     ------
     InputError
     """
-    models = data.get("models", {})
-    name = models.get("wind", "none")
+    name = models.wind
     if name == "none":
         return None
     if name not in WIND_METHODS:
         raise unknown_name_error("wind method", name, ("none", *WIND_METHODS))
-    return WIND_METHODS[name](hull, models.get("wind_type", ""))
+    return WIND_METHODS[name](hull, models.wind_type)

@@ -12,6 +12,8 @@ import numpy as np
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
+from thalweg.ship.file.ship_schema import ShipFile, WaterSection
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.resistance.friction_lines import SEA_WATER_VISCOSITY, reynolds_number
@@ -39,7 +41,6 @@ from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
     zeng_2019_friction,
 )
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import Estimate
 
 #: names of the components of calm-water resistance; each is there, zero where a method has none
 CALM_WATER_COMPONENTS: Final = (
@@ -153,12 +154,12 @@ def _total_resistance(parts: Mapping[str, FloatArray]) -> FloatArray:
     return np.sum(np.broadcast_arrays(*parts.values()), axis=0)
 
 
-def _water_properties(data: Mapping[str, Any]) -> dict[str, float]:
+def _water_properties(given: WaterSection) -> dict[str, float]:
     """Density and viscosity of the water; the sea at 15 degC when not given."""
-    given = data.get("water", {})
+    density, viscosity = given.density_kg_m3, given.kinematic_viscosity_m2_s
     return {
-        "density": float(given.get("density_kg_m3", SEA_WATER_DENSITY)),
-        "viscosity": float(given.get("kinematic_viscosity_m2_s", SEA_WATER_VISCOSITY)),
+        "density": SEA_WATER_DENSITY if density is None else density,
+        "viscosity": SEA_WATER_VISCOSITY if viscosity is None else viscosity,
     }
 
 
@@ -206,7 +207,7 @@ def _with_estimated_shape(hull: Hull, form: HullForm) -> Hull:
     return hull.with_estimates(*taken)
 
 
-def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> CalmWaterResistance:
+def _holtrop(hull: Hull, file: ShipFile, year: Literal[1982, 1984]) -> CalmWaterResistance:
     name = "holtrop_mennen_1982" if year == 1982 else "holtrop_1984"
     hull = estimate_or_raise(hull, (*FORM_KEYS, *_APPENDAGE_KEYS), name, instead="another method")
     form = hull_form_of(hull)
@@ -224,8 +225,8 @@ def _holtrop(hull: Hull, data: Mapping[str, Any], year: Literal[1982, 1984]) -> 
     )
     fore = float(hull.values["draught_fore_m"])
     angle = hull.number("half_entrance_angle_deg")
-    water = _water_properties(data)
-    area_of_correlation = data.get("models", {}).get("correlation_area", "hull_and_appendages")
+    water = _water_properties(file.water)
+    area_of_correlation = file.models.correlation_area
 
     def deep(
         speed: FloatArray, waves: FloatArray, line: FloatArray | None
@@ -263,15 +264,14 @@ _HOLLENBACH_KEYS = (
 _APPENDAGE_COUNTS = ("rudders", "brackets", "bosses", "thrusters")
 
 
-def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWaterResistance:
+def _hollenbach(hull: Hull, file: ShipFile, line_of: str) -> CalmWaterResistance:
     name = f"hollenbach_1998_{line_of}"
-    propulsion = data.get("propulsion", {})
-    if "propeller_diameter_m" in propulsion:
-        diameter = propulsion["propeller_diameter_m"]
+    propulsion, diameter = file.propulsion, file.propulsion.propeller_diameter_m
+    if diameter is not None:
         hull = Hull({**hull.values, "propeller_diameter_m": diameter}, hull.estimated)
     hull = estimate_or_raise(hull, _HOLLENBACH_KEYS, name, instead="another method")
-    variant, surface_of = _hollenbach_variant(hull, data, line_of)
-    if data.get("loading", {}).get("condition") == "ballast" and variant != "single_ballast":
+    variant, surface_of = _hollenbach_variant(hull, file, line_of)
+    if file.loading.condition == "ballast" and variant != "single_ballast":
         why = "Hollenbach has a ballast line for the mean of single screws alone"
         hull = hull.with_estimates(Estimate("loading.condition", variant, why))
     sizes = {
@@ -284,14 +284,14 @@ def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWaterR
         "block_coefficient": float(hull.values["block_coefficient"]),
         "propeller_diameter": float(hull.values["propeller_diameter_m"]),
     }
-    if propulsion.get("propellers", 1) >= 2:  # a single screw's lines do not ask for it
+    if propulsion.propellers >= 2:  # a single screw's lines do not ask for it
         hull = hull.with_estimates(Estimate("rudders", 1.0, "taken as one"))
     counts = {key: hull.number(key) or 0.0 for key in _APPENDAGE_COUNTS}
     if hull.number("wetted_surface_m2") is None:
         few = {key: counts[key] for key in _APPENDAGE_COUNTS if key != "thrusters"}
         area = float(hollenbach_wetted_surface(**sizes, **few, variant=surface_of))
         hull = hull.with_estimates(Estimate("wetted_surface_m2", area, "Hollenbach (1998)"))
-    area, water = float(hull.values["wetted_surface_m2"]), _water_properties(data)
+    area, water = float(hull.values["wetted_surface_m2"]), _water_properties(file.water)
 
     def deep(
         speed: FloatArray, waves: FloatArray, line: FloatArray | None
@@ -309,10 +309,10 @@ def _hollenbach(hull: Hull, data: Mapping[str, Any], line_of: str) -> CalmWaterR
     return CalmWaterResistance(name, hull, deep, notes)
 
 
-def _hollenbach_variant(hull: Hull, data: Mapping[str, Any], line_of: str) -> tuple[Any, Any]:
+def _hollenbach_variant(hull: Hull, file: ShipFile, line_of: str) -> tuple[Any, Any]:
     """Coefficient sets for resistance and wetted surface, from the screws and the loading."""
-    screws = "twin" if data.get("propulsion", {}).get("propellers", 1) >= 2 else "single"
-    ballast = data.get("loading", {}).get("condition") == "ballast"
+    screws = "twin" if file.propulsion.propellers >= 2 else "single"
+    ballast = file.loading.condition == "ballast"
     if screws == "twin":
         bulb = (hull.number("bulb_area_m2") or 0.0) > 0.0
         surface = "twin_bulb" if bulb else "twin_no_bulb"
@@ -325,19 +325,19 @@ def _hollenbach_variant(hull: Hull, data: Mapping[str, Any], line_of: str) -> tu
     return f"{screws}_design", surface
 
 
-CALM_WATER_METHODS: Final[
-    Mapping[str, Callable[[Hull, Mapping[str, Any]], CalmWaterResistance]]
-] = MappingProxyType(
-    {
-        "holtrop_mennen_1982": lambda hull, data: _holtrop(hull, data, 1982),
-        "holtrop_1984": lambda hull, data: _holtrop(hull, data, 1984),
-        "hollenbach_1998_mean": lambda hull, data: _hollenbach(hull, data, "mean"),
-        "hollenbach_1998_min": lambda hull, data: _hollenbach(hull, data, "min"),
-    }
+CALM_WATER_METHODS: Final[Mapping[str, Callable[[Hull, ShipFile], CalmWaterResistance]]] = (
+    MappingProxyType(
+        {
+            "holtrop_mennen_1982": lambda hull, file: _holtrop(hull, file, 1982),
+            "holtrop_1984": lambda hull, file: _holtrop(hull, file, 1984),
+            "hollenbach_1998_mean": lambda hull, file: _hollenbach(hull, file, "mean"),
+            "hollenbach_1998_min": lambda hull, file: _hollenbach(hull, file, "min"),
+        }
+    )
 )
 
 
-def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWaterResistance:
+def build_calm_water(file: ShipFile, hull: Hull) -> CalmWaterResistance:
     """Return the calm-water part chosen in a ship file.
 
     Raises
@@ -345,20 +345,19 @@ def build_calm_water(data: Mapping[str, Any], hull: Hull) -> CalmWaterResistance
     InputError
         For unknown names, and particulars that are missing and cannot be estimated.
     """
-    models = data.get("models", {})
-    shallow, friction = models.get("shallow_water", "none"), models.get("friction", "ittc_1957")
+    shallow, friction = file.models.shallow_water, file.models.friction
     if shallow not in SHALLOW_WATER_METHODS:
         raise unknown_name_error("shallow-water method", shallow, SHALLOW_WATER_METHODS)
     if friction not in FRICTION_LINES:
         raise unknown_name_error("friction line", friction, FRICTION_LINES)
     if shallow == "zeng_2019":
         shallow, friction = "none", "zeng_2019"
-    calm = CALM_WATER_METHODS[models["calm_water"]](hull, data)
+    calm = CALM_WATER_METHODS[file.models.calm_water or ""](hull, file)
     if shallow == "lackenby_1963":
         keys = ("midship_coefficient",)
         hull = estimate_or_raise(calm.hull, keys, shallow, instead="shallow_water: none")
         calm = CalmWaterResistance(calm.method, hull, calm.deep, calm.validity_notes)
-    viscosity = _water_properties(data)["viscosity"]
+    viscosity = _water_properties(file.water)["viscosity"]
     return CalmWaterResistance(
         calm.method, calm.hull, calm.deep, calm.validity_notes, shallow, friction, viscosity
     )

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Literal
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
+from thalweg.ship.file.ship_schema import ShipFile
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.engine.fuel_properties import fuel_named
 from thalweg.ship.methods.engine.specific_consumption import (
     GRAM_PER_KILOWATT_HOUR,
@@ -19,8 +20,22 @@ from thalweg.ship.methods.engine.specific_consumption import (
     plant_fuel_rate,
 )
 from thalweg.ship.methods.validity import RangeNote, range_notes
-from thalweg.ship.model_protocol import Estimate
-from thalweg.ship.models.fuel_from_power import HOTEL_SFOC
+
+
+@dataclass(frozen=True)
+class EngineOrders:
+    """The settings that the bridge can order.
+
+    Attributes
+    ----------
+    kind : {"power", "speed"}
+        Constant brake power, or a speed that is held up to the largest power of the engines.
+    values : tuple of float
+        Powers [W] or speeds [m/s], ascending.
+    """
+
+    kind: Literal["power", "speed"]
+    values: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -49,7 +64,7 @@ class EnginePlant:
     sfoc: float = float("nan")
     curve: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
     hotel_power: float = 0.0
-    hotel_sfoc: float = HOTEL_SFOC
+    hotel_sfoc: float = 195.0
     estimated: tuple[Estimate, ...] = ()
     loads: tuple[float, float] = (0.0, 1.0)
 
@@ -97,7 +112,7 @@ class EnginePlant:
         ]
 
 
-def build_engine_plant(data: Mapping[str, Any]) -> EnginePlant:
+def build_engine_plant(file: ShipFile) -> EnginePlant:
     """Return the engines of a ship file.
 
     Raises
@@ -105,8 +120,8 @@ def build_engine_plant(data: Mapping[str, Any]) -> EnginePlant:
     InputError
         For unknown engine types or fuels, and curves that do not fit.
     """
-    given = data.get("engine", {})
-    loads, curve = given.get("sfoc_load", ()), given.get("sfoc_curve_g_per_kwh", ())
+    given = file.engine
+    loads, curve = given.sfoc_load, given.sfoc_curve_g_per_kwh
     if len(loads) != len(curve) or (len(loads) and (np.diff(loads) <= 0).any()):
         raise InputError(
             f"The engine's curve has {len(loads)} loads and {len(curve)} consumptions.",
@@ -114,14 +129,14 @@ def build_engine_plant(data: Mapping[str, Any]) -> EnginePlant:
             "Correct them.",
             key="engine.sfoc_load",
         )
-    if len(loads) and "power_kw" not in given:
+    if len(loads) and given.power_kw is None:
         raise InputError(
             "The engine has a curve over load, but no power_kw.",
             "Load is power over engine.power_kw times engine.count.",
             "Add engine.power_kw.",
             missing=["engine.power_kw"],
         )
-    least, largest = given.get("least_load", 0.0), given.get("largest_load", 1.0)
+    least, largest = given.least_load, given.largest_load
     if least >= largest:
         raise InputError(
             f"The least load of an engine is {least:g}, the largest {largest:g}.",
@@ -129,27 +144,27 @@ def build_engine_plant(data: Mapping[str, Any]) -> EnginePlant:
             "Correct engine.least_load or engine.largest_load.",
             key="engine.least_load",
         )
-    sfoc, guessed = _specific_consumption(data)
-    if not curve and "turbine" in given.get("type", "").casefold():
+    sfoc, guessed = _specific_consumption(file)
+    if not curve and "turbine" in (given.type or "").casefold():
         loads, curve = (0.0, 1.0), (sfoc, sfoc)  # the study lets theirs vary with nothing
     return EnginePlant(
-        rating=given.get("power_kw", float("inf")) * 1000.0,
-        count=int(given.get("count", 1)),
+        rating=float("inf") if given.power_kw is None else given.power_kw * 1000.0,
+        count=given.count,
         sfoc=sfoc,
         curve=(tuple(loads), tuple(curve)),
-        hotel_power=given.get("hotel_load_kw", 0.0) * 1000.0,
-        hotel_sfoc=given.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC),
+        hotel_power=given.hotel_load_kw * 1000.0,
+        hotel_sfoc=given.hotel_sfoc_g_per_kwh,
         estimated=guessed,
         loads=(least, largest),
     )
 
 
-def _specific_consumption(data: Mapping[str, Any]) -> tuple[float, tuple[Estimate, ...]]:
-    given = data.get("engine", {})
-    if "sfoc_g_per_kwh" in given:
-        return float(given["sfoc_g_per_kwh"]), ()
-    if "type" not in given or given.get("sfoc_curve_g_per_kwh"):
+def _specific_consumption(file: ShipFile) -> tuple[float, tuple[Estimate, ...]]:
+    given = file.engine
+    if given.sfoc_g_per_kwh is not None:
+        return given.sfoc_g_per_kwh, ()
+    if given.type is None or given.sfoc_curve_g_per_kwh:
         return float("nan"), ()
-    kind = fuel_named(data.get("fuel", {}).get("type", "hfo")).kind
-    value, record = base_sfoc(given["type"], kind, built=int(given.get("year", 2010)))
+    kind = fuel_named(file.fuel.type or "hfo").kind
+    value, record = base_sfoc(given.type, kind, built=int(given.year))
     return value, (Estimate("engine.sfoc_g_per_kwh", value, record.source),)

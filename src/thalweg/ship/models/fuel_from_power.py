@@ -2,36 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Callable
 
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.ship.model_protocol import Estimate
-
-ShipData = Mapping[str, Any]
-HOTEL_SFOC: Final = 195.0  #: of auxiliary engines, when the ship file does not tell [g/kWh]
+from thalweg.ship.file.ship_schema import EngineSection, ShipFile
+from thalweg.ship.hull.estimate import Estimate
 
 
-def hotel_power(data: ShipData) -> float:
-    """The hotel load [W]; 0 when the ship file states none."""
-    return 1000.0 * float(data.get("engine", {}).get("hotel_load_kw", 0.0))
+def hotel_power(engine: EngineSection) -> float:
+    """Return the hotel load [W]; 0 when the ship file gives none."""
+    return 1000.0 * engine.hotel_load_kw
 
 
-def hotel_load_fuel_rate(data: ShipData) -> float:
-    """Fuel rate of the hotel load [kg/s]; 0 when the ship file states none."""
-    engine = data.get("engine", {})
-    return hotel_power(data) * float(engine.get("hotel_sfoc_g_per_kwh", HOTEL_SFOC)) / 3.6e9
+def hotel_load_fuel_rate(engine: EngineSection) -> float:
+    """Return the fuel rate of the hotel load [kg/s]; 0 when the ship file gives none."""
+    return hotel_power(engine) * engine.hotel_sfoc_g_per_kwh / 3.6e9
 
 
-def fuel_rate_of_power(data: ShipData) -> Callable[[FloatArray], FloatArray] | None:
+def fuel_rate_of_power(file: ShipFile) -> Callable[[FloatArray], FloatArray] | None:
     """Return the fuel rate [kg/s] of a brake power [W], hotel load included.
 
     Parameters
     ----------
-    data : mapping
-        Checked data of a ship file.
+    file : ShipFile
 
     Returns
     -------
@@ -40,29 +35,30 @@ def fuel_rate_of_power(data: ShipData) -> Callable[[FloatArray], FloatArray] | N
         A single ``engine.sfoc_g_per_kwh`` holds at every power; by ``engine.type`` or a curve
         consumption follows the load.
     """
-    engine = data.get("engine", {})
-    if "fuel_t_per_day" in data.get("table", {}) or "reference_t_per_day" in data.get("fuel", {}):
+    engine = file.engine
+    in_table = file.table is not None and file.table.fuel_t_per_day is not None
+    if in_table or file.fuel.reference_t_per_day is not None:
         return None
-    if "sfoc_g_per_kwh" in engine:
-        sfoc, hotel = float(engine["sfoc_g_per_kwh"]), hotel_load_fuel_rate(data)
+    if engine.sfoc_g_per_kwh is not None:
+        sfoc, hotel = engine.sfoc_g_per_kwh, hotel_load_fuel_rate(engine)
         return lambda power: np.asarray(power * sfoc / 3.6e9 + hotel)
     if _consumption_follows_load(engine):
         from thalweg.ship.models.engine_plant import (
             build_engine_plant,  # reads the methods of engines
         )
 
-        return build_engine_plant(data).fuel
+        return build_engine_plant(file).fuel
     return None
 
 
-def fuel_estimates(data: ShipData) -> tuple[Estimate, ...]:
-    """What `fuel_rate_of_power` estimated."""
-    if fuel_rate_of_power(data) is None or "sfoc_g_per_kwh" in data["engine"]:
+def fuel_estimates(file: ShipFile) -> tuple[Estimate, ...]:
+    """Return what `fuel_rate_of_power` estimated."""
+    if fuel_rate_of_power(file) is None or file.engine.sfoc_g_per_kwh is not None:
         return ()
     from thalweg.ship.models.engine_plant import build_engine_plant
 
-    return build_engine_plant(data).estimated
+    return build_engine_plant(file).estimated
 
 
-def _consumption_follows_load(engine: ShipData) -> bool:
-    return "type" in engine or "sfoc_curve_g_per_kwh" in engine
+def _consumption_follows_load(engine: EngineSection) -> bool:
+    return engine.gives("type", "sfoc_curve_g_per_kwh")

@@ -22,7 +22,7 @@ from thalweg.ship.condition_variables import (
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
-from thalweg.ship.tables.performance_table import TableError, TablePart
+from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import (
     DEFAULT_AXES,
     constant_part,

@@ -18,7 +18,7 @@ from thalweg.ship.methods.speed_loss import LastTermSign, ShipType, kwon_notes, 
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
 from thalweg.ship.models.squat_model import SquatModel
-from thalweg.ship.tables.performance_table import TableError, TablePart
+from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part, tabulate_dense
 
 

@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike
 from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import Estimate
 from thalweg.ship.models.engine_plant import EnginePlant
 from thalweg.ship.models.force_balance import ForceBalance
 from thalweg.ship.models.known_speed_model import KwonSpeedLoss, wind_angle_axis
 from thalweg.ship.models.resistance_model import ResistanceModel, TabulatedModel
-from thalweg.ship.tables.performance_table import TableError, TablePart
+from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, tabulate_dense
 from thalweg.ship.tables.tabulate_resistance import condition_axes
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
+from thalweg.ship.file.ship_schema import PropulsionSection, ShipFile
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
 from thalweg.ship.methods.propulsion.b_series import Propeller, b_series_validity
@@ -29,7 +31,6 @@ from thalweg.ship.methods.propulsion.propulsion_factors import (
 from thalweg.ship.methods.resistance.friction_lines import ittc_1957, reynolds_number
 from thalweg.ship.methods.resistance.holtrop_form import HullForm, form_factor_1984
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import Estimate
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of, stern_shape
 
 
@@ -53,9 +54,9 @@ class PropulsionModel:
     notes: tuple[RangeNote, ...] = ()
 
 
-def _efficiencies(hull: Hull, given: Mapping[str, Any]) -> PropulsionModel:
+def _efficiencies(hull: Hull, given: PropulsionSection) -> PropulsionModel:
     idle = unused_efficiencies(given)
-    known = {key: value for key, value in given.items() if key not in idle}
+    known = given.model_dump(exclude_unset=True, exclude={*idle})
     if "propulsive_efficiency" in known:
         known |= {"relative_rotative_efficiency": 1.0, "hull_efficiency": 1.0}
         known["open_water_efficiency"] = known["propulsive_efficiency"]
@@ -92,7 +93,7 @@ _EFFICIENCY_KEYS: Final = (
 )
 
 
-def unused_efficiencies(given: Mapping[str, Any], method: str = "efficiencies") -> tuple[str, ...]:
+def unused_efficiencies(given: PropulsionSection, method: str = "efficiencies") -> tuple[str, ...]:
     """Return the efficiencies under 'propulsion' that others make needless.
 
     All in one (``propulsive_efficiency``) goes before its parts, a hull efficiency before wake and
@@ -101,33 +102,17 @@ def unused_efficiencies(given: Mapping[str, Any], method: str = "efficiencies") 
     idle: tuple[str, ...] = ()
     if method == "wageningen_b":
         idle = ("open_water_efficiency", "hull_efficiency", "propulsive_efficiency")
-    elif "propulsive_efficiency" in given:
+    elif given.gives("propulsive_efficiency"):
         idle = (*_EFFICIENCY_KEYS, *_HULL_INTERACTION_KEYS)
-    elif "hull_efficiency" in given or not given.keys() >= {*_HULL_INTERACTION_KEYS}:
+    elif given.gives("hull_efficiency") or not given.model_fields_set.issuperset(
+        _HULL_INTERACTION_KEYS
+    ):
         idle = _HULL_INTERACTION_KEYS
-    return tuple(key for key in idle if key in given)
+    return tuple(key for key in idle if given.gives(key))
 
 
-def _b_series(hull: Hull, given: Mapping[str, Any]) -> PropulsionModel:
-    keys = (
-        *("propeller_diameter_m", "propeller_pitch_ratio"),
-        *("propeller_area_ratio", "propeller_blades"),
-    )
-    missing = [key for key in keys if key not in given]
-    if missing:
-        raise InputError(
-            f"The B-series propeller needs {', '.join(missing)} under 'propulsion'.",
-            f"It needs {', '.join(keys)}.",
-            "Add them, or choose propulsion: efficiencies.",
-            missing=missing,
-        )
-    screw = Propeller(
-        diameter=float(given["propeller_diameter_m"]),
-        pitch_ratio=float(given["propeller_pitch_ratio"]),
-        area_ratio=float(given["propeller_area_ratio"]),
-        blades=int(given["propeller_blades"]),
-    )
-    count = int(given.get("propellers", 1))
+def _b_series(hull: Hull, given: PropulsionSection) -> PropulsionModel:
+    screw, count = _propeller(given), given.propellers
     wanted = (*FORM_KEYS, "wetted_surface_m2")
     hull = estimate_or_raise(hull, wanted, "wageningen_b", instead="propulsion: efficiencies")
     form = hull_form_of(hull)
@@ -152,16 +137,42 @@ def _b_series(hull: Hull, given: Mapping[str, Any]) -> PropulsionModel:
     return PropulsionModel("wageningen_b", power, (*guessed, *lost), notes)
 
 
-def _transmission_losses(given: Mapping[str, Any]) -> tuple[dict[str, float], tuple[Estimate, ...]]:
+def _propeller(given: PropulsionSection) -> Propeller:
+    """Return the propeller of a ship file.
+
+    Raises
+    ------
+    InputError
+        If the file does not give all that the B-series needs.
+    """
+    diameter, pitch = given.propeller_diameter_m, given.propeller_pitch_ratio
+    area, blades = given.propeller_area_ratio, given.propeller_blades
+    if diameter is None or pitch is None or area is None or blades is None:
+        keys = (
+            *("propeller_diameter_m", "propeller_pitch_ratio"),
+            *("propeller_area_ratio", "propeller_blades"),
+        )
+        missing = [key for key in keys if not given.gives(key)]
+        raise InputError(
+            f"The B-series propeller needs {', '.join(missing)} under 'propulsion'.",
+            f"It needs {', '.join(keys)}.",
+            "Add them, or choose propulsion: efficiencies.",
+            missing=missing,
+        )
+    return Propeller(diameter=diameter, pitch_ratio=pitch, area_ratio=area, blades=blades)
+
+
+def _transmission_losses(given: PropulsionSection) -> tuple[dict[str, float], tuple[Estimate, ...]]:
     usual = {"shaft_efficiency": 0.98, "gear_efficiency": 1.0}
     guessed = tuple(
-        Estimate(key, value, "usual value") for key, value in usual.items() if key not in given
+        Estimate(key, value, "usual value") for key, value in usual.items() if not given.gives(key)
     )
-    return {key: float(given.get(key, value)) for key, value in usual.items()}, guessed
+    known = given.model_dump(include={*usual}, exclude_unset=True)
+    return usual | known, guessed
 
 
 def _hull_propeller_interaction(
-    hull: Hull, form: HullForm, given: Mapping[str, Any], screw: Propeller, count: int
+    hull: Hull, form: HullForm, given: PropulsionSection, screw: Propeller, count: int
 ) -> tuple[Callable[[FloatArray], tuple[FloatArray, float, float]], tuple[Estimate, ...]]:
     """Wake fraction by speed, thrust deduction and relative rotative efficiency."""
     size, stern = screw.diameter, stern_shape(hull)
@@ -176,12 +187,16 @@ def _hull_propeller_interaction(
         rotative = float(relative_rotative_twin(form, pitch_ratio=screw.pitch_ratio))
     guesses = {"thrust_deduction": deduction, "relative_rotative_efficiency": rotative}
     guessed = [
-        Estimate(key, value, "Holtrop (1984)") for key, value in guesses.items() if key not in given
+        Estimate(key, value, "Holtrop (1984)")
+        for key, value in guesses.items()
+        if not given.gives(key)
     ]
-    deduction = float(given.get("thrust_deduction", deduction))
-    rotative = float(given.get("relative_rotative_efficiency", rotative))
-    if "wake_fraction" in given:
-        fixed = np.asarray(float(given["wake_fraction"]))
+    if given.thrust_deduction is not None:
+        deduction = given.thrust_deduction
+    if given.relative_rotative_efficiency is not None:
+        rotative = given.relative_rotative_efficiency
+    if given.wake_fraction is not None:
+        fixed = np.asarray(given.wake_fraction)
         return lambda speed: (fixed, deduction, rotative), tuple(guessed)
     wake = _wake(hull, form, size, single=single)
     typical = 0.2 * np.sqrt(9.81 * float(form.length))
@@ -219,12 +234,12 @@ def _wake(
     return wake
 
 
-PROPULSION_METHODS: Final[Mapping[str, Callable[[Hull, Mapping[str, Any]], PropulsionModel]]] = (
+PROPULSION_METHODS: Final[Mapping[str, Callable[[Hull, PropulsionSection], PropulsionModel]]] = (
     MappingProxyType({"efficiencies": _efficiencies, "wageningen_b": _b_series})
 )
 
 
-def build_propulsion(data: Mapping[str, Any], hull: Hull) -> PropulsionModel:
+def build_propulsion(file: ShipFile, hull: Hull) -> PropulsionModel:
     """Return the propulsion chosen in a ship file; constant efficiencies when none is named.
 
     ``engine.sea_margin_percent`` raises the power of every speed by that much.
@@ -233,12 +248,11 @@ def build_propulsion(data: Mapping[str, Any], hull: Hull) -> PropulsionModel:
     ------
     InputError
     """
-    given = data.get("propulsion", {})
-    name = data.get("models", {}).get("propulsion", "efficiencies")
+    name = file.models.propulsion
     if name not in PROPULSION_METHODS:
         raise unknown_name_error("propulsion method", name, PROPULSION_METHODS)
-    chain = PROPULSION_METHODS[name](hull, given)
-    margin = data.get("engine", {}).get("sea_margin_percent", 0.0)
+    chain = PROPULSION_METHODS[name](hull, file.propulsion)
+    margin = file.engine.sea_margin_percent
     return _with_sea_margin(chain, 1.0 + margin / 100.0) if margin > 0.0 else chain
 
 

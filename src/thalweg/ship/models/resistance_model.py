@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,41 +12,24 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import Estimate, setting_index
-from thalweg.ship.models.engine_plant import EnginePlant
+from thalweg.ship.model_protocol import setting_index
+from thalweg.ship.models.engine_plant import EngineOrders, EnginePlant
 from thalweg.ship.models.force_balance import (
     CALM_CONDITIONS,
     FlatConditions,
     ForceBalance,
     calm_conditions,
 )
+from thalweg.ship.models.resistance_protocol import LARGEST_SPEED_FACTOR
 from thalweg.ship.ship_limits import ShipLimits
 from thalweg.ship.tables.output_curve import OutputCurve
-from thalweg.ship.tables.performance_table import TableError, TablePart
 from thalweg.ship.tables.table_cache import TableWithMaxima, cached_table
+from thalweg.ship.tables.table_parts import TableError, TablePart
 
 #: parts, their error, and what follows their sum
 TabulatedModel: TypeAlias = tuple[tuple[TablePart, ...], TableError, OutputCurve | None]
-LARGEST_SPEED_FACTOR: Final = (
-    1.25  #: weather never takes a ship beyond this many times its calm-water speed
-)
-
-
-@dataclass(frozen=True)
-class EngineOrders:
-    """What the bridge can order.
-
-    Attributes
-    ----------
-    kind : {"power", "speed"}
-        Constant brake power, or a speed that is held as long as the engine can.
-    values : tuple of float
-        Powers [W] or speeds [m/s], ascending.
-    """
-
-    kind: Literal["power", "speed"]
-    values: tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)

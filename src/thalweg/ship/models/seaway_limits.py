@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -14,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.kernels.leg import wave_limits as places
+from thalweg.ship.file.ship_schema import LimitsSection
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.seakeeping.motion_sickness import (
@@ -238,9 +238,7 @@ class SafetyLimits:
         return inverse.reshape(_GRID_SHAPE).astype(np.float32), grid
 
 
-def build_safety_limits(
-    data: Mapping[str, Any], hull: Hull, loading: Loading
-) -> SafetyLimits | None:
+def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> SafetyLimits | None:
     """Return the safety and comfort limits of a ship file; None when it states none.
 
     Raises
@@ -248,8 +246,7 @@ def build_safety_limits(
     InputError
         For unknown dangers, and particulars that are missing.
     """
-    given = data.get("limits", {})
-    dangers = tuple(dict.fromkeys(given.get("msc_circ_1228", ())))
+    dangers = tuple(dict.fromkeys(given.msc_circ_1228))
     limits = _acceleration_limits(given)
     if not dangers and not limits:
         return None
@@ -273,7 +270,7 @@ def build_safety_limits(
 
 
 def _dangerous_situation_limits(
-    given: Mapping[str, Any], dangers: tuple[str, ...], hull: Hull, size: MotionHull
+    given: LimitsSection, dangers: tuple[str, ...], hull: Hull, size: MotionHull
 ) -> DangerousSituationLimits:
     """The dangers of MSC.1/Circ.1228 named in a ship file."""
     if "all" in dangers:
@@ -291,11 +288,12 @@ def _dangerous_situation_limits(
             "Add one of them, or name the other dangers only.",
             missing=["hull.roll_period_s", "hull.metacentric_height_m"],
         )
+    harmless = given.danger_from_wave_height_m
     return DangerousSituationLimits(
         dangers=dangers,
         roll_period=math.nan if rolls is None else rolls,
-        roll_tolerance=float(given.get("roll_period_tolerance", 0.1)),
-        harmless_wave_height=float(given.get("danger_from_wave_height_m", 0.01 * size.length)),
+        roll_tolerance=given.roll_period_tolerance,
+        harmless_wave_height=0.01 * size.length if harmless is None else harmless,
     )
 
 
@@ -308,17 +306,16 @@ def natural_roll_period(hull: Hull, size: MotionHull) -> float | None:
     return float(roll_period(beam, deep, length_waterline=size.length, metacentric_height=gm))
 
 
-def _acceleration_limits(given: Mapping[str, Any]) -> tuple[AccelerationLimit, ...]:
+def _acceleration_limits(given: LimitsSection) -> tuple[AccelerationLimit, ...]:
     """The limits of motions in a ship file; the bow is as far ahead as can be."""
     found = []
-    if "max_vertical_acceleration_m_s2" in given:
-        place = float(given.get("acceleration_at_m", math.inf))
-        found.append(AccelerationLimit(float(given["max_vertical_acceleration_m_s2"]), place))
-    if "max_motion_sickness_percent" in given:
-        hours = float(given.get("motion_sickness_hours", EXPOSURE_TIME / 3600.0))
-        dose = float(given["max_motion_sickness_percent"]) / MIXED_ADULT_SUSCEPTIBILITY
-        place = float(given.get("motion_sickness_at_m", 0.0))
-        found.append(AccelerationLimit(dose / math.sqrt(hours * 3600.0), place, weighted=True))
+    if given.max_vertical_acceleration_m_s2 is not None:
+        place = math.inf if given.acceleration_at_m is None else given.acceleration_at_m
+        found.append(AccelerationLimit(given.max_vertical_acceleration_m_s2, place))
+    if given.max_motion_sickness_percent is not None:
+        dose = given.max_motion_sickness_percent / MIXED_ADULT_SUSCEPTIBILITY
+        greatest = dose / math.sqrt(given.motion_sickness_hours * 3600.0)
+        found.append(AccelerationLimit(greatest, given.motion_sickness_at_m, weighted=True))
     return tuple(found)
 
 

@@ -3,36 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Callable
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, KNOT, TONNE
+from thalweg.ship.file.ship_schema import ShipFile, TableSection
 from thalweg.ship.models.known_speed_model import KnownSpeedModel, cubic_law
 
-ShipData = Mapping[str, Any]
 
-
-def speed_power_law_name(data: ShipData) -> str:
-    """Which law ties fuel and power to speed."""
-    name = data.get("models", {}).get("calm_water")
+def speed_power_law_name(file: ShipFile) -> str:
+    """Return the name of the law that ties fuel and power to speed."""
+    name = file.models.calm_water
     if name is None:
-        return "table" if "table" in data else "cubic" if _has_reference(data) else "none"
+        return "table" if file.table is not None else "cubic" if _has_reference(file) else "none"
     if name not in SPEED_POWER_LAWS:
         raise unknown_name_error("calm-water model", name, SPEED_POWER_LAWS)
-    return str(name)
+    return name
 
 
-def _has_reference(data: ShipData) -> bool:
-    return "reference_power_kw" in data.get("engine", {}) or "reference_t_per_day" in data.get(
-        "fuel", {}
-    )
+def _has_reference(file: ShipFile) -> bool:
+    return file.engine.reference_power_kw is not None or file.fuel.reference_t_per_day is not None
 
 
-def calm_speeds(data: ShipData, law: str) -> tuple[FloatArray, FloatArray]:
+def calm_speeds(file: ShipFile, law: str) -> tuple[FloatArray, FloatArray]:
     """Calm-water speeds full and empty [m/s], ascending, from the one place that gives them.
 
     The law of a table has those of the table, and ``speeds_kn`` are settings on it; for other laws
@@ -43,17 +40,16 @@ def calm_speeds(data: ShipData, law: str) -> tuple[FloatArray, FloatArray]:
     InputError
         If there is none, or more than one.
     """
-    loading = data.get("loading", {})
     places = {
-        "speeds_kn": data.get("speeds_kn"),
-        "table.speed_kn": data.get("table", {}).get("speed_kn"),
-        "loading.speeds_full_kn": loading.get("speeds_full_kn"),
+        "speeds_kn": file.speeds_kn,
+        "table.speed_kn": None if file.table is None else file.table.speed_kn,
+        "loading.speeds_full_kn": file.loading.speeds_full_kn,
     }
     given = {name: values for name, values in places.items() if values is not None}
     if {"speeds_kn", "table.speed_kn"} <= given.keys():
         del given["speeds_kn" if law == "table" else "table.speed_kn"]
-    if not given and law == "cubic" and "powers_kw" in data:
-        given["engine.reference_speed_kn"] = [_reference_speed(data)]
+    if not given and law == "cubic" and file.powers_kw is not None:
+        given["engine.reference_speed_kn"] = (_reference_speed(file),)
     if len(given) != 1:
         found = f"gives speeds under {' and '.join(given)}" if given else "gives no speeds"
         raise InputError(
@@ -64,7 +60,8 @@ def calm_speeds(data: ShipData, law: str) -> tuple[FloatArray, FloatArray]:
             missing=[] if given else ["speeds_kn"],
         )
     full = np.array(next(iter(given.values())), float)
-    empty = np.array(loading.get("speeds_empty_kn", full), float)
+    light = file.loading.speeds_empty_kn
+    empty = full if light is None else np.array(light, float)
     if empty.shape != full.shape:
         raise InputError(
             f"There are {len(full)} speeds full and {len(empty)} speeds empty.",
@@ -83,16 +80,16 @@ def calm_speeds(data: ShipData, law: str) -> tuple[FloatArray, FloatArray]:
     return full[order] * KNOT, empty[order] * KNOT
 
 
-def _without_law(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _without_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     unknown = np.full(len(speeds), math.nan)
     return unknown, unknown
 
 
-def _from_cubic_law(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _from_cubic_law(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Fuel rates [kg/s] and powers [W] through the reference point."""
-    engine, fuel = _reference_sections(data)
-    reference = engine.get("reference_speed_kn", speeds.max() / KNOT) * KNOT
-    if not {"reference_power_kw", "reference_t_per_day"} & {*engine, *fuel}:
+    speed_kn, power_kw, fuel_t_per_day = _reference_point(file)
+    reference = (speeds.max() / KNOT if speed_kn is None else speed_kn) * KNOT
+    if power_kw is None and fuel_t_per_day is None:
         raise InputError(
             "The cubic law has no reference point.",
             "It goes through engine.reference_power_kw or fuel.reference_t_per_day at "
@@ -100,37 +97,47 @@ def _from_cubic_law(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, Flo
             "Add one, or choose calm_water: none.",
             missing=["engine.reference_power_kw", "fuel.reference_t_per_day"],
         )
-    power_kw = engine.get("reference_power_kw", math.nan)
-    burnt = fuel.get("reference_t_per_day", math.nan) * TONNE / DAY
+    burnt = math.nan if fuel_t_per_day is None else fuel_t_per_day * TONNE / DAY
+    power = math.nan if power_kw is None else power_kw * 1000.0
     return (
         cubic_law(speeds, reference_speed=reference, reference_value=burnt),
-        cubic_law(speeds, reference_speed=reference, reference_value=power_kw * 1000.0),
+        cubic_law(speeds, reference_speed=reference, reference_value=power),
     )
 
 
-def _reference_sections(data: ShipData) -> tuple[ShipData, ShipData]:
-    """The sections engine and fuel with the reference point; the table's last row without one."""
-    engine, fuel, table = (data.get(name, {}) for name in ("engine", "fuel", "table"))
-    if _has_reference(data) or "speed_kn" not in table:
-        return engine, fuel
-    check_table(data)
-    last = int(np.argmax(table["speed_kn"]))
-    engine = {**engine, "reference_speed_kn": table["speed_kn"][last]}
-    if "power_kw" in table:
-        engine["reference_power_kw"] = table["power_kw"][last]
-    if "fuel_t_per_day" in table:
-        fuel = {**fuel, "reference_t_per_day": table["fuel_t_per_day"][last]}
-    return engine, fuel
+class _ReferencePoint(NamedTuple):
+    """The point through which the cubic law goes; None for what the file does not give."""
+
+    speed_kn: float | None
+    power_kw: float | None
+    fuel_t_per_day: float | None
 
 
-def _reference_speed(data: ShipData) -> float:
+def _reference_point(file: ShipFile) -> _ReferencePoint:
+    """The reference point of the sections engine and fuel, or else the table's last row."""
+    engine, table = file.engine, file.table
+    if _has_reference(file) or table is None or table.speed_kn is None:
+        return _ReferencePoint(
+            engine.reference_speed_kn, engine.reference_power_kw, file.fuel.reference_t_per_day
+        )
+    check_table(table)
+    last = int(np.argmax(table.speed_kn))
+    power, fuel = table.power_kw, table.fuel_t_per_day
+    return _ReferencePoint(
+        table.speed_kn[last],
+        None if power is None else power[last],
+        None if fuel is None else fuel[last],
+    )
+
+
+def _reference_speed(file: ShipFile) -> float:
     """Speed of the reference point [kn], for settings that are powers.
 
     Raises
     ------
     InputError
     """
-    speed = _reference_sections(data)[0].get("reference_speed_kn")
+    speed = _reference_point(file).speed_kn
     if speed is None:
         raise InputError(
             "The cubic law has no reference speed.",
@@ -139,10 +146,10 @@ def _reference_speed(data: ShipData) -> float:
             "Add both, or give speeds_kn.",
             missing=["engine.reference_speed_kn"],
         )
-    return float(speed)
+    return speed
 
 
-def with_settings(model: KnownSpeedModel, data: ShipData) -> KnownSpeedModel:
+def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
     """Return the model with the settings a ship file asks for on its table or cubic law.
 
     Raises
@@ -150,7 +157,7 @@ def with_settings(model: KnownSpeedModel, data: ShipData) -> KnownSpeedModel:
     InputError
         If powers and speeds are given, or no law ties the powers to speeds in its range.
     """
-    speeds, powers = data.get("speeds_kn"), data.get("powers_kw")
+    speeds, powers = file.speeds_kn, file.powers_kw
     if powers is None:
         if speeds is None or model.law.name != "table":
             return model
@@ -185,22 +192,23 @@ def with_settings(model: KnownSpeedModel, data: ShipData) -> KnownSpeedModel:
     return model.with_speeds(np.interp(watts, model.powers, model.speeds_full), 1.0)
 
 
-def check_table(data: ShipData) -> None:
-    """Refuse a table that is not there, or whose columns differ in length.
+def check_table(table: TableSection | None) -> dict[str, tuple[float, ...]]:
+    """Return the columns of a table.
 
     Raises
     ------
     InputError
+        If there is no table, it has no speeds, or its columns differ in length.
     """
-    table = data.get("table")
-    if table is None or "speed_kn" not in table:
+    if table is None or table.speed_kn is None:
         raise InputError(
             "calm_water: table is chosen, but the ship file has no table with speed_kn.",
             "A table has columns speed_kn and fuel_t_per_day, power_kw or both.",
             "Add 'table:', or choose another calm_water model.",
             missing=["table.speed_kn"],
         )
-    ragged = {name for name, column in table.items() if len(column) != len(table["speed_kn"])}
+    columns = table.columns
+    ragged = {name for name, column in columns.items() if len(column) != len(table.speed_kn)}
     if ragged:
         raise InputError(
             f"In the ship's table {', '.join(sorted(ragged))} has another length than speed_kn.",
@@ -208,11 +216,12 @@ def check_table(data: ShipData) -> None:
             "Fill the missing numbers.",
             key="table",
         )
+    return columns
 
 
-def _from_table(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _from_table(file: ShipFile, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Fuel rates [kg/s] and powers [W] of the table's rows, in the order of speed."""
-    table = data["table"]
+    table = check_table(file.table)
     order = np.argsort(table["speed_kn"], kind="stable")
     blank = [math.nan] * len(order)
     power = np.array(table.get("power_kw", blank), float)[order] * 1000.0
@@ -221,7 +230,7 @@ def _from_table(data: ShipData, speeds: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 SPEED_POWER_LAWS: Final[
-    dict[str, Callable[[ShipData, FloatArray], tuple[FloatArray, FloatArray]]]
+    dict[str, Callable[[ShipFile, FloatArray], tuple[FloatArray, FloatArray]]]
 ] = {
     "none": _without_law,
     "cubic": _from_cubic_law,

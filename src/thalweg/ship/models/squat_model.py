@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import FloatArray
+from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.shallow_water.squat import (
@@ -85,19 +85,19 @@ class SquatModel:
         return volume / (self.length * self.breadth * draught)
 
 
-def squat_model_of(data: Mapping[str, Any], hull: Hull, loading: Loading) -> SquatModel | None:
-    """Return a ship's squat, or None when its particulars do not tell."""
+def squat_model_of(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel | None:
+    """Return a ship's squat, or or None when its particulars are too few."""
     length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
     breadth = hull.number("breadth_m")
     if not (length and breadth) or math.isnan(loading.displacement_full):
         return None
-    clearance = data.get("limits", {}).get("min_under_keel_clearance_m", 0.0)
-    chosen = data.get("models", {}).get("squat", "none")
+    clearance = file.limits.min_under_keel_clearance_m
+    chosen = file.models.squat
     method = chosen if chosen in SQUAT_METHODS[1:] else SQUAT_METHODS[1]
-    return SquatModel(float(length), float(breadth), loading, float(clearance), method)
+    return SquatModel(float(length), float(breadth), loading, clearance, method)
 
 
-def build_squat_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> SquatModel | None:
+def build_squat_model(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel | None:
     """Return the squat that limits a ship's speed, by ``models.squat``; None for ``none``.
 
     Raises
@@ -105,12 +105,12 @@ def build_squat_model(data: Mapping[str, Any], hull: Hull, loading: Loading) -> 
     InputError
         For unknown names, and particulars that are missing.
     """
-    name = data.get("models", {}).get("squat", "none")
+    name = file.models.squat
     if name not in SQUAT_METHODS:
         raise unknown_name_error("squat method", name, SQUAT_METHODS)
     if name == "none":
         return None
-    found = squat_model_of(data, hull, loading)
+    found = squat_model_of(file, hull, loading)
     if found is None:
         keys = ("length_between_perpendiculars_m", "breadth_m", "displacement_m3")
         required_particulars(hull, keys, name, instead="squat: none")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,7 @@ from thalweg.kernels.leg.table_lookup import (
     MAX_PLANES,
     OUTPUT_CURVE,
 )
-
-if TYPE_CHECKING:
-    from thalweg.ship.tables.performance_table import TablePart
+from thalweg.ship.tables.table_parts import TablePart
 
 OUTPUT_CURVE_FIELDS: Final = (
     "start",

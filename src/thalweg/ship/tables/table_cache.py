@@ -16,7 +16,8 @@ import numpy as np
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.types import FloatArray
 from thalweg.ship.tables.output_curve import OUTPUT_CURVE_FIELDS, OutputCurve
-from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+from thalweg.ship.tables.performance_table import PerformanceTable
+from thalweg.ship.tables.table_parts import TableError, TablePart
 
 #: a table (its fingerprint empty), and the greatest value of every setting
 TableWithMaxima: TypeAlias = tuple[PerformanceTable, FloatArray]

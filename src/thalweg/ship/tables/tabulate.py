@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.ship.condition_variables import CONDITION_OF_AXIS
-from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+from thalweg.ship.tables.performance_table import PerformanceTable
+from thalweg.ship.tables.table_parts import TableError, TablePart
 
 #: given conditions by name (arrays that broadcast), returns values of shape (*shape, settings)
 ConditionsFunction = Callable[[Mapping[str, FloatArray]], FloatArray]

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +14,14 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.ship.condition_variables import AXIS_OF_CONDITION
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.model_protocol import ShipModel
+from thalweg.ship.model_protocol import FuelTableModel, PowerTableModel, ShipModel, Tabulation
 from thalweg.ship.models.force_balance import ForceBalance
-from thalweg.ship.models.fuel_from_power import hotel_power
-from thalweg.ship.models.resistance_model import ResistanceModel
+from thalweg.ship.models.function_model import FunctionModel
+from thalweg.ship.models.resistance_protocol import TabulatedResistance
 from thalweg.ship.tables.output_curve import OutputCurve
-from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_cache import TableWithMaxima
+from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense
 from thalweg.ship.tables.tabulate_resistance import (
     ERROR_SAMPLES,
@@ -33,98 +33,130 @@ from thalweg.ship.tables.tabulate_resistance import (
     resistance_terms,
 )
 
-if TYPE_CHECKING:
-    from thalweg.ship.ship import Ship
-
 _CURVE_POINTS: Final = 1025  #: of the curves of fuel and power
-#: Rates that models may tabulate themselves: by which method, and what they are called.
-_RATE_METHODS: Final = {
-    "fuel_rate": ("tabulate_fuel", "fuel rate"),
-    "power": ("tabulate_power", "brake power"),
-}
+_SPEED_FIELD: Final = "its speed is a field of place and time"
 RateOfPower = Callable[[FloatArray], FloatArray]
 RateFunction = Callable[[Conditions, NDArray[np.intp]], FloatArray]
 
 
-def fuel_table(ship: Ship, tolerance: float) -> PerformanceTable:
-    """Tabulate a ship's fuel rate; see `Ship.tabulate_fuel`.
+def fuel_table(
+    model: ShipModel, load_factor: float, tolerance: float, *, ship: str
+) -> PerformanceTable:
+    """Tabulate the fuel rate of a ship.
+
+    Parameters
+    ----------
+    model : ShipModel
+    load_factor : float
+        0 empty to 1 full.
+    tolerance : float
+        Relative error that 99 % of random conditions should meet.
+    ship : str
+        Name of the ship, for errors.
+
+    Returns
+    -------
+    PerformanceTable
+        Fuel rate [kg/s], hotel load included; without a fingerprint.
 
     Raises
     ------
     InputError
         If the fuel is unknown, or the speed is a field.
     """
-    return _rate_table(ship, tolerance, "fuel_rate", _unknown_fuel_error)
+    if isinstance(model, FuelTableModel):
+        found = Tabulation(*model.tabulate_fuel(load_factor, tolerance))
+    elif _is_speed_field(model):
+        raise _unknown_fuel_error(ship, _SPEED_FIELD)
+    else:
+        found = tabulate_rate(model, model.fuel_rate, load_factor, tolerance)
+    table = _table_of(found, model.speeds(load_factor))
+    if not _is_known(table):
+        raise _unknown_fuel_error(ship, "its fuel rate is unknown")
+    return table
 
 
-def power_table(ship: Ship, tolerance: float) -> PerformanceTable:
-    """Tabulate a ship's brake power and hotel load; see `Ship.tabulate_power`.
+def power_table(
+    model: ShipModel, load_factor: float, tolerance: float, *, hotel_power: float, ship: str
+) -> PerformanceTable:
+    """Tabulate the brake power of a ship, with its hotel load.
+
+    Parameters as in `fuel_table`, and ``hotel_power`` [W].
+
+    Returns
+    -------
+    PerformanceTable
+        Power [W]; without a fingerprint.
 
     Raises
     ------
     InputError
         If the power is unknown, or the speed is a field.
     """
-    table = _rate_table(ship, tolerance, "power", _unknown_power_error)
-    hotel = hotel_power(ship.data)
+    if isinstance(model, PowerTableModel):
+        found = Tabulation(*model.tabulate_power(load_factor, tolerance))
+    elif _is_speed_field(model):
+        raise _unknown_power_error(ship, _SPEED_FIELD)
+    else:
+        found = tabulate_rate(model, model.power, load_factor, tolerance)
+    table = _table_of(found, model.speeds(load_factor))
+    if not _is_known(table):
+        raise _unknown_power_error(ship, "its brake power is unknown")
     if table.finish is not None:
-        return replace(table, finish=replace(table.finish, points=table.finish.points + hotel))
-    return replace(table, parts=(*table.parts, constant_part(np.full(len(ship.speeds), hotel))))
+        points = table.finish.points + hotel_power
+        return replace(table, finish=replace(table.finish, points=points))
+    hotel = constant_part(np.full(table.settings.size, hotel_power))
+    return replace(table, parts=(*table.parts, hotel))
 
 
-def _rate_table(
-    ship: Ship, tolerance: float, name: str, refused: Callable[[Ship, str], InputError]
-) -> PerformanceTable:
-    """Tabulate a rate by the model's own way, or over all that the model reads."""
-    if ship.speed_field is not None:
-        raise refused(ship, "its speed is a field of place and time")
-    own, words = _RATE_METHODS[name]
-    rate = getattr(ship.model, name)
-    make = getattr(ship.model, own, None) or partial(tabulate_rate, ship.model, rate)
-    parts, error, *more = make(ship.loading.load_factor, tolerance)
-    finish = more[0] if more else None
-    table = PerformanceTable(parts, ship.speeds, ship.fingerprint(), error, finish)
-    if not all(math.isfinite(table.largest(k)) for k in range(len(ship.speeds))):
-        raise refused(ship, f"its {words} is unknown")
-    return table
+def _is_speed_field(model: ShipModel) -> bool:
+    return isinstance(model, FunctionModel) and model.is_speed_field
 
 
-def _unknown_fuel_error(ship: Ship, why: str) -> InputError:
+def _table_of(found: Tabulation, speeds: FloatArray) -> PerformanceTable:
+    return PerformanceTable(found.parts, speeds, "", found.error, found.curve)
+
+
+def _is_known(table: PerformanceTable) -> bool:
+    return all(math.isfinite(table.largest(k)) for k in range(table.settings.size))
+
+
+def _unknown_fuel_error(ship: str, why: str) -> InputError:
     return InputError(
-        f"The fuel of {ship.name!r} cannot be tabulated: {why}.",
+        f"The fuel of {ship!r} cannot be tabulated: {why}.",
         "A fuel model is a table with fuel_t_per_day, fuel.reference_t_per_day, or a resistance "
         "with engine.type, engine.sfoc_g_per_kwh or a curve of it.",
         "Add one to the ship file, or ask for the least time.",
-        ship=ship.name,
+        ship=ship,
     )
 
 
-def _unknown_power_error(ship: Ship, why: str) -> InputError:
+def _unknown_power_error(ship: str, why: str) -> InputError:
     return InputError(
-        f"The power of {ship.name!r} cannot be tabulated: {why}.",
+        f"The power of {ship!r} cannot be tabulated: {why}.",
         "Power comes from a resistance (models.calm_water such as holtrop_1984), a table with "
         "power_kw, or the cubic law with engine.reference_power_kw.",
         "Add one to the ship file, or ask for the least fuel or time.",
-        ship=ship.name,
+        ship=ship,
     )
 
 
 def tabulate_fuel_of_balance(
-    model: ResistanceModel, load_factor: float, tolerance: float
+    model: TabulatedResistance, load_factor: float, tolerance: float
 ) -> TableWithMaxima:
     """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_tabulate_rate_of_power`."""
     return _tabulate_rate_of_power(model, load_factor, tolerance, model.plant.fuel)
 
 
 def tabulate_power_of_balance(
-    model: ResistanceModel, load_factor: float, tolerance: float
+    model: TabulatedResistance, load_factor: float, tolerance: float
 ) -> TableWithMaxima:
     """Tabulate the brake power [W] of a resistance-based ship; see `_tabulate_rate_of_power`."""
     return _tabulate_rate_of_power(model, load_factor, tolerance, np.asarray)
 
 
 def _tabulate_rate_of_power(
-    model: ResistanceModel, load_factor: float, tolerance: float, of_power: RateOfPower
+    model: TabulatedResistance, load_factor: float, tolerance: float, of_power: RateOfPower
 ) -> TableWithMaxima:
     """Tabulate what follows from the power of every setting of a resistance-based ship.
 
@@ -134,7 +166,7 @@ def _tabulate_rate_of_power(
 
     Parameters
     ----------
-    model : ResistanceModel
+    model : TabulatedResistance
     load_factor : float
     tolerance : float
         See `thalweg.ship.tables.tabulate.table_error`.
@@ -175,7 +207,7 @@ def _tabulate_rate_of_power(
 
 
 def _rate_curve(
-    model: ResistanceModel,
+    model: TabulatedResistance,
     balance: ForceBalance,
     speeds: FloatArray,
     *,
@@ -200,7 +232,7 @@ def _rate_curve(
 
 def tabulate_rate(
     model: ShipModel, rate: RateFunction, load_factor: float, tolerance: float
-) -> tuple[tuple[TablePart, ...], TableError]:
+) -> Tabulation:
     """Tabulate a rate of any model over all conditions it reads, in one part."""
     names = sorted(model.reads & AXIS_OF_CONDITION.keys(), key=AXIS_OF_CONDITION.__getitem__)
     settings = np.arange(len(model.speeds(load_factor)))
@@ -210,6 +242,6 @@ def tabulate_rate(
         return rate(Conditions(columns, load_factor=load_factor), settings)
 
     if not names:
-        return (constant_part(rates({})),), TableError(0.0, 0.0, 0.0, 0)
+        return Tabulation((constant_part(rates({})),), TableError(0.0, 0.0, 0.0, 0))
     part, error = tabulate_dense(rates, [DEFAULT_AXES[n] for n in names], tolerance=tolerance)
-    return (part,), error
+    return Tabulation((part,), error)

@@ -20,12 +20,13 @@ from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import CURVE_REFINEMENT
 from thalweg.ship.models.added_resistance_model import AddedWaveResistance
 from thalweg.ship.models.force_balance import ForceBalance
-from thalweg.ship.models.resistance_model import LARGEST_SPEED_FACTOR, ResistanceModel
+from thalweg.ship.models.resistance_protocol import LARGEST_SPEED_FACTOR, TabulatedResistance
 from thalweg.ship.models.root_finding import bracketed_root
 from thalweg.ship.ship_limits import ShipLimits
 from thalweg.ship.tables.output_curve import OutputCurve
-from thalweg.ship.tables.performance_table import PerformanceTable, TableError, TablePart
+from thalweg.ship.tables.performance_table import PerformanceTable
 from thalweg.ship.tables.table_cache import TableWithMaxima
+from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import AxisRange, constant_part, random_conditions, table_error
 
 #: first grids
@@ -99,13 +100,13 @@ class ResistanceTerm:
 
 
 def tabulate_balance(
-    model: ResistanceModel, load_factor: float, tolerance: float
+    model: TabulatedResistance, load_factor: float, tolerance: float
 ) -> TableWithMaxima:
     """Tabulate the speed through water of every setting.
 
     Parameters
     ----------
-    model : ResistanceModel
+    model : TabulatedResistance
     load_factor : float
     tolerance : float
         See `thalweg.ship.tables.tabulate.table_error`.
@@ -231,7 +232,7 @@ def _force_scale(finish: OutputCurve, speeds: FloatArray) -> FloatArray:
 
 
 def _resistance_reserve_curve(
-    model: ResistanceModel, load_factor: float, speeds: FloatArray
+    model: TabulatedResistance, load_factor: float, speeds: FloatArray
 ) -> OutputCurve:
     """What settings have to spare in calm, deep water at and between the columns' speeds [N]."""
     balance, calm = model.balance(load_factor), model.speeds(load_factor)
@@ -350,7 +351,7 @@ def conditions_per_setting(
     return at, which, (*shape, count)
 
 
-def check_power_rises(model: ResistanceModel, load_factor: float) -> None:
+def check_power_rises(model: TabulatedResistance, load_factor: float) -> None:
     """Refuse a ship whose power falls while its speed rises, calm or in weather.
 
     Raises

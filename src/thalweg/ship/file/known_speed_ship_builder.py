@@ -1,0 +1,74 @@
+"""Build the model of a ship whose file gives its calm-water speeds."""
+
+from __future__ import annotations
+
+from thalweg.core.errors import InputError
+from thalweg.core.units import DAY, TONNE
+from thalweg.ship.file.part_builders import build_speed_loss, hull_for_kwon, lightship_estimate
+from thalweg.ship.file.ship_schema import ShipFile
+from thalweg.ship.hull.estimate import Estimate
+from thalweg.ship.hull.hull import Hull
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.models.fuel_from_power import fuel_estimates, fuel_rate_of_power
+from thalweg.ship.models.known_speed_model import (
+    KnownSpeedModel,
+    SpeedPowerLaw,
+    check_table_rises,
+)
+from thalweg.ship.models.speed_power_laws import (
+    SPEED_POWER_LAWS,
+    calm_speeds,
+    check_table,
+    speed_power_law_name,
+    with_settings,
+)
+from thalweg.ship.models.squat_model import build_squat_model
+
+
+def build_known_speed_model(file: ShipFile, hull: Hull, loading: Loading) -> KnownSpeedModel:
+    """Return the model of a ship that gives its calm-water speeds.
+
+    Raises
+    ------
+    InputError
+        If there are no speeds, several kinds of them, or they contradict each other.
+    """
+    law = speed_power_law_name(file)
+    _check_sea_margin(file)
+    if law == "table":
+        check_table(file.table)
+    full, empty = calm_speeds(file, law)
+    fuel, power = SPEED_POWER_LAWS[law](file, full)
+    power_to_fuel_rate = None if law == "none" else fuel_rate_of_power(file)
+    if power_to_fuel_rate is not None:
+        fuel = power_to_fuel_rate(power)
+    check_table_rises(full, {"fuel_t_per_day": fuel * DAY / TONNE, "power_kw": power / 1000.0})
+    loss, squat = build_speed_loss(file, hull, loading), build_squat_model(file, hull, loading)
+    model = KnownSpeedModel(
+        full, empty, fuel, power, SpeedPowerLaw(law, power_to_fuel_rate), loss, squat
+    )
+    return with_settings(model, file)
+
+
+def _check_sea_margin(file: ShipFile) -> None:
+    """Refuse a sea margin where there is no power that it could raise.
+
+    Raises
+    ------
+    InputError
+    """
+    if file.engine.sea_margin_percent > 0.0:
+        raise InputError(
+            "engine.sea_margin_percent is given for a ship with known speeds.",
+            "It raises the power that a resistance takes; here power and fuel are given.",
+            "Leave it out, and give figures that hold the margin.",
+            key="engine.sea_margin_percent",
+        )
+
+
+def estimates_of_known_speeds(file: ShipFile, hull: Hull, loading: Loading) -> tuple[Estimate, ...]:
+    """What was estimated of a ship that gives its speeds."""
+    if file.models.speed_loss != "none":
+        hull = hull_for_kwon(hull, loading)
+    light = lightship_estimate(file.loading, loading.displacement_empty)
+    return (*hull.estimated, *light, *fuel_estimates(file))
