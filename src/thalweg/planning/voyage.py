@@ -224,7 +224,7 @@ class Voyage:
         InputError
             If the file is missing, too large, not YAML/JSON, or says something impossible.
         """
-        import yaml
+        from thalweg.core.strict_yaml import parse_yaml
 
         path = Path(path)
         if not path.is_file():
@@ -232,23 +232,22 @@ class Voyage:
         if path.stat().st_size > _LARGEST_FILE:
             raise InputError(f"{path} is too large for a voyage file.", "At most 1 MB.", "")
         try:
-            data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
-            raise InputError(
-                f"{path} is neither YAML nor JSON: {error}.", "", "Mend it."
-            ) from error
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            raise InputError(f"{path} is not text in UTF-8.", "", "Save it as UTF-8.") from None
+        data = parse_yaml(text, "voyage", path.name)
         if not isinstance(data, dict):
             raise InputError(f"{path} holds no voyage.", "A mapping with start and goal.", "")
         return cls.from_dict(data)
 
     def save(self, path: str | Path) -> None:
         """Write the voyage as YAML, or as JSON when the name ends in .json."""
-        import yaml
+        from thalweg.core.strict_yaml import dump_yaml
 
         path = Path(path)
         data = self.to_dict()
         as_json = path.suffix == ".json"
-        text = json.dumps(data, indent=2, allow_nan=False) if as_json else yaml.safe_dump(data)
+        text = json.dumps(data, indent=2, allow_nan=False) if as_json else dump_yaml(data)
         path.write_text(text, encoding="utf-8")
 
 
