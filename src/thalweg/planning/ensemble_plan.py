@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.objective import KEY_FIGURES
 from thalweg.planning.pareto.exploration import evenly_spaced_subset, non_dominated_indices
-from thalweg.planning.pareto.objective import Criterion, find_criterion
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Plan
 from thalweg.planning.request.requirements import required_under_keel_clearance
+from thalweg.planning.request.voyage_objective import PricedObjective, priced_objective
 from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
 from thalweg.route import EnsembleResult, Route, evaluate_members
 from thalweg.sea import Sea
@@ -25,14 +26,6 @@ from thalweg.ship import Ship
 MAX_PLANNED_MEMBERS = 3
 #: Routes of a front that are sailed in all members.
 MAX_EVALUATED_ROUTES = 10
-_QUANTITY = {
-    "time": "time_h",
-    "front": "time_h",
-    "fuel": "fuel_t",
-    "energy": "energy_mwh",
-    "cost": "cost",
-    "co2": "co2_t",
-}
 
 
 @dataclass(frozen=True)
@@ -103,8 +96,9 @@ def plan_ensemble(
         for item in _evaluate_in_all_members(voyage, member, plan, ship, sea, measure)
     ]
     usable = [item for item in sailed if math.isfinite(item.value)] or sailed
-    criterion = find_criterion(voyage, ship) if voyage.objective in TRADE_OFF_OBJECTIVES else None
-    chosen = _select_plan(voyage, criterion, usable, tried, measure)
+    trades = voyage.objective in TRADE_OFF_OBJECTIVES
+    objective = priced_objective(voyage, ship) if trades else None
+    chosen = _select_plan(voyage, objective, usable, tried, measure)
     stopped = any(plan.cancelled for plan in plans.values())
     return dataclasses.replace(chosen, cancelled=stopped)
 
@@ -113,7 +107,8 @@ def _evaluate_in_all_members(
     voyage: Voyage, member: int, plan: Plan, ship: Ship, sea: Sea, measure: str
 ) -> list[EnsembleCandidate]:
     """Sail the routes of a plan in all members."""
-    terms = find_criterion(voyage, ship).terms if voyage.objective in TRADE_OFF_OBJECTIVES else None
+    trades = voyage.objective in TRADE_OFF_OBJECTIVES
+    terms = priced_objective(voyage, ship).terms if trades else None
     found = []
     for index in _routes_to_evaluate(plan):
         route = plan.routes[index]
@@ -156,14 +151,14 @@ def _risk_value(plan: Plan, distribution: EnsembleResult, measure: str) -> float
     """Return what a route is chosen by: its risk in the criterion, or its length."""
     if plan.voyage.objective == "distance":
         return distribution.routes[0].distance_nm
-    quantity = _QUANTITY[plan.voyage.objective]
+    name: str = "time" if plan.voyage.objective == "front" else plan.voyage.objective
     if plan.voyage.objective == "front" and plan.front is not None:
-        quantity = _QUANTITY[plan.front.criterion]
-    return distribution.risk(quantity, measure)
+        name = plan.front.criterion
+    return distribution.risk(KEY_FIGURES[name].attribute, measure)
 
 
 def _select_plan(
-    voyage: Voyage, criterion: Criterion | None, sailed: list[EnsembleCandidate],
+    voyage: Voyage, objective: PricedObjective | None, sailed: list[EnsembleCandidate],
     planned: list[int],
     measure: str,
 ) -> Plan:  # fmt: skip
@@ -191,23 +186,23 @@ def _select_plan(
         first,
         voyage=voyage,
         routes=routes,
-        front=_front(order, routes, criterion),
+        front=_front(order, routes, objective),
         notes=tuple(dict.fromkeys(notes)),
         ensemble=tuple(_distribution_row(item) for item in order),
     )
 
 
 def _front(
-    order: list[EnsembleCandidate], routes: tuple[Route, ...], criterion: Criterion | None
+    order: list[EnsembleCandidate], routes: tuple[Route, ...], objective: PricedObjective | None
 ) -> ParetoFront | None:
     """Return the front of the chosen routes, which may come from several plans."""
     first = order[0].plan.front
-    if first is None or criterion is None:
+    if first is None or objective is None:
         return None
     fronts = [(item.plan.front, item.index) for item in order]
     return dataclasses.replace(
         first,
-        values=np.array([criterion.of(route) for route in routes]),
+        values=np.array([objective.value(route) for route in routes]),
         stages=tuple(front.stages[i] for front, i in fronts if front is not None),
         ways=tuple(front.ways[i] for front, i in fronts if front is not None),
     )

@@ -10,14 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.objective import Objective
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
-
-#: Objectives told in the unit of the front's criterion.
-_COUNTED = ("fuel", "energy", "cost", "co2")
 
 
 @dataclass(frozen=True)
@@ -102,22 +100,23 @@ class Plan:
 
     @property
     def objective_value(self) -> float:
-        """What the best route counts by the referee, in `unit`.
+        """Value of the best route as scored by the referee, in `unit`.
 
         With the objective ``"front"`` the hours of the fastest route; the other points are in
         `front`.
         """
-        if self.voyage.objective in _COUNTED:
-            assert self.front is not None  # such plans have one
-            return float(self.front.values[0])
-        return self.best.distance_nm if self.voyage.objective == "distance" else self.best.time_h
+        return self._objective.value(self.best)
 
     @property
     def unit(self) -> str:
         """The unit of the objective: ``"h"``, ``"nm"``, ``"t"``, ``"MWh"`` or the currency."""
-        if self.voyage.objective in _COUNTED and self.front is not None:
-            return self.front.unit
-        return "nm" if self.voyage.objective == "distance" else "h"
+        return self._objective.unit
+
+    @property
+    def _objective(self) -> Objective:
+        name: str = self.voyage.objective
+        currency = "USD" if self.front is None else self.front.unit
+        return Objective.of("time" if name == "front" else name, currency=currency)
 
     @property
     def lower_bound(self) -> float:

@@ -17,7 +17,7 @@ from thalweg.sea import Sea
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from thalweg.planning.pareto.objective import Criterion
+    from thalweg.planning.request.voyage_objective import PricedObjective
     from thalweg.planning.single.passage import PlanningContext
 
 
@@ -77,7 +77,7 @@ def _calm_sea(context: PlanningContext) -> Sea:
 
 
 def evaluate_weather_blind(
-    context: PlanningContext, criterion: Criterion, tracks: Sequence[Track]
+    context: PlanningContext, objective: PricedObjective, tracks: Sequence[Track]
 ) -> list[Route]:
     """Sail weather-blind tracks in the weather of the plan; by ascending time."""
     sailed = [
@@ -88,17 +88,17 @@ def evaluate_weather_blind(
             chart=context.chart,
             min_ukc=context.min_ukc,
             strict=False,
-            terms=criterion.terms,
+            terms=objective.terms,
         )
         for track in tracks
     ]
-    known = [route for route in sailed if math.isfinite(criterion.of(route))]
+    known = [route for route in sailed if math.isfinite(objective.value(route))]
     return sorted(known, key=lambda route: route.time_h)
 
 
 def compare_with_baseline(
     context: PlanningContext,
-    criterion: Criterion,
+    objective: PricedObjective,
     front: Sequence[Route],
     values: FloatArray,
     blind: Sequence[Route],
@@ -113,7 +113,7 @@ def compare_with_baseline(
     order = np.argsort([route.time_h for route in front])
     time = np.array([front[i].time_h for i in order])
     value = np.minimum.accumulate(np.asarray(values)[order])
-    counts = np.array([criterion.of(route) for route in blind])
+    counts = np.array([objective.value(route) for route in blind])
     speeds = np.asarray(context.ship.speeds) / KNOT
     rows = tuple(
         {"speed_kn": float(speeds[int(route.track.setting[0])])}

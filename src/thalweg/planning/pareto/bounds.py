@@ -94,19 +94,19 @@ def absolute_lower_bound(
     The geodesic at the greatest speed over ground that the data allow, for the value with the
     least rate of the best setting and the least weight of it.
     """
-    context, criterion = trade_off.context, trade_off.criterion
+    context, prices = trade_off.context, trade_off.objective.prices
     start, goal = trade_off.ends[0], trade_off.ends[-1]
     geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
     current = max(strongest_current(one.frozen.stations) for one in explored)
-    least = min(criterion.inside, criterion.outside)
-    if criterion.name == "cost":
+    least = min(prices.inside, prices.outside)
+    if prices.dues > 0.0:
         least *= min(float(one.way.network.price.min()) for one in explored)
-    rates = np.maximum(table_bounds(trade_off.rate.table.kernel_arrays(), np.fmin), 0.0)
+    rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
     fastest, value = 0.0, math.inf
     for setting in trade_off.settings:
         over_ground = float(context.ship.top_speed(int(setting)) or math.inf) + current
         fastest = max(fastest, over_ground)
-        per_second = least * float(rates[setting]) + criterion.time_price
+        per_second = least * float(rates[setting]) + prices.time
         value = min(value, per_second * geodesic / over_ground)
     return geodesic / fastest / HOUR, value
 

@@ -105,7 +105,7 @@ def _passes_through(track: Track, place: tuple[float, float]) -> bool:
 def _evaluator(
     trade_off: TradeOffContext, explored: ExploredAlternative, seeds: list[Track]
 ) -> Evaluator:
-    criterion, context = trade_off.criterion, trade_off.context
+    context = trade_off.context
     depart = context.voyage.earliest_departure
     latest = context.latest if math.isfinite(context.latest) else context.last
     assert explored.exact is not None  # a front that was stopped is not refined
@@ -113,17 +113,13 @@ def _evaluator(
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
     return make_evaluator(
         table=context.table,
-        fuel=trade_off.rate.table,
+        fuel=trade_off.consumption,
         fields=_freeze_raster(trade_off, seeds, depart, until),
         limits=trade_off.limits,
         depart=depart,
         chart=context.chart,
         latest=until,
-        weight_inside=criterion.inside,
-        weight_outside=criterion.outside,
-        time_price=criterion.time_price,
-        waiting_fuel=trade_off.rate.waiting,
-        fees=criterion.name == "cost",
+        prices=trade_off.objective.prices,
         total=float(np.median([_rough_length(track) for track in seeds])),
     )
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,12 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
-from thalweg.network import Network, shortest_path
+from thalweg.network import Network, eca_fractions, shortest_path
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.interrupt_guard import InterruptGuard, SearchInterrupted
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
-from thalweg.planning.pareto.objective import ConsumptionRate, Criterion
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.passage import (
     PlanningContext,
@@ -36,6 +37,8 @@ from thalweg.search import (
     earliest_arrival,
     pareto_front,
 )
+from thalweg.ship import PerformanceTable
+from thalweg.ship.consumption import calm_water_consumption
 
 #: How much longer than in still water the slowest ship worth looking at may take ...
 _SLOWEST_TIME_RATIO = 1.25
@@ -86,8 +89,8 @@ class TradeOffContext:
     """What all ways round are explored with."""
 
     context: PlanningContext
-    criterion: Criterion
-    rate: ConsumptionRate
+    objective: PricedObjective
+    consumption: PerformanceTable
     ends: tuple[Endpoint, ...]
     settings: np.ndarray
     limits: np.ndarray
@@ -98,6 +101,14 @@ class TradeOffContext:
     def via(self) -> tuple[Endpoint, ...]:
         """The places between the first end and the last."""
         return self.ends[1:-1]
+
+    @cached_property
+    def calm_water_cost_rates(self) -> FloatArray:
+        """Cost of a second in calm water at each of `settings`; infinite if unknown."""
+        prices = self.objective.prices
+        rates = calm_water_consumption(self.context.ship, prices.consumption)[self.settings]
+        cost = prices.outside * rates + prices.time
+        return np.where(np.isfinite(cost), cost, np.inf)
 
 
 @dataclass(frozen=True)
@@ -216,22 +227,21 @@ def network_pareto_front(
             raise SearchInterrupted
 
     depart = context.voyage.earliest_departure
-    dues = network.fee if trade_off.criterion.name == "cost" else np.zeros(network.n_edges)
+    prices = trade_off.objective.prices
+    differs = prices.differs_in_control_areas
     return pareto_front(
-        replace(network, fee=dues),
+        network,
         frozen.stations,
         context.table,
-        trade_off.rate.table,
+        trade_off.consumption,
         start=network.meta.start,
         goal=network.meta.goal,
         depart=depart,
         limits=trade_off.limits,
         latest=latest,
         settings=trade_off.settings,
-        weight=trade_off.criterion.weights(network, context.chart),
-        time_price=trade_off.criterion.time_price,
-        waiting_fuel=trade_off.rate.waiting,
-        waiting_weight=trade_off.criterion.outside,
+        prices=prices,
+        eca_fraction=eca_fractions(network, context.chart) if differs else None,
         wait=context.voyage.wait,
         bin_s=(latest - depart) / _TIME_BINS,
         top_speed=frozen.top_speed,
@@ -341,7 +351,7 @@ def _latest_useful_arrival(
     late = _TIME_MARGIN * duration(most_economical_setting(trade_off))
     if depart + late <= until:
         return depart + late
-    rates = cost_rates_in_calm_water(trade_off)
+    rates = trade_off.calm_water_cost_rates
     time = np.array([duration(int(setting)) for setting in trade_off.settings])
     cost = rates * np.minimum(time, until - depart)  # of what has not arrived: so much at least
     return depart + _TIME_MARGIN * float(time[np.argmin(cost)])
@@ -355,20 +365,9 @@ def shortest_path_length(network: Network) -> float:
 
 def most_economical_setting(trade_off: TradeOffContext) -> int:
     """Return the setting that makes a mile cheapest in still water."""
-    cost = (
-        cost_rates_in_calm_water(trade_off)
-        / np.asarray(trade_off.context.ship.speeds)[trade_off.settings]
-    )
+    speeds = np.asarray(trade_off.context.ship.speeds)[trade_off.settings]
+    cost = trade_off.calm_water_cost_rates / speeds
     return int(trade_off.settings[np.argmin(cost)])
-
-
-def cost_rates_in_calm_water(trade_off: TradeOffContext) -> FloatArray:
-    """Return what a second at each of the settings costs in still water; infinite if unknown."""
-    rate = (
-        trade_off.criterion.outside * trade_off.rate.still[trade_off.settings]
-        + trade_off.criterion.time_price
-    )
-    return np.where(np.isfinite(rate), rate, np.inf)
 
 
 def track_from_front_point(network: Network, point: Any) -> Track:

@@ -57,8 +57,8 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
 
 def _edge_weights(trade_off: TradeOffContext, network: Network) -> list[EdgeWeights]:
     """Return lengths, and lengths with what control areas and zones cost, in full and by half."""
-    inside, outside = trade_off.criterion.inside, trade_off.criterion.outside
-    ratio = inside / outside if inside != outside else 1.0
+    prices = trade_off.objective.prices
+    ratio = prices.inside / prices.outside if prices.differs_in_control_areas else 1.0
     if ratio == 1.0 and not trade_off.context.chart.zones.price:
         return [EdgeWeights()]
     factors = sorted({math.sqrt(ratio), ratio})

@@ -38,7 +38,6 @@ from thalweg.planning.pareto.exploration import (
     shortest_path_length,
     track_from_front_point,
 )
-from thalweg.planning.pareto.objective import find_criterion
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.pareto.route_names import route_labels
 from thalweg.planning.plan import Plan, PlotContext
@@ -49,8 +48,10 @@ from thalweg.planning.report.provenance import (
     route_warnings,
 )
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.planning.single.passage import PlanningContext
 from thalweg.route import Route, evaluate
+from thalweg.ship.consumption import consumption_table
 
 #: Margins on the depth [m] and on wave height and wind [fraction], tried in turn while the referee
 #: finds no route within the limits.
@@ -81,13 +82,19 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
     NoRouteError
         If no route exists within the limits and in time.
     """
-    criterion = find_criterion(context.voyage, context.ship)
-    rate = criterion.consumption_rate(context.ship)
+    objective = priced_objective(context.voyage, context.ship)
+    consumption = consumption_table(context.ship, objective.prices.consumption)
     single = context.voyage.speed_kn is not None
     settings = np.array([context.setting]) if single else np.arange(len(context.ship.speeds))
     with InterruptGuard() as interrupt_guard:
         trade_off = TradeOffContext(
-            context, criterion, rate, tuple(ends), settings, context.needs.limits, interrupt_guard
+            context,
+            objective,
+            consumption,
+            tuple(ends),
+            settings,
+            context.needs.limits,
+            interrupt_guard,
         )
         ways = find_route_alternatives(context, ends)
         for depth, fraction in _TIGHTENING_SCHEDULE:
@@ -193,9 +200,9 @@ def _refereed(
             chart=context.chart,
             min_ukc=context.min_ukc,
             strict=False,
-            terms=trade_off.criterion.terms,
+            terms=trade_off.objective.terms,
         )
-        scored.append(RefereedCandidate(candidate, route, trade_off.criterion.of(route)))
+        scored.append(RefereedCandidate(candidate, route, trade_off.objective.value(route)))
     latest = context.latest
     usable = [
         item
@@ -216,7 +223,7 @@ def _assemble_plan(
     scored: list[RefereedCandidate],
 ) -> Plan:
     """Put the plan together."""
-    context, criterion = trade_off.context, trade_off.criterion
+    context, objective = trade_off.context, trade_off.objective
     whole = context.voyage.objective == "front"
     blind = _weather_blind_routes(trade_off, explored)
     scored = _including_constant_speeds(trade_off, scored, blind)
@@ -233,8 +240,8 @@ def _assemble_plan(
     lower *= share[:, None]
     shortest_way = min(explored, key=lambda one: shortest_path_length(one.way.network)).way.name
     front = ParetoFront(
-        criterion=criterion.name,
-        unit=criterion.unit,
+        criterion=objective.name,
+        unit=objective.unit,
         values=values,
         stages=tuple(item.candidate.stage for item in ordered),
         ways=route_labels(
@@ -244,7 +251,7 @@ def _assemble_plan(
             context.chart,
         ),
         lower=lower,
-        comparison=compare_with_baseline(context, criterion, routes, values, blind),
+        comparison=compare_with_baseline(context, objective, routes, values, blind),
     )
     stopped = trade_off.interrupt_guard.stopped()
     return Plan(
@@ -292,7 +299,7 @@ def _weather_blind_routes(
     tracks = weather_blind_tracks(
         trade_off.context, network.lat[path], network.lon[path], trade_off.settings
     )
-    sailed = evaluate_weather_blind(trade_off.context, trade_off.criterion, tracks)
+    sailed = evaluate_weather_blind(trade_off.context, trade_off.objective, tracks)
     if not sailed:
         trade_off.notes.append(
             "The weather-blind route cannot be sailed to its end in these data: nothing to compare."
@@ -309,7 +316,7 @@ def _including_constant_speeds(
         RefereedCandidate(
             TrackCandidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value
         )
-        for r, value in ((route, trade_off.criterion.of(route)) for route in blind)
+        for r, value in ((route, trade_off.objective.value(route)) for route in blind)
         if r.feasible and r.arrive <= latest + 1.0
     ]
     if not any(item.route.feasible for item in scored):

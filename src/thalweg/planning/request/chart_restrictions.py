@@ -10,8 +10,8 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import Canal
 from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
-from thalweg.planning.pareto.objective import find_criterion
 from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
 from thalweg.ship import Ship
 
@@ -55,8 +55,8 @@ def _foreign_currency(voyage: Voyage, ship: Ship) -> str:
     """Return the currency of the cost that is made least, where there is one and not USD."""
     if voyage.objective not in TRADE_OFF_OBJECTIVES:
         return ""
-    criterion = find_criterion(voyage, ship)
-    return criterion.unit if criterion.name == "cost" and criterion.unit != "USD" else ""
+    objective = priced_objective(voyage, ship)
+    return objective.unit if objective.name == "cost" and objective.unit != "USD" else ""
 
 
 def _near_geodesic(canal: Canal, start: Endpoint, goal: Endpoint) -> bool:
@@ -87,8 +87,8 @@ def add_emission_control_areas(chart: Chart, voyage: Voyage, ship: Ship) -> tupl
     """
     if voyage.objective not in TRADE_OFF_OBJECTIVES:
         return chart, []
-    criterion = find_criterion(voyage, ship)
-    if criterion.inside == criterion.outside or chart.zones.eca:
+    prices = priced_objective(voyage, ship).prices
+    if not prices.differs_in_control_areas or chart.zones.eca:
         return chart, []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ThalwegWarning)
