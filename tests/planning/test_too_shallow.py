@@ -126,7 +126,7 @@ def test_levels_without_a_bed_are_not_a_depth() -> None:
     voyage = Voyage(
         start=(51.02, 3.005), goal=(51.02, 3.03), depart="2026-01-01T01:00Z", min_ukc_m=1.0
     )
-    with pytest.raises(MissingVariableError, match="nothing tells depth") as caught:
+    with pytest.raises(MissingVariableError, match="provides depth") as caught:
         plan(voyage, ship=SHIP, sea=Sea.open(data), chart=Chart.open_water(50.9, 51.2, 2.9, 3.3))
     assert "bed level" in caught.value.possible and caught.value.remedy
 

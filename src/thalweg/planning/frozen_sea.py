@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
 from thalweg.network import Network
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.sea import StationFields
-
-if TYPE_CHECKING:
-    from thalweg.planning.single.passage import PlanningContext
 
 #: Frozen fields larger than this are refused before they are taken [bytes].
 MEMORY_LIMIT = 4_000_000_000

@@ -14,7 +14,9 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
 from thalweg.planning.network_selection.network_choice import NetworkBuilder, NetworkChoice
-from thalweg.planning.plan import Plan, PlotContext, Proof, in_objective_unit
+from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
+from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
@@ -27,14 +29,9 @@ from thalweg.planning.request.chart_restrictions import (
     exclude_ice_latitudes,
 )
 from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
-from thalweg.planning.request.requirements import check_period, derive_requirements
+from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.voyage_endpoints import Endpoint, check_distinct, resolve_endpoint
-from thalweg.planning.single.passage import (
-    PassageResult,
-    PlanningContext,
-    performance_table_of,
-    plan_passage,
-)
+from thalweg.planning.single.passage import PassageResult, plan_passage
 from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
@@ -119,20 +116,18 @@ def plan(
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
-    last = check_period(voyage, sea, needs)
-    world = {"ship": ship, "sea": sea, "chart": chart}
-    ends = endpoints_within_coverage(ends, voyage=voyage, needs=needs, last=last, **world)  # type: ignore[arg-type]
+    ends = endpoints_within_coverage(
+        ends, voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs
+    )
     context = PlanningContext(
         voyage=voyage,
         ship=ship,
         sea=sea,
         chart=chart,
         needs=replace(needs, notes=(*notes, *more, *needs.notes)),
-        table=performance_table_of(ship),
-        setting=_setting(voyage, ship),
-        last=last,
+        tables=ShipTables(performance_table_of(ship), _setting(voyage, ship)),
         choice=choice,
-        tell=progress or (lambda text: None),
+        report_progress=progress or (lambda text: None),
     )
     if voyage.objective in TRADE_OFF_OBJECTIVES:
         from thalweg.planning.pareto.trade_off_planner import plan_trade_off

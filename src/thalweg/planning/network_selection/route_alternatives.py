@@ -12,8 +12,8 @@ from thalweg.core.errors import NoRouteError
 from thalweg.network import Network, lattice, shortest_path
 from thalweg.network.network_concatenation import concatenate_networks
 from thalweg.planning.network_selection.network_choice import build_network, lattice_between
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.single.passage import PlanningContext
 
 #: Fronts are searched on networks of about this many nodes, unless a resolution is given.
 MAX_FRONT_NODES = 3_000
@@ -47,13 +47,13 @@ def find_route_alternatives(
     every set of them that is closed; those over `MAX_LENGTH_RATIO` times as long are left out, and
     so are those that turn out to be the same.
     """
-    context.tell(f"building the network from {ends[0].name} to {ends[-1].name}")
+    context.report_progress(f"building the network from {ends[0].name} to {ends[-1].name}")
     first = _route_alternative(context, ends, context.chart)
     ways, used = {first.name: first}, canals_used(first.network, context.chart)
     longest = MAX_LENGTH_RATIO * _shortest_length(first.network)
     for count in range(1, len(used) + 1):
         for closed in itertools.combinations(used, count):
-            context.tell(f"looking for a way without {' and '.join(closed)}")
+            context.report_progress(f"looking for a way without {' and '.join(closed)}")
             try:
                 way = _route_alternative(context, ends, context.chart.without_canals(*closed))
             except NoRouteError:
@@ -89,7 +89,7 @@ def _route_alternative(
 def _network(context: PlanningContext, start: Endpoint, goal: Endpoint) -> Network:
     """Return a network that is not too large for the search of a whole front."""
     choice = context.choice
-    period = context.voyage.earliest_departure, context.last
+    period = context.voyage.earliest_departure, context.data_end
     if choice.network not in ("auto", "lattice") or choice.spacing is not None:
         return build_network(choice, context.chart, context.sea, (start, goal), period=period)
     if choice.network == "auto" and context.sea.mesh() is not None:

@@ -17,8 +17,8 @@ from thalweg.sea import Sea
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from thalweg.planning.planning_context import PlanningContext
     from thalweg.planning.request.voyage_objective import PricedObjective
-    from thalweg.planning.single.passage import PlanningContext
 
 
 _MAX_SPEEDS = 6
@@ -80,18 +80,7 @@ def evaluate_weather_blind(
     context: PlanningContext, objective: PricedObjective, tracks: Sequence[Track]
 ) -> list[Route]:
     """Sail weather-blind tracks in the weather of the plan; by ascending time."""
-    sailed = [
-        evaluate(
-            track,
-            ship=context.ship,
-            sea=context.sea,
-            chart=context.chart,
-            min_ukc=context.min_ukc,
-            strict=False,
-            terms=objective.terms,
-        )
-        for track in tracks
-    ]
+    sailed = [context.evaluate(track, objective.terms) for track in tracks]
     known = [route for route in sailed if math.isfinite(objective.value(route))]
     return sorted(known, key=lambda route: route.time_h)
 

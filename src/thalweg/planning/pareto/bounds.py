@@ -15,7 +15,7 @@ from thalweg.planning.pareto.exploration import (
     strongest_current,
 )
 from thalweg.planning.pareto.plan_front import ParetoFront
-from thalweg.planning.plan import Proof
+from thalweg.planning.plan_data import Proof
 from thalweg.search import table_bounds
 
 _KIND = (

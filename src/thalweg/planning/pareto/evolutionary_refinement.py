@@ -107,7 +107,7 @@ def _evaluator(
 ) -> Evaluator:
     context = trade_off.context
     depart = context.voyage.earliest_departure
-    latest = context.latest if math.isfinite(context.latest) else context.last
+    latest = context.latest_arrival if math.isfinite(context.latest_arrival) else context.data_end
     assert explored.exact is not None  # a front that was stopped is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)

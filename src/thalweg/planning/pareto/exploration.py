@@ -19,15 +19,11 @@ from thalweg.network import Network, eca_fractions, shortest_path
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.interrupt_guard import InterruptGuard, SearchInterrupted
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import PricedObjective
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
-from thalweg.planning.single.passage import (
-    PlanningContext,
-    isochrones,
-    refine_track,
-    track_from_result,
-)
+from thalweg.planning.single.passage import isochrones, refine_track, track_from_result
 from thalweg.route import Route, Track
 from thalweg.sea import StationFields
 from thalweg.search import (
@@ -166,27 +162,27 @@ def explore_alternative(trade_off: TradeOffContext, way: RouteAlternative) -> Ex
     """
     context = trade_off.context
     depart = context.voyage.earliest_departure
-    context.tell(f"freezing the sea: {way.name}")
+    context.report_progress(f"freezing the sea: {way.name}")
     ahead = extend_horizon(trade_off, way.network)
     frozen, first, latest = ahead.frozen, ahead.first, ahead.latest
-    context.tell(f"searching: {way.name}")
+    context.report_progress(f"searching: {way.name}")
     if not first.found:
         raise no_route_error(
             way.network,
             first,
             (trade_off.ends[0], trade_off.ends[-1]),
             depart=depart,
-            last=context.last,
+            last=context.data_end,
             fields=frozen.stations,
             required=float(trade_off.limits[codes.LIMIT_REQUIRED_DEPTH]),
         )
-    if first.arrive > context.latest:
-        raise late_arrival_error(context.latest, first.arrive)
+    if first.arrive > context.latest_arrival:
+        raise late_arrival_error(context.latest_arrival, first.arrive)
     fastest = refine_track(
         context, track_from_result(way.network, first, ahead.setting), trade_off.limits
     )
     trade_off.interrupt_guard.begin()
-    context.tell(f"searching the front: {way.name}")
+    context.report_progress(f"searching the front: {way.name}")
     try:
         exact = network_pareto_front(trade_off, way.network, frozen, latest)
     except SearchInterrupted:
@@ -306,7 +302,7 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
         If the sea over the shortest period takes more memory than is allowed.
     """
     context, depart = trade_off.context, trade_off.context.voyage.earliest_departure
-    asked = math.isfinite(context.latest)
+    asked = math.isfinite(context.latest_arrival)
     tides = math.isfinite(context.needs.limits[codes.LIMIT_REQUIRED_DEPTH])
     length = shortest_path_length(network)
     if math.isinf(length):  # no way: the sea is frozen as for a straight one
@@ -314,8 +310,8 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
         length = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
     still = length / float(context.ship.speeds[most_economical_setting(trade_off)])
     slow = depart + _SLOWEST_TIME_RATIO * still + (_TWO_TIDES if tides else 0.0)
-    final = min(context.last, depart + _MAX_TIME_RATIO * still + _TWO_TIDES)
-    latest = min(context.latest, context.last) if asked else min(slow, final)
+    final = min(context.data_end, depart + _MAX_TIME_RATIO * still + _TWO_TIDES)
+    latest = min(context.latest_arrival, context.data_end) if asked else min(slow, final)
     ahead: SearchHorizon | None = None
     while True:
         until = latest if asked else min(latest + _HORIZON_MARGIN * (latest - depart), final)

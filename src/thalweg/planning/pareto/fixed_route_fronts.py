@@ -37,7 +37,7 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
     own = choice.network not in ("auto", "lattice") or context.sea.mesh() is not None
     if own or choice.spacing is not None or trade_off.via:
         return []
-    context.tell("drawing the ways round land and control areas")
+    context.report_progress("drawing the ways round land and control areas")
     start, goal = ((end.lat, end.lon) for end in (trade_off.ends[0], trade_off.ends[-1]))
     network = lattice_between(context.chart, start, goal)
     found: list[TrackCandidate] = []

@@ -40,7 +40,9 @@ from thalweg.planning.pareto.exploration import (
 )
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.pareto.route_names import route_labels
-from thalweg.planning.plan import Plan, PlotContext
+from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import PlotContext
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
@@ -49,8 +51,7 @@ from thalweg.planning.report.provenance import (
 )
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
-from thalweg.planning.single.passage import PlanningContext
-from thalweg.route import Route, evaluate
+from thalweg.route import Route
 from thalweg.ship.consumption import consumption_table
 
 #: Margins on the depth [m] and on wave height and wind [fraction], tried in turn while the referee
@@ -175,7 +176,7 @@ def _refined_candidates(
     for one in explored:
         if stopped():
             break
-        trade_off.context.tell(f"refining the front: {one.way.name}")
+        trade_off.context.report_progress(f"refining the front: {one.way.name}")
         of_way = [c for c in (*exact, *found) if c.way == one.way.name]
         found += evolutionary_candidates(trade_off, one, of_way)
     return found
@@ -190,20 +191,12 @@ def _refereed(
 ) -> list[RefereedCandidate]:
     """Let the referee score candidates; what is dominated is dropped, what breaks limits too."""
     context = trade_off.context
-    context.tell(f"refereeing {len(candidates)} routes")
+    context.report_progress(f"refereeing {len(candidates)} routes")
     scored = []
     for candidate in candidates:
-        route = evaluate(
-            candidate.track,
-            ship=context.ship,
-            sea=context.sea,
-            chart=context.chart,
-            min_ukc=context.min_ukc,
-            strict=False,
-            terms=trade_off.objective.terms,
-        )
+        route = context.evaluate(candidate.track, trade_off.objective.terms)
         scored.append(RefereedCandidate(candidate, route, trade_off.objective.value(route)))
-    latest = context.latest
+    latest = context.latest_arrival
     usable = [
         item
         for item in scored
@@ -295,7 +288,7 @@ def _weather_blind_routes(
         return []
     network = min((one.way.network for one in explored), key=shortest_path_length)
     _, path = shortest_path(network, network.meta.start, network.meta.goal)
-    trade_off.context.tell("sailing the weather-blind route")
+    trade_off.context.report_progress("sailing the weather-blind route")
     tracks = weather_blind_tracks(
         trade_off.context, network.lat[path], network.lon[path], trade_off.settings
     )
@@ -311,7 +304,7 @@ def _including_constant_speeds(
     trade_off: TradeOffContext, scored: list[RefereedCandidate], blind: list[Route]
 ) -> list[RefereedCandidate]:
     """Return all that is not dominated, constant speeds on the shortest way among it."""
-    latest = trade_off.context.latest
+    latest = trade_off.context.latest_arrival
     constant = [
         RefereedCandidate(
             TrackCandidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value
@@ -378,10 +371,10 @@ def _notes(
     notes += [f"The referee finds a limit broken: {v}." for v in best.violations[:5]]
     notes += route_warnings(context, best)
     slowest = max(item.route.arrive for item in ordered)
-    bounded = context.voyage.arrive_by is None and math.isfinite(context.last)
-    if bounded and slowest > context.last - _DATA_END_MARGIN:
+    bounded = context.voyage.arrive_by is None and math.isfinite(context.data_end)
+    if bounded and slowest > context.data_end - _DATA_END_MARGIN:
         notes.append(
-            f"The data end at {format_time(context.last)}: slower routes were not looked at."
+            f"The data end at {format_time(context.data_end)}: slower routes were not looked at."
         )
     return notes
 
@@ -389,7 +382,7 @@ def _notes(
 def _no_feasible_route_error(
     trade_off: TradeOffContext, explored: list[ExploredAlternative]
 ) -> NoRouteError:
-    latest = trade_off.context.latest
+    latest = trade_off.context.latest_arrival
     by = f" by {format_time(latest)}" if math.isfinite(latest) else ""
     soonest = min(one.first.arrive for one in explored)
     return NoRouteError(

@@ -10,14 +10,14 @@ import numpy as np
 from thalweg.planning.pareto.plan_front import knee
 
 if TYPE_CHECKING:
-    from thalweg.planning.plan import Plan
+    from thalweg.planning.plan_data import PlanData
 
 _CRITERION_LABELS = {"fuel": "fuel", "energy": "energy", "cost": "cost", "co2": "CO2"}
 _COLOURS = ("#c2185b", "#1565c0", "#2e7d32", "#ef6c00", "#6a1b9a", "#00838f")
 _INK = "#22303c"
 
 
-def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
+def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     """Draw the front of a plan that trades time for fuel, energy, cost or CO2.
 
     Parameters
@@ -63,7 +63,7 @@ def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
     return figure
 
 
-def _draw_points(axes: Any, plan: Plan) -> None:
+def _draw_points(axes: Any, plan: PlanData) -> None:
     """Draw the routes, a colour for each way round, and name the ends and the knee."""
     front = plan.front
     assert front is not None  # checked by the caller
@@ -90,7 +90,7 @@ def _draw_points(axes: Any, plan: Plan) -> None:
         )
 
 
-def _draw_lower_bound(axes: Any, plan: Plan) -> None:
+def _draw_lower_bound(axes: Any, plan: PlanData) -> None:
     front = plan.front
     assert front is not None
     shown = front.lower[:, np.isfinite(front.lower).all(axis=0)]
@@ -104,7 +104,7 @@ def _draw_lower_bound(axes: Any, plan: Plan) -> None:
     )
 
 
-def _draw_weather_blind(axes: Any, plan: Plan) -> None:
+def _draw_weather_blind(axes: Any, plan: PlanData) -> None:
     comparison = plan.front.comparison if plan.front is not None else None
     if comparison is None:
         return

@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
-from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import PlanData
 from thalweg.planning.plots.channel_closures import Closures, default_times, find_closures
 from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.route import Route
@@ -32,7 +32,7 @@ _CLOSURE_STYLES = (
 
 
 def draw_space_time_diagram(
-    plan_or_route: Plan | Route,
+    plan_or_route: PlanData | Route,
     path: str | Path | None = None,
     *,
     ship: Ship | None = None,
@@ -62,9 +62,9 @@ def draw_space_time_diagram(
     InputError
         If ship or sea are not known.
     """
-    voyage = plan_or_route.voyage if isinstance(plan_or_route, Plan) else None
-    route = plan_or_route.best if isinstance(plan_or_route, Plan) else plan_or_route
-    known = plan_or_route.plot_context if isinstance(plan_or_route, Plan) else None
+    voyage = plan_or_route.voyage if isinstance(plan_or_route, PlanData) else None
+    route = plan_or_route.best if isinstance(plan_or_route, PlanData) else plan_or_route
+    known = plan_or_route.plot_context if isinstance(plan_or_route, PlanData) else None
     ship = ship or (known.ship if known else None)
     sea = sea or (known.sea if known else None)
     if ship is None or sea is None:
@@ -86,7 +86,7 @@ def draw_space_time_diagram(
     return _draw(route, closures, voyage, min_ukc, path)
 
 
-def write_space_time_diagram(plan: Plan, folder: str | Path) -> list[Path]:
+def write_space_time_diagram(plan: PlanData, folder: str | Path) -> list[Path]:
     """Draw st.png into a folder where the tide matters to a plan; return what was written.
 
     It matters where depth and water level are known, and the ship waits or some part of its track

@@ -14,7 +14,7 @@ from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 
 if TYPE_CHECKING:
-    from thalweg.planning.plan import Plan, PlotContext
+    from thalweg.planning.plan_data import PlanData, PlotContext
     from thalweg.route import Route
 
 _WAVES = "sea_surface_wave_significant_height"
@@ -52,7 +52,7 @@ class MapExtent:
         return np.asarray(lon + 360.0 * round(away / 360.0))
 
 
-def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
+def draw_map(plan: PlanData, path: str | Path | None = None) -> Any:
     """Draw the map of a plan.
 
     Parameters
@@ -92,7 +92,7 @@ def _unwrapped(lon: np.ndarray) -> np.ndarray:
     return np.degrees(np.unwrap(np.radians(np.asarray(lon, float))))
 
 
-def _map_extent(plan: Plan) -> MapExtent:
+def _map_extent(plan: PlanData) -> MapExtent:
     lat = np.concatenate([route.samples["lat"] for route in plan.routes])
     lon = np.concatenate([_unwrapped(route.samples["lon"]) for route in plan.routes])
     high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
@@ -109,7 +109,7 @@ def _map_extent(plan: Plan) -> MapExtent:
     )
 
 
-def _draw_sea(figure: Any, axes: Any, plan: Plan, world: PlotContext, box: MapExtent) -> None:
+def _draw_sea(figure: Any, axes: Any, plan: PlanData, world: PlotContext, box: MapExtent) -> None:
     lon, lat = np.meshgrid(
         np.linspace(box.west, box.east, 240), np.linspace(box.south, box.north, 180)
     )
@@ -140,7 +140,7 @@ def _water_mask(
 
 
 def _passage_times(
-    plan: Plan, world: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
+    plan: PlanData, world: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
     """Return when the fastest ship would be at each point; NaN where it never gets."""
     from scipy.interpolate import LinearNDInterpolator
@@ -218,7 +218,7 @@ def _draw_arrows(
 
 def _draw_isochrones(
     axes: Any,
-    plan: Plan,
+    plan: PlanData,
     reached: np.ndarray,
     grid: tuple[np.ndarray, np.ndarray],
     on_water: np.ndarray,
@@ -270,7 +270,7 @@ def _draw_speed(figure: Any, axes: Any, route: Route, box: MapExtent) -> None:
     bar.ax.tick_params(labelsize=7)
 
 
-def _draw_routes(figure: Any, axes: Any, plan: Plan, box: MapExtent) -> None:
+def _draw_routes(figure: Any, axes: Any, plan: PlanData, box: MapExtent) -> None:
     from matplotlib.patheffects import withStroke
 
     best = plan.best
@@ -331,7 +331,7 @@ def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
     return np.asarray(drawn[near] + wrap_longitude(route.track.lon - lon[near]))
 
 
-def _decorate_axes(axes: Any, plan: Plan, box: MapExtent) -> None:
+def _decorate_axes(axes: Any, plan: PlanData, box: MapExtent) -> None:
     best = plan.best
     fuel = "" if best.fuel_t is None else f", {best.fuel_t:.1f} t fuel"
     certain = 100 * (1 - plan.proof.certain / plan.objective_value) if plan.objective_value else 0.0

@@ -14,11 +14,12 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike
 from thalweg.planning.plots.route_profile import draw_profile
 from thalweg.planning.plots.space_time_diagram import write_space_time_diagram
+from thalweg.planning.plots.voyage_map import draw_map
 from thalweg.route import Route, write_csv, write_geojson, write_gpx
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
-    from thalweg.planning.plan import Plan
+    from thalweg.planning.plan_data import PlanData
     from thalweg.sea import Sea
 
 
@@ -47,18 +48,18 @@ def _unwritable_error(folder: Path, why: str) -> InputError:
     )
 
 
-def write_plan(plan: Plan, folder: str | Path) -> list[Path]:
+def write_plan(plan: PlanData, folder: str | Path) -> list[Path]:
     """Write plan.json, the best route in three formats, and both pictures."""
     folder = make_folder(folder)
     plan.to_json(folder / "plan.json")
     files = [folder / "plan.json", *_write_formats(plan.best, folder)]
-    plan.plot(folder / "map.png")
+    draw_map(plan, folder / "map.png")
     draw_profile(plan.best, folder / "profile.png")
     files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
     return files if plan.front is None else files + _write_front(plan, folder)
 
 
-def _write_front(plan: Plan, folder: Path) -> list[Path]:
+def _write_front(plan: PlanData, folder: Path) -> list[Path]:
     """Write front.csv, front.png, comparison.csv and, in ``routes``, each route."""
     from thalweg.planning.plots.pareto_front_plot import draw_pareto_front
 

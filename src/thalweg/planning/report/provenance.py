@@ -12,8 +12,8 @@ from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.network import Network
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.single.passage import PlanningContext
 from thalweg.route import Route
 from thalweg.sea.inspection import data_gaps
 

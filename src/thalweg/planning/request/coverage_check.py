@@ -55,17 +55,17 @@ def endpoints_within_coverage(
     sea: Sea,
     chart: Chart,
     needs: Requirements,
-    last: float,
 ) -> list[Endpoint]:
     """Return the ends; ports move to the nearest water that is known and deep enough.
 
     Parameters
     ----------
     ends : sequence of End
-    voyage, ship, sea, chart, needs
-        What is asked and what is needed.
-    last : float
-        Last moment of the data [s since 1970]; may be infinite.
+    voyage : Voyage
+    ship : Ship
+    sea : Sea
+    chart : Chart
+    needs : Requirements
 
     Raises
     ------
@@ -74,9 +74,7 @@ def endpoints_within_coverage(
     NoRouteError
         If the water at an end is too shallow at any tide.
     """
-    coverage_probe = _CoverageProbe(
-        voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs, last=last
-    )
+    coverage_probe = _CoverageProbe(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs)
     return [_moved_into_coverage(end, coverage_probe, chart) for end in ends]
 
 
@@ -91,7 +89,6 @@ class _CoverageProbe:
         sea: Sea,
         chart: Chart,
         needs: Requirements,
-        last: float,
     ) -> None:
         channels = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
         self.names = sorted(
@@ -100,7 +97,11 @@ class _CoverageProbe:
         self.sea, self.chart = sea, chart
         self.depth = float(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
         first = voyage.earliest_departure
-        end = last if math.isfinite(last) else voyage.latest_departure + _MAX_PERIOD
+        end = (
+            needs.data_end
+            if math.isfinite(needs.data_end)
+            else voyage.latest_departure + _MAX_PERIOD
+        )
         self.times = np.linspace(first, end, _SAMPLE_TIMES)
 
     def missing(self, lat: FloatArray, lon: FloatArray) -> list[str]:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance, positions_along
 from thalweg.core.time import format_time
@@ -17,16 +16,13 @@ from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
-from thalweg.planning.network_selection.network_choice import NetworkChoice, build_network
-from thalweg.planning.request.requirements import Requirements, required_under_keel_clearance
+from thalweg.planning.network_selection.network_choice import build_network
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
-from thalweg.planning.voyage import Voyage
-from thalweg.route import Route, Track, better_route, evaluate
+from thalweg.route import Route, Track, better_route
 from thalweg.route.refinement.better_route import comparison_key
-from thalweg.sea import Sea
 from thalweg.search import LowerBound, SearchResult, best_departure, earliest_arrival, lower_bound
-from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 
 #: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
 _HORIZONS = (2.5, 8.0, 30.0)
@@ -45,33 +41,6 @@ _TIGHTENING_SCHEDULE = (
     (4, 0.0, 0.0),
     (4, 1.0, 0.1),
 )
-
-
-@dataclass(frozen=True)
-class PlanningContext:
-    """What stays the same for every passage of a voyage."""
-
-    voyage: Voyage
-    ship: Ship
-    sea: Sea
-    chart: Chart
-    needs: Requirements
-    table: PerformanceTable
-    setting: int
-    last: float
-    choice: NetworkChoice
-    tell: Callable[[str], None] = field(default=lambda text: None)
-
-    @property
-    def min_ukc(self) -> float:
-        """The least under-keel clearance asked [m]."""
-        return required_under_keel_clearance(self.voyage, self.ship)
-
-    @property
-    def latest(self) -> float:
-        """The latest arrival asked for [s since 1970]; inf without any."""
-        asked = self.voyage.arrive_by
-        return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
@@ -140,7 +109,7 @@ def plan_passage(
         if passage.route.feasible:
             break
     assert passage is not None  # every way without one has raised
-    arrive, latest = passage.route.arrive, context.latest
+    arrive, latest = passage.route.arrive, context.latest_arrival
     if latest + 1.0 < arrive < math.inf:
         raise late_arrival_error(latest, arrive, window=window[1] > window[0])
     return passage
@@ -162,7 +131,7 @@ def _network(
     finer: int,
     networks: Mapping[int, Network],
 ) -> Network:
-    context.tell(f"building the network from {ends[0].name} to {ends[1].name}")
+    context.report_progress(f"building the network from {ends[0].name} to {ends[1].name}")
     choice, first = context.choice, networks.get(1)
     if first is not None and _lattice_fallback_allowed(context, first):
         # The nodes of a model cannot be made finer; a lattice over the same water can.
@@ -174,7 +143,7 @@ def _network(
         choice = replace(choice, spacing=None)  # all nodes, or as many as can be searched
     elif first is not None:
         choice = replace(choice, spacing=first.meta.spacing_m / finer)
-    period = context.voyage.earliest_departure, context.last
+    period = context.voyage.earliest_departure, context.data_end
     return build_network(choice, context.chart, context.sea, ends, period=period)
 
 
@@ -188,7 +157,7 @@ def _search_and_refine(
     """Search, refine and bound once."""
     frozen, result = _search(context, network, limits, window, ends)
     route = refine_track(context, track_from_result(network, result, context.setting), limits)
-    context.tell("bounding the answer")
+    context.report_progress("bounding the answer")
     floor = _bound(context, network, frozen, result, route, any_departure=True)
     bound = floor
     if context.voyage.depart_window is None:
@@ -255,15 +224,8 @@ def isochrones(
 
 def refine_track(context: PlanningContext, track: Track, limits: np.ndarray) -> Route:
     """Let the referee score a track, refine it, and return the better route."""
-    context.tell("refining the route")
-    scored = evaluate(
-        track,
-        ship=context.ship,
-        sea=context.sea,
-        chart=context.chart,
-        min_ukc=context.min_ukc,
-        strict=False,
-    )
+    context.report_progress("refining the route")
+    scored = context.evaluate(track)
     return better_route(
         scored,
         ship=context.ship,
@@ -300,14 +262,14 @@ def _search(
 ) -> tuple[FrozenSea, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
     usual = straight / _expected_speed(context, ends, window[0])
-    latest = min(context.last, context.latest)
+    latest = min(context.data_end, context.latest_arrival)
     for number, horizon in enumerate(_HORIZONS):
         end = window[1] + horizon * usual + (_TWO_TIDES if number else 0.0)
         end = min(end, latest)
-        context.tell(f"freezing the sea until {format_time(end)}")
+        context.report_progress(f"freezing the sea until {format_time(end)}")
         frozen = freeze_at_stations(context, network, window[0], end)
         warm_up.wait_until_compiled()
-        context.tell("searching")
+        context.report_progress("searching")
         result = _run_search(context, network, frozen, limits, window)
         if result.found or end >= latest:
             break
@@ -315,7 +277,7 @@ def _search(
         if context.voyage.arrive_by is not None:
             raise _late_arrival_error(context, network, limits, window, ends)
         raise no_route_error(
-            network, result, ends, depart=context.voyage.earliest_departure, last=context.last,
+            network, result, ends, depart=context.voyage.earliest_departure, last=context.data_end,
             fields=frozen.stations, required=float(limits[codes.LIMIT_REQUIRED_DEPTH]),
         )  # fmt: skip
     return frozen, result
@@ -328,7 +290,7 @@ def _late_arrival_error(
     """Return the error for a latest arrival that is missed; raise the one without it, if any."""
     freely = replace(context, voyage=replace(context.voyage, arrive_by=None, objective="time"))
     _, result = _search(freely, network, limits, window, ends)
-    return late_arrival_error(context.latest, result.arrive, window=window[1] > window[0])
+    return late_arrival_error(context.latest_arrival, result.arrive, window=window[1] > window[0])
 
 
 def _expected_speed(
@@ -344,14 +306,6 @@ def _expected_speed(
     speed = context.ship.speed_field(context.sea.sample(names, time, lat, lon), time, lat, lon)
     known = speed[np.isfinite(speed) & (speed > 0)]
     return float(known.mean()) if known.size else 1.0
-
-
-def performance_table_of(ship: Ship) -> PerformanceTable:
-    """Return the table of a ship; of one whose speed is a field, a table without any say."""
-    if ship.speed_field is None:
-        return ship.tabulate()
-    none = TablePart((), (), np.zeros(len(ship.speeds), np.float32))
-    return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))
 
 
 def _run_search(
