@@ -12,7 +12,7 @@ import numpy as np
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.objective import KEY_FIGURES
-from thalweg.planning.pareto.exploration import evenly_spaced_subset, non_dominated_indices
+from thalweg.planning.pareto.front_points import evenly_spaced_subset, non_dominated_indices
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Plan
 from thalweg.planning.request.requirements import required_under_keel_clearance

@@ -8,13 +8,10 @@ import numpy as np
 
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR
-from thalweg.planning.pareto.exploration import (
-    ExploredAlternative,
-    TradeOffContext,
-    non_dominated_indices,
-    strongest_current,
-)
+from thalweg.planning.pareto.exploration import strongest_current
+from thalweg.planning.pareto.front_points import non_dominated_indices
 from thalweg.planning.pareto.plan_front import ParetoFront
+from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
 from thalweg.search import table_bounds
 

@@ -13,12 +13,11 @@ from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.evolution import Evaluator, EvolutionResult, Genome, evolve, make_evaluator
 from thalweg.evolution.memetic import refine_front
-from thalweg.planning.pareto.exploration import (
+from thalweg.planning.pareto.front_points import evenly_spaced_subset, non_dominated_indices
+from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
     TrackCandidate,
     TradeOffContext,
-    evenly_spaced_subset,
-    non_dominated_indices,
 )
 from thalweg.route import Track
 

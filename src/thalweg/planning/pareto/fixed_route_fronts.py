@@ -13,13 +13,10 @@ from thalweg.network import EdgeWeights, Network, alternative_paths, fixed_route
 from thalweg.network.alternatives.alternative_path import AlternativePath as TautWay
 from thalweg.planning.interrupt_guard import SearchInterrupted
 from thalweg.planning.network_selection.network_choice import lattice_between
-from thalweg.planning.pareto.exploration import (
-    TrackCandidate,
-    TradeOffContext,
-    extend_horizon,
-    network_pareto_front,
-    track_from_front_point,
-)
+from thalweg.planning.pareto.exploration import network_pareto_front
+from thalweg.planning.pareto.front_points import track_from_front_point
+from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.trade_off_context import TrackCandidate, TradeOffContext
 
 _MAX_ALTERNATIVES = 5  # ways round
 _MAX_DETOUR = 0.2  # at most so much longer, or dearer, than the best

@@ -28,18 +28,20 @@ from thalweg.planning.pareto.bounds import (
     derive_proof,
     open_water_lower_front,
 )
-from thalweg.planning.pareto.exploration import (
-    ExploredAlternative,
-    TrackCandidate,
-    TradeOffContext,
+from thalweg.planning.pareto.exploration import explore_alternative
+from thalweg.planning.pareto.front_points import (
     evenly_spaced_subset,
-    explore_alternative,
     non_dominated_indices,
-    shortest_path_length,
     track_from_front_point,
 )
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.pareto.route_names import route_labels
+from thalweg.planning.pareto.search_horizon import shortest_path_length
+from thalweg.planning.pareto.trade_off_context import (
+    ExploredAlternative,
+    TrackCandidate,
+    TradeOffContext,
+)
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext
 from thalweg.planning.planning_context import PlanningContext
