@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import wrap_longitude
+from thalweg.core.geodesy import rough_lengths, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.evolution import Evaluator, EvolutionResult, Genome, evolve, make_evaluator
 from thalweg.evolution.memetic import refine_front
@@ -20,6 +20,7 @@ from thalweg.planning.pareto.trade_off_context import (
     TradeOffContext,
 )
 from thalweg.route import Track
+from thalweg.route.sea_raster import RasterSize, freeze_raster
 
 if TYPE_CHECKING:
     from thalweg.sea import GridFields
@@ -29,10 +30,7 @@ _MAX_SEEDS, _MAX_DOMINATED_SEEDS = 48, 16
 #: Tracks that are kept, and generations, of the refinement and of an evolution of its own.
 _REFINEMENT_POPULATION, _REFINEMENT_GENERATIONS = 140, 26
 _EVOLUTION_POPULATION, _EVOLUTION_GENERATIONS = 100, 300
-_LARGEST_RASTER = 24_000_000  # numbers in the frozen raster
-_RASTER_MARGIN = 0.15  # about the tracks, as a share of their box
-_MAX_CELLS = 240  # cells along the longer side
-_MIN_CELLS = 24
+_RASTER_SIZE = RasterSize(margin=0.15, min_cells=24, max_cells=240, largest=24_000_000)
 
 
 def evolutionary_candidates(
@@ -119,35 +117,16 @@ def _evaluator(
         chart=context.chart,
         latest=until,
         prices=trade_off.objective.prices,
-        total=float(np.median([_rough_length(track) for track in seeds])),
+        total=float(np.median([rough_lengths(track.lat, track.lon).sum() for track in seeds])),
     )
-
-
-def _rough_length(track: Track) -> float:
-    lat, lon = np.radians(track.lat), np.radians(wrap_longitude(np.diff(track.lon)))
-    east = lon * np.cos(0.5 * (lat[:-1] + lat[1:]))
-    return float(np.hypot(np.diff(lat), east).sum() * 6371008.8)
 
 
 def _freeze_raster(
     trade_off: TradeOffContext, seeds: list[Track], start: float, end: float
 ) -> GridFields:
-    """Freeze the sea around all seeds, as fine as the data or a limit of memory allows."""
+    """Freeze the sea around all seeds; unknown cells beside known ones are extrapolated."""
     sea, channels = trade_off.context.sea, trade_off.context.needs.channels
-    lat, lon = _unwrapped_positions(seeds)
-    extent = max(np.ptp(lat), np.ptp(lon), 1e-4)
-    room = _RASTER_MARGIN * extent
-    south, north = max(lat.min() - room, -89.9), min(lat.max() + room, 89.9)
-    width = min(np.ptp(lon) + 2.0 * room, 359.0)
-    west = 0.5 * (lon.min() + lon.max() - width)
-    numbers = max(len(sea.times(start, end)), 2) * max(len(channels), 1)
-    least = math.sqrt((north - south) * width * numbers / _LARGEST_RASTER)
-    native = [row.spacing_deg for row in sea.coverage() if row.spacing_deg]
-    spacing = max(min([extent / _MAX_CELLS * 2.0, *native]), least, extent / _MAX_CELLS)
-    spacing = min(spacing, extent / _MIN_CELLS)
-    frozen = sea.freeze_grid(
-        south, north, west, west + width, start, end, channels, spacing_deg=spacing
-    )
+    frozen = freeze_raster(sea, *_unwrapped_positions(seeds), (start, end), channels, _RASTER_SIZE)
     return replace(frozen, values=_extrapolated_one_cell(frozen.values))
 
 
