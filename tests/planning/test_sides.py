@@ -6,7 +6,7 @@ import pytest
 from tests.reference.test_floro_santander_seuren_2020 import GOAL, SHIP, START, WAYS
 from thalweg import Chart, Sea, Ship, evaluate
 from thalweg.network import fixed_route
-from thalweg.planning.pareto.route_names import LANDMASSES, land_name, route_labels
+from thalweg.planning.pareto.route_names import land_name, landmasses, route_labels
 from thalweg.route import Route
 
 SLOW = Ship.simple(speed_kn=10.0, draught_m=5.0)
@@ -95,4 +95,4 @@ def test_land_has_its_name(name):
         if land_name(lat, lon) == name:
             found.append((lat, lon))
     assert len(found) == 1
-    assert found[0][0].min() < LANDMASSES[name][0] < found[0][0].max()
+    assert found[0][0].min() < landmasses()[name][0] < found[0][0].max()

@@ -17,7 +17,7 @@ from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Plan
 from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.planning.request.voyage_objective import PricedObjective, priced_objective
-from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
+from thalweg.planning.voyage import Voyage
 from thalweg.route import EnsembleResult, Route, evaluate_members
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -96,8 +96,7 @@ def plan_ensemble(
         for item in _evaluate_in_all_members(voyage, member, plan, ship, sea, measure)
     ]
     usable = [item for item in sailed if math.isfinite(item.value)] or sailed
-    trades = voyage.objective in TRADE_OFF_OBJECTIVES
-    objective = priced_objective(voyage, ship) if trades else None
+    objective = priced_objective(voyage, ship) if voyage.chooses_speeds else None
     chosen = _select_plan(voyage, objective, usable, tried, measure)
     stopped = any(plan.cancelled for plan in plans.values())
     return dataclasses.replace(chosen, cancelled=stopped)
@@ -107,8 +106,7 @@ def _evaluate_in_all_members(
     voyage: Voyage, member: int, plan: Plan, ship: Ship, sea: Sea, measure: str
 ) -> list[EnsembleCandidate]:
     """Sail the routes of a plan in all members."""
-    trades = voyage.objective in TRADE_OFF_OBJECTIVES
-    terms = priced_objective(voyage, ship).terms if trades else None
+    terms = priced_objective(voyage, ship).terms if voyage.chooses_speeds else None
     found = []
     for index in _routes_to_evaluate(plan):
         route = plan.routes[index]

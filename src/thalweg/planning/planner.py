@@ -32,7 +32,7 @@ from thalweg.planning.request.coverage_check import check_argument_types, endpoi
 from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.voyage_endpoints import Endpoint, check_distinct, resolve_endpoint
 from thalweg.planning.single.passage import PassageResult, plan_passage
-from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
+from thalweg.planning.voyage import Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
@@ -129,7 +129,7 @@ def plan(
         choice=choice,
         report_progress=progress or (lambda text: None),
     )
-    if voyage.objective in TRADE_OFF_OBJECTIVES:
+    if voyage.chooses_speeds:
         from thalweg.planning.pareto.trade_off_planner import plan_trade_off
 
         return plan_trade_off(context, ends)

@@ -12,7 +12,7 @@ from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
-from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
+from thalweg.planning.voyage import Voyage
 from thalweg.ship import Ship
 
 #: Water beyond these latitudes [deg] is left out unless the voyage goes there: sea ice is not
@@ -53,7 +53,7 @@ def exclude_closed_canals(
 
 def _foreign_currency(voyage: Voyage, ship: Ship) -> str:
     """Return the currency of the cost that is made least, where there is one and not USD."""
-    if voyage.objective not in TRADE_OFF_OBJECTIVES:
+    if not voyage.chooses_speeds:
         return ""
     objective = priced_objective(voyage, ship)
     return objective.unit if objective.name == "cost" and objective.unit != "USD" else ""
@@ -85,7 +85,7 @@ def add_emission_control_areas(chart: Chart, voyage: Voyage, ship: Ship) -> tupl
     They are those in force on the day the package's data were looked up, whatever the departure:
     weather of the past stands for weather to come. A chart with areas of its own keeps them.
     """
-    if voyage.objective not in TRADE_OFF_OBJECTIVES:
+    if not voyage.chooses_speeds:
         return chart, []
     prices = priced_objective(voyage, ship).prices
     if not prices.differs_in_control_areas or chart.zones.eca:

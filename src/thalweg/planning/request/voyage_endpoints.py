@@ -8,7 +8,7 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.voyage import Place
+from thalweg.planning.voyage_parts import Place
 
 #: Charted coast is generalised: a position given in degrees may lie this far inside it [m].
 MAX_SNAP_POSITION = 2_000.0

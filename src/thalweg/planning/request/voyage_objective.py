@@ -69,7 +69,6 @@ def priced_objective(voyage: Voyage, ship: Ship) -> PricedObjective:
     )
     name: str = voyage.objective
     if name == "front":
-        given = (voyage.fuel_price_usd, voyage.eca_price_factor, voyage.time_price_usd_per_h)
-        name = "fuel" if all(value is None for value in given) else "cost"
+        name = "cost" if voyage.any_price else "fuel"
     objective = Objective.of(name, currency=terms.currency or "USD")
     return PricedObjective(objective, terms, leg_prices(objective, ship, terms))
