@@ -1,4 +1,4 @@
-"""Planning: the request, the result, and the one place that wires the rooms together."""
+"""Planning: the request, the result, and the steps from one to the other."""
 
 from thalweg.planning.network_selection.network_choice import NetworkChoice
 from thalweg.planning.plan import Plan

@@ -20,19 +20,19 @@ from thalweg.route import Route
 
 @dataclass(frozen=True)
 class Proof:
-    """How good the answer is.
+    """Lower bounds of the objective, and the total of the search.
 
     Attributes
     ----------
     lower_bound : float
-        No route is better than this, in the objective's unit (h or nm).
+        Lower bound of the objective [its unit].
     kind : str
-        How the bound was found, and what it rests on.
+        How the bound was found, and its assumptions.
     certain : float
-        The bound in free space, which holds whatever the network: the geodesic at the greatest
-        speed over ground in the data.
+        Lower bound in free space, independent of the network: the geodesic at the greatest speed
+        over ground in the data.
     solver_total : float
-        What the search on the network said, before refinement and before the referee.
+        Total of the search on the network, before refinement and referee.
     """
 
     lower_bound: float
@@ -43,7 +43,18 @@ class Proof:
 
 @dataclass(frozen=True)
 class PlotContext:
-    """What the pictures need: the arrival times over the network, the chart, the sea and ship."""
+    """Data of the plots: arrival times over the network, chart, sea and ship.
+
+    Attributes
+    ----------
+    lat, lon : ndarray (n,)
+        Nodes of the networks [deg].
+    arrival : ndarray (n,)
+        Earliest arrival at the nodes [s since 1970]; inf where not reached.
+    chart : Chart
+    sea : Sea
+    ship : Ship
+    """
 
     lat: np.ndarray
     lon: np.ndarray
@@ -60,26 +71,26 @@ class PlanData:
     Attributes
     ----------
     voyage : Voyage
-        What was asked.
+        The request.
     routes : tuple of Route
         The routes found, each scored by the referee; the first is the best.
     proof : Proof
         The lower bound and the solver's own total.
     rejections : mapping of str to int
-        How many legs were refused, for each reason.
+        Number of legs rejected, by reason.
     notes : tuple of str
-        Assumptions and warnings the user must know.
+        Assumptions and warnings for the user.
     provenance : mapping
         What is needed to repeat the plan: version, data fingerprints, ship, network, seed.
-    plot_context : Surroundings
-        For drawing; not part of the JSON.
-    front : FrontOfPlan, optional
-        The trade of time for fuel, energy, cost or CO2, where one was asked; its routes are all of
-        `routes` when the whole front was asked, ordered by time.
+    plot_context : PlotContext, optional
+        For plots; not part of the JSON.
+    front : ParetoFront, optional
+        Time against fuel, energy, cost or CO2, for objectives with a choice of speed. Its points
+        are `routes`; with the objective ``"front"`` they are in order of time.
     ensemble : tuple of mappings
-        With a forecast of several members: how each of the routes fares over them.
+        With an ensemble forecast: the distribution of each route over the members.
     cancelled : bool
-        Whether it was stopped by Ctrl-C: the routes are the best so far; the notes tell more.
+        Whether Ctrl-C ended planning: the routes are the best so far, as the notes state.
     """
 
     voyage: Voyage
@@ -120,7 +131,7 @@ class PlanData:
 
     @property
     def lower_bound(self) -> float:
-        """No route is better than this, in `unit`."""
+        """Lower bound of the objective, in `unit`."""
         return self.proof.lower_bound
 
     @property
@@ -130,7 +141,7 @@ class PlanData:
 
     @property
     def gap(self) -> float:
-        """How far from the best possible the answer may be, as a fraction of its own value."""
+        """Excess of the best route over the lower bound, as a fraction of its value."""
         value = self.objective_value
         return max(0.0, (value - self.lower_bound) / value) if value > 0 else 0.0
 
@@ -160,7 +171,13 @@ class PlanData:
         }
 
     def to_json(self, path: str | Path | None = None) -> str:
-        """Return the plan as JSON text, and write it to a file when a path is given."""
+        """Return the plan as JSON text.
+
+        Parameters
+        ----------
+        path : path, optional
+            Where to write it as well.
+        """
         text = json.dumps(self.to_dict(), indent=2, allow_nan=False)
         if path is not None:
             Path(path).write_text(text + "\n", encoding="utf-8")
@@ -190,7 +207,7 @@ def route_dict(route: Route, objective: str) -> dict[str, Any]:
 
 
 def in_objective_unit(value: float, objective: str) -> float:
-    """Turn seconds or metres into the unit of an objective."""
+    """Convert seconds or metres to the unit of an objective."""
     return value / (NAUTICAL_MILE if objective == "distance" else HOUR)
 
 

@@ -1,4 +1,4 @@
-"""`plan`: the one place that wires the rooms together."""
+"""`plan`: from a voyage, a ship, a sea and a chart to a plan."""
 
 from __future__ import annotations
 
@@ -49,37 +49,37 @@ def plan(
     resolution: float | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Plan:
-    """Plan a voyage: exact search on a network, refinement in open water, score by the referee.
+    """Plan a voyage: exact search on a network, refinement in open water, check by the referee.
 
     Parameters
     ----------
     voyage : Voyage
-        What is asked.
+        The request.
     ship : Ship
         The ship, with its limits.
     sea : Sea
-        Currents, levels, wind and waves. Never assumed: ask for `Sea.calm` if there is none.
+        Currents, levels, wind and waves. There is no default; use `Sea.calm` for still water.
     chart : Chart, optional
-        Land, depth and zones; GSHHG coastline at resolution "i" when not given.
+        Land, depth and zones; by default the GSHHG coastline at resolution "i".
     network : {"auto", "lattice", "mesh", "globe"} or callable
         How the network is built; see
         `thalweg.planning.network_selection.network_choice.NetworkChoice`.
     resolution : float, optional
-        Spacing of the network [m]; chosen from the distance when not given.
+        Spacing of the network [m]; by default it depends on the distance.
     progress : callable, optional
         Called with a short text at each stage.
 
     Returns
     -------
     Plan
-        The best route, its proof and its provenance. Where speeds are chosen leg by leg, Ctrl-C
-        ends the planning with the best so far once a route has been found (`Plan.cancelled`);
-        pressed again, or before, it interrupts.
+        The best route, its proof and its provenance. Where speeds are chosen leg by leg and a
+        route has been found, Ctrl-C ends planning with the best plan so far (`Plan.cancelled`).
+        Pressed before that, or a second time, it interrupts.
 
     Raises
     ------
     InputError
-        For places on land, unknown ports, settings the ship does not have.
+        For places on land, unknown ports, and speeds that the ship does not have.
     CoverageError
         If the data lack a variable, the area or the period.
     NoRouteError
@@ -105,9 +105,9 @@ def plan(
         )
     if voyage.ensemble is not None:
         raise InputError(
-            f"A choice over the members of a forecast is asked ({voyage.ensemble}).",
-            "This sea has no members: it is one forecast.",
-            "Open files with an ensemble dimension, or leave the choice out.",
+            f"The voyage sets the risk measure {voyage.ensemble!r} for an ensemble forecast.",
+            "This sea is one forecast; it does not have members.",
+            "Open files with an ensemble dimension, or leave out the risk measure.",
             field="ensemble",
         )
     sea = with_wind_speed(ship, sea)

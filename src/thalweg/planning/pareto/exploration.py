@@ -23,12 +23,12 @@ _TIME_BINS = 300
 
 
 def explore_alternative(trade_off: TradeOffContext, way: RouteAlternative) -> ExploredAlternative:
-    """Search the fastest route and the exact front of one way round.
+    """Search the fastest route and the exact front of one route alternative.
 
     Raises
     ------
     NoRouteError
-        If there is no way in time, with the earliest arrival when there is one.
+        If no route arrives in time; with the earliest arrival if there is a route.
     """
     context = trade_off.context
     depart = context.voyage.earliest_departure
@@ -82,7 +82,7 @@ def network_pareto_front(
 
     Raises
     ------
-    Stopped
+    SearchInterrupted
         If Ctrl-C is pressed before there is a front.
     """
     context = trade_off.context
@@ -119,14 +119,14 @@ def network_pareto_front(
 def _largest_direction_factor(
     trade_off: TradeOffContext, way: RouteAlternative, frozen: FrozenSea
 ) -> float:
-    """Return the factor of directions for the slowest setting in the strongest current."""
+    """Return the direction factor for the slowest setting in the strongest current."""
     slowest = float(np.min(np.asarray(trade_off.context.ship.speeds)[trade_off.settings]))
     ratio = strongest_current(frozen.stations) / slowest if slowest > 0.0 else 1.0
     return direction_factor(way.network.meta.gap_rad, ratio)
 
 
 def strongest_current(stations: StationFields) -> float:
-    """Return the strongest current [m/s] in frozen fields; 0 where there is none."""
+    """Return the strongest current [m/s] in frozen fields; 0 without currents."""
     east, north = (stations.channel_index[c] for c in (codes.CURRENT_EAST, codes.CURRENT_NORTH))
     if east < 0 or north < 0:
         return 0.0

@@ -17,7 +17,7 @@ _MIN_COURSE_CHANGE = 2e-5
 
 
 def non_dominated_indices(time: FloatArray, value: FloatArray) -> list[int]:
-    """Return the indices of what is not dominated, by ascending time."""
+    """Return the indices of the points that are not dominated, by ascending time."""
     kept: list[int] = []
     least = math.inf
     for index in np.lexsort((value, time)):
@@ -28,7 +28,7 @@ def non_dominated_indices(time: FloatArray, value: FloatArray) -> list[int]:
 
 
 def evenly_spaced_subset(time: FloatArray, value: FloatArray, count: int) -> np.ndarray:
-    """Return indices of at most ``count`` points of a front: its ends, and evenly between."""
+    """Return the indices of at most ``count`` points of a front: its ends, and evenly between."""
     order = np.argsort(time, kind="stable")
     if len(order) <= count:
         return order
@@ -41,7 +41,7 @@ def evenly_spaced_subset(time: FloatArray, value: FloatArray, count: int) -> np.
 
 
 def track_from_front_point(network: Network, point: Any) -> Track:
-    """Turn a point of an exact front into a track."""
+    """Return a point of a network front as a track."""
     path = np.asarray(point.path)
     wait = np.maximum(0.0, np.asarray(point.path_depart) - np.asarray(point.path_arrive))
     wait[-1] = 0.0
@@ -53,7 +53,7 @@ def track_from_front_point(network: Network, point: Any) -> Track:
 
 
 def _essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:
-    """Return which points of a path are needed: it turns, waits or changes its speed there."""
+    """Return at which points of a path the ship turns, waits or changes its speed."""
     keep = np.ones(len(lat), bool)
     _, course, back = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
     turn = np.angle(np.exp(1j * (course[1:] - back[:-1])))

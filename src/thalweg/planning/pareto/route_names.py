@@ -42,7 +42,10 @@ def landmasses() -> Mapping[str, tuple[float, float]]:
 
 
 def route_labels(
-    routes: Sequence[Route], alternatives: Sequence[str], networks: Mapping[str, Network], chart: Chart
+    routes: Sequence[Route],
+    alternatives: Sequence[str],
+    networks: Mapping[str, Network],
+    chart: Chart,
 ) -> tuple[str, ...]:
     """Return labels that distinguish routes by the sides on which they pass land.
 
@@ -77,9 +80,13 @@ def route_labels(
 def _homotopy_labels(routes: Sequence[Route], network: Network, chart: Chart) -> list[str]:
     """Return labels of routes by the sides of land; empty where all pass on the same sides."""
     ends = [(network.lat[k], network.lon[k]) for k in (network.meta.start, network.meta.goal)]
-    obstacle_map = obstacles(network, chart, _MIN_RELATIVE_SIZE * float(distance(*ends[0], *ends[1])))
+    obstacle_map = obstacles(
+        network, chart, _MIN_RELATIVE_SIZE * float(distance(*ends[0], *ends[1]))
+    )
     keys = [obstacle_map.along(chart, route.track.lat, route.track.lon) for route in routes]
-    counts = np.array([np.frombuffer(key, np.int64) for key in keys])[:, 1 : len(obstacle_map.points)]
+    counts = np.array([np.frombuffer(key, np.int64) for key in keys])[
+        :, 1 : len(obstacle_map.points)
+    ]
     classes, first, class_of = np.unique(counts, axis=0, return_index=True, return_inverse=True)
     if len(classes) == 1:
         return [""] * len(routes)

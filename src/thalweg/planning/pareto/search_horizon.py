@@ -30,15 +30,15 @@ _HORIZON_MARGIN = 0.05
 
 @dataclass(frozen=True)
 class SearchHorizon:
-    """The sea over a network for as long as a front needs it.
+    """The sea over a network for the period of a front.
 
     Attributes
     ----------
-    frozen : Frozen
+    frozen : FrozenSea
     first : SearchResult
-        The fastest way; not found where there is none in that time.
+        The fastest path; not found where there is none in the period.
     setting : int
-        That of this way: the highest there is a way with.
+        Its setting: the highest with which there is a path.
     latest : float
         Latest arrival of the front [s since 1970].
     """
@@ -50,22 +50,22 @@ class SearchHorizon:
 
 
 def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizon:
-    """Freeze the sea over a network as long as its front needs it, and search the fastest way.
+    """Freeze the sea over a network for the period of its front, and search the fastest path.
 
-    Without a latest arrival that is until the slowest ship worth looking at has arrived. How long
-    it takes is guessed by its speed in still water first; where currents or weather make it
-    slower, the period grows until the cheapest constant setting has been sailed to the end.
+    Without a latest arrival the period ends when the slowest ship of interest has arrived. It is
+    first estimated from the speed in calm water. Where currents or weather make the ship slower,
+    the period grows until the cheapest constant setting reaches the goal.
 
     Raises
     ------
     InputError
-        If the sea over the shortest period takes more memory than is allowed.
+        If the sea over the shortest period exceeds the memory limit.
     """
     context, depart = trade_off.context, trade_off.context.voyage.earliest_departure
     asked = math.isfinite(context.latest_arrival)
     tides = math.isfinite(context.needs.limits[codes.LIMIT_REQUIRED_DEPTH])
     length = shortest_path_length(network)
-    if math.isinf(length):  # no way: the sea is frozen as for a straight one
+    if math.isinf(length):  # no path: the period of the geodesic
         ends = trade_off.ends[0], trade_off.ends[-1]
         length = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
     still = length / float(context.ship.speeds[most_economical_setting(trade_off)])
@@ -81,7 +81,7 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
         except InputError:
             if ahead is None:
                 raise
-            return ahead  # what fits into the memory
+            return ahead  # the longest period that fits into memory
         warm_up.wait_until_compiled()
         first, setting = fastest_at_highest_feasible_setting(trade_off, network, frozen)
         ahead = SearchHorizon(frozen, first, setting, latest)
@@ -95,9 +95,9 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
 def _latest_useful_arrival(
     trade_off: TradeOffContext, network: Network, frozen: FrozenSea, until: float
 ) -> float:
-    """Return until when a front is worth looking for: later than its cheapest constant setting.
+    """Return the end of the front's period: with a margin, when the cheapest setting arrives.
 
-    Infinite while a setting that has not arrived when the frozen sea ends may still be cheaper.
+    Infinite while a setting that has not arrived at the end of the frozen sea may be cheaper.
     """
     depart = trade_off.context.voyage.earliest_departure
 
@@ -109,29 +109,29 @@ def _latest_useful_arrival(
         return depart + late
     rates = trade_off.calm_water_cost_rates
     time = np.array([duration(int(setting)) for setting in trade_off.settings])
-    cost = rates * np.minimum(time, until - depart)  # of what has not arrived: so much at least
+    cost = rates * np.minimum(time, until - depart)  # a lower bound where the ship has not arrived
     return depart + _TIME_MARGIN * float(time[np.argmin(cost)])
 
 
 def fastest_at_highest_feasible_setting(
     trade_off: TradeOffContext, network: Network, frozen: FrozenSea
 ) -> tuple[SearchResult, int]:
-    """Search the fastest way at the highest setting with which there is one; return both.
+    """Search the fastest path at the highest setting with which there is one; return both.
 
-    A lower setting may keep what is forbidden in waves where the highest does not.
+    A lower setting may keep limits in waves that the highest does not.
     """
     table = trade_off.context.table.kernel_arrays()
-    heeds = table.safety.size > 0 or table.motions.size > 0
-    tried = trade_off.settings[::-1] if heeds else trade_off.settings[-1:]
-    ways = ((fastest_path(trade_off, network, frozen, int(one)), int(one)) for one in tried)
-    first = next(ways)
-    return first if first[0].found else next((way for way in ways if way[0].found), first)
+    has_wave_limits = table.safety.size > 0 or table.motions.size > 0
+    tried = trade_off.settings[::-1] if has_wave_limits else trade_off.settings[-1:]
+    paths = ((fastest_path(trade_off, network, frozen, int(one)), int(one)) for one in tried)
+    first = next(paths)
+    return first if first[0].found else next((path for path in paths if path[0].found), first)
 
 
 def fastest_path(
     trade_off: TradeOffContext, network: Network, frozen: FrozenSea, setting: int
 ) -> SearchResult:
-    """Search the fastest way over a network at one setting."""
+    """Search the fastest path over a network at one setting."""
     context = trade_off.context
     return earliest_arrival(
         network,
@@ -148,13 +148,13 @@ def fastest_path(
 
 
 def shortest_path_length(network: Network) -> float:
-    """Return the length of the shortest way over a network [m]; inf if there is none."""
+    """Return the length of the shortest path over a network [m]; inf if there is none."""
     meta = network.meta
     return float(shortest_path(network, meta.start, meta.goal)[0][meta.goal])
 
 
 def most_economical_setting(trade_off: TradeOffContext) -> int:
-    """Return the setting that makes a mile cheapest in still water."""
+    """Return the setting with the least cost per distance in calm water."""
     speeds = np.asarray(trade_off.context.ship.speeds)[trade_off.settings]
     cost = trade_off.calm_water_cost_rates / speeds
     return int(trade_off.settings[np.argmin(cost)])

@@ -22,7 +22,25 @@ from thalweg.ship.consumption import calm_water_consumption
 
 @dataclass(frozen=True)
 class TradeOffContext:
-    """What all ways round are explored with."""
+    """What all route alternatives of a trade-off share.
+
+    Attributes
+    ----------
+    context : PlanningContext
+    objective : PricedObjective
+        What is traded against time.
+    consumption : PerformanceTable
+        Consumption that the objective prices (`thalweg.ship.consumption.consumption_table`).
+    ends : tuple of Endpoint
+        Start, via points and goal.
+    settings : int64 array
+        Speed settings to choose from, ascending.
+    limits : Limits
+        Limits along the route, perhaps tightened.
+    interrupt_guard : InterruptGuard
+    notes : list of str
+        Notes for the plan; steps add theirs.
+    """
 
     context: PlanningContext
     objective: PricedObjective
@@ -31,11 +49,11 @@ class TradeOffContext:
     settings: np.ndarray
     limits: np.ndarray
     interrupt_guard: InterruptGuard
-    notes: list[str] = field(default_factory=list)  # for the plan, as they come up
+    notes: list[str] = field(default_factory=list)
 
     @property
     def via(self) -> tuple[Endpoint, ...]:
-        """The places between the first end and the last."""
+        """The via points."""
         return self.ends[1:-1]
 
     @cached_property
@@ -49,22 +67,22 @@ class TradeOffContext:
 
 @dataclass(frozen=True)
 class ExploredAlternative:
-    """What came of one way round.
+    """Result of one route alternative.
 
     Attributes
     ----------
-    way : Way
-    frozen : Frozen
+    way : RouteAlternative
+    frozen : FrozenSea
     fastest : Route
-        The fastest route, refined and refereed.
+        The fastest route, refined and scored by the referee.
     first : SearchResult
-        The fastest way on the network.
-    exact : Front or None
-        The exact front of the network; None where its search was stopped.
+        The fastest path on the network.
+    exact : NetworkFront or None
+        The exact front of the network; None where its search was interrupted.
     isochrones : ndarray
-        Earliest arrival at every node [s since 1970]; inf where never reached.
+        Earliest arrival at every node [s since 1970]; inf where not reached.
     factor : float
-        How much shorter than the network's way the way in open water may be.
+        Least length of a route in open water over that of the path on the network.
     """
 
     way: RouteAlternative
@@ -78,19 +96,19 @@ class ExploredAlternative:
 
 @dataclass(frozen=True)
 class TrackCandidate:
-    """A track with what the solver says of it.
+    """A track with its time and value as computed by a solver.
 
     Attributes
     ----------
     track : Track
     stage : str
-        Where it comes from.
+        Origin, as in `ParetoFront.stages`.
     way : str
-        The way round.
+        Name of its route alternative.
     time : float
         [s].
     value : float
-        [unit of the criterion].
+        [unit of the objective].
     """
 
     track: Track
