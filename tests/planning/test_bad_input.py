@@ -1,4 +1,4 @@
-"""Bad input gets a clear answer at the door, and nothing is lost."""
+"""Bad input is refused with a clear message."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Free space behind the network: a front refined, or found, by evolution."""
+"""Fronts in free space, refined or found by evolutionary search."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from thalweg.route.sea_raster import RasterSize, freeze_raster
 if TYPE_CHECKING:
     from thalweg.sea import GridFields
 
-#: Tracks that refinement begins with: of the front, and others.
+#: Greatest number of initial tracks: of the front, and dominated ones.
 _MAX_SEEDS, _MAX_DOMINATED_SEEDS = 48, 16
-#: Tracks that are kept, and generations, of the refinement and of an evolution of its own.
+#: Population and generations of refinement, and of an evolutionary method on its own.
 _REFINEMENT_POPULATION, _REFINEMENT_GENERATIONS = 140, 26
 _EVOLUTION_POPULATION, _EVOLUTION_GENERATIONS = 100, 300
 _RASTER_SIZE = RasterSize(margin=0.15, min_cells=24, max_cells=240, largest=24_000_000)
@@ -36,7 +36,7 @@ _RASTER_SIZE = RasterSize(margin=0.15, min_cells=24, max_cells=240, largest=24_0
 def evolutionary_candidates(
     trade_off: TradeOffContext, explored: ExploredAlternative, found: list[TrackCandidate]
 ) -> list[TrackCandidate]:
-    """Return the tracks that evolution finds on one way round, beginning with those found."""
+    """Return the candidates that evolutionary search finds for one alternative, from seeds."""
     context, method = trade_off.context, trade_off.context.voyage.method
     seeds = _seeds(trade_off, explored, found)
     evaluator = _evaluator(trade_off, explored, seeds)
@@ -70,7 +70,7 @@ def _seeds(
 ) -> list[Track]:
     """Return the fastest refined track and a selection of those found, by ascending time.
 
-    Most are not dominated; some are though, since refinement may make these the better ones.
+    Some are dominated: refinement may improve these more.
     """
     time = np.array([item.time for item in found])
     value = np.array([item.value for item in found])
@@ -88,7 +88,7 @@ def _seeds(
 
 
 def _genome(trade_off: TradeOffContext, track: Track) -> Genome:
-    """Return a track as a genome; via points and ends of canals are held."""
+    """Return a track as a genome; via points and ends of canals are fixed."""
     held = [(end.lat, end.lon) for end in trade_off.via]
     held = [place for place in held if _passes_through(track, place)]
     return Genome.from_track(track, settings=len(trade_off.context.ship.speeds), via=held)
@@ -105,7 +105,7 @@ def _evaluator(
     context = trade_off.context
     depart = context.voyage.earliest_departure
     latest = context.latest_arrival if math.isfinite(context.latest_arrival) else context.data_end
-    assert explored.exact is not None  # a front that was stopped is not refined
+    assert explored.exact is not None  # an interrupted front is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
     return make_evaluator(
@@ -131,10 +131,10 @@ def _freeze_raster(
 
 
 def _extrapolated_one_cell(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return a raster with cells beside known ones as the mean of those, where they are unknown.
+    """Return a raster in which unknown cells beside known ones have the mean of these.
 
-    Between a known cell and an unknown one a raster knows nothing, where the data may reach on. The
-    referee looks at the data themselves, so what is not known there ends no route of a plan.
+    The data may extend to the unknown cell, or end between the two. The referee uses the data
+    themselves, so a plan holds no route over unknown water.
     """
     unknown = np.isnan(values)
     if not unknown.any():

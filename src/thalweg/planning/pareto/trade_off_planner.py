@@ -1,4 +1,4 @@
-"""From the fronts of all ways round to one plan."""
+"""Plans that trade time for fuel, energy, cost or CO2: from fronts of alternatives to a plan."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from thalweg.core.units import HOUR, KNOT
 from thalweg.kernels import codes
 from thalweg.network import shortest_path
 from thalweg.planning.interrupt_guard import InterruptGuard
-from thalweg.planning.network_selection.route_alternatives import find_route_alternatives
+from thalweg.planning.network_selection.route_alternatives import (
+    RouteAlternative,
+    find_route_alternatives,
+)
 from thalweg.planning.pareto.baseline import (
     compare_with_baseline,
     evaluate_weather_blind,
@@ -59,16 +62,16 @@ from thalweg.ship.consumption import consumption_table
 #: Margins on the depth [m] and on wave height and wind [fraction], tried in turn while the referee
 #: finds no route within the limits.
 _TIGHTENING_SCHEDULE = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.1))
-#: A route that ends so near the end of the data was bounded by it [s].
+#: Routes that end within this time of the end of the data are taken as limited by it [s].
 _DATA_END_MARGIN = 3.0 * HOUR
-#: Routes of a front that are refereed and published, fewer where one takes many steps to sail.
+#: Least and greatest number of routes of a front, and of the steps of their evaluation.
 _MIN_ROUTES, _MAX_ROUTES, _MAX_STEPS = 40, 100, 150_000
 _MAX_ROUTES_INTERRUPTED = 20  # after Ctrl-C
 
 
 @dataclass(frozen=True)
 class RefereedCandidate:
-    """A candidate with what the referee says of it."""
+    """A candidate with its route and value as scored by the referee."""
 
     candidate: TrackCandidate
     route: Route
@@ -99,33 +102,37 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
             context.needs.limits,
             interrupt_guard,
         )
-        ways = find_route_alternatives(context, ends)
+        alternatives = find_route_alternatives(context, ends)
         for depth, fraction in _TIGHTENING_SCHEDULE:
             limits = context.needs.limits * (1.0 - fraction)
             limits[codes.LIMIT_REQUIRED_DEPTH] = (
                 context.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
             )
-            explored = _explore_all(replace(trade_off, limits=limits), ways)
+            explored = _explore_all(replace(trade_off, limits=limits), alternatives)
             scored = _refereed(trade_off, _candidates(replace(trade_off, limits=limits), explored))
             if interrupt_guard.stopped() or any(item.route.feasible for item in scored):
                 break
         return _assemble_plan(trade_off, ends, explored, scored)
 
 
-def _explore_all(trade_off: TradeOffContext, ways: list[Any]) -> list[ExploredAlternative]:
-    """Explore all ways round; one that cannot be sailed is left out if another can."""
+def _explore_all(
+    trade_off: TradeOffContext, alternatives: list[RouteAlternative]
+) -> list[ExploredAlternative]:
+    """Explore all route alternatives; those without a route are left out if another has one."""
     found: list[ExploredAlternative] = []
     refusal: NoRouteError | None = None
-    for way in ways:
+    for alternative in alternatives:
         if found and trade_off.interrupt_guard.stopped():
-            trade_off.notes.append(f"Stopped before the way round by {way.name} was looked at.")
+            trade_off.notes.append(
+                f"Stopped before the alternative {alternative.name!r} was explored."
+            )
             break
         try:
-            found.append(explore_alternative(trade_off, way))
+            found.append(explore_alternative(trade_off, alternative))
         except NoRouteError as error:
             refusal = refusal or error
     if not found:
-        assert refusal is not None  # there is at least one way
+        assert refusal is not None  # there is at least one alternative
         raise refusal
     return found
 
@@ -133,7 +140,7 @@ def _explore_all(trade_off: TradeOffContext, ways: list[Any]) -> list[ExploredAl
 def _candidates(
     trade_off: TradeOffContext, explored: list[ExploredAlternative]
 ) -> list[TrackCandidate]:
-    """Return routes worth the referee's time: the fastest of each way, and a front."""
+    """Return the candidates for the referee: the fastest of each alternative, and a front."""
     fastest = [
         TrackCandidate(
             one.fastest.track, "fastest", one.way.name, one.fastest.time_h * HOUR, math.nan
@@ -141,7 +148,7 @@ def _candidates(
         for one in explored
     ]
     found = [candidate for one in explored for candidate in _exact_candidates(one)]
-    if not found:  # stopped before there was a front
+    if not found:  # interrupted before there was a front
         return fastest
     found += _refined_candidates(trade_off, explored, found)
     kept = non_dominated_indices(*_times_and_values(found))
@@ -154,7 +161,7 @@ def _candidates(
 
 
 def _exact_candidates(one: ExploredAlternative) -> list[TrackCandidate]:
-    """Return the exact front of one way round."""
+    """Return the exact front of one route alternative."""
     network, name = one.way.network, one.way.name
     return [
         TrackCandidate(
@@ -167,7 +174,7 @@ def _exact_candidates(one: ExploredAlternative) -> list[TrackCandidate]:
 def _refined_candidates(
     trade_off: TradeOffContext, explored: list[ExploredAlternative], exact: list[TrackCandidate]
 ) -> list[TrackCandidate]:
-    """Return what comes of drawing ways round and of refining the front, as far as was asked."""
+    """Return candidates from fixed-route fronts and from refinement, as the method requires."""
     method, stopped = trade_off.context.voyage.method, trade_off.interrupt_guard.stopped
     if method == "exact" or stopped():
         return []
@@ -191,9 +198,9 @@ def _times_and_values(found: list[TrackCandidate]) -> tuple[np.ndarray, np.ndarr
 def _refereed(
     trade_off: TradeOffContext, candidates: list[TrackCandidate]
 ) -> list[RefereedCandidate]:
-    """Let the referee score candidates; what is dominated is dropped, what breaks limits too."""
+    """Evaluate candidates; without those that exceed limits or are dominated."""
     context = trade_off.context
-    context.report_progress(f"refereeing {len(candidates)} routes")
+    context.report_progress(f"evaluating {len(candidates)} routes")
     scored = []
     for candidate in candidates:
         route = context.evaluate(candidate.track, trade_off.objective.terms)
@@ -217,7 +224,7 @@ def _assemble_plan(
     explored: list[ExploredAlternative],
     scored: list[RefereedCandidate],
 ) -> Plan:
-    """Put the plan together."""
+    """Assemble the plan."""
     context, objective = trade_off.context, trade_off.objective
     whole = context.voyage.objective == "front"
     blind = _weather_blind_routes(trade_off, explored)
@@ -233,7 +240,7 @@ def _assemble_plan(
     lower = open_water_lower_front(explored, absolute_lower_bound(trade_off, explored)[1])
     share = correction_factors(lower, np.array([route.time_h for route in routes]), values)
     lower *= share[:, None]
-    shortest_way = min(explored, key=lambda one: shortest_path_length(one.way.network)).way.name
+    shortest = min(explored, key=lambda one: shortest_path_length(one.way.network)).way.name
     front = ParetoFront(
         criterion=objective.name,
         unit=objective.unit,
@@ -241,7 +248,7 @@ def _assemble_plan(
         stages=tuple(item.candidate.stage for item in ordered),
         ways=route_labels(
             routes,
-            [item.candidate.way or shortest_way for item in ordered],
+            [item.candidate.way or shortest for item in ordered],
             {one.way.name: one.way.network for one in explored},
             context.chart,
         ),
@@ -272,32 +279,32 @@ def _assemble_plan(
 
 
 def _interruption_notes(explored: list[ExploredAlternative], front: ParetoFront) -> list[str]:
-    """Say what a plan holds that was stopped by Ctrl-C."""
+    """Return a note about the contents of a plan that Ctrl-C ended."""
     if all(one.exact is None for one in explored):
-        kept = "before there was a front: the fastest route is kept"
+        content = "before there was a front: the plan holds the fastest route"
     elif set(front.stages) <= {"exact", "fastest"}:
-        kept = "before refinement: the exact front of the network is kept"
+        content = "before refinement: the plan holds the exact front of the network"
     else:
-        kept = "before all was done: the best so far is kept"
-    return [f"Stopped by Ctrl-C {kept}; more time may find better."]
+        content = "before refinement was complete: the plan holds the best front so far"
+    return [f"Stopped by Ctrl-C {content}; a longer run may improve it."]
 
 
 def _weather_blind_routes(
     trade_off: TradeOffContext, explored: list[ExploredAlternative]
 ) -> list[Route]:
-    """Return the weather-blind routes of the shortest way round, in the weather of the plan."""
+    """Return the weather-blind routes of the shortest alternative, in the weather of the plan."""
     if trade_off.interrupt_guard.stopped():
         return []
     network = min((one.way.network for one in explored), key=shortest_path_length)
     _, path = shortest_path(network, network.meta.start, network.meta.goal)
-    trade_off.context.report_progress("sailing the weather-blind route")
+    trade_off.context.report_progress("evaluating the weather-blind route")
     tracks = weather_blind_tracks(
         trade_off.context, network.lat[path], network.lon[path], trade_off.settings
     )
     sailed = evaluate_weather_blind(trade_off.context, trade_off.objective, tracks)
     if not sailed:
         trade_off.notes.append(
-            "The weather-blind route cannot be sailed to its end in these data: nothing to compare."
+            "The weather-blind route cannot be sailed to its end in these data: it is not compared."
         )
     return sailed
 
@@ -305,7 +312,7 @@ def _weather_blind_routes(
 def _including_constant_speeds(
     trade_off: TradeOffContext, scored: list[RefereedCandidate], blind: list[Route]
 ) -> list[RefereedCandidate]:
-    """Return all that is not dominated, constant speeds on the shortest way among it."""
+    """Return the non-dominated routes, with constant speeds on the shortest route included."""
     latest = trade_off.context.latest_arrival
     constant = [
         RefereedCandidate(
@@ -350,7 +357,7 @@ def _speeds_kn(trade_off: TradeOffContext) -> list[float | None]:
 
 
 def _plot_context(context: PlanningContext, explored: list[ExploredAlternative]) -> PlotContext:
-    """Return what the pictures need, the earliest arrivals of all ways round."""
+    """Return the data of the plots, with the earliest arrivals of all alternatives."""
     networks = [one.way.network for one in explored]
     return PlotContext(
         lat=np.concatenate([network.lat for network in networks]),
@@ -370,13 +377,13 @@ def _notes(
 ) -> list[str]:
     context, best = trade_off.context, ordered[0].route
     notes = [end.note for end in ends if end.note] + list(context.needs.notes)
-    notes += [f"The referee finds a limit broken: {v}." for v in best.violations[:5]]
+    notes += [f"The referee finds a limit exceeded: {v}." for v in best.violations[:5]]
     notes += route_warnings(context, best)
     slowest = max(item.route.arrive for item in ordered)
     bounded = context.voyage.arrive_by is None and math.isfinite(context.data_end)
     if bounded and slowest > context.data_end - _DATA_END_MARGIN:
         notes.append(
-            f"The data end at {format_time(context.data_end)}: slower routes were not looked at."
+            f"The data end at {format_time(context.data_end)}: slower routes were not considered."
         )
     return notes
 
@@ -388,8 +395,8 @@ def _no_feasible_route_error(
     by = f" by {format_time(latest)}" if math.isfinite(latest) else ""
     soonest = min(one.first.arrive for one in explored)
     return NoRouteError(
-        f"No route arrives{by} when it is sailed in fine steps.",
-        f"The network's earliest arrival is {format_time(soonest)}.",
+        f"No route arrives{by} when the referee evaluates it in small steps.",
+        f"The earliest arrival on the network is {format_time(soonest)}.",
         "Allow more time, or relax the limits.",
         reasons=_rejections(explored),
     )

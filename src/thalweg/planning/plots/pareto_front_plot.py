@@ -1,4 +1,4 @@
-"""The picture of a front: what time buys, its bound, and what the weather-blind route pays."""
+"""Plot of a Pareto front, with its lower front and the weather-blind route."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     plan : Plan
         With a front (its objective is neither ``"time"`` nor ``"distance"``).
     path : path, optional
-        Where to save the picture (PNG).
+        Where to save it (PNG).
 
     Returns
     -------
@@ -42,7 +42,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
 
     front = plan.front
     if front is None:
-        raise ValueError(f"a plan for least {plan.voyage.objective} has no front")
+        raise ValueError(f"a plan with the objective {plan.voyage.objective!r} has no front")
     figure = Figure(figsize=(8.4, 5.4), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
@@ -52,7 +52,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     axes.set_xlabel("time from departure to arrival [h]")
     axes.set_ylabel(f"{_CRITERION_LABELS[front.criterion]} [{front.unit}]")
     axes.set_title(
-        f"{plan.provenance['from']} to {plan.provenance['to']}: what time buys",
+        f"{plan.provenance['from']} to {plan.provenance['to']}: Pareto front",
         fontsize=10,
         loc="left",
     )
@@ -64,7 +64,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
 
 
 def _draw_points(axes: Any, plan: PlanData) -> None:
-    """Draw the routes, a colour for each way round, and name the ends and the knee."""
+    """Draw the routes, one colour per alternative, and label the ends and the knee."""
     front = plan.front
     assert front is not None  # checked by the caller
     time = np.array([route.time_h for route in plan.routes])
