@@ -90,19 +90,18 @@ def plan(
     if sea.members:
         from thalweg.planning.ensemble_plan import plan_ensemble
 
-        options = {
-            "ship": ship,
-            "chart": chart,
-            "network": network,
-            "resolution": resolution,
-            "progress": progress,
-        }
-        return plan_ensemble(
-            voyage,
-            ship=ship,
-            sea=sea,
-            plan_one=lambda v, one: plan(replace(v, ensemble=None), sea=one, **options),  # type: ignore[arg-type]
-        )
+        def plan_member(request: Voyage, member: Sea) -> Plan:
+            return plan(
+                replace(request, ensemble=None),
+                ship=ship,
+                sea=member,
+                chart=chart,
+                network=network,
+                resolution=resolution,
+                progress=progress,
+            )
+
+        return plan_ensemble(voyage, ship=ship, sea=sea, plan_one=plan_member)
     if voyage.ensemble is not None:
         raise InputError(
             f"The voyage sets the risk measure {voyage.ensemble!r} for an ensemble forecast.",
@@ -110,8 +109,20 @@ def plan(
             "Open files with an ensemble dimension, or leave out the risk measure.",
             field="ensemble",
         )
-    sea = with_wind_speed(ship, sea)
     choice = NetworkChoice(network, resolution)
+    context, ends = _context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
+    context = replace(context, report_progress=progress or context.report_progress)
+    if voyage.chooses_speeds:
+        from thalweg.planning.pareto.trade_off_planner import plan_trade_off
+
+        return plan_trade_off(context, ends)
+    return _assemble_plan(context, ends, _plan_passages(context, ends))
+
+
+def _context(
+    voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, choice: NetworkChoice
+) -> tuple[PlanningContext, list[Endpoint]]:
+    """Return the context of a voyage and its end points, after all checks of the request."""
     ends = _endpoints(voyage, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
@@ -127,14 +138,8 @@ def plan(
         needs=replace(needs, notes=(*notes, *more, *needs.notes)),
         tables=ShipTables(performance_table_of(ship), _setting(voyage, ship)),
         choice=choice,
-        report_progress=progress or (lambda text: None),
     )
-    if voyage.chooses_speeds:
-        from thalweg.planning.pareto.trade_off_planner import plan_trade_off
-
-        return plan_trade_off(context, ends)
-    passages = _plan_passages(context, ends)
-    return _assemble_plan(context, ends, passages)
+    return context, ends
 
 
 def _endpoints(voyage: Voyage, chart: Chart) -> list[Endpoint]:

@@ -162,7 +162,9 @@ def _candidates(
     found: EvolutionResult, explored: ExploredAlternative, depart: float
 ) -> list[TrackCandidate]:
     return [
-        TrackCandidate(genome.to_track(depart), origin, explored.way.name, float(time), float(cost))
+        TrackCandidate(
+            genome.to_track(depart), origin, explored.alternative.name, float(time), float(cost)
+        )
         for genome, origin, time, cost in zip(found.genomes, found.origin, found.time, found.cost)
         if origin != "seed"
     ]

@@ -22,7 +22,9 @@ from thalweg.search import NetworkFront, direction_factor, pareto_front
 _TIME_BINS = 300
 
 
-def explore_alternative(trade_off: TradeOffContext, way: RouteAlternative) -> ExploredAlternative:
+def explore_alternative(
+    trade_off: TradeOffContext, alternative: RouteAlternative
+) -> ExploredAlternative:
     """Search the fastest route and the exact front of one route alternative.
 
     Raises
@@ -32,13 +34,13 @@ def explore_alternative(trade_off: TradeOffContext, way: RouteAlternative) -> Ex
     """
     context = trade_off.context
     depart = context.voyage.earliest_departure
-    context.report_progress(f"freezing the sea: {way.name}")
-    ahead = extend_horizon(trade_off, way.network)
+    context.report_progress(f"freezing the sea: {alternative.name}")
+    ahead = extend_horizon(trade_off, alternative.network)
     frozen, first, latest = ahead.frozen, ahead.first, ahead.latest
-    context.report_progress(f"searching: {way.name}")
+    context.report_progress(f"searching: {alternative.name}")
     if not first.found:
         raise no_route_error(
-            way.network,
+            alternative.network,
             first,
             (trade_off.ends[0], trade_off.ends[-1]),
             depart=depart,
@@ -49,24 +51,24 @@ def explore_alternative(trade_off: TradeOffContext, way: RouteAlternative) -> Ex
     if first.arrive > context.latest_arrival:
         raise late_arrival_error(context.latest_arrival, first.arrive)
     fastest = refine_track(
-        context, track_from_result(way.network, first, ahead.setting), trade_off.limits
+        context, track_from_result(alternative.network, first, ahead.setting), trade_off.limits
     )
     trade_off.interrupt_guard.begin()
-    context.report_progress(f"searching the front: {way.name}")
+    context.report_progress(f"searching the front: {alternative.name}")
     try:
-        exact = network_pareto_front(trade_off, way.network, frozen, latest)
+        exact = network_pareto_front(trade_off, alternative.network, frozen, latest)
     except SearchInterrupted:
         exact = None
     until = first.arrive + 0.5 * first.duration
-    arrival = isochrones(context, way.network, frozen, depart, until)
+    arrival = isochrones(context, alternative.network, frozen, depart, until)
     return ExploredAlternative(
-        way,
+        alternative,
         frozen,
         fastest,
         first,
         exact,
         arrival,
-        _largest_direction_factor(trade_off, way, frozen),
+        _largest_direction_factor(trade_off, alternative, frozen),
     )
 
 
@@ -117,12 +119,12 @@ def network_pareto_front(
 
 
 def _largest_direction_factor(
-    trade_off: TradeOffContext, way: RouteAlternative, frozen: FrozenSea
+    trade_off: TradeOffContext, alternative: RouteAlternative, frozen: FrozenSea
 ) -> float:
     """Return the direction factor for the slowest setting in the strongest current."""
     slowest = float(np.min(np.asarray(trade_off.context.ship.speeds)[trade_off.settings]))
     ratio = strongest_current(frozen.stations) / slowest if slowest > 0.0 else 1.0
-    return direction_factor(way.network.meta.gap_rad, ratio)
+    return direction_factor(alternative.network.meta.gap_rad, ratio)
 
 
 def strongest_current(stations: StationFields) -> float:

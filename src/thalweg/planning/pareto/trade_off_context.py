@@ -71,7 +71,7 @@ class ExploredAlternative:
 
     Attributes
     ----------
-    way : RouteAlternative
+    alternative : RouteAlternative
     frozen : FrozenSea
     fastest : Route
         The fastest route, refined and scored by the referee.
@@ -85,7 +85,7 @@ class ExploredAlternative:
         Least length of a route in open water over that of the path on the network.
     """
 
-    way: RouteAlternative
+    alternative: RouteAlternative
     frozen: FrozenSea
     fastest: Route
     first: SearchResult
@@ -103,7 +103,7 @@ class TrackCandidate:
     track : Track
     stage : str
         Origin, as in `ParetoFront.stages`.
-    way : str
+    alternative : str
         Name of its route alternative.
     time : float
         [s].
@@ -113,6 +113,15 @@ class TrackCandidate:
 
     track: Track
     stage: str
-    way: str
+    alternative: str
     time: float
+    value: float
+
+
+@dataclass(frozen=True)
+class RefereedCandidate:
+    """A candidate with its route and value as scored by the referee."""
+
+    candidate: TrackCandidate
+    route: Route
     value: float

@@ -50,7 +50,7 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
         If a model or a limit of the ship needs a variable that no data hold, or a clearance is
         required and there is no depth.
     OutsidePeriodError
-        If the departure lies outside the period of the data.
+        If the departure is outside the period of the data.
     """
     _check_variables(ship, sea)
     notes = list(sea.assumptions)

@@ -66,7 +66,7 @@ def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
     Raises
     ------
     InputError
-        If the port is unknown (with near matches), or the place lies on land too far from water.
+        If the port is unknown (with near matches), or the place is on land and too far from water.
     """
     if isinstance(place, str):
         position = parse_position(place)
