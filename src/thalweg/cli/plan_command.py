@@ -185,7 +185,7 @@ def print_front(console: Any, plan: Plan) -> None:
     from rich import box
     from rich.table import Table
 
-    from thalweg.planning.pareto.exploration import evenly_spaced_subset
+    from thalweg.planning.pareto.front_points import evenly_spaced_subset
 
     front = plan.front
     assert front is not None  # checked by the caller

@@ -1,4 +1,4 @@
-"""Ctrl-C while a front is planned: what has been found by then is kept."""
+"""Interrupt handling: on Ctrl-C the best front so far is returned."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from thalweg.core.interrupt import interrupt_requested
 
 
 class InterruptGuard:
-    """Tells whether Ctrl-C was pressed since there is something to keep.
+    """Records Ctrl-C once there is a result to return.
 
-    Before `begin` it interrupts as usual, and so it does when pressed again.
+    Before `begin` Ctrl-C interrupts as usual, and so does a second Ctrl-C.
     """
 
     def __init__(self) -> None:
@@ -30,14 +30,14 @@ class InterruptGuard:
         self._stack.close()
 
     def begin(self) -> None:
-        """Take over Ctrl-C: a route has been found."""
+        """Handle Ctrl-C from now on: a route has been found."""
         if not self._active:
             self._pressed, self._active = self._stack.enter_context(interrupt_requested()), True
 
     def stopped(self) -> bool:
-        """Whether Ctrl-C was pressed since."""
+        """Return whether Ctrl-C was pressed after `begin`."""
         return self._pressed()
 
 
 class SearchInterrupted(Exception):
-    """Raised out of a search that is given up; never leaves the planning of a front."""
+    """Raised inside a search to abandon it; planning of a front catches it."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.objective import LegPrices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
@@ -23,67 +24,6 @@ if TYPE_CHECKING:
     from thalweg.route.track import Track
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable, Ship
-    from thalweg.ship.fuel_prices import FuelTerms
-
-OBJECTIVES = ("fuel", "cost", "co2")
-
-
-@dataclass(frozen=True)
-class CostWeights:
-    """What is made least, in its own unit (kg of fuel, money, kg of CO2).
-
-    Attributes
-    ----------
-    inside, outside : float
-        Of a kilogram of fuel inside and outside emission control areas.
-    time : float
-        Of a second.
-    waiting : float
-        Of a second lain still.
-    priced : bool
-        Whether price zones and canal dues count.
-    cubed : bool
-        Whether ``inside`` and ``outside`` are of a cubed speed for a second, in place of fuel.
-    """
-
-    inside: float = 1.0
-    outside: float = 1.0
-    time: float = 0.0
-    waiting: float = 0.0
-    priced: bool = False
-    cubed: bool = False
-
-    @classmethod
-    def of(cls, objective: str, terms: FuelTerms, waiting_rate: float) -> CostWeights:
-        """Return the weights of an objective.
-
-        Raises
-        ------
-        InputError
-            If there is no such objective, or a price or carbon factor it needs is unknown.
-        """
-        if objective not in OBJECTIVES:
-            raise InputError(
-                f"A route cannot be polished for {objective!r}.",
-                f"Objectives are {', '.join(OBJECTIVES)}.",
-                "Choose one of them.",
-                field="objective",
-            )
-        if objective == "cost" and terms.by_speed:
-            price = terms.cubed_speed_price
-            return cls(price, price, terms.time_price, 0.0, priced=True, cubed=True)
-        inside, outside = terms.per_kg(objective, True), terms.per_kg(objective, False)
-        if not (math.isfinite(inside) and math.isfinite(outside)):
-            what = "price" if objective == "cost" else "carbon factor"
-            raise InputError(
-                f"The {what} of the fuel is unknown.",
-                f"Polishing for {objective!r} needs it, inside and outside control areas.",
-                "Name it in the ship file, or give prices (FuelTerms.with_prices).",
-                field="terms",
-            )
-        money = objective == "cost"
-        time = terms.time_price if money else 0.0
-        return cls(inside, outside, time, waiting_rate * outside, money)
 
 
 @dataclass(frozen=True)
@@ -96,7 +36,7 @@ class CostEvaluator:
         Looks up land and charted depth.
     world : FitnessWorld
         Sea, ship, limits and terms as the kernel takes them; times from ``sailor.origin``.
-    weights : Weights
+    prices : LegPrices
     per_second : float
         What a second of the passage is worth besides; costs that are compared have it in them.
     canals : float64 array (C, 3)
@@ -105,7 +45,7 @@ class CostEvaluator:
 
     time_evaluator: TimeEvaluator
     world: FitnessArrays
-    weights: CostWeights
+    prices: LegPrices
     per_second: float
     canals: FloatArray
 
@@ -251,21 +191,20 @@ class CostEvaluator:
         return genes
 
     def _price(self, legs: FloatArray, ends: tuple[FloatArray, ...]) -> None:
-        """Write weights, penalties and canals of legs in place."""
+        """Write prices, penalties and canals of legs in place."""
         chart: Any = self.chart
-        weights = self.weights
-        legs[:, :, columns.FUEL_PRICE], legs[:, :, columns.PENALTY_FACTOR] = weights.outside, 1.0
+        prices = self.prices
+        legs[:, :, columns.FUEL_PRICE], legs[:, :, columns.PENALTY_FACTOR] = prices.outside, 1.0
         legs[:, :, columns.FIXED_TIME] = math.nan
         if chart is None:
             return
-        if chart.zones.eca and weights.inside != weights.outside:
-            share = chart.eca_fraction(*ends)
-            legs[:, :, columns.FUEL_PRICE] += share * (weights.inside - weights.outside)
-        if chart.zones.penalty or (chart.zones.price and weights.priced):
-            penalty, price = chart.zone_factor(*ends)
+        inside, zone_factor = np.zeros(ends[0].shape), np.ones(ends[0].shape)
+        if chart.zones.eca and prices.differs_in_control_areas:
+            inside = chart.eca_fraction(*ends)
+        if chart.zones.penalty or (chart.zones.price and prices.dues > 0.0):
+            penalty, zone_factor = chart.zone_factor(*ends)
             legs[:, :, columns.PENALTY_FACTOR] = penalty
-            if weights.priced:
-                legs[:, :, columns.FUEL_PRICE] *= price
+        legs[:, :, columns.FUEL_PRICE] = prices.of_legs(inside, zone_factor)
         if len(self.canals):
             number = chart.canal_of_legs(*ends)
             on = number >= 0
@@ -283,7 +222,7 @@ def make_cost_evaluator(
     limits: ArrayLike,
     chart: Chart | None,
     track: Track,
-    weights: CostWeights,
+    prices: LegPrices,
 ) -> CostEvaluator:
     """Put a purse together for polishing a track; times count from its departure.
 
@@ -310,8 +249,8 @@ def make_cost_evaluator(
             "Tabulate both for the same speeds.",
         )
     terms = np.zeros(columns.TERM_COUNT)
-    terms[columns.TIME_PRICE] = weights.time
-    terms[columns.WAITING_PRICE] = weights.waiting
+    terms[columns.TIME_PRICE] = prices.time
+    terms[columns.WAITING_PRICE] = prices.waiting
     terms[columns.LATEST_ARRIVAL], terms[columns.PIECE_SPACING] = math.inf, time_evaluator.spacing
     index = time_evaluator.raster.channel_index
     channels = np.zeros(time_evaluator.raster.values.shape[3], dtype=np.int64)
@@ -322,14 +261,12 @@ def make_cost_evaluator(
     passed = canal_legs(track, chart)  # none: canals need not be looked for again and again
 
     def rate(canal: Canal) -> float:
-        if weights.cubed:
+        if prices.consumption == "cubed_speed":
             return float(ship.speeds[canal_setting(ship, canal)]) ** 3
         return canal_rates(ship, canal)[1]
 
     canals = [
-        (c.transit_time, rate(c) * c.transit_time, c.fee * weights.priced)
+        (c.transit_time, rate(c) * c.transit_time, c.fee * prices.dues)
         for c in (passed.canals if passed.any else ())
     ]
-    return CostEvaluator(
-        time_evaluator, world, weights, 0.0, np.array(canals, float).reshape(-1, 3)
-    )
+    return CostEvaluator(time_evaluator, world, prices, 0.0, np.array(canals, float).reshape(-1, 3))

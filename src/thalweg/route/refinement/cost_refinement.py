@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import direct, inverse
+from thalweg.core.objective import Objective
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_ends
 from thalweg.route.referee.evaluation import evaluate
 from thalweg.route.refinement.better_route import freeze_around_track, tightened_limits
-from thalweg.route.refinement.cost_evaluator import CostEvaluator, CostWeights, make_cost_evaluator
+from thalweg.route.refinement.cost_evaluator import CostEvaluator, make_cost_evaluator
 from thalweg.route.refinement.newton_offsets import optimise_lateral_offsets
 from thalweg.route.refinement.polyline import (
     Polyline,
@@ -30,7 +32,7 @@ from thalweg.route.refinement.string_pulling import string_pull
 from thalweg.route.refinement.time_evaluator import approximate_leg_lengths, penalty_factors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
-from thalweg.ship.tables.tabulate import tabulate_cubed_speed
+from thalweg.ship.consumption import consumption_table, leg_prices
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -114,9 +116,11 @@ def polish(
     passage.
     """
     terms = ship.fuel_terms if terms is None else terms
-    weights = CostWeights.of(objective, terms, ship.waiting_fuel_rate)
-    if weights.cubed:
-        fuel = tabulate_cubed_speed(ship.speeds)
+    if objective not in _OBJECTIVE_COLUMNS:
+        raise unknown_name_error("objective of polishing", str(objective), _OBJECTIVE_COLUMNS)
+    prices = leg_prices(Objective.of(objective), ship, terms)
+    if prices.consumption == "cubed_speed":
+        fuel = consumption_table(ship, prices.consumption)
     latest = scored.arrive if arrive_by is None else max(parse_time(arrive_by), scored.arrive)
     if not (scored.feasible and math.isfinite(scored.arrive)):
         return scored
@@ -145,7 +149,7 @@ def polish(
             limits=tightened_limits(limits, margin),
             chart=chart,
             track=track,
-            weights=weights,
+            prices=prices,
         )
 
     best = _best_attempt(scored, latest, evaluator_of, score, value)
@@ -275,11 +279,7 @@ def _split_long_legs(line: Polyline, evaluator: CostEvaluator, longest: float) -
 def _split_at_zone_borders(line: Polyline, evaluator: CostEvaluator) -> Polyline:
     """Return the line with a waypoint where a leg enters or leaves the control areas."""
     chart = evaluator.chart
-    if (
-        chart is None
-        or not chart.zones.eca
-        or evaluator.weights.inside == evaluator.weights.outside
-    ):
+    if chart is None or not chart.zones.eca or not evaluator.prices.differs_in_control_areas:
         return line
     share = chart.eca_fraction(line.lat[:-1], line.lon[:-1], line.lat[1:], line.lon[1:])
     crossed = (share > _MIN_ZONE_SHARE) & (share < 1.0 - _MIN_ZONE_SHARE)
