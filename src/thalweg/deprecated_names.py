@@ -101,7 +101,7 @@ RENAMED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
         "Evolution": ("thalweg.evolution.evolve", "EvolutionResult"),
         "Habits": ("thalweg.evolution.variation", "VariationSettings"),
         "Mix": ("thalweg.evolution.variation", "OperatorWeights"),
-        "Prices": ("thalweg.route.evaluators.population_evaluator", "ObjectivePrices"),
+        "Prices": ("thalweg.core.objective", "LegPrices"),
         "Progress": ("thalweg.evolution.evolve", "EvolutionProgress"),
     },
     "thalweg.network": {

@@ -9,6 +9,7 @@ import pytest
 from tests.evolution import jet
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.core.objective import LegPrices
 from thalweg.core.pareto_fronts import lower_hull
 from thalweg.evolution import Genome, VariationSettings, evolve, refine_front
 from thalweg.evolution.evolve import METHODS, ConvergenceTest
@@ -187,7 +188,7 @@ def test_asking_and_telling_is_all_there_is():
 def test_thriftiest_setting_and_prices_of_time():
     evaluator = jet.evaluator()
     assert least_cost_setting(evaluator) == 0  # 8.8 kn: 0.0677 t/nm
-    assert least_cost_setting(jet.evaluator(time_price=10.0)) == 11
+    assert least_cost_setting(jet.evaluator(prices=LegPrices(time=10.0))) == 11
     prices = time_prices(evaluator, 5)
     assert (np.diff(prices) > 0.0).all()
     hull = lower_hull(*np.array([(24 / s, f / s) for s, f in zip(jet.SPEED_KN, jet.FUEL_T_DAY)]).T)

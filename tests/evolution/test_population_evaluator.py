@@ -10,6 +10,7 @@ import pytest
 from tests.evolution import jet
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
+from thalweg.core.objective import LegPrices
 from thalweg.evolution import Genome, Population
 from thalweg.kernels.leg import population_sailing
 from thalweg.route.evaluators.population import concatenated_populations
@@ -66,9 +67,7 @@ def test_time_waits_and_fees_have_their_price():
     plain = jet.evaluator()
     time, cost, _ = plain([genome, waiting])
     assert time[1] - time[0] == pytest.approx(12.0, abs=2.0)  # the tide turns meanwhile
-    priced = jet.evaluator(
-        time_price=0.5, waiting_fuel=0.01, weight_outside=2.0, weight_inside=3.0, waiting_weight=4.0
-    )
+    priced = jet.evaluator(prices=LegPrices(inside=3.0, outside=2.0, time=0.5, waiting=0.01 * 4.0))
     _, dear, _ = priced([genome, waiting])
     expected = 2.0 * cost + 0.5 * time + np.array([0.0, 12.0]) * 0.01 * 4.0
     assert dear == pytest.approx(expected, rel=1e-12)
@@ -142,7 +141,7 @@ def test_charted_depth_limits_legs():
 
 
 def test_canal_legs_take_their_time_and_fee_whatever_the_sea():
-    evaluator = jet.evaluator(weight_outside=2.0)
+    evaluator = jet.evaluator(prices=LegPrices(outside=2.0))
     genome = jet.straight(6, 4)
     length = 30.0 * jet.NM / jet.SHRINK
     canal = SimpleNamespace(length=length, transit_time=length / (9.0 * jet.KNOT), fee=40.0)
@@ -159,7 +158,7 @@ def test_canal_legs_take_their_time_and_fee_whatever_the_sea():
             return np.where(lat1 == genome.lat[1], 0, -1)
 
     given = {"chart": WithCanal(), "latest": math.inf}
-    free, feeless = jet.evaluator(**given), jet.evaluator(fees=False, **given)
+    free, feeless = jet.evaluator(prices=LegPrices(dues=1.0), **given), jet.evaluator(**given)
     population = evaluator.population([genome])
     _, before = jet.evaluator(latest=math.inf).sail(population)
     _, cost, violation = free([genome])
@@ -189,9 +188,11 @@ def test_price_and_penalty_zones_and_control_areas():
 
     genome = jet.straight(6)
     time, cost, _ = jet.evaluator()([genome])
-    both = jet.evaluator(chart=Zoned(), weight_inside=2.0)([genome])
+    both = jet.evaluator(chart=Zoned(), prices=LegPrices(inside=2.0, dues=1.0))([genome])
     assert both[0][0] == pytest.approx(1.1 * time[0])
     assert both[1][0] == pytest.approx(1.1 * 3.0 * (0.25 * 2.0 + 0.75) * cost[0])
+    mass = jet.evaluator(chart=Zoned())([genome])[1]
+    assert mass[0] == pytest.approx(1.1 * cost[0])  # price zones do not change a mass of fuel
 
 
 def test_genomes_go_to_tracks_and_back():
@@ -212,8 +213,6 @@ def test_genomes_go_to_tracks_and_back():
     "wrong",
     [
         lambda: jet.evaluator(latest=jet.T0),
-        lambda: jet.evaluator(weight_inside=-1.0),
-        lambda: jet.evaluator(time_price=math.nan),
         lambda: jet.evaluator(fuel=jet.constant_table([1.0, 2.0])),
         lambda: jet.evaluator()([jet.straight(12)]),
         lambda: jet.evaluator()([]),

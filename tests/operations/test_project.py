@@ -470,7 +470,7 @@ def deep_sea(path, bed=False, wall=False):
 
 def test_without_a_clearance_a_project_needs_no_depth(tmp_path):
     asked = deep_sea(tmp_path / "flow.nc")
-    with pytest.raises(CoverageError, match="nothing tells depth"):
+    with pytest.raises(CoverageError, match="provides depth"):
         sail(**asked, min_ukc_m=0.0)
     result = sail(**asked, min_ukc_m=None)
     assert any("No depth in the data" in note for note in result.provenance["assumptions"])

@@ -1,4 +1,4 @@
-"""Latest arrivals that are missed: by the shortest way only, and by the referee only."""
+"""Latest arrivals that are missed: by the shortest route only, and by the referee only."""
 
 import dataclasses
 
@@ -35,14 +35,14 @@ def test_the_shortest_way_is_late_and_another_is_not() -> None:
     assert short.arrive <= latest and 120.0 < short.distance_nm < fast.distance_nm + 0.1
 
 
-def test_a_fastest_arrival_in_time_is_not_told_as_too_late() -> None:
+def test_a_fastest_arrival_in_time_is_not_reported_as_late() -> None:
     """A search for the least distance keeps one label a node: it may miss a longer, faster way."""
     error = late_arrival_error(DEPART + 10.0 * HOUR, DEPART + 8.0 * HOUR)
-    assert error.asked == "The shortest way does not arrive by 2026-01-01T10:00:00Z."
-    assert error.possible == "The fastest arrives at 2026-01-01T08:00:00Z."
+    assert error.asked == "The shortest route does not arrive by 2026-01-01T10:00:00Z."
+    assert error.possible == "The fastest route arrives at 2026-01-01T08:00:00Z."
 
 
-def test_a_route_that_the_referee_finds_late_is_not_told_as_in_time(monkeypatch) -> None:
+def test_a_route_that_the_referee_finds_late_is_not_reported_as_in_time(monkeypatch) -> None:
     given = {"ship": SHIP, "sea": Sea.calm(), "chart": Chart.open_water(-0.6, 0.6, -0.2, 2.2)}
     hours = float(distance(0.0, 0.0, 0.0, 2.0)) / (10.0 * KNOT) / HOUR
     latest = DEPART + (hours + 0.5) * HOUR

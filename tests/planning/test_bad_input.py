@@ -1,4 +1,4 @@
-"""Bad input gets a clear answer at the door, and nothing is lost."""
+"""Bad input is refused with a clear message."""
 
 import numpy as np
 import pytest
@@ -121,7 +121,7 @@ def test_clearance_without_any_depth():
 
 def test_a_ship_that_feels_the_bottom_needs_a_bottom():
     ship = Ship.load("vox-olympia").with_limits(ShipLimits())
-    with pytest.raises(MissingVariableError, match="depends on the depth"):
+    with pytest.raises(MissingVariableError, match="depends on the water depth"):
         ask(ship=ship)
     deep = ask(ship=ship, chart=WATER.with_depth(lambda lat, lon: 60.0 + 0.0 * lat)).best
     shallow = ask(ship=ship, chart=WATER.with_depth(lambda lat, lon: 14.0 + 0.0 * lat)).best

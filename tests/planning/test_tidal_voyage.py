@@ -75,5 +75,5 @@ def test_a_gap_in_the_data_that_a_voyage_waits_through_is_told(tmp_path):
     found = plan(voyage, ship=Ship.load("hopper-dredger"), sea=Sea.open(path), chart=chart)
     assert found.best.feasible and found.best.waiting_h > 4.0
     assert any(
-        "nothing from 2026-01-01T01:00:00Z to 2026-01-01T05:00:00Z" in note for note in found.notes
+        "a gap from 2026-01-01T01:00:00Z to 2026-01-01T05:00:00Z" in note for note in found.notes
     )

@@ -47,5 +47,5 @@ def test_files_that_are_no_voyage(tmp_path, text):
 
 
 def test_missing_file():
-    with pytest.raises(InputError, match="no voyage file"):
+    with pytest.raises(InputError, match="does not exist"):
         Voyage.load("nowhere.yaml")

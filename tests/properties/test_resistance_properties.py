@@ -18,7 +18,6 @@ from thalweg.ship.methods.added_resistance.wind_resistance import (
     blendermann_1994,
     fujiwara_2006,
     ittc_curve,
-    relative_wind,
     wind_resistance,
     yu_2021_coefficient,
 )
@@ -30,6 +29,7 @@ from thalweg.ship.methods.propulsion.b_series import (
     solve_advance,
 )
 from thalweg.ship.methods.propulsion.propulsion_factors import propulsion
+from thalweg.ship.methods.relative_angles import relative_wind
 from thalweg.ship.methods.resistance.hollenbach import hollenbach_1998, hollenbach_validity
 from thalweg.ship.methods.resistance.holtrop_form import hull_form
 from thalweg.ship.methods.resistance.holtrop_mennen import BulbTransomAppendages, holtrop

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from thalweg.core.errors import InputError
+from thalweg.ship.fuel_prices import FuelTerms
 from thalweg.ship.methods.engine import fuel_properties
 
 PRINTED = {
@@ -82,41 +83,39 @@ def test_same_heat():
     assert fuel_properties.equal_energy_mass(5.0, of=hfo, to=hfo) == 5.0
 
 
+def _terms(inside: str, price_outside_t: float, price_inside_t: float) -> FuelTerms:
+    """Heavy fuel oil outside control areas, and a fuel inside, with prices per tonne."""
+    hfo = fuel_properties.FUELS["hfo"]
+    other = hfo if inside == "hfo" else fuel_properties.FUELS[inside]
+    return FuelTerms(hfo, other, price_outside_t / 1000.0, price_inside_t / 1000.0)
+
+
 def test_switching_all_none_half():
-    hfo, mgo = fuel_properties.FUELS["hfo"], fuel_properties.FUELS["mgo"]
-    got = fuel_properties.switch_in_control_area(
-        [1000.0, 1000.0, 1000.0],
-        [0.0, 1.0, 0.5],
-        outside=hfo,
-        inside=mgo,
-        price_outside_t=500.0,
-        price_inside_t=800.0,
-    )
+    terms, fuel, share = _terms("mgo", 500.0, 800.0), [1000.0] * 3, [0.0, 1.0, 0.5]
     light = 1000.0 * 40.2 / 42.7
-    assert got.mass == pytest.approx([1000.0, light, 500.0 + light / 2])
-    assert got.co2 == pytest.approx([3114.0, light * 3.206, 1557.0 + light / 2 * 3.206])
-    assert got.cost == pytest.approx([500.0, light * 0.8, 250.0 + light * 0.4])
+    mass, inside = terms.of_fuel("fuel", fuel, share)
+    assert mass == pytest.approx([1000.0, light, 500.0 + light / 2])
+    assert inside == pytest.approx([0.0, light, light / 2])
+    co2 = terms.of_fuel("co2", fuel, share)[0]
+    assert co2 == pytest.approx([3114.0, light * 3.206, 1557.0 + light / 2 * 3.206])
+    cost = terms.of_fuel("cost", fuel, share)[0]
+    assert cost == pytest.approx([500.0, light * 0.8, 250.0 + light * 0.4])
 
 
 def test_switching_without_price_and_with_unknown():
-    hfo, mgo = fuel_properties.FUELS["hfo"], fuel_properties.FUELS["mgo"]
-    got = fuel_properties.switch_in_control_area(
-        [1000.0, np.nan], [0.0, 0.5], outside=hfo, inside=mgo, price_outside_t=500.0
-    )
-    assert got.cost[0] == pytest.approx(500.0)
-    assert np.isnan(got.mass[1])
-    assert np.isnan(got.cost[1])
+    terms, fuel, share = _terms("mgo", 500.0, np.nan), [1000.0, np.nan], [0.0, 0.5]
+    cost = terms.of_fuel("cost", fuel, share)[0]
+    assert cost[0] == pytest.approx(500.0)
+    assert np.isnan(terms.of_fuel("fuel", fuel, share)[0][1])
+    assert np.isnan(cost[1])
     with pytest.raises(InputError, match="share"):
-        fuel_properties.switch_in_control_area(1.0, 1.5, outside=hfo, inside=mgo)
+        terms.of_fuel("fuel", 1.0, 1.5)
 
 
 def test_seuren_multiplier():
     """300 USD/t and 1.5593 inside (Seuren 2020, Table 5.2)."""
-    hfo = fuel_properties.FUELS["hfo"]
-    got = fuel_properties.switch_in_control_area(
-        2000.0, True, outside=hfo, inside=hfo, price_outside_t=300.0, price_inside_t=300 * 1.5593
-    )
-    assert got.cost == pytest.approx(2.0 * 300.0 * 1.5593)
+    terms = _terms("hfo", 300.0, 300 * 1.5593)
+    assert terms.of_fuel("cost", 2000.0, 1.0)[0] == pytest.approx(2.0 * 300.0 * 1.5593)
 
 
 def test_van_halem_cost():

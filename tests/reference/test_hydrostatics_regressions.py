@@ -12,20 +12,20 @@ from thalweg.ship.methods import hull_regressions as reg
 
 
 def test_load_factor_runs_from_empty_to_full():
-    got = displacement.between_empty_and_full([0.0, 0.25, 1.0], empty=4.0, full=8.0)
+    got = displacement.interpolate_loading([0.0, 0.25, 1.0], empty=4.0, full=8.0)
     assert got.tolist() == [4.0, 5.0, 8.0]
     assert displacement.load_factor_of(5.0, empty=4.0, full=8.0) == 0.25
 
 
 def test_load_factor_outside_is_unknown():
     assert np.isnan(
-        displacement.between_empty_and_full([-0.01, 1.01, np.nan], empty=4.0, full=8.0)
+        displacement.interpolate_loading([-0.01, 1.01, np.nan], empty=4.0, full=8.0)
     ).all()
     assert np.isnan(displacement.load_factor_of([3.9, 8.1], empty=4.0, full=8.0)).all()
 
 
 def test_a_full_ship_may_be_slower():
-    assert displacement.between_empty_and_full(0.5, empty=14.0, full=12.0) == 13.0
+    assert displacement.interpolate_loading(0.5, empty=14.0, full=12.0) == 13.0
 
 
 def test_volume_and_block_are_inverse():

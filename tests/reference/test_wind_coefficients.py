@@ -12,13 +12,12 @@ from thalweg.ship.methods.added_resistance.wind_resistance import (
     blendermann_1994,
     fujiwara_2006,
     ittc_curve,
-    relative_wind,
-    relative_wind_from_vectors,
     wind_at_height,
     wind_resistance,
     yu_2021_area,
     yu_2021_coefficient,
 )
+from thalweg.ship.methods.relative_angles import relative_wind, relative_wind_from_vectors
 
 SHIP = FujiwaraShip(
     length_overall=178.0,
@@ -156,8 +155,8 @@ def test_relative_wind_from_vectors_agrees():
     vectors = relative_wind_from_vectors(
         -12.0 * np.sin(wind_from),
         -12.0 * np.cos(wind_from),
-        ship_east=7.0 * np.sin(heading),
-        ship_north=7.0 * np.cos(heading),
+        frame_east=7.0 * np.sin(heading),
+        frame_north=7.0 * np.cos(heading),
         heading=heading,
     )
     np.testing.assert_allclose(polar, vectors, rtol=1e-12)

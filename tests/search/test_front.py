@@ -11,6 +11,7 @@ import pytest
 from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_network, make_table
 from tests.search.test_berths import barred_line
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.kernels import codes
 from thalweg.search import cheapest, earliest_arrival, pareto_front
 from thalweg.search.pareto.front_problem import FrontRequest, make_front_problem
@@ -31,13 +32,15 @@ def search(network, fields, goal, latest, *, tables=None, **options):
     return pareto_front(network, fields, table, fuel, goal=goal, latest=latest, **options)
 
 
-def world_of(network, fields, latest, *, tables=None, wait=True, weight=1.0, **prices):
-    """Return what sails ways one by one, for brute force."""
+def world_of(
+    network, fields, latest, *, tables=None, wait=True, eca_fraction=0.0, prices=FUEL_MASS
+):
+    """Return what sails paths one by one, for brute force."""
     table, fuel = ship() if tables is None else tables
-    weights = np.broadcast_to(np.asarray(weight, float), (network.n_edges,))
+    inside = np.broadcast_to(np.asarray(eca_fraction, float), (network.n_edges,))
     request = FrontRequest(
-        0, network.n_nodes - 1, 0.0, latest, np.arange(table.n_settings), weights,
-        prices.get("time_price", 0.0), prices.get("waiting_fuel", 0.0), wait,
+        0, network.n_nodes - 1, 0.0, latest, np.arange(table.n_settings), prices,
+        prices.of_legs(inside, 1.0), wait,
     )  # fmt: skip
     return make_front_problem(
         network, fields, table, fuel, request=request, limits=NO_LIMITS, top_speed=None
@@ -125,9 +128,9 @@ def test_front_is_that_of_brute_force_without_waiting(seed):
 def test_lower_front_is_below_brute_force_with_waiting(seed):
     """Pauses of 1000 and 3000 s before any edge; also no front point is far above."""
     network, fields = random_world(seed, columns=3)
-    latest, pauses, prices = 20_000.0, (0.0, 1000.0, 3000.0), {"waiting_fuel": 0.002}
-    found = search(network, fields, 5, latest, bin_s=10.0, **prices)
-    every = brute_force(network, fields, latest, pauses=pauses, **prices)
+    latest, pauses, prices = 20_000.0, (0.0, 1000.0, 3000.0), LegPrices(waiting=0.002)
+    found = search(network, fields, 5, latest, bin_s=10.0, prices=prices)
+    every = brute_force(network, fields, latest, pauses=pauses, prices=prices)
     assert len(every) > 2000
     for time, cost in every[np.minimum.accumulate(every[:, 1]) == every[:, 1]]:
         assert found.lower_at(time) <= cost * (1 + 1e-9)
@@ -172,7 +175,7 @@ def test_certificate_closes_with_the_bins(wait):
     assert gaps[0] > 2.0 * gaps[1] and gaps[1] > 2.0 * gaps[2] and gaps[2] < 0.001
 
 
-@pytest.mark.parametrize("prices", [{}, {"time_price": 5.0}, {"waiting_fuel": 1.0}])
+@pytest.mark.parametrize("prices", [FUEL_MASS, LegPrices(time=5.0), LegPrices(waiting=1.0)])
 def test_certificate_where_the_sea_changes_fast_between_slices(prices):
     """A current holds the ship for a moment, so that tables are off by more than they say."""
     network = line(5, 500.0)
@@ -181,7 +184,7 @@ def test_certificate_where_the_sea_changes_fast_between_slices(prices):
     fields = make_fields(network, times, current_east=against[None, :], current_north=0.0)
     gaps = []
     for bin_s in (500.0, 10.0):
-        found = search(network, fields, 4, 12_000.0, tables=ship([4.0]), bin_s=bin_s, **prices)
+        found = search(network, fields, 4, 12_000.0, tables=ship([4.0]), bin_s=bin_s, prices=prices)
         assert np.all(found.gap >= 0.0) and np.all(np.diff(found.lower_cost) <= 0.0)
         gaps.append(found.gap.max())
     assert gaps[1] < gaps[0] and gaps[1] < 0.07
@@ -191,7 +194,7 @@ def test_lower_front_where_some_nodes_do_not_let_wait():
     network, fields = random_world(3)
     can_wait = np.arange(network.n_nodes) % 2 == 0
     network = replace(network, can_wait=can_wait)
-    found = search(network, fields, 7, 16_000.0, bin_s=10.0, waiting_fuel=0.002)
+    found = search(network, fields, 7, 16_000.0, bin_s=10.0, prices=LegPrices(waiting=0.002))
     every = brute_force(network, fields, 16_000.0)
     for time, cost in every:
         assert found.lower_at(time) <= cost * (1 + 1e-9)
@@ -203,10 +206,12 @@ def test_lower_front_where_some_nodes_do_not_let_wait():
 @pytest.mark.parametrize("seed", range(3))
 def test_points_are_real_ways(seed):
     network, fields = random_world(seed)
-    weight = 1.0 + np.arange(network.n_edges) / network.n_edges
-    prices = {"time_price": 0.01, "waiting_fuel": 0.02}
-    found = search(network, fields, 7, 20_000.0, bin_s=20.0, weight=weight, lower=False, **prices)
-    got, request = world_of(network, fields, 20_000.0, weight=weight, **prices)
+    priced = {
+        "prices": LegPrices(inside=2.0, time=0.01, waiting=0.02),
+        "eca_fraction": np.arange(network.n_edges) / network.n_edges,
+    }
+    found = search(network, fields, 7, 20_000.0, bin_s=20.0, lower=False, **priced)
+    got, request = world_of(network, fields, 20_000.0, **priced)
     pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(got.tails, network.target))}
     for point in found.points:
         time, cost = 0.0, 0.0
@@ -312,7 +317,7 @@ def test_canals_take_their_time_and_fee_at_the_speed_they_need():
     fixed[canal], fee[canal] = 20_000.0 / 5.0, 40.0
     network = replace(network, fixed_time=fixed, fee=fee)
     fields = make_fields(network, [0.0, 1e6], **STILL)
-    found = search(network, fields, 3, 20_000.0)
+    found = search(network, fields, 3, 20_000.0, prices=LegPrices(dues=1.0))
     for point in found.points:
         assert point.setting[1] == 1  # 6 m/s is the slowest that keeps 5 m/s
         assert point.path_arrive[2] - point.path_depart[1] == pytest.approx(4000.0)
@@ -333,7 +338,7 @@ def test_waiting_for_a_fair_current_saves_fuel():
     assert best.cost == pytest.approx(0.064 * 40_000.0 / 6.0, rel=2e-3)
     assert all(point.waiting == 0.0 for point in at_once.points)
     assert at_once.cheapest.cost > 1.2 * best.cost
-    dear = search(network, fields, 2, 60_000.0, lower=False, waiting_fuel=0.064)
+    dear = search(network, fields, 2, 60_000.0, lower=False, prices=LegPrices(waiting=0.064))
     assert dear.cheapest.waiting < 1000.0
 
 
@@ -437,9 +442,8 @@ def test_memory_is_told_before_it_is_taken():
         ({"latest": -1.0}, "not after the departure"),
         ({"settings": [0, 3]}, "not all the ship's"),
         ({"goal": 99}, "no way from node"),
-        ({"weight": -1.0}, "weight of fuel"),
-        ({"time_price": -1.0}, "price of time"),
-        ({"waiting_fuel": np.nan}, "price of waiting"),
+        ({"eca_fraction": -1.0}, "between 0 and 1"),
+        ({"eca_fraction": np.nan}, "between 0 and 1"),
         ({"bin_s": 0.0}, "bins"),
     ],
 )

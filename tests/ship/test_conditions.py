@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from thalweg.core.errors import InputError
 from thalweg.ship import Conditions
-from thalweg.ship.conditions import relative_angle
+from thalweg.ship.methods.relative_angles import relative_angle
 
 
 def test_values_are_read_by_attribute_and_by_key():

@@ -26,7 +26,7 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate, print and write."""
-    from thalweg.planning.plan import route_dict
+    from thalweg.planning.plan_data import route_dict
     from thalweg.planning.report.output_files import make_folder, write_route
     from thalweg.route import evaluate as score
 

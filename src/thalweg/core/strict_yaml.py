@@ -1,10 +1,12 @@
-"""A YAML loader for plain data only: no tags, no references, no key given twice."""
+"""YAML files of plain data only: no tags, no references, no key given twice."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import yaml
+
+from thalweg.core.errors import InputError
 
 
 class StrictLoader(yaml.SafeLoader):
@@ -31,3 +33,59 @@ class StrictLoader(yaml.SafeLoader):
             if word is not None:
                 seen.add(word)
         return super().construct_mapping(node, deep=deep)
+
+
+class StrictDumper(yaml.SafeDumper):
+    """`yaml.SafeDumper` that writes repeated values in full, so that `parse_yaml` can read them."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        """Write no references."""
+        return True
+
+
+def dump_yaml(data: Any, *, sort_keys: bool = True) -> str:
+    """Return plain data as YAML text that `parse_yaml` can read."""
+    text: str = yaml.dump(data, Dumper=StrictDumper, sort_keys=sort_keys)
+    return text
+
+
+def parse_yaml(text: str, kind: str, source: str) -> Any:
+    """Return plain data from YAML (or JSON) text.
+
+    Parameters
+    ----------
+    text : str
+    kind : str
+        Kind of the file in errors, such as ``voyage``.
+    source : str
+        Name of the file in errors.
+
+    Returns
+    -------
+    object
+        Mappings, lists, text, numbers, dates, true and false.
+
+    Raises
+    ------
+    InputError
+        For text that is not YAML, tags, references and keys that are given twice; with the line.
+    """
+    try:
+        return yaml.load(text, Loader=StrictLoader)
+    except yaml.YAMLError as problem:
+        mark = problem.problem_mark if isinstance(problem, yaml.MarkedYAMLError) else None
+        what = problem.problem if isinstance(problem, yaml.MarkedYAMLError) else None
+        line = f" (line {mark.line + 1})" if mark else ""
+        raise InputError(
+            f"The {kind} file {source} cannot be read{line}: {what or 'it is not YAML'}.",
+            f"{kind.capitalize()} files are YAML: 'key: value' lines, sections indented by spaces.",
+            "Correct that line.",
+            file=source,
+        ) from None
+    except (RecursionError, ValueError) as problem:
+        raise InputError(
+            f"The {kind} file {source} cannot be read: {str(problem)[:120]}.",
+            f"{kind.capitalize()} files are YAML: 'key: value' lines, sections indented by spaces.",
+            "Correct it.",
+            file=source,
+        ) from None

@@ -5,14 +5,13 @@ from thalweg.evolution.evolve import EvolutionProgress, EvolutionResult, evolve
 from thalweg.evolution.memetic import refine_front
 from thalweg.evolution.variation import OperatorWeights, VariationSettings
 from thalweg.route.evaluators.population import Genome, Population
-from thalweg.route.evaluators.population_evaluator import Evaluator, ObjectivePrices, make_evaluator
+from thalweg.route.evaluators.population_evaluator import Evaluator, make_evaluator
 
 __all__ = [
     "Evaluator",
     "EvolutionProgress",
     "EvolutionResult",
     "Genome",
-    "ObjectivePrices",
     "OperatorWeights",
     "Population",
     "VariationSettings",

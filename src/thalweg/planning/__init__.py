@@ -1,7 +1,8 @@
-"""Planning: the request, the result, and the one place that wires the rooms together."""
+"""Planning: the request, the result, and the steps from one to the other."""
 
 from thalweg.planning.network_selection.network_choice import NetworkChoice
-from thalweg.planning.plan import Plan, Proof
+from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import Proof
 from thalweg.planning.planner import plan
 from thalweg.planning.voyage import Voyage
 

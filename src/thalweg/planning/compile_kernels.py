@@ -1,4 +1,4 @@
-"""What a first run compiles in a second process (`thalweg.kernels.compilation.warm_up`)."""
+"""Compilation of the search kernels in a second process (`thalweg.kernels.compilation.warm_up`)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from thalweg.network import Network, NetworkMeta
 
 
 def compile_search() -> None:
-    """Search and smooth two nodes in open water, as a plan does."""
+    """Search and smooth a passage between two nodes in open water, to compile the kernels."""
     from thalweg.route import Track, smooth
     from thalweg.sea import GridFields, StationFields
     from thalweg.search import earliest_arrival, lower_bound

@@ -1,4 +1,4 @@
-"""The demonstration voyage: Halifax to Bishop Rock while a hurricane's remains catch up."""
+"""The demonstration voyage: Halifax to Bishop Rock, overtaken by a former hurricane."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from thalweg.ship import Ship
 def demo_voyage() -> Voyage:
     """Return the voyage of ``make demo``.
 
-    The shortest way meets Danielle (1998) south-west of Ireland, where the storm, fresh from its
-    turn to the north-east, overtakes the ship. The departure was chosen for that: most others
-    miss the storm, and the routes with and without the weather are then the same.
+    The shortest route meets Danielle (1998) south-west of Ireland, where the storm has turned to
+    the north-east and overtakes the ship. The departure was chosen for this: with most others the
+    ship does not meet the storm, and the routes with and without weather are the same.
     """
     return Voyage(start="Halifax", goal="49.7N 6.5W", depart="1998-08-31T12:00Z")
 
 
 def weather_blind(found: Plan, *, ship: Ship, sea: Sea, chart: Chart) -> Route:
-    """Return the route that ignores the weather, scored by the referee in the same weather."""
+    """Return the route planned without weather, evaluated in the weather of the plan."""
     calm = plan(replace(found.voyage), ship=ship, sea=Sea.calm(), chart=chart)
     return evaluate(calm.best.track, ship=ship, sea=sea, chart=chart, strict=False)

@@ -1,4 +1,4 @@
-"""Plans under an uncertain forecast: the route that is best over all members of an ensemble."""
+"""Plans under an ensemble forecast: the route with the least risk over all members."""
 
 from __future__ import annotations
 
@@ -11,37 +11,44 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import NoRouteError
+from thalweg.core.objective import KEY_FIGURES
 from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
     evenly_spaced_subset,
     non_dominated_indices,
 )
-from thalweg.planning.pareto.objective import Criterion, find_criterion
 from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Plan
 from thalweg.planning.request.requirements import required_under_keel_clearance
-from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
+from thalweg.planning.request.voyage_objective import PricedObjective, priced_objective
+from thalweg.planning.voyage import Voyage
 from thalweg.route import EnsembleResult, Route, evaluate_members
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
-#: Members that are planned for; every route found is then sailed in all members.
+#: Number of members that are planned; all routes found are evaluated in all members.
 MAX_PLANNED_MEMBERS = 3
-#: Routes of a front that are sailed in all members.
+#: Number of routes of a front that are evaluated in all members.
 MAX_EVALUATED_ROUTES = 10
-_QUANTITY = {
-    "time": "time_h",
-    "front": "time_h",
-    "fuel": "fuel_t",
-    "energy": "energy_mwh",
-    "cost": "cost",
-    "co2": "co2_t",
-}
 
 
 @dataclass(frozen=True)
 class EnsembleCandidate:
-    """A route with the plan it comes from and its place there, sailed in all members."""
+    """A route of one plan, evaluated in all members.
+
+    Attributes
+    ----------
+    member : int
+        Member of the plan.
+    plan : Plan
+    index : int
+        Place of the route in the plan.
+    route : Route
+    distribution : EnsembleResult
+        The route in all members.
+    time, value : float
+        Risk of time [h] and of the objective over the members.
+    """
 
     member: int
     plan: Plan
@@ -55,12 +62,11 @@ class EnsembleCandidate:
 def plan_ensemble(
     voyage: Voyage, *, ship: Ship, sea: Sea, plan_one: Callable[[Voyage, Sea], Plan]
 ) -> Plan:
-    """Plan with an ensemble.
+    """Plan with an ensemble forecast.
 
-    The voyage is planned in a few members, evenly through their numbers; every route found is
-    sailed in all members, and what is least by the mean (or by the mean of the worst tenth) over
-    them is chosen. What no member's plan found is not looked at: the choice is the best of these
-    routes, not of all.
+    The voyage is planned in a few members, evenly spaced by number. Every route found is evaluated
+    in all members, and the route with the least mean (or mean of the worst tenth) is chosen. The
+    choice is the best of these routes, not of all possible routes.
 
     Parameters
     ----------
@@ -69,12 +75,12 @@ def plan_ensemble(
     sea : Sea
         An ensemble.
     plan_one : callable
-        Plans a voyage in one sea.
+        Function that plans a voyage in one sea.
 
     Returns
     -------
     Plan
-        Of the member the chosen route (or the first of the front) comes from, with the
+        Plan of the member of the chosen route (or of the first one of the front), with the
         distributions of its routes in ``ensemble``.
 
     Raises
@@ -107,8 +113,8 @@ def plan_ensemble(
         for item in _evaluate_in_all_members(voyage, member, plan, ship, sea, measure)
     ]
     usable = [item for item in sailed if math.isfinite(item.value)] or sailed
-    criterion = find_criterion(voyage, ship) if voyage.objective in TRADE_OFF_OBJECTIVES else None
-    chosen = _select_plan(voyage, criterion, usable, tried, measure)
+    objective = priced_objective(voyage, ship) if voyage.chooses_speeds else None
+    chosen = _select_plan(voyage, objective, usable, tried, measure)
     stopped = any(plan.cancelled for plan in plans.values())
     return dataclasses.replace(chosen, cancelled=stopped)
 
@@ -116,8 +122,8 @@ def plan_ensemble(
 def _evaluate_in_all_members(
     voyage: Voyage, member: int, plan: Plan, ship: Ship, sea: Sea, measure: str
 ) -> list[EnsembleCandidate]:
-    """Sail the routes of a plan in all members."""
-    terms = find_criterion(voyage, ship).terms if voyage.objective in TRADE_OFF_OBJECTIVES else None
+    """Evaluate the routes of a plan in all members."""
+    terms = priced_objective(voyage, ship).terms if voyage.chooses_speeds else None
     found = []
     for index in _routes_to_evaluate(plan):
         route = plan.routes[index]
@@ -145,7 +151,7 @@ def _evaluate_in_all_members(
 
 
 def _routes_to_evaluate(plan: Plan) -> list[int]:
-    """Return the routes that are sailed in all members: along a front, or the least of it."""
+    """Return the routes to evaluate in all members: along a front, or its lowest values."""
     if plan.front is None or plan.voyage.objective != "front":
         return (
             [0]
@@ -157,24 +163,24 @@ def _routes_to_evaluate(plan: Plan) -> list[int]:
 
 
 def _risk_value(plan: Plan, distribution: EnsembleResult, measure: str) -> float:
-    """Return what a route is chosen by: its risk in the criterion, or its length."""
+    """Return the risk by which a route is chosen, or its length."""
     if plan.voyage.objective == "distance":
         return distribution.routes[0].distance_nm
-    quantity = _QUANTITY[plan.voyage.objective]
+    name: str = "time" if plan.voyage.objective == "front" else plan.voyage.objective
     if plan.voyage.objective == "front" and plan.front is not None:
-        quantity = _QUANTITY[plan.front.criterion]
-    return distribution.risk(quantity, measure)
+        name = plan.front.criterion
+    return distribution.risk(KEY_FIGURES[name].attribute, measure)
 
 
 def _select_plan(
-    voyage: Voyage, criterion: Criterion | None, sailed: list[EnsembleCandidate],
+    voyage: Voyage, objective: PricedObjective | None, sailed: list[EnsembleCandidate],
     planned: list[int],
     measure: str,
 ) -> Plan:  # fmt: skip
-    """Return the plan of the member that the best route comes from, with what is best over all.
+    """Return the plan of the member of the best route, with the best routes of all members.
 
-    All routes are told as they are sailed in that one member, so that they can be compared; what
-    they are over the members is in ``ensemble``.
+    Its routes are those evaluated in that one member, for comparison; ``ensemble`` has their
+    distributions over the members.
     """
     time = np.array([item.time for item in sailed])
     value = np.array([item.value for item in sailed])
@@ -188,33 +194,33 @@ def _select_plan(
     first, shown = order[0].plan, order[0].member
     routes = tuple(item.distribution.routes[shown] for item in order)
     members = len(order[0].distribution.routes)
-    word = "mean" if measure == "mean" else "mean of the worst tenth"
+    risk = "mean" if measure == "mean" else "mean of the worst tenth"
     note = (
-        f"Planned in members {', '.join(map(str, planned))} of {members} and sailed in all; "
-        f"chosen by the {word} over the members, told as sailed in member {shown}."
+        f"Planned in members {', '.join(map(str, planned))} of {members} and evaluated in all; "
+        f"chosen by the {risk} over the members. The routes are shown as in member {shown}."
     )
     notes = [note, *first.notes, *(n for item in order for n in item.distribution.notes)]
     return dataclasses.replace(
         first,
         voyage=voyage,
         routes=routes,
-        front=_front(order, routes, criterion),
+        front=_front(order, routes, objective),
         notes=tuple(dict.fromkeys(notes)),
         ensemble=tuple(_distribution_row(item) for item in order),
     )
 
 
 def _front(
-    order: list[EnsembleCandidate], routes: tuple[Route, ...], criterion: Criterion | None
+    order: list[EnsembleCandidate], routes: tuple[Route, ...], objective: PricedObjective | None
 ) -> ParetoFront | None:
     """Return the front of the chosen routes, which may come from several plans."""
     first = order[0].plan.front
-    if first is None or criterion is None:
+    if first is None or objective is None:
         return None
     fronts = [(item.plan.front, item.index) for item in order]
     return dataclasses.replace(
         first,
-        values=np.array([criterion.of(route) for route in routes]),
+        values=np.array([objective.value(route) for route in routes]),
         stages=tuple(front.stages[i] for front, i in fronts if front is not None),
         ways=tuple(front.ways[i] for front, i in fronts if front is not None),
     )

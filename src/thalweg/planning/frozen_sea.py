@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.kernels import codes
 from thalweg.network import Network
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.sea import StationFields
 
-if TYPE_CHECKING:
-    from thalweg.planning.single.passage import PlanningContext
-
-#: Frozen fields larger than this are refused before they are taken [bytes].
+#: Greatest size of frozen fields [bytes].
 MEMORY_LIMIT = 4_000_000_000
 
 
 @dataclass(frozen=True)
 class FrozenSea:
-    """The sea at the stations of a network, and what it allows at most."""
+    """The sea at the stations of a network, and the greatest speed in it.
+
+    Attributes
+    ----------
+    stations : StationFields
+    top_speed : float
+        Upper bound of the speed through water [m/s].
+    """
 
     stations: StationFields
     top_speed: float
@@ -35,7 +39,7 @@ def freeze_at_stations(
     Raises
     ------
     InputError
-        If it would take more memory than is allowed.
+        If the fields exceed `MEMORY_LIMIT`.
     """
     lat, lon = network.station_lat, network.station_lon
     steps = len(context.sea.times(start, end))
@@ -47,7 +51,7 @@ def freeze_at_stations(
     if size > MEMORY_LIMIT:
         raise InputError(
             f"The sea at {len(lat):,} stations and {steps:,} times takes {size / 1e9:.1f} GB.",
-            f"At most {MEMORY_LIMIT / 1e9:.0f} GB are taken.",
+            f"The limit is {MEMORY_LIMIT / 1e9:.0f} GB.",
             "Use a coarser resolution or a shorter window.",
         )
     stations = context.sea.freeze_stations(lat, lon, start, end, channels, extra=extra)

@@ -1,4 +1,4 @@
-"""`plan`: the one place that wires the rooms together."""
+"""`plan`: from a voyage, a ship, a sea and a chart to a plan."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
 from thalweg.planning.network_selection.network_choice import NetworkBuilder, NetworkChoice
-from thalweg.planning.plan import Plan, PlotContext, Proof, in_objective_unit
+from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
+from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
 from thalweg.planning.report.provenance import (
     finite_or_none,
     network_summary,
@@ -27,15 +29,10 @@ from thalweg.planning.request.chart_restrictions import (
     exclude_ice_latitudes,
 )
 from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
-from thalweg.planning.request.requirements import check_period, derive_requirements
+from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.voyage_endpoints import Endpoint, check_distinct, resolve_endpoint
-from thalweg.planning.single.passage import (
-    PassageResult,
-    PlanningContext,
-    performance_table_of,
-    plan_passage,
-)
-from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
+from thalweg.planning.single.passage import PassageResult, plan_passage
+from thalweg.planning.voyage import Voyage
 from thalweg.route import join as join_routes
 from thalweg.route import with_wind_speed
 from thalweg.sea import Sea
@@ -52,37 +49,37 @@ def plan(
     resolution: float | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Plan:
-    """Plan a voyage: exact search on a network, refinement in open water, score by the referee.
+    """Plan a voyage: exact search on a network, refinement in open water, check by the referee.
 
     Parameters
     ----------
     voyage : Voyage
-        What is asked.
+        The request.
     ship : Ship
         The ship, with its limits.
     sea : Sea
-        Currents, levels, wind and waves. Never assumed: ask for `Sea.calm` if there is none.
+        Currents, levels, wind and waves. There is no default; use `Sea.calm` for still water.
     chart : Chart, optional
-        Land, depth and zones; GSHHG coastline at resolution "i" when not given.
+        Land, depth and zones; by default the GSHHG coastline at resolution "i".
     network : {"auto", "lattice", "mesh", "globe"} or callable
         How the network is built; see
         `thalweg.planning.network_selection.network_choice.NetworkChoice`.
     resolution : float, optional
-        Spacing of the network [m]; chosen from the distance when not given.
+        Spacing of the network [m]; by default it depends on the distance.
     progress : callable, optional
         Called with a short text at each stage.
 
     Returns
     -------
     Plan
-        The best route, its proof and its provenance. Where speeds are chosen leg by leg, Ctrl-C
-        ends the planning with the best so far once a route has been found (`Plan.cancelled`);
-        pressed again, or before, it interrupts.
+        The best route, its proof and its provenance. Where speeds are chosen leg by leg and a
+        route has been found, Ctrl-C ends planning with the best plan so far (`Plan.cancelled`).
+        Pressed before that, or a second time, it interrupts.
 
     Raises
     ------
     InputError
-        For places on land, unknown ports, settings the ship does not have.
+        For places on land, unknown ports, and speeds that the ship does not have.
     CoverageError
         If the data lack a variable, the area or the period.
     NoRouteError
@@ -93,53 +90,56 @@ def plan(
     if sea.members:
         from thalweg.planning.ensemble_plan import plan_ensemble
 
-        options = {
-            "ship": ship,
-            "chart": chart,
-            "network": network,
-            "resolution": resolution,
-            "progress": progress,
-        }
-        return plan_ensemble(
-            voyage,
-            ship=ship,
-            sea=sea,
-            plan_one=lambda v, one: plan(replace(v, ensemble=None), sea=one, **options),  # type: ignore[arg-type]
-        )
+        def plan_member(request: Voyage, member: Sea) -> Plan:
+            return plan(
+                replace(request, ensemble=None),
+                ship=ship,
+                sea=member,
+                chart=chart,
+                network=network,
+                resolution=resolution,
+                progress=progress,
+            )
+
+        return plan_ensemble(voyage, ship=ship, sea=sea, plan_one=plan_member)
     if voyage.ensemble is not None:
         raise InputError(
-            f"A choice over the members of a forecast is asked ({voyage.ensemble}).",
-            "This sea has no members: it is one forecast.",
-            "Open files with an ensemble dimension, or leave the choice out.",
+            f"The voyage sets the risk measure {voyage.ensemble!r} for an ensemble forecast.",
+            "This sea is one forecast; it does not have members.",
+            "Open files with an ensemble dimension, or leave out the risk measure.",
             field="ensemble",
         )
-    sea = with_wind_speed(ship, sea)
     choice = NetworkChoice(network, resolution)
+    context, ends = _context(voyage, ship, with_wind_speed(ship, sea), chart, choice)
+    context = replace(context, report_progress=progress or context.report_progress)
+    if voyage.chooses_speeds:
+        from thalweg.planning.pareto.trade_off_planner import plan_trade_off
+
+        return plan_trade_off(context, ends)
+    return _assemble_plan(context, ends, _plan_passages(context, ends))
+
+
+def _context(
+    voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, choice: NetworkChoice
+) -> tuple[PlanningContext, list[Endpoint]]:
+    """Return the context of a voyage and its end points, after all checks of the request."""
     ends = _endpoints(voyage, chart)
     chart, notes = exclude_closed_canals(chart, voyage, ship, ends)
     chart, more = add_emission_control_areas(exclude_ice_latitudes(chart, ends), voyage, ship)
     needs = derive_requirements(voyage, ship=ship, sea=sea, chart=chart)
-    last = check_period(voyage, sea, needs)
-    world = {"ship": ship, "sea": sea, "chart": chart}
-    ends = endpoints_within_coverage(ends, voyage=voyage, needs=needs, last=last, **world)  # type: ignore[arg-type]
+    ends = endpoints_within_coverage(
+        ends, voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs
+    )
     context = PlanningContext(
         voyage=voyage,
         ship=ship,
         sea=sea,
         chart=chart,
         needs=replace(needs, notes=(*notes, *more, *needs.notes)),
-        table=performance_table_of(ship),
-        setting=_setting(voyage, ship),
-        last=last,
+        tables=ShipTables(performance_table_of(ship), _setting(voyage, ship)),
         choice=choice,
-        tell=progress or (lambda text: None),
     )
-    if voyage.objective in TRADE_OFF_OBJECTIVES:
-        from thalweg.planning.pareto.trade_off_planner import plan_trade_off
-
-        return plan_trade_off(context, ends)
-    passages = _plan_passages(context, ends)
-    return _assemble_plan(context, ends, passages)
+    return context, ends
 
 
 def _endpoints(voyage: Voyage, chart: Chart) -> list[Endpoint]:

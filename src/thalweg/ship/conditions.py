@@ -24,6 +24,7 @@ from thalweg.ship.condition_variables import (
     WAVE_PERIOD,
     WAVE_TO,
 )
+from thalweg.ship.methods.relative_angles import relative_angle, relative_wind_from_vectors
 
 
 class Conditions(Mapping[str, FloatArray]):
@@ -161,23 +162,6 @@ class Conditions(Mapping[str, FloatArray]):
         return cls({**raw, **derived, **more})
 
 
-def relative_angle(from_east: ArrayLike, from_north: ArrayLike, heading: ArrayLike) -> FloatArray:
-    """Return the angle [rad, 0 to pi] between a heading and where something comes from.
-
-    Parameters
-    ----------
-    from_east, from_north : array_like
-        Components of a vector that points where it comes from; any length.
-    heading : array_like
-        Heading of the ship [rad from north].
-    """
-    east, north = np.asarray(from_east, float), np.asarray(from_north, float)
-    sine, cosine = np.sin(heading), np.cos(heading)
-    ahead = east * sine + north * cosine
-    abeam = east * cosine - north * sine
-    return np.arctan2(np.abs(abeam), ahead + 0.0)
-
-
 def _read_only(name: str, value: ArrayLike) -> FloatArray:
     try:
         array = np.asarray(value, dtype=float)
@@ -198,12 +182,15 @@ def _currents(raw: Mapping[str, FloatArray]) -> dict[str, ArrayLike]:
 def _wind(raw: Mapping[str, FloatArray], heading: ArrayLike | None) -> dict[str, ArrayLike]:
     if EASTWARD_WIND not in raw or NORTHWARD_WIND not in raw:
         return {}
-    east = raw[EASTWARD_WIND] - raw.get(EASTWARD_CURRENT, np.zeros(()))
-    north = raw[NORTHWARD_WIND] - raw.get(NORTHWARD_CURRENT, np.zeros(()))
-    found: dict[str, ArrayLike] = {"wind_speed": np.hypot(east, north)}
-    if heading is not None:
-        found["wind_angle"] = relative_angle(-east, -north, heading)
-    return found
+    still = np.zeros(())
+    speed, angle = relative_wind_from_vectors(
+        raw[EASTWARD_WIND],
+        raw[NORTHWARD_WIND],
+        frame_east=raw.get(EASTWARD_CURRENT, still),
+        frame_north=raw.get(NORTHWARD_CURRENT, still),
+        heading=still if heading is None else heading,
+    )
+    return {"wind_speed": speed} if heading is None else {"wind_speed": speed, "wind_angle": angle}
 
 
 def _waves(raw: Mapping[str, FloatArray], heading: ArrayLike | None) -> dict[str, ArrayLike]:

@@ -1,4 +1,4 @@
-"""What a ship burns, inside and outside emission control areas, and what it pays."""
+"""Fuels and prices of a ship, inside and outside emission control areas."""
 
 from __future__ import annotations
 
@@ -7,12 +7,22 @@ from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Final
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, TONNE
 from thalweg.ship.file.ship_schema import CostsSection, ShipFile
-from thalweg.ship.methods.engine.fuel_properties import Fuel, fuel_named
+from thalweg.ship.methods.engine.fuel_properties import (
+    Fuel,
+    co2_mass,
+    equal_energy_mass,
+    fuel_named,
+)
 
 FUEL_QUANTITIES: Final = ("fuel", "cost", "co2")
+_SHARE_NOISE: Final = 1e-9  #: of shares that are quotients of lengths
 
 
 @dataclass(frozen=True)
@@ -66,13 +76,13 @@ class FuelTerms:
 
     @property
     def relative_mass_inside(self) -> float:
-        """Mass burnt inside for one of the fuel burnt outside, of the same heat; 1 for one fuel."""
+        """Mass burnt inside per mass burnt outside, at the same heat; 1 for one fuel."""
         if self.inside is None or self.outside is None or self.inside is self.outside:
             return 1.0
-        return self.outside.heating_value / self.inside.heating_value
+        return float(equal_energy_mass(1.0, of=self.outside, to=self.inside))
 
     def per_kg(self, what: str, inside: bool) -> float:
-        """Return what one kilogram of fuel stands for.
+        """Return mass, cost or CO2 per kilogram of fuel.
 
         Parameters
         ----------
@@ -84,13 +94,13 @@ class FuelTerms:
         Returns
         -------
         float
-            Per kilogram as the ship's model tells fuel, which is the fuel burnt outside; inside,
-            another fuel burns by the same heat (`relative_mass_inside`). NaN when unknown.
+            Per kilogram of the ship's model, which gives the fuel burnt outside; inside, the mass
+            of another fuel follows from the same heat (`relative_mass_inside`). NaN when unknown.
 
         Raises
         ------
         InputError
-            If ``what`` is none of the three.
+            If ``what`` is not one of the three.
         """
         if what not in FUEL_QUANTITIES:
             raise unknown_name_error("sum of fuel", str(what), FUEL_QUANTITIES)
@@ -98,8 +108,52 @@ class FuelTerms:
         if what == "cost":
             return mass * (self.price_inside if inside else self.price_outside)
         if what == "co2":
-            return mass * (self.carbon_inside if inside else self.carbon_outside)
+            factor = self.carbon_inside if inside else self.carbon_outside
+            return float(co2_mass(mass, carbon_factor=factor))
         return mass
+
+    def of_fuel(
+        self, what: str, fuel_mass: ArrayLike, share_inside: ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return mass, cost or CO2 of fuel burnt partly inside emission control areas.
+
+        x = m ((1 - s) x_outside + s x_inside), with x per kilogram as in `per_kg`.
+
+        Parameters
+        ----------
+        what : {"fuel", "cost", "co2"}
+        fuel_mass : array_like
+            Fuel m of the ship's model [kg], as if the fuel outside were burnt everywhere.
+        share_inside : array_like
+            Share s inside a control area, 0 to 1.
+
+        Returns
+        -------
+        total, inside : ndarray
+            The whole sum, and its part inside; NaN where unknown. A price or a factor that is
+            unknown does not matter where nothing is burnt by it.
+
+        Raises
+        ------
+        InputError
+            If a share is outside 0 to 1.
+
+        Notes
+        -----
+        Seuren (2020), Table 5.2, gives one factor for the cost of fuel inside control areas,
+        1.5593: the price inside over that outside, for one fuel.
+        """
+        share = np.asarray(share_inside, dtype=float)
+        if np.any((share < -_SHARE_NOISE) | (share > 1.0 + _SHARE_NOISE)):
+            raise InputError(
+                "The share of a leg inside a control area is outside 0 to 1.",
+                f"It runs from {np.nanmin(share):g} to {np.nanmax(share):g}.",
+                "Give lengths inside the area divided by leg lengths.",
+            )
+        mass = np.asarray(fuel_mass, dtype=float)
+        within = np.where(share > 0.0, share * self.per_kg(what, True), 0.0)
+        beyond = np.where(share < 1.0, (1.0 - share) * self.per_kg(what, False), 0.0)
+        return mass * (within + beyond), mass * within
 
     def with_prices(
         self,
@@ -151,14 +205,14 @@ class FuelTerms:
         )
 
     def _ratio(self) -> float:
-        """Return the price inside over that outside; 1 where nothing tells it."""
+        """Return the price inside over that outside; 1 where it is unknown."""
         if not math.isnan(self.eca_price_factor):
             return self.eca_price_factor
         known = self.price_outside > 0.0 and math.isfinite(self.price_inside)
         return self.price_inside / self.price_outside if known else 1.0
 
     def _same_currency(self, usd_per_t: float | None, time_usd_per_day: float | None) -> None:
-        """Refuse dollars beside what stays in another currency."""
+        """Refuse prices in US dollars beside prices in another currency."""
         sailing = not math.isnan(self.price_outside) or self.by_speed
         stays = (usd_per_t is None and sailing) or (
             time_usd_per_day is None and self.time_price > 0.0

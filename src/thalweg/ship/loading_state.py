@@ -1,4 +1,4 @@
-"""`Loading`: how deep a ship lies, between empty and full."""
+"""`Loading`: draught and displacement of a ship between empty and full."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
+from thalweg.ship.methods.displacement import interpolate_loading
 
 
 @dataclass(frozen=True)
@@ -72,20 +72,14 @@ class Loading:
 
     def draught_at(self, load_factor: ArrayLike) -> FloatArray:
         """Draught [m] at load factors."""
-        return interpolate_loading(self.draught_empty, self.draught_full, load_factor)
+        return interpolate_loading(load_factor, empty=self.draught_empty, full=self.draught_full)
 
     def displacement_at(self, load_factor: ArrayLike) -> FloatArray:
         """Displaced volume [m3] at load factors."""
-        return interpolate_loading(self.displacement_empty, self.displacement_full, load_factor)
+        return interpolate_loading(
+            load_factor, empty=self.displacement_empty, full=self.displacement_full
+        )
 
     def at(self, load_factor: float) -> Loading:
         """Return the same ship loaded differently."""
         return replace(self, load_factor=float(load_factor))
-
-
-def interpolate_loading(empty: ArrayLike, full: ArrayLike, load_factor: ArrayLike) -> FloatArray:
-    """Interpolate linearly from an empty ship's value to a full one's; NaN outside 0 to 1."""
-    factor = np.asarray(load_factor, float)
-    factor = np.where((factor >= 0.0) & (factor <= 1.0), factor, np.nan)
-    low, high = np.asarray(empty, float), np.asarray(full, float)
-    return low * (1.0 - factor) + high * factor

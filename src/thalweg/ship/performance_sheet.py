@@ -281,7 +281,7 @@ def _known_speed_rows(
 
 
 def _row(ship: Ship, speed: float, fuel: float) -> dict[str, Any]:
-    co2 = fuel * ship.fuel_terms.carbon_outside
+    co2 = fuel * ship.fuel_terms.per_kg("co2", inside=False)
     return {
         "speed_kn": _number(round(speed / KNOT, 9)),
         "fuel_kg_per_h": _number(fuel * HOUR),

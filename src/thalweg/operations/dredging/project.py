@@ -217,7 +217,7 @@ class Project:
         InputError
             If the file is missing, too large, not YAML/JSON, or says something impossible.
         """
-        import yaml
+        from thalweg.core.strict_yaml import parse_yaml
 
         path = Path(path)
         if not path.is_file():
@@ -225,9 +225,10 @@ class Project:
         if path.stat().st_size > LARGEST_FILE:
             raise InputError(f"{path} is too large for a project file.", "At most 1 MB.", "")
         try:
-            data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
-            raise InputError(f"{path} is not YAML: {error}.", "", "Mend it.") from error
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            raise InputError(f"{path} is not text in UTF-8.", "", "Save it as UTF-8.") from None
+        data = parse_yaml(text, "project", path.name)
         if not isinstance(data, dict):
             raise InputError(
                 f"{path} holds no project.", f"Entries: {', '.join(_ALLOWED_KEYS)}.", ""
@@ -236,9 +237,9 @@ class Project:
 
     def save(self, path: str | Path) -> None:
         """Write the project as YAML."""
-        import yaml
+        from thalweg.core.strict_yaml import dump_yaml
 
-        text = yaml.safe_dump(self.to_dict(), sort_keys=False)
+        text = dump_yaml(self.to_dict(), sort_keys=False)
         Path(path).write_text(text, encoding="utf-8")
 
 

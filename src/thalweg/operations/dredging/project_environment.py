@@ -21,13 +21,12 @@ from thalweg.network.assembly import Stations, assemble, measured_pairs, no_samp
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.operations.dredging.project import Sites
 from thalweg.planning.frozen_sea import MEMORY_LIMIT
+from thalweg.planning.planning_context import performance_table_of
 from thalweg.planning.request.requirements import (
     Requirements,
-    check_period,
     derive_requirements,
     required_under_keel_clearance,
 )
-from thalweg.planning.single.passage import performance_table_of
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import standard_names as nm
 from thalweg.search import PreparedNetwork, ProfileSearch
@@ -83,7 +82,6 @@ class ProjectEnvironment:
         """
         voyage = _voyage(sites, period)
         needs = derive_requirements(voyage, ship=ship.with_load_factor(1.0), sea=sea, chart=chart)
-        check_period(voyage, sea, needs)
         return cls(sites, period, ship, sea, chart, needs)
 
     @property

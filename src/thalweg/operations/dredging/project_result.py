@@ -19,6 +19,7 @@ from thalweg.operations.dredging.cycles import DredgingCycle
 from thalweg.operations.dredging.project import Project
 from thalweg.planning.report.output_files import make_folder
 from thalweg.ship import Ship
+from thalweg.ship.methods.engine.fuel_properties import halem_cost
 
 if TYPE_CHECKING:
     from thalweg.operations.dredging.project_environment import ProjectEnvironment
@@ -230,7 +231,8 @@ def _cost(cycles: list[DredgingCycle], ship: Ship) -> float:
     for cycle in cycles:
         for load_factor, leg in ((cycle.load_factor, cycle.out), (0.0, cycle.back)):
             speed = float(ship.with_load_factor(load_factor).speeds[-1])
-            total += per_cube * (leg.duration - leg.waiting) * speed**3
+            sailing = leg.duration - leg.waiting
+            total += float(halem_cost(sailing, speed, per_second=0.0, per_cube=per_cube))
     return float(total)
 
 

@@ -1,4 +1,4 @@
-"""A network on the nodes of the sea's own model, thinned where its flow is slow and straight."""
+"""A network on the mesh of a hydrodynamic model, thinned where its flow is slow and straight."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from thalweg.network import Network, mesh
 from thalweg.network.triangular_mesh.thinning import dimensionless_curl
 from thalweg.sea import Mesh, Sea, standard_names
 
-MAX_TIMES = 150  #: moments at which the flow is looked at
-MAX_MESH_NODES = 30_000  #: models with more nodes are thinned where no spacing is asked for
-_FLOW_PERIOD = 25 * HOUR  # the flow is looked at for two tides
-_SPACING_GROWTH = 1.25  # steps of the spacing until few enough nodes are left
-_MIN_SPEED_SCALE = 0.1  # speed [m/s] by which curl is made dimensionless at least
+MAX_TIMES = 150  #: times at which the flow is sampled
+MAX_MESH_NODES = 30_000  #: larger models are thinned unless a spacing is given
+_FLOW_PERIOD = 25 * HOUR  # two tides
+_SPACING_GROWTH = 1.25  # growth of the spacing per step
+_MIN_SPEED_SCALE = 0.1  # least speed [m/s] that makes the curl dimensionless
 
 
 def pruned_mesh(
@@ -40,12 +40,11 @@ def pruned_mesh(
     sea : Sea
         With a mesh.
     start, end : float
-        Period over which the flow is looked at [s since 1970]; what the data do not cover of it is
-        left out.
+        Period over which the flow is sampled [s since 1970], as far as the data cover it.
     largest_spacing : float or None
-        Spacing of the nodes in still water [m]; also the length by which curl becomes
-        dimensionless, with the greatest speed of the flow: the change of the current over one
-        spacing, as a share of it. None keeps all nodes.
+        Spacing of the nodes in still water [m]. With the greatest speed of the flow it makes the
+        curl dimensionless: the relative change of the current over one spacing. None keeps all
+        nodes.
     **options
         ``alpha``, ``curl_power``, ``speed_power``, ``rings`` and ``sampling`` of
         `thalweg.network.mesh`.
@@ -63,9 +62,9 @@ def pruned_mesh(
     model = sea.mesh()
     if model is None:
         raise InputError(
-            "A mesh network is asked, but the sea has no mesh.",
-            "Meshes come from UGRID files of hydrodynamic models.",
-            "Use a lattice, or open such a file first.",
+            "The network 'mesh' was chosen, but the sea has no mesh.",
+            "UGRID files of hydrodynamic models contain a mesh.",
+            "Use a lattice, or open such a file.",
         )
     speed, curl = None, None
     if largest_spacing is not None:
@@ -79,7 +78,7 @@ def pruned_mesh(
 def model_mesh_network(
     chart: Chart, sea: Sea, period: tuple[float, float], *, spacing: float | None = None
 ) -> Network:
-    """Build a network on the model's nodes: all, or those that a spacing leaves.
+    """Build a network on all nodes of a model, or on a selection with a spacing.
 
     Parameters
     ----------
@@ -87,10 +86,10 @@ def model_mesh_network(
     sea : Sea
         With a mesh.
     period : tuple of float
-        Of the voyage [s since 1970]; the flow is looked at for its first 25 h.
+        Period of the voyage [s since 1970]; the flow is sampled in its first 25 h.
     spacing : float, optional
-        In still water [m], less where the flow is strong or turns. By default all nodes are kept,
-        of models with more than `MAX_MESH_NODES` about so many.
+        Spacing in still water [m], finer where the flow is strong or turns. By default all nodes
+        are kept, or about `MAX_MESH_NODES` of larger models.
     """
     model = sea.mesh()
     if spacing is None and (model is None or model.lat.size <= MAX_MESH_NODES):
@@ -98,7 +97,7 @@ def model_mesh_network(
     start, end = period[0], min(period[1], period[0] + _FLOW_PERIOD)
     if spacing is not None:
         return pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
-    assert model is not None  # told by the size above
+    assert model is not None  # its size is known above
     spacing = 2.0 * mean_spacing(model)
     network = pruned_mesh(chart, sea, start, end, largest_spacing=spacing)
     while network.n_nodes > MAX_MESH_NODES:
@@ -118,8 +117,7 @@ def flow_statistics(
 ) -> tuple[FloatArray | None, FloatArray | None]:
     """Return the largest speed [m/s] and dimensionless curl over a period at the mesh's nodes.
 
-    Where and when the current is not known (dry flats) it counts as still; without currents both
-    are None.
+    Unknown currents (dry flats) count as zero; without currents both results are None.
     """
     model = sea.mesh()
     if model is None or not set(standard_names.CURRENT.pair) <= sea.variables:
@@ -136,7 +134,7 @@ def flow_statistics(
 
 
 def _times(sea: Sea, start: float, end: float) -> FloatArray:
-    """Return native times of the current in a period, not too many."""
+    """Return at most `MAX_TIMES` native times of the current in a period."""
     times = sea.times(start, end, names=standard_names.CURRENT.pair)
     if times.size <= MAX_TIMES:
         return times if times.size else np.array([start])

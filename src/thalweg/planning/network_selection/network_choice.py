@@ -1,4 +1,4 @@
-"""Which network a passage is searched on."""
+"""The network on which a passage is searched."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from thalweg.planning.network_selection.model_mesh import model_mesh_network
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.sea import Mesh, Sea
 
-#: A builder of one's own: (chart, start, goal, spacing) -> Network with its endpoints attached.
+#: A builder of the user: (chart, start, goal, spacing) -> Network with its endpoints attached.
 NetworkBuilder: TypeAlias = Callable[..., Network]
 
 NETWORK_KINDS = ("auto", "lattice", "mesh", "globe")
-#: Voyages from this length [m] whose way is longer than this multiple of the distance are searched
-#: in a corridor about the way over the globe network.
+#: Voyages of at least this distance [m] with a route longer than this multiple of it are searched
+#: in a corridor around the path over the globe network.
 _LONG_DISTANCE, _DETOUR_RATIO = 1500.0 * NAUTICAL_MILE, 1.3
 
 
@@ -38,13 +38,13 @@ class NetworkChoice:
     Attributes
     ----------
     network : {"auto", "lattice", "mesh", "globe"} or callable
-        ``auto`` takes the nodes of the sea's own mesh where it has one that holds both ends, and a
-        lattice elsewhere. ``mesh`` takes them always. ``globe`` is the geodesic grid of the whole
-        sea: coarse, for ways round continents. A callable gets ``(chart, start, goal,
+        ``auto`` uses the mesh of the hydrodynamic model where the sea has one that contains both
+        ends, else a lattice. ``mesh`` always uses the mesh. ``globe`` is a coarse geodesic grid of
+        all seas, for routes around continents. A callable is called with ``(chart, start, goal,
         spacing=...)``.
     spacing : float, optional
-        Spacing of the nodes [m]; of a mesh that in still water, less where the flow is strong or
-        turns.
+        Spacing of the nodes [m]; of a mesh that in still water, finer where the current is strong
+        or turns.
     """
 
     network: str | NetworkBuilder = "auto"
@@ -56,8 +56,8 @@ class NetworkChoice:
         number = isinstance(self.spacing, (int, float)) and not isinstance(self.spacing, bool)
         if self.spacing is not None and not (number and 0.1 <= self.spacing <= 1e6):
             raise InputError(
-                f"A resolution of {self.spacing!r} m cannot be.",
-                "It lies between 0.1 m and 1,000 km.",
+                f"The resolution is {self.spacing!r} m.",
+                "A resolution is between 0.1 m and 1,000 km.",
                 "Give the spacing of the network in metres.",
             )
 
@@ -70,7 +70,7 @@ def build_network(
     *,
     period: tuple[float, float],
 ) -> Network:
-    """Build the network between two ends, as chosen, for a voyage in a period [s since 1970]."""
+    """Build the chosen network between two places for a voyage in a period [s since 1970]."""
     places = (ends[0].lat, ends[0].lon), (ends[1].lat, ends[1].lon)
     if callable(choice.network):
         network = choice.network(chart, *places, spacing=choice.spacing)
@@ -93,9 +93,9 @@ def lattice_between(
     spacing: float | None = None,
     coast_levels: int | None = None,
 ) -> Network:
-    """Return a lattice; far round land, one along the way that the globe network shows.
+    """Return a lattice between two places; around land, along the path of the globe network.
 
-    The whole sea between the ends is covered unless the voyage is long and land lies in between.
+    It covers all water between the places unless the voyage is long and land is between them.
     """
     options = {"spacing": spacing, "coast_levels": coast_levels}
     far = float(distance(*start, *goal)) >= _LONG_DISTANCE and chart.area.width >= 360.0
@@ -104,14 +104,14 @@ def lattice_between(
     try:
         return lattice(chart, start, goal, detour=_DETOUR_RATIO, **options)  # type: ignore[arg-type]
     except NoRouteError:
-        way = _globe_path(chart, start, goal)
-    if way is None:
+        path = _globe_path(chart, start, goal)
+    if path is None:
         return lattice(chart, start, goal, **options)  # type: ignore[arg-type]
-    return lattice(chart, start, goal, along=way, **options)  # type: ignore[arg-type]
+    return lattice(chart, start, goal, along=path, **options)  # type: ignore[arg-type]
 
 
 def _globe_path(chart: Chart, start: Position, goal: Position) -> list[Position] | None:
-    """Return the shortest way over the globe network, if it knows one."""
+    """Return the shortest path over the globe network, or None."""
     try:
         network = globe(chart, start, goal)
     except NoRouteError:
@@ -121,6 +121,6 @@ def _globe_path(chart: Chart, start: Position, goal: Position) -> list[Position]
 
 
 def _inside_mesh_extent(model: Mesh, ends: tuple[Position, Position]) -> bool:
-    """Return whether both ends lie in the box of a model's nodes."""
+    """Return whether both places are in the bounding box of a model's nodes."""
     south, north, west, east = model.lat.min(), model.lat.max(), model.lon.min(), model.lon.max()
     return all(south <= lat <= north and west <= lon <= east for lat, lon in ends)

@@ -1,4 +1,4 @@
-"""The ways round that a plan looks at: a network for each."""
+"""Route alternatives of a plan by closed canals, with a network for each."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from thalweg.core.errors import NoRouteError
 from thalweg.network import Network, lattice, shortest_path
 from thalweg.network.network_concatenation import concatenate_networks
 from thalweg.planning.network_selection.network_choice import build_network, lattice_between
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.single.passage import PlanningContext
 
-#: Fronts are searched on networks of about this many nodes, unless a resolution is given.
+#: Greatest number of nodes of networks for fronts, unless a resolution is given.
 MAX_FRONT_NODES = 3_000
-#: Ways round longer than this multiple of the shortest are not looked at.
+#: Alternatives longer than this multiple of the shortest are left out.
 MAX_LENGTH_RATIO = 1.8
 _COAST_LEVELS = 2
 
 
 @dataclass(frozen=True)
 class RouteAlternative:
-    """One way round, and the network it is searched on.
+    """A route alternative and the network on which it is searched.
 
     Attributes
     ----------
     name : str
-        By its canals, such as ``"suez"``; ``"open sea"`` without any.
+        Its canals, such as ``"suez"``; ``"open sea"`` without canals.
     network : Network
-        From the first end to the last, by all places between.
+        From start to goal through all via points.
     """
 
     name: str
@@ -41,30 +41,31 @@ class RouteAlternative:
 def find_route_alternatives(
     context: PlanningContext, ends: Sequence[Endpoint]
 ) -> list[RouteAlternative]:
-    """Return the ways round between the ends of a voyage.
+    """Return the route alternatives between the ends of a voyage.
 
-    The shortest way comes first. Where it takes n canals there are up to 2^n - 1 more, one for
-    every set of them that is closed; those over `MAX_LENGTH_RATIO` times as long are left out, and
-    so are those that turn out to be the same.
+    The shortest one comes first. If it passes n canals there are up to 2^n - 1 more, one for every
+    set of them that is closed. Alternatives over `MAX_LENGTH_RATIO` times as long are left out, and
+    so are repeated ones. A network is built for each; `thalweg.network.paths_without_canals`
+    compares paths on one given network.
     """
-    context.tell(f"building the network from {ends[0].name} to {ends[-1].name}")
+    context.report_progress(f"building the network from {ends[0].name} to {ends[-1].name}")
     first = _route_alternative(context, ends, context.chart)
-    ways, used = {first.name: first}, canals_used(first.network, context.chart)
+    found, used = {first.name: first}, canals_used(first.network, context.chart)
     longest = MAX_LENGTH_RATIO * _shortest_length(first.network)
     for count in range(1, len(used) + 1):
         for closed in itertools.combinations(used, count):
-            context.tell(f"looking for a way without {' and '.join(closed)}")
+            context.report_progress(f"building the network without {' and '.join(closed)}")
             try:
-                way = _route_alternative(context, ends, context.chart.without_canals(*closed))
+                other = _route_alternative(context, ends, context.chart.without_canals(*closed))
             except NoRouteError:
                 continue
-            if _shortest_length(way.network) <= longest:
-                ways.setdefault(way.name, way)
-    return list(ways.values())
+            if _shortest_length(other.network) <= longest:
+                found.setdefault(other.name, other)
+    return list(found.values())
 
 
 def canals_used(network: Network, chart: Chart) -> tuple[str, ...]:
-    """Return the names of the canals on the shortest way over a network."""
+    """Return the names of the canals on the shortest path over a network."""
     _, path = shortest_path(network, network.meta.start, network.meta.goal)
     lat, lon = network.lat[path], network.lon[path]
     which = chart.canal_of_legs(lat[:-1], lon[:-1], lat[1:], lon[1:])
@@ -87,9 +88,9 @@ def _route_alternative(
 
 
 def _network(context: PlanningContext, start: Endpoint, goal: Endpoint) -> Network:
-    """Return a network that is not too large for the search of a whole front."""
+    """Return a network that is small enough for the search of a front."""
     choice = context.choice
-    period = context.voyage.earliest_departure, context.last
+    period = context.voyage.earliest_departure, context.data_end
     if choice.network not in ("auto", "lattice") or choice.spacing is not None:
         return build_network(choice, context.chart, context.sea, (start, goal), period=period)
     if choice.network == "auto" and context.sea.mesh() is not None:
@@ -107,14 +108,16 @@ def _network(context: PlanningContext, start: Endpoint, goal: Endpoint) -> Netwo
 def _corridor_lattice(
     chart: Chart, wide: Network, places: tuple[tuple[float, float], tuple[float, float]]
 ) -> Network:
-    """Return a lattice of a corridor about the shortest way over a network that is too large."""
+    """Return a lattice in a corridor around the shortest path over a network that is too large."""
     _, path = shortest_path(wide, wide.meta.start, wide.meta.goal)
-    way = list(zip(wide.lat[path], wide.lon[path]))
+    centre_line = list(zip(wide.lat[path], wide.lon[path]))
     length = _shortest_length(wide)
     width = min(max(length / 10.0, 40_000.0), 400_000.0)
     spacing = max(math.sqrt(2.5 * length * width / (0.5 * MAX_FRONT_NODES)), length / 150.0)
     for _ in range(6):
-        network = lattice(chart, *places, along=way, width=width, spacing=spacing, coast_levels=1)
+        network = lattice(
+            chart, *places, along=centre_line, width=width, spacing=spacing, coast_levels=1
+        )
         if network.n_nodes <= MAX_FRONT_NODES:
             break
         spacing *= 1.3

@@ -1,4 +1,4 @@
-"""What the weather is worth: the weather-blind route, sailed in the same weather."""
+"""Baseline: the weather-blind route evaluated in the same weather."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from thalweg.sea import Sea
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from thalweg.planning.pareto.objective import Criterion
-    from thalweg.planning.single.passage import PlanningContext
+    from thalweg.planning.planning_context import PlanningContext
+    from thalweg.planning.request.voyage_objective import PricedObjective
 
 
 _MAX_SPEEDS = 6
@@ -26,17 +26,17 @@ _MAX_SPEEDS = 6
 
 @dataclass(frozen=True, eq=False)
 class BaselineComparison:
-    """The shortest way, sailed at each constant setting through the same weather.
+    """The shortest route, sailed at constant settings through the same weather.
 
     Attributes
     ----------
     routes : tuple of Route
-        Refereed, one per setting that can be sailed to its end; by ascending time.
+        Scored by the referee, one per setting that reaches the goal; by ascending time.
     values : ndarray
-        What each counts, in the unit of the front.
+        Their values, in the unit of the front.
     rows : tuple of dict
-        For each of them what the front saves: ``saved_h`` at the same value, ``saved`` (and its
-        ``saved_percent``) in the same time; None where the front does not reach so far.
+        Savings of the front over each: ``saved_h`` at the same value, ``saved`` (and
+        ``saved_percent``) at the same time; None outside the range of the front.
     """
 
     routes: tuple[Route, ...]
@@ -47,9 +47,9 @@ class BaselineComparison:
 def weather_blind_tracks(
     context: PlanningContext, lat: FloatArray, lon: FloatArray, settings: NDArray[np.int64]
 ) -> list[Track]:
-    """Return the shortest way over the chart from a rough one, at up to six settings.
+    """Return the shortest route over the chart, refined from a rough one, at up to six settings.
 
-    Where the chart tells no depth but the sea does, the sea's depth is kept to.
+    Where only the sea provides depth, the route keeps to that depth.
     """
     depth_from_sea = math.isfinite(context.needs.limits[0]) and not context.chart.has_depth
     sea = context.sea if depth_from_sea else _calm_sea(context)
@@ -72,48 +72,37 @@ def weather_blind_tracks(
 
 
 def _calm_sea(context: PlanningContext) -> Sea:
-    """Return the sea without weather, with all the variables that the ship reads."""
+    """Return the sea without weather, with all variables that the ship reads."""
     return Sea.layered(Sea.calm(), context.sea)
 
 
 def evaluate_weather_blind(
-    context: PlanningContext, criterion: Criterion, tracks: Sequence[Track]
+    context: PlanningContext, objective: PricedObjective, tracks: Sequence[Track]
 ) -> list[Route]:
-    """Sail weather-blind tracks in the weather of the plan; by ascending time."""
-    sailed = [
-        evaluate(
-            track,
-            ship=context.ship,
-            sea=context.sea,
-            chart=context.chart,
-            min_ukc=context.min_ukc,
-            strict=False,
-            terms=criterion.terms,
-        )
-        for track in tracks
-    ]
-    known = [route for route in sailed if math.isfinite(criterion.of(route))]
+    """Return weather-blind tracks evaluated in the weather of the plan, by ascending time."""
+    sailed = [context.evaluate(track, objective.terms) for track in tracks]
+    known = [route for route in sailed if math.isfinite(objective.value(route))]
     return sorted(known, key=lambda route: route.time_h)
 
 
 def compare_with_baseline(
     context: PlanningContext,
-    criterion: Criterion,
+    objective: PricedObjective,
     front: Sequence[Route],
     values: FloatArray,
     blind: Sequence[Route],
 ) -> BaselineComparison | None:
-    """Tell what a front saves over weather-blind routes.
+    """Return the savings of a front over weather-blind routes.
 
-    Between two routes of the front it is read off the line between them: sailing the one for a
-    part of the way and the other for the rest comes close to that.
+    Between two points of the front it is interpolated linearly: sailing part of the voyage as one
+    route and the rest as the other comes close to that.
     """
     if not blind:
         return None
     order = np.argsort([route.time_h for route in front])
     time = np.array([front[i].time_h for i in order])
     value = np.minimum.accumulate(np.asarray(values)[order])
-    counts = np.array([criterion.of(route) for route in blind])
+    counts = np.array([objective.value(route) for route in blind])
     speeds = np.asarray(context.ship.speeds) / KNOT
     rows = tuple(
         {"speed_kn": float(speeds[int(route.track.setting[0])])}
@@ -124,7 +113,7 @@ def compare_with_baseline(
 
 
 def _savings_row(blind: Route, count: float, time: FloatArray, value: FloatArray) -> dict[str, Any]:
-    """Return what a front saves over one route: None where it holds nothing to compare."""
+    """Return the savings of a front over one route; None outside the range of the front."""
     no_earlier = blind.time_h >= time[0] * (1.0 - 1e-6)
     no_cheaper = count >= value[-1] * (1.0 - 1e-6)
     saved = float(count - np.interp(blind.time_h, time, value)) if no_earlier else None

@@ -1,4 +1,4 @@
-"""How good a front is: the lower front of open water, and what no route at all undercuts."""
+"""Lower bounds of a Pareto front: for open water and absolute."""
 
 from __future__ import annotations
 
@@ -9,18 +9,15 @@ import numpy as np
 from thalweg.core.geodesy import distance
 from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
 from thalweg.core.units import HOUR
-from thalweg.planning.pareto.exploration import (
-    ExploredAlternative,
-    TradeOffContext,
-    strongest_current,
-)
+from thalweg.planning.pareto.exploration import strongest_current
 from thalweg.planning.pareto.plan_front import ParetoFront
-from thalweg.planning.plan import Proof
+from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
+from thalweg.planning.plan_data import Proof
 from thalweg.search import table_bounds
 
 _KIND = (
-    "the lower front of the network: all as favourable as at any moment of each time step, "
-    "lengths as short as in open water"
+    "the lower front of the network: all conditions as favourable as at any time in each time "
+    "step, lengths as short as in open water"
 )
 _KIND_ABSOLUTE = "the geodesic at the greatest speed over ground in the data"
 
@@ -28,11 +25,11 @@ _KIND_ABSOLUTE = "the geodesic at the greatest speed over ground in the data"
 def open_water_lower_front(
     explored: list[ExploredAlternative], criterion_lower_bound: float
 ) -> np.ndarray:
-    """Return the lower front of open water over all ways round: times [h] and values.
+    """Return the lower front of open water over all alternatives: times [h] and values.
 
-    A way in open water that takes T and costs C has one on the network that takes at most T / k
-    and costs at most C / k, with k the factor of directions: so C is at least k L(T / k), L being
-    the lower front of the network. As certain as that factor.
+    For a route in open water with time T and value C there is a path on the network with at most
+    time T / k and value C / k, where k is the direction factor. So ``C >= k L(T / k)``
+    with the lower front L of the network. The bound is as certain as that factor.
     """
     time, value = [np.empty(0)], [np.empty(0)]
     for one in explored:
@@ -47,10 +44,10 @@ def open_water_lower_front(
 
 
 def correction_factors(lower: np.ndarray, time_h: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the factors (time, value) by which routes show the lower front to be too high.
+    """Return the factors (time, value) that lower the lower front to the routes below it.
 
-    1 where none does. Ways between islands may be shorter, by more than the factor of directions,
-    than those of a coarse network.
+    1 where no route is below it. Routes between islands may be shorter than paths on a coarse
+    network by more than the direction factor.
     """
     if not lower.size:
         return np.ones(2)
@@ -70,7 +67,7 @@ def derive_proof(
     *,
     whole: bool,
 ) -> Proof:
-    """Return the bound: of the fast end for a whole front, else of the criterion."""
+    """Return the bounds: of time for a whole front, else of the objective."""
     certain_time, certain_value = absolute_lower_bound(trade_off, explored)
     kind = _KIND if front.lower.size else _KIND_ABSOLUTE
     if whole:
@@ -81,7 +78,7 @@ def derive_proof(
     solver = min((point.cost for point in points), default=math.nan)
     value = float(front.values[0])
     lower = float(front.lower[1].min()) if front.lower.size else certain_value
-    if lower > value:  # disproved by the route itself, which is not confined to the network
+    if lower > value:  # the route, which is not on the network, is better
         lower = certain_value
     return Proof(max(lower, certain_value), kind, certain_value, solver)
 
@@ -89,34 +86,34 @@ def derive_proof(
 def absolute_lower_bound(
     trade_off: TradeOffContext, explored: list[ExploredAlternative]
 ) -> tuple[float, float]:
-    """Return what no route at all undercuts: a time [h] and a value of the criterion.
+    """Return lower bounds of time [h] and value that hold for every route.
 
-    The geodesic at the greatest speed over ground that the data allow, for the value with the
-    least rate of the best setting and the least weight of it.
+    For the geodesic at the greatest speed over ground in the data; for the value also with the
+    least consumption rate and price of each setting.
     """
-    context, criterion = trade_off.context, trade_off.criterion
+    context, prices = trade_off.context, trade_off.objective.prices
     start, goal = trade_off.ends[0], trade_off.ends[-1]
     geodesic = float(distance(start.lat, start.lon, goal.lat, goal.lon))
     current = max(strongest_current(one.frozen.stations) for one in explored)
-    least = min(criterion.inside, criterion.outside)
-    if criterion.name == "cost":
-        least *= min(float(one.way.network.price.min()) for one in explored)
-    rates = np.maximum(table_bounds(trade_off.rate.table.kernel_arrays(), np.fmin), 0.0)
+    least = min(prices.inside, prices.outside)
+    if prices.dues > 0.0:
+        least *= min(float(one.alternative.network.price.min()) for one in explored)
+    rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
     fastest, value = 0.0, math.inf
     for setting in trade_off.settings:
         over_ground = float(context.ship.top_speed(int(setting)) or math.inf) + current
         fastest = max(fastest, over_ground)
-        per_second = least * float(rates[setting]) + criterion.time_price
+        per_second = least * float(rates[setting]) + prices.time
         value = min(value, per_second * geodesic / over_ground)
     return geodesic / fastest / HOUR, value
 
 
 def correction_notes(share: np.ndarray) -> list[str]:
-    """Say by how much the lower front had to be lowered, if at all."""
+    """Return a note about the correction of the lower front, if there was one."""
     least = float(share.min())
     if least == 1.0:
         return []
     return [
-        f"Refined routes undercut the lower front of the network by up to {1.0 - least:.1%}; it "
-        "was lowered by that, and is evidence, no proof."
+        f"Refined routes are up to {1.0 - least:.1%} below the lower front of the network; the "
+        "lower front was lowered by that, and is an estimate, not a proof."
     ]

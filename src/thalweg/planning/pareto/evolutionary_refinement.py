@@ -1,4 +1,4 @@
-"""Free space behind the network: a front refined, or found, by evolution."""
+"""Fronts in free space, refined or found by evolutionary search."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.core.geodesy import wrap_longitude
+from thalweg.core.geodesy import rough_lengths, wrap_longitude
 from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
     evenly_spaced_subset,
@@ -18,31 +18,29 @@ from thalweg.core.pareto_fronts import (
 from thalweg.core.types import FloatArray
 from thalweg.evolution import Evaluator, EvolutionResult, Genome, evolve, make_evaluator
 from thalweg.evolution.memetic import refine_front
-from thalweg.planning.pareto.exploration import (
+from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
     TrackCandidate,
     TradeOffContext,
 )
 from thalweg.route import Track
+from thalweg.route.sea_raster import RasterSize, freeze_raster
 
 if TYPE_CHECKING:
     from thalweg.sea import GridFields
 
-#: Tracks that refinement begins with: of the front, and others.
+#: Greatest number of initial tracks: of the front, and dominated ones.
 _MAX_SEEDS, _MAX_DOMINATED_SEEDS = 48, 16
-#: Tracks that are kept, and generations, of the refinement and of an evolution of its own.
+#: Population and generations of refinement, and of an evolutionary method on its own.
 _REFINEMENT_POPULATION, _REFINEMENT_GENERATIONS = 140, 26
 _EVOLUTION_POPULATION, _EVOLUTION_GENERATIONS = 100, 300
-_LARGEST_RASTER = 24_000_000  # numbers in the frozen raster
-_RASTER_MARGIN = 0.15  # about the tracks, as a share of their box
-_MAX_CELLS = 240  # cells along the longer side
-_MIN_CELLS = 24
+_RASTER_SIZE = RasterSize(margin=0.15, min_cells=24, max_cells=240, largest=24_000_000)
 
 
 def evolutionary_candidates(
     trade_off: TradeOffContext, explored: ExploredAlternative, found: list[TrackCandidate]
 ) -> list[TrackCandidate]:
-    """Return the tracks that evolution finds on one way round, beginning with those found."""
+    """Return the candidates that evolutionary search finds for one alternative, from seeds."""
     context, method = trade_off.context, trade_off.context.voyage.method
     seeds = _seeds(trade_off, explored, found)
     evaluator = _evaluator(trade_off, explored, seeds)
@@ -76,7 +74,7 @@ def _seeds(
 ) -> list[Track]:
     """Return the fastest refined track and a selection of those found, by ascending time.
 
-    Most are not dominated; some are though, since refinement may make these the better ones.
+    Some are dominated: refinement may improve these more.
     """
     time = np.array([item.time for item in found])
     value = np.array([item.value for item in found])
@@ -94,7 +92,7 @@ def _seeds(
 
 
 def _genome(trade_off: TradeOffContext, track: Track) -> Genome:
-    """Return a track as a genome; via points and ends of canals are held."""
+    """Return a track as a genome; via points and ends of canals are fixed."""
     held = [(end.lat, end.lon) for end in trade_off.via]
     held = [place for place in held if _passes_through(track, place)]
     return Genome.from_track(track, settings=len(trade_off.context.ship.speeds), via=held)
@@ -108,62 +106,39 @@ def _passes_through(track: Track, place: tuple[float, float]) -> bool:
 def _evaluator(
     trade_off: TradeOffContext, explored: ExploredAlternative, seeds: list[Track]
 ) -> Evaluator:
-    criterion, context = trade_off.criterion, trade_off.context
+    context = trade_off.context
     depart = context.voyage.earliest_departure
-    latest = context.latest if math.isfinite(context.latest) else context.last
-    assert explored.exact is not None  # a front that was stopped is not refined
+    latest = context.latest_arrival if math.isfinite(context.latest_arrival) else context.data_end
+    assert explored.exact is not None  # an interrupted front is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
     return make_evaluator(
         table=context.table,
-        fuel=trade_off.rate.table,
+        fuel=trade_off.consumption,
         fields=_freeze_raster(trade_off, seeds, depart, until),
         limits=trade_off.limits,
         depart=depart,
         chart=context.chart,
         latest=until,
-        weight_inside=criterion.inside,
-        weight_outside=criterion.outside,
-        time_price=criterion.time_price,
-        waiting_fuel=trade_off.rate.waiting,
-        fees=criterion.name == "cost",
-        total=float(np.median([_rough_length(track) for track in seeds])),
+        prices=trade_off.objective.prices,
+        total=float(np.median([rough_lengths(track.lat, track.lon).sum() for track in seeds])),
     )
-
-
-def _rough_length(track: Track) -> float:
-    lat, lon = np.radians(track.lat), np.radians(wrap_longitude(np.diff(track.lon)))
-    east = lon * np.cos(0.5 * (lat[:-1] + lat[1:]))
-    return float(np.hypot(np.diff(lat), east).sum() * 6371008.8)
 
 
 def _freeze_raster(
     trade_off: TradeOffContext, seeds: list[Track], start: float, end: float
 ) -> GridFields:
-    """Freeze the sea around all seeds, as fine as the data or a limit of memory allows."""
+    """Freeze the sea around all seeds; unknown cells beside known ones are extrapolated."""
     sea, channels = trade_off.context.sea, trade_off.context.needs.channels
-    lat, lon = _unwrapped_positions(seeds)
-    extent = max(np.ptp(lat), np.ptp(lon), 1e-4)
-    room = _RASTER_MARGIN * extent
-    south, north = max(lat.min() - room, -89.9), min(lat.max() + room, 89.9)
-    width = min(np.ptp(lon) + 2.0 * room, 359.0)
-    west = 0.5 * (lon.min() + lon.max() - width)
-    numbers = max(len(sea.times(start, end)), 2) * max(len(channels), 1)
-    least = math.sqrt((north - south) * width * numbers / _LARGEST_RASTER)
-    native = [row.spacing_deg for row in sea.coverage() if row.spacing_deg]
-    spacing = max(min([extent / _MAX_CELLS * 2.0, *native]), least, extent / _MAX_CELLS)
-    spacing = min(spacing, extent / _MIN_CELLS)
-    frozen = sea.freeze_grid(
-        south, north, west, west + width, start, end, channels, spacing_deg=spacing
-    )
+    frozen = freeze_raster(sea, *_unwrapped_positions(seeds), (start, end), channels, _RASTER_SIZE)
     return replace(frozen, values=_extrapolated_one_cell(frozen.values))
 
 
 def _extrapolated_one_cell(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return a raster with cells beside known ones as the mean of those, where they are unknown.
+    """Return a raster in which unknown cells beside known ones have the mean of these.
 
-    Between a known cell and an unknown one a raster knows nothing, where the data may reach on. The
-    referee looks at the data themselves, so what is not known there ends no route of a plan.
+    The data may extend to the unknown cell, or end between the two. The referee uses the data
+    themselves, so a plan holds no route over unknown water.
     """
     unknown = np.isnan(values)
     if not unknown.any():
@@ -191,7 +166,9 @@ def _candidates(
     found: EvolutionResult, explored: ExploredAlternative, depart: float
 ) -> list[TrackCandidate]:
     return [
-        TrackCandidate(genome.to_track(depart), origin, explored.way.name, float(time), float(cost))
+        TrackCandidate(
+            genome.to_track(depart), origin, explored.alternative.name, float(time), float(cost)
+        )
         for genome, origin, time, cost in zip(found.genomes, found.origin, found.time, found.cost)
         if origin != "seed"
     ]

@@ -1,8 +1,8 @@
-"""Ways round land and control areas, drawn taut, each with its own front of speeds.
+"""Speed optimisation on fixed alternative routes (string-pulled).
 
 The network of a front has to be coarse. Between islands and along borders of control areas the
-best lines are known exactly without weather: they are found on a finer network, pulled taut, and
-only their speeds and waits are searched, in the weather. Refinement goes on from them.
+shortest lines do not depend on the weather: they are found on a finer network and string-pulled,
+and only their speeds and waits are optimised in the weather. Refinement starts from them as well.
 """
 
 from __future__ import annotations
@@ -10,38 +10,40 @@ from __future__ import annotations
 import math
 
 from thalweg.core.interrupt import SearchInterrupted
-from thalweg.network import EdgeWeights, Network, alternative_paths, fixed_route
-from thalweg.network.alternatives.alternative_path import AlternativePath as TautWay
-from thalweg.planning.network_selection.network_choice import lattice_between
-from thalweg.planning.pareto.exploration import (
-    TrackCandidate,
-    TradeOffContext,
-    extend_horizon,
-    network_pareto_front,
-    track_from_front_point,
+from thalweg.network import (
+    AlternativePath,
+    EdgeWeights,
+    Network,
+    alternative_paths,
+    fixed_route,
 )
+from thalweg.planning.network_selection.network_choice import lattice_between
+from thalweg.planning.pareto.exploration import network_pareto_front
+from thalweg.planning.pareto.front_points import track_from_front_point
+from thalweg.planning.pareto.search_horizon import extend_horizon
+from thalweg.planning.pareto.trade_off_context import TrackCandidate, TradeOffContext
 
-_MAX_ALTERNATIVES = 5  # ways round
-_MAX_DETOUR = 0.2  # at most so much longer, or dearer, than the best
-_LEGS_PER_ROUTE = 60  # of a way, between which the speed may change
-_POINTS_PER_FRONT = 24  # of the front of each way
+_MAX_ALTERNATIVES = 5
+_MAX_DETOUR = 0.2  # excess of length or cost over the best
+_LEGS_PER_ROUTE = 60  # between which the speed may change
+_POINTS_PER_FRONT = 24
 
 
 def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
-    """Return routes along the ways round between two ends, with their best speeds.
+    """Return candidates along fixed alternative routes, with their best speeds.
 
-    Voyages by other places, and networks that are asked for by name, have none.
+    None with via points, and none where the user chose a network or a resolution.
     """
     context = trade_off.context
     choice = context.choice
     own = choice.network not in ("auto", "lattice") or context.sea.mesh() is not None
     if own or choice.spacing is not None or trade_off.via:
         return []
-    context.tell("drawing the ways round land and control areas")
+    context.report_progress("finding alternative routes around land and control areas")
     start, goal = ((end.lat, end.lon) for end in (trade_off.ends[0], trade_off.ends[-1]))
     network = lattice_between(context.chart, start, goal)
     found: list[TrackCandidate] = []
-    for way in alternative_paths(
+    for path in alternative_paths(
         network,
         context.chart,
         edge_weight_sets=_edge_weights(trade_off, network),
@@ -49,16 +51,16 @@ def fixed_route_candidates(trade_off: TradeOffContext) -> list[TrackCandidate]:
         stretch=_MAX_DETOUR,
     ):
         try:
-            found += _speed_optimised(trade_off, way)
+            found += _speed_optimised(trade_off, path)
         except SearchInterrupted:
             break
     return found
 
 
 def _edge_weights(trade_off: TradeOffContext, network: Network) -> list[EdgeWeights]:
-    """Return lengths, and lengths with what control areas and zones cost, in full and by half."""
-    inside, outside = trade_off.criterion.inside, trade_off.criterion.outside
-    ratio = inside / outside if inside != outside else 1.0
+    """Return weights of edges: lengths, and lengths with control areas and zones priced."""
+    prices = trade_off.objective.prices
+    ratio = prices.inside / prices.outside if prices.differs_in_control_areas else 1.0
     if ratio == 1.0 and not trade_off.context.chart.zones.price:
         return [EdgeWeights()]
     factors = sorted({math.sqrt(ratio), ratio})
@@ -68,17 +70,17 @@ def _edge_weights(trade_off: TradeOffContext, network: Network) -> list[EdgeWeig
     ]
 
 
-def _speed_optimised(trade_off: TradeOffContext, way: TautWay) -> list[TrackCandidate]:
-    """Return routes along one way with the best speeds; none if it cannot be sailed in time."""
+def _speed_optimised(trade_off: TradeOffContext, path: AlternativePath) -> list[TrackCandidate]:
+    """Return candidates along one path with the best speeds; none if none arrives in time."""
     context = trade_off.context
     network = fixed_route(
-        context.chart, way.waypoints, spacing=max(way.length / _LEGS_PER_ROUTE, 1.0)
+        context.chart, path.waypoints, spacing=max(path.length / _LEGS_PER_ROUTE, 1.0)
     )
     ahead = extend_horizon(trade_off, network)
     if not ahead.first.found or ahead.first.arrive > ahead.latest:
         return []
     found = network_pareto_front(trade_off, network, ahead.frozen, ahead.latest, lower=False)
-    name = " and ".join(way.canals) or "open sea"
+    name = " and ".join(path.canals) or "open sea"
     return [
         TrackCandidate(
             track_from_front_point(network, point), "way round", name, point.time, point.cost

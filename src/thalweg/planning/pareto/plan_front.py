@@ -1,4 +1,4 @@
-"""`ParetoFront`: the trade of a plan, point by point, with its bound and what it is compared to."""
+"""`ParetoFront`: the points of a trade-off, with the lower front and the baseline."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ParetoFront:
-    """The trade of time against one other thing, as refereed.
+    """The Pareto front of time against one other key figure, as scored by the referee.
 
     Attributes
     ----------
     criterion : {"fuel", "energy", "cost", "co2"}
-        What is traded for time.
+        The key figure.
     unit : str
         Its unit: t, MWh, or a currency.
     values : ndarray (n,)
-        Of the plan's routes, in their order.
+        Of the routes of the plan, in their order.
     stages : tuple of str (n,)
-        What each route comes from: ``"fastest"`` (refined for time), ``"exact"``, ``"way round"``
-        (a taut one with its best speeds), ``"polish"``, the evolutionary method, or ``"constant
+        Origin of each route: ``"fastest"`` (refined for time), ``"exact"``, ``"way round"`` (a
+        fixed route with its best speeds), ``"polish"``, the evolutionary method, or ``"constant
         speed"`` (of the weather-blind route).
     ways : tuple of str (n,)
-        The way round of each: its canals, or ``"open sea"``; where routes pass land on other sides,
-        with these (`thalweg.planning.pareto.route_names.route_labels`).
+        Label of each route: its canals, or ``"open sea"``, and the sides of land where these
+        differ (`thalweg.planning.pareto.route_names.route_labels`).
     lower : ndarray (2, m)
-        Times [h] and values of the lower front: on the evidence of the network no route that
-        takes at most such a time counts less.
-    comparison : Comparison or None
+        Times [h] and values of the lower front: by the network no route that takes at most such a
+        time has a lower value.
+    comparison : BaselineComparison or None
         The weather-blind route in the same weather.
     """
 
@@ -52,11 +52,11 @@ class ParetoFront:
     comparison: BaselineComparison | None = None
 
     def lower_at(self, time_h: float) -> float:
-        """Return the least value of the lower front at a time [h]; NaN before it begins."""
+        """Return the value of the lower front at a time [h]; NaN before its first time."""
         return lower_at(self.lower, time_h)
 
     def gaps(self, routes: tuple[Route, ...]) -> list[float | None]:
-        """Return how far each route may be from the best of its time [fraction of its value]."""
+        """Return the gap of each route to the lower front at its time [fraction of its value]."""
         found: list[float | None] = []
         for route, value in zip(routes, self.values):
             low = self.lower_at(route.time_h)
@@ -88,7 +88,7 @@ class ParetoFront:
 
     @property
     def column(self) -> str:
-        """The criterion with its unit, as files name it."""
+        """The key figure with its unit, as in files."""
         return f"{self.criterion}_{self.unit.lower()}"
 
     def as_dict(self, routes: tuple[Route, ...]) -> dict[str, Any]:
@@ -104,13 +104,13 @@ class ParetoFront:
 
 
 def lower_at(lower: FloatArray, time_h: float) -> float:
-    """Return the least value of a lower front (2, m) among the times up to one; NaN if none."""
+    """Return the value of a lower front (2, m) at a time [h]; NaN before its first time."""
     reached = lower[1][lower[0] <= time_h + 1e-9]
     return float(reached.min()) if reached.size else math.nan
 
 
 def knee(time: FloatArray, value: FloatArray) -> int:
-    """Return the index of the point of a front that lies farthest below the line of its ends."""
+    """Return the index of the point of a front farthest below the line through its ends."""
     if len(time) < 3:
         return 0
     x = (time - time.min()) / max(float(np.ptp(time)), 1e-12)

@@ -1,10 +1,12 @@
-"""Names of ways round: on which side of which land each route of a front passes."""
+"""Labels of routes by the side on which they pass land."""
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Mapping, Sequence
-from typing import Final
+from functools import cache
+from importlib import resources
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +19,8 @@ from thalweg.network import Network
 from thalweg.network.alternatives.homotopy import obstacles
 from thalweg.route import Route
 
-_MIN_RELATIVE_SIZE = 0.01  # land narrower than this share of the distance does not count
-_MAX_LANDMASSES_IN_LABEL = 3  # pieces of land in a name
+_MIN_RELATIVE_SIZE = 0.01  # least width of land that counts, over the distance of the ends
+_MAX_LANDMASSES_IN_LABEL = 3
 _COMPASS_POINTS = (
     "north",
     "north-east",
@@ -29,106 +31,80 @@ _COMPASS_POINTS = (
     "west",
     "north-west",
 )
-#: A position (lat, lon) [deg] on each piece of land that has a name here.
-LANDMASSES: Final[dict[str, tuple[float, float]]] = {
-    "Europe and Asia": (50.0, 60.0), "Africa": (10.0, 20.0), "North America": (45.0, -100.0),
-    "South America": (-10.0, -60.0), "Australia": (-25.0, 135.0), "Greenland": (72.0, -40.0),
-    "Great Britain": (52.5, -1.5), "Ireland": (53.2, -7.8), "Iceland": (64.9, -18.5),
-    "Lewis and Harris": (58.2, -6.6), "Skye": (57.3, -6.25), "Mull": (56.45, -5.9),
-    "Mainland of Shetland": (60.4, -1.25), "Mainland of Orkney": (59.0, -3.1),
-    "Isle of Man": (54.2, -4.55), "Anglesey": (53.28, -4.35), "Zealand": (55.5, 11.8),
-    "Funen": (55.3, 10.4), "Gotland": (57.5, 18.5), "Oland": (56.75, 16.65),
-    "Bornholm": (55.1, 14.9), "Saaremaa": (58.4, 22.5), "Hiiumaa": (58.9, 22.6),
-    "Spitsbergen": (78.5, 17.0), "Northern Novaya Zemlya": (75.0, 60.0),
-    "Southern Novaya Zemlya": (72.0, 54.5),
-    "Sicily": (37.5, 14.0), "Sardinia": (40.0, 9.0), "Corsica": (42.15, 9.1),
-    "Crete": (35.2, 24.9), "Cyprus": (35.0, 33.2), "Majorca": (39.6, 3.0), "Menorca": (39.97, 4.1),
-    "Rhodes": (36.2, 27.95), "Lesbos": (39.2, 26.2), "Euboea": (38.6, 23.9),
-    "Malta": (35.9, 14.43), "Tenerife": (28.3, -16.55), "Gran Canaria": (27.95, -15.6),
-    "Madeira": (32.75, -17.0), "Newfoundland": (48.8, -56.0), "Cape Breton": (46.2, -60.7),
-    "Prince Edward Island": (46.4, -63.3), "Anticosti": (49.5, -63.0),
-    "Baffin Island": (68.0, -70.0), "Chiloe": (-42.6, -73.9),
-    "Long Island": (40.85, -73.0), "Vancouver Island": (49.6, -125.6), "Kodiak": (57.4, -153.5),
-    "Haida Gwaii": (53.5, -132.3), "Hawaii": (19.6, -155.5), "Maui": (20.75, -156.25),
-    "Oahu": (21.47, -158.0), "Cuba": (21.8, -79.0), "Hispaniola": (19.0, -71.0),
-    "Jamaica": (18.15, -77.3), "Puerto Rico": (18.2, -66.4), "Trinidad": (10.4, -61.2),
-    "Andros": (24.4, -78.0), "Great Inagua": (21.1, -73.3), "Barbados": (13.17, -59.55),
-    "Guadeloupe": (16.15, -61.7), "Martinique": (14.65, -61.0), "Tierra del Fuego": (-54.2, -68.5),
-    "East Falkland": (-51.7, -58.7), "West Falkland": (-51.8, -60.2),
-    "South Georgia": (-54.4, -36.7), "Madagascar": (-19.0, 46.5), "Reunion": (-21.1, 55.5),
-    "Mauritius": (-20.3, 57.55), "Socotra": (12.5, 53.9), "Sri Lanka": (7.5, 80.7),
-    "Sumatra": (0.0, 102.0), "Java": (-7.3, 110.0), "Borneo": (1.0, 114.0),
-    "Sulawesi": (-2.0, 120.5), "Halmahera": (1.5, 127.75), "Timor": (-9.0, 125.0),
-    "Bali": (-8.35, 115.1), "Lombok": (-8.6, 116.3), "Sumbawa": (-8.8, 117.2),
-    "Flores": (-8.65, 121.2), "Sumba": (-9.8, 120.0), "Seram": (-3.1, 129.3),
-    "Bangka": (-2.3, 106.1), "Belitung": (-2.9, 107.9), "New Guinea": (-5.5, 141.0),
-    "New Britain": (-5.7, 151.0), "New Ireland": (-3.4, 152.1), "Bougainville": (-6.2, 155.3),
-    "Grande Terre": (-21.3, 165.4), "Viti Levu": (-17.8, 178.0), "Luzon": (16.5, 121.0),
-    "Mindoro": (12.9, 121.1), "Panay": (11.1, 122.5), "Negros": (10.0, 123.0),
-    "Cebu": (10.3, 123.75), "Leyte": (10.9, 124.8), "Samar": (11.9, 125.1), "Palawan": (9.8, 118.6),
-    "Mindanao": (7.8, 125.0), "Taiwan": (23.8, 121.0), "Hainan": (19.2, 109.8),
-    "Honshu": (36.5, 138.5), "Hokkaido": (43.4, 142.8), "Kyushu": (32.5, 131.0),
-    "Shikoku": (33.7, 133.5), "Okinawa": (26.55, 128.0), "Jeju": (33.37, 126.55),
-    "Sakhalin": (51.0, 143.0), "Tasmania": (-42.0, 146.6), "North Island": (-38.8, 175.8),
-    "South Island": (-43.8, 170.8), "Stewart Island": (-47.0, 167.9),
-}  # fmt: skip
+
+
+@cache
+def landmasses() -> Mapping[str, tuple[float, float]]:
+    """Return a position (lat, lon) [deg] on each landmass with a name, from ``landmasses.csv``."""
+    text = (resources.files("thalweg.planning") / "data/landmasses.csv").read_text("utf-8")
+    rows = csv.DictReader(text.splitlines())
+    return {row["name"]: (float(row["lat"]), float(row["lon"])) for row in rows}
 
 
 def route_labels(
-    routes: Sequence[Route], ways: Sequence[str], networks: Mapping[str, Network], chart: Chart
+    routes: Sequence[Route],
+    alternatives: Sequence[str],
+    networks: Mapping[str, Network],
+    chart: Chart,
 ) -> tuple[str, ...]:
-    """Return names that tell ways apart which pass land on other sides.
+    """Return labels that distinguish routes by the sides on which they pass land.
 
     Parameters
     ----------
     routes : sequence of Route
-    ways : sequence of str
-        The way round of each by its canals.
+    alternatives : sequence of str
+        Name of the route alternative of each route, by its canals.
     networks : mapping of str to Network
-        Of each way, the first where a way has none, from start to goal: land near it counts.
+        Network of each alternative from start to goal; land near it counts. The first one is used
+        where an alternative has none.
     chart : Chart
 
     Returns
     -------
     tuple of str
-        As ``ways`` where all routes of that name pass all land on the same sides. Else with the
-        side of what differs: ``"west of Great Britain, east of Ireland"``. Land that is narrower
-        (square root of its area) than 1 % of the distance counts on either side alike.
+        As ``alternatives`` where all routes of that name pass all land on the same sides. Else with
+        the sides that differ: ``"west of Great Britain, east of Ireland"``. Land narrower (square
+        root of its area) than 1 % of the distance does not count.
     """
-    names = list(ways)
+    names = list(alternatives)
     default = next(iter(networks.values()))
-    for way in dict.fromkeys(ways):
-        mine = [k for k, name in enumerate(ways) if name == way]
-        found = _homotopy_labels([routes[k] for k in mine], networks.get(way, default), chart)
-        for k, text in zip(mine, found):
-            names[k] = text if way == "open sea" and text else ", ".join(filter(None, (way, text)))
+    for one in dict.fromkeys(alternatives):
+        members = [k for k, name in enumerate(alternatives) if name == one]
+        labels = _homotopy_labels([routes[k] for k in members], networks.get(one, default), chart)
+        for k, label in zip(members, labels):
+            replaces = one == "open sea" and label
+            names[k] = label if replaces else ", ".join(filter(None, (one, label)))
     return tuple(names)
 
 
 def _homotopy_labels(routes: Sequence[Route], network: Network, chart: Chart) -> list[str]:
-    """Return what tells routes apart that pass land on other sides; nothing where none do."""
+    """Return labels of routes by the sides of land; empty where all pass on the same sides."""
     ends = [(network.lat[k], network.lon[k]) for k in (network.meta.start, network.meta.goal)]
-    seen = obstacles(network, chart, _MIN_RELATIVE_SIZE * float(distance(*ends[0], *ends[1])))
-    keys = [seen.along(chart, route.track.lat, route.track.lon) for route in routes]
-    counts = np.array([np.frombuffer(key, np.int64) for key in keys])[:, 1 : len(seen.points)]
-    kinds, first, kind = np.unique(counts, axis=0, return_index=True, return_inverse=True)
-    if len(kinds) == 1:
+    obstacle_map = obstacles(
+        network, chart, _MIN_RELATIVE_SIZE * float(distance(*ends[0], *ends[1]))
+    )
+    keys = [obstacle_map.along(chart, route.track.lat, route.track.lon) for route in routes]
+    counts = np.array([np.frombuffer(key, np.int64) for key in keys])[
+        :, 1 : len(obstacle_map.points)
+    ]
+    classes, first, class_of = np.unique(counts, axis=0, return_index=True, return_inverse=True)
+    if len(classes) == 1:
         return [""] * len(routes)
     lands = [
-        _outline_at(chart.land.rings, *seen.points[1 + k])
-        for k in _distinguishing_landmasses(kinds)
+        _outline_at(chart.land.rings, *obstacle_map.points[1 + k])
+        for k in _distinguishing_landmasses(classes)
     ]
-    told = [_passing_sides_label(routes[k], lands) for k in first]
-    alike = [[n for n, text in enumerate(told) if text == mine] for mine in told]
+    sides = [_passing_sides_label(routes[k], lands) for k in first]
+    equal = [[n for n, text in enumerate(sides) if text == one] for one in sides]
     names = [
         text if len(same) == 1 else f"{text} ({same.index(n) + 1})"
-        for n, (text, same) in enumerate(zip(told, alike))
+        for n, (text, same) in enumerate(zip(sides, equal))
     ]
-    return [names[n] for n in kind.reshape(-1)]
+    return [names[n] for n in class_of.reshape(-1)]
 
 
 def _distinguishing_landmasses(counts: NDArray[np.int64]) -> list[int]:
-    """Return the largest pieces of land that are passed differently, each in another way."""
+    """Return the largest landmasses that separate the classes, each by another pattern."""
     found: list[int] = []
     patterns: set[bytes] = set()
     for k, column in enumerate(counts.T):
@@ -140,7 +116,7 @@ def _distinguishing_landmasses(counts: NDArray[np.int64]) -> list[int]:
 
 
 def _outline_at(rings: Rings, lat: float, lon: float) -> tuple[FloatArray, FloatArray]:
-    """Return the outline [deg] that begins at a position, longitudes without jumps."""
+    """Return the outline [deg] that starts at a position, longitudes without jumps."""
     begin = rings.start[:-1]
     k = int(np.flatnonzero((rings.lat[begin] == lat) & (rings.lon[begin] == lon))[0])
     part = slice(rings.start[k], rings.start[k + 1])
@@ -152,7 +128,7 @@ def _passing_sides_label(route: Route, lands: Sequence[tuple[FloatArray, FloatAr
 
 
 def _passing_side(route: Route, lat: FloatArray, lon: FloatArray) -> str:
-    """Return the point of the compass at which a route passes land, seen from its middle."""
+    """Return the compass point of a route at its closest, seen from the middle of the land."""
     middle = 0.5 * (lat.min() + lat.max()), 0.5 * (lon.min() + lon.max())
     there = route.samples["lat"], route.samples["lon"]
     away, course, _ = inverse(
@@ -163,12 +139,12 @@ def _passing_side(route: Route, lat: FloatArray, lon: FloatArray) -> str:
 
 
 def land_name(lat: FloatArray, lon: FloatArray) -> str:
-    """Return the name of the land inside an outline [deg]; where it lies if it has none."""
+    """Return the name of the land inside an outline [deg], or its position if it has no name."""
     middle = (
         0.5 * (float(lat.min()) + float(lat.max())),
         0.5 * (float(lon.min()) + float(lon.max())),
     )
-    for name, (y, x) in LANDMASSES.items():
+    for name, (y, x) in landmasses().items():
         east = middle[1] + float(wrap_longitude(x - middle[1]))
         if not (lat.min() <= y <= lat.max() and lon.min() <= east <= lon.max()):
             continue

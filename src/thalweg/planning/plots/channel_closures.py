@@ -1,6 +1,6 @@
-"""When and where a track is closed: by too little water, or by a current the ship cannot stem.
+"""Where and when a track is closed: by too little water, or by a current too strong to stem.
 
-After van Halem (2019), "Route optimization in dynamic currents", Fig. 4.1: position along the track
+After van Halem (2019), "Route optimization in dynamic currents", Fig. 4.1: distance along the track
 against time, with the periods in which the ship cannot pass.
 """
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 POSITION_COUNT, TIME_COUNT = 240, 240
-_SLACK = 1e-9  # of clearance, as the referee allows [m]
+_SLACK = 1e-9  # tolerance of the clearance, as in the referee [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,13 +43,13 @@ class Closures:
     times : float64 array (T,)
         [s since 1970-01-01T00:00Z].
     shallow : bool array (S, T)
-        Whether there is too little water.
+        Too little water.
     strong : bool array (S, T)
-        Whether there is enough, and the ship cannot stem the current on the track's course.
+        Enough water, but the ship cannot hold the course of the track in the current.
     unknown : bool array (S, T)
-        Whether depth or current are not known.
+        Depth or current unknown.
     clearance : float64 array (S, T)
-        Under-keel clearance [m]; +inf where nothing tells depth, NaN where it is not known.
+        Under-keel clearance [m]; +inf without a source of depth, NaN where unknown.
     """
 
     distance: FloatArray
@@ -61,7 +61,7 @@ class Closures:
 
     @property
     def closed(self) -> NDArray[np.bool_]:
-        """Whether the ship cannot pass, or nobody knows."""
+        """Where and when the ship cannot pass, or it is unknown whether it can."""
         return self.shallow | self.strong | self.unknown
 
 
@@ -75,21 +75,21 @@ def find_closures(
     times: FloatArray | None = None,
     places: int = POSITION_COUNT,
 ) -> Closures:
-    """Return when a track can be passed where.
+    """Return the open and closed periods along a track.
 
     Parameters
     ----------
     route : Route
-        As the referee found it.
+        A route scored by the referee.
     ship, sea, chart
         As for `thalweg.evaluate`.
     min_ukc : float, optional
         Least under-keel clearance [m].
     times : float64 array (T,), optional
-        [s since 1970]; by default from a little before the departure to a quarter of the time
-        after the arrival.
+        [s since 1970]; by default from 5 % of the passage time before the departure to 25 % after
+        the arrival.
     places : int, optional
-        How many places along the track to look at, about; every waypoint is one.
+        Approximate number of positions along the track; waypoints are included.
 
     Returns
     -------
@@ -121,7 +121,7 @@ def find_closures(
 
 
 def default_times(route: Route, count: int = TIME_COUNT) -> FloatArray:
-    """Return times from a little before the departure to a while after the arrival."""
+    """Return times from 5 % of the passage time before departure to 25 % after arrival."""
     end = route.arrive if math.isfinite(route.arrive) else float(np.nanmax(route.samples["time"]))
     length = max(end - route.depart, 60.0)
     return np.linspace(route.depart - 0.05 * length, end + 0.25 * length, count)

@@ -1,4 +1,4 @@
-"""The picture of a front: what time buys, its bound, and what the weather-blind route pays."""
+"""Plot of a Pareto front, with its lower front and the weather-blind route."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 from thalweg.planning.pareto.plan_front import knee
 
 if TYPE_CHECKING:
-    from thalweg.planning.plan import Plan
+    from thalweg.planning.plan_data import PlanData
 
 _CRITERION_LABELS = {"fuel": "fuel", "energy": "energy", "cost": "cost", "co2": "CO2"}
 _COLOURS = ("#c2185b", "#1565c0", "#2e7d32", "#ef6c00", "#6a1b9a", "#00838f")
 _INK = "#22303c"
 
 
-def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
+def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     """Draw the front of a plan that trades time for fuel, energy, cost or CO2.
 
     Parameters
@@ -25,7 +25,7 @@ def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
     plan : Plan
         With a front (its objective is neither ``"time"`` nor ``"distance"``).
     path : path, optional
-        Where to save the picture (PNG).
+        Where to save it (PNG).
 
     Returns
     -------
@@ -42,7 +42,7 @@ def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
 
     front = plan.front
     if front is None:
-        raise ValueError(f"a plan for least {plan.voyage.objective} has no front")
+        raise ValueError(f"a plan with the objective {plan.voyage.objective!r} has no front")
     figure = Figure(figsize=(8.4, 5.4), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
@@ -52,7 +52,7 @@ def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
     axes.set_xlabel("time from departure to arrival [h]")
     axes.set_ylabel(f"{_CRITERION_LABELS[front.criterion]} [{front.unit}]")
     axes.set_title(
-        f"{plan.provenance['from']} to {plan.provenance['to']}: what time buys",
+        f"{plan.provenance['from']} to {plan.provenance['to']}: Pareto front",
         fontsize=10,
         loc="left",
     )
@@ -63,8 +63,8 @@ def draw_pareto_front(plan: Plan, path: str | Path | None = None) -> Any:
     return figure
 
 
-def _draw_points(axes: Any, plan: Plan) -> None:
-    """Draw the routes, a colour for each way round, and name the ends and the knee."""
+def _draw_points(axes: Any, plan: PlanData) -> None:
+    """Draw the routes, one colour per alternative, and label the ends and the knee."""
     front = plan.front
     assert front is not None  # checked by the caller
     time = np.array([route.time_h for route in plan.routes])
@@ -90,7 +90,7 @@ def _draw_points(axes: Any, plan: Plan) -> None:
         )
 
 
-def _draw_lower_bound(axes: Any, plan: Plan) -> None:
+def _draw_lower_bound(axes: Any, plan: PlanData) -> None:
     front = plan.front
     assert front is not None
     shown = front.lower[:, np.isfinite(front.lower).all(axis=0)]
@@ -104,7 +104,7 @@ def _draw_lower_bound(axes: Any, plan: Plan) -> None:
     )
 
 
-def _draw_weather_blind(axes: Any, plan: Plan) -> None:
+def _draw_weather_blind(axes: Any, plan: PlanData) -> None:
     comparison = plan.front.comparison if plan.front is not None else None
     if comparison is None:
         return

@@ -1,4 +1,4 @@
-"""The profile of a route: speeds, weather and water under the keel against time."""
+"""Profile plot of a route: speeds, weather and under-keel clearance against time."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _INK = "#22303c"
 
 
 def draw_profile(route: Route, path: str | Path | None = None) -> Any:
-    """Draw what happens along a route against the hours since departure.
+    """Draw speeds, weather and clearance along a route against the hours since departure.
 
     Parameters
     ----------
     route : Route
         A route scored by the referee.
     path : path, optional
-        Where to save the picture (PNG).
+        Where to save it (PNG).
 
     Returns
     -------

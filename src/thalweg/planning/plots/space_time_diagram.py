@@ -1,4 +1,4 @@
-"""The s/t diagram: position along the track against time, with the closed periods hatched."""
+"""Space-time (s/t) diagram: distance along the track against time, closed periods hatched."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
-from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import PlanData
 from thalweg.planning.plots.channel_closures import Closures, default_times, find_closures
 from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.route import Route
@@ -32,7 +32,7 @@ _CLOSURE_STYLES = (
 
 
 def draw_space_time_diagram(
-    plan_or_route: Plan | Route,
+    plan_or_route: PlanData | Route,
     path: str | Path | None = None,
     *,
     ship: Ship | None = None,
@@ -40,16 +40,16 @@ def draw_space_time_diagram(
     chart: Chart | None = None,
     min_ukc: float | None = None,
 ) -> Any:
-    """Draw position along the track against time, with the periods in which it is closed.
+    """Draw the distance along the track against time, with the periods in which it is closed.
 
     Parameters
     ----------
     plan_or_route : Plan or Route
-        A plan knows its ship, sea, chart, clearance and windows; a route needs ship and sea.
+        A plan holds its ship, sea, chart, clearance and windows; a route needs ship and sea.
     path : path, optional
-        Where to save the picture (PNG).
+        Where to save it (PNG).
     ship, sea, chart
-        For a route, or in place of those of the plan.
+        For a route, or instead of those of the plan.
     min_ukc : float, optional
         Least under-keel clearance [m]; by default that of the voyage or of the ship file, or 0.
 
@@ -60,17 +60,17 @@ def draw_space_time_diagram(
     Raises
     ------
     InputError
-        If ship or sea are not known.
+        If ship or sea is not given.
     """
-    voyage = plan_or_route.voyage if isinstance(plan_or_route, Plan) else None
-    route = plan_or_route.best if isinstance(plan_or_route, Plan) else plan_or_route
-    known = plan_or_route.plot_context if isinstance(plan_or_route, Plan) else None
+    voyage = plan_or_route.voyage if isinstance(plan_or_route, PlanData) else None
+    route = plan_or_route.best if isinstance(plan_or_route, PlanData) else plan_or_route
+    known = plan_or_route.plot_context if isinstance(plan_or_route, PlanData) else None
     ship = ship or (known.ship if known else None)
     sea = sea or (known.sea if known else None)
     if ship is None or sea is None:
         raise InputError(
             "The ship or the sea of the route is not given.",
-            "What is closed depends on both; a plan that was just made knows them.",
+            "Closed periods depend on both; a plan returned by `plan` holds them.",
             "Give ship and sea.",
         )
     if min_ukc is None:
@@ -86,10 +86,10 @@ def draw_space_time_diagram(
     return _draw(route, closures, voyage, min_ukc, path)
 
 
-def write_space_time_diagram(plan: Plan, folder: str | Path) -> list[Path]:
-    """Draw st.png into a folder where the tide matters to a plan; return what was written.
+def write_space_time_diagram(plan: PlanData, folder: str | Path) -> list[Path]:
+    """Draw st.png in a folder if the tide matters to a plan; return the files written.
 
-    It matters where depth and water level are known, and the ship waits or some part of its track
+    The tide matters if depth and water level are known, and the ship waits or a part of its track
     is closed at some time around the voyage.
     """
     known, best = plan.plot_context, plan.best
@@ -111,7 +111,7 @@ def write_space_time_diagram(plan: Plan, folder: str | Path) -> list[Path]:
 
 
 def _times(route: Route, voyage: Voyage | None) -> np.ndarray:
-    """Return the times of the picture, stretched to the voyage's windows where these are near."""
+    """Return the times of the plot, extended to the windows of the voyage where these are near."""
     times = default_times(route)
     low, high = float(times[0]), float(times[-1])
     reach = high - low
@@ -163,7 +163,7 @@ def _draw(
 def _hatch_closures(
     axes: Any, closures: Closures, hours: np.ndarray, miles: np.ndarray
 ) -> list[Any]:
-    """Hatch what is closed, each kind in its own way; return what the legend shows."""
+    """Hatch the closed periods, each kind in its style; return the handles of the legend."""
     from matplotlib.patches import Patch
 
     handles = []
@@ -182,7 +182,7 @@ def _hatch_closures(
 
 
 def _draw_ship_track(axes: Any, route: Route) -> list[Any]:
-    """Draw the ship's way, with its waits."""
+    """Draw the distance of the ship over time, with its waits."""
     hours = (route.samples["time"] - route.depart) / HOUR
     miles = route.samples["distance"] / NAUTICAL_MILE
     handles = axes.plot(hours, miles, color=_ROUTE, lw=1.8, zorder=4, label="ship")
@@ -195,13 +195,13 @@ def _draw_ship_track(axes: Any, route: Route) -> list[Any]:
         span = (np.array([arrive[k], arrive[k] + route.track.wait[k]]) - route.depart) / HOUR
         (line,) = axes.plot(
             span, [reached[k]] * 2, color=_WAIT, lw=4.0, solid_capstyle="butt", zorder=5,
-            label=f"waits {route.waiting_h:.2f} h in all",
+            label=f"waits {route.waiting_h:.2f} h in total",
         )  # fmt: skip
     return [*handles, line]
 
 
 def _draw_time_windows(axes: Any, route: Route, voyage: Voyage | None, end: float) -> list[Any]:
-    """Draw the window of departure and the latest arrival."""
+    """Draw the departure window and the latest arrival."""
     if voyage is None:
         return []
     handles = []

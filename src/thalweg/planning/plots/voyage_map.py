@@ -14,7 +14,7 @@ from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
 
 if TYPE_CHECKING:
-    from thalweg.planning.plan import Plan, PlotContext
+    from thalweg.planning.plan_data import PlanData, PlotContext
     from thalweg.route import Route
 
 _WAVES = "sea_surface_wave_significant_height"
@@ -28,7 +28,7 @@ _LAND, _SHORE, _ROUTE, _INK = "#e9e3d5", "#8f8672", "#c2185b", "#22303c"
 
 @dataclass(frozen=True)
 class MapExtent:
-    """The part of the world that is drawn; longitudes run on past 180 where they must."""
+    """The area of a map [deg]; longitudes continue beyond 180 where needed."""
 
     south: float
     north: float
@@ -37,30 +37,30 @@ class MapExtent:
 
     @property
     def aspect(self) -> float:
-        """Height of a degree of latitude over the width of a degree of longitude."""
+        """Length of a degree of latitude over that of a degree of longitude."""
         return 1.0 / max(0.05, math.cos(math.radians(0.5 * (self.south + self.north))))
 
     def unwrapped(self, lon: np.ndarray) -> np.ndarray:
-        """Return longitudes moved by whole turns into the box."""
+        """Return longitudes shifted by multiples of 360 degrees into the area."""
         middle = 0.5 * (self.west + self.east)
         return middle + wrap_longitude(np.asarray(lon) - middle)
 
     def line(self, lon: np.ndarray) -> np.ndarray:
-        """Return the longitudes of a line without jumps, moved by whole turns into the box."""
+        """Return the longitudes of a line without jumps, shifted by 360 degrees into the area."""
         lon = _unwrapped(lon)
         away = 0.5 * (self.west + self.east) - 0.5 * (float(lon.min()) + float(lon.max()))
         return np.asarray(lon + 360.0 * round(away / 360.0))
 
 
-def draw_map(plan: Plan, path: str | Path | None = None) -> Any:
+def draw_map(plan: PlanData, path: str | Path | None = None) -> Any:
     """Draw the map of a plan.
 
     Parameters
     ----------
     plan : Plan
-        A plan with its surroundings (as `thalweg.plan` returns it).
+        A plan with its plot context (as `thalweg.plan` returns it).
     path : path, optional
-        Where to save the picture (PNG).
+        Where to save it (PNG).
 
     Returns
     -------
@@ -92,7 +92,7 @@ def _unwrapped(lon: np.ndarray) -> np.ndarray:
     return np.degrees(np.unwrap(np.radians(np.asarray(lon, float))))
 
 
-def _map_extent(plan: Plan) -> MapExtent:
+def _map_extent(plan: PlanData) -> MapExtent:
     lat = np.concatenate([route.samples["lat"] for route in plan.routes])
     lon = np.concatenate([_unwrapped(route.samples["lon"]) for route in plan.routes])
     high, wide = np.ptp(lat), np.ptp(lon) * math.cos(math.radians(float(np.mean(lat))))
@@ -109,7 +109,7 @@ def _map_extent(plan: Plan) -> MapExtent:
     )
 
 
-def _draw_sea(figure: Any, axes: Any, plan: Plan, world: PlotContext, box: MapExtent) -> None:
+def _draw_sea(figure: Any, axes: Any, plan: PlanData, world: PlotContext, box: MapExtent) -> None:
     lon, lat = np.meshgrid(
         np.linspace(box.west, box.east, 240), np.linspace(box.south, box.north, 180)
     )
@@ -130,7 +130,7 @@ def _draw_sea(figure: Any, axes: Any, plan: Plan, world: PlotContext, box: MapEx
 def _water_mask(
     world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
-    """Return where there is water: not on the chart's land, nor dry, nor in holes of a mesh."""
+    """Return where there is water: not land of the chart, not dry, not a hole of a mesh."""
     wet = np.asarray(world.chart.is_navigable(lat, lon), bool)
     depth = _depth(world, moment, lat, lon)
     if depth is None:
@@ -140,9 +140,9 @@ def _water_mask(
 
 
 def _passage_times(
-    plan: Plan, world: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
+    plan: PlanData, world: PlotContext, box: MapExtent, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray:
-    """Return when the fastest ship would be at each point; NaN where it never gets."""
+    """Return the earliest arrival at each point; NaN where not reached."""
     from scipy.interpolate import LinearNDInterpolator
 
     node_lon = box.unwrapped(world.lon)
@@ -160,7 +160,7 @@ def _passage_times(
 def _shading_field(
     world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> tuple[np.ndarray, str, str] | None:
-    """Return the most telling field of the sea at passage, its label and its colours."""
+    """Return the field of the sea to shade (waves, current, wind or depth), label and colours."""
     at = (moment, lat, wrap_longitude(lon))
     names = world.sea.variables
     if _WAVES in names:
@@ -182,7 +182,7 @@ def _shading_field(
 def _depth(
     world: PlotContext, moment: np.ndarray, lat: np.ndarray, lon: np.ndarray
 ) -> np.ndarray | None:
-    """Return the depth of water [m] by chart and sea; None where neither tells it."""
+    """Return the water depth [m] of chart and sea; None if neither provides it."""
     names, depths = world.sea.variables, []
     if world.chart.has_depth:
         depths.append(np.asarray(world.chart.depth_at(lat, lon), float))
@@ -218,7 +218,7 @@ def _draw_arrows(
 
 def _draw_isochrones(
     axes: Any,
-    plan: Plan,
+    plan: PlanData,
     reached: np.ndarray,
     grid: tuple[np.ndarray, np.ndarray],
     on_water: np.ndarray,
@@ -238,7 +238,7 @@ def _draw_isochrones(
 
 
 def _dilated(mask: np.ndarray) -> np.ndarray:
-    """Return a mask grown by one cell all round, so that lines end at the drawn coast."""
+    """Return a mask grown by one cell on all sides, so that lines end at the drawn coast."""
     from scipy.ndimage import binary_dilation
 
     return np.asarray(binary_dilation(mask, np.ones((3, 3), bool)))
@@ -270,7 +270,7 @@ def _draw_speed(figure: Any, axes: Any, route: Route, box: MapExtent) -> None:
     bar.ax.tick_params(labelsize=7)
 
 
-def _draw_routes(figure: Any, axes: Any, plan: Plan, box: MapExtent) -> None:
+def _draw_routes(figure: Any, axes: Any, plan: PlanData, box: MapExtent) -> None:
     from matplotlib.patheffects import withStroke
 
     best = plan.best
@@ -324,14 +324,14 @@ def _draw_routes(figure: Any, axes: Any, plan: Plan, box: MapExtent) -> None:
 
 
 def _longitudes_on_line(route: Route, box: MapExtent) -> np.ndarray:
-    """Return the longitudes of the waypoints where the drawn line of the route passes them."""
+    """Return the longitudes of the waypoints on the drawn line of the route."""
     lat, lon, drawn = route.samples["lat"], route.samples["lon"], box.line(route.samples["lon"])
     places = zip(route.track.lat, route.track.lon)
     near = [int(np.argmin(np.abs(lat - y) + np.abs(wrap_longitude(lon - x)))) for y, x in places]
     return np.asarray(drawn[near] + wrap_longitude(route.track.lon - lon[near]))
 
 
-def _decorate_axes(axes: Any, plan: Plan, box: MapExtent) -> None:
+def _decorate_axes(axes: Any, plan: PlanData, box: MapExtent) -> None:
     best = plan.best
     fuel = "" if best.fuel_t is None else f", {best.fuel_t:.1f} t fuel"
     certain = 100 * (1 - plan.proof.certain / plan.objective_value) if plan.objective_value else 0.0

@@ -1,4 +1,4 @@
-"""Files that a plan or a route leaves in a folder."""
+"""Files of a plan or a route in a folder."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike
 from thalweg.planning.plots.route_profile import draw_profile
 from thalweg.planning.plots.space_time_diagram import write_space_time_diagram
+from thalweg.planning.plots.voyage_map import draw_map
 from thalweg.route import Route, write_csv, write_geojson, write_gpx
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
-    from thalweg.planning.plan import Plan
+    from thalweg.planning.plan_data import PlanData
     from thalweg.sea import Sea
 
 
 def make_folder(folder: str | Path) -> Path:
-    """Make a folder if needed and return it.
+    """Create a folder if it does not exist, and return it.
 
     Raises
     ------
     InputError
-        If it cannot be made or written.
+        If it cannot be created or written.
     """
     folder = Path(folder)
     try:
@@ -43,22 +44,35 @@ def make_folder(folder: str | Path) -> Path:
 
 def _unwritable_error(folder: Path, why: str) -> InputError:
     return InputError(
-        f"The folder {folder} cannot be written: {why}.", "", "Choose another with --out."
+        f"The folder {folder} cannot be written: {why}.",
+        "A folder that exists and can be written, or a path where one can be created.",
+        "Choose another with --out.",
     )
 
 
-def write_plan(plan: Plan, folder: str | Path) -> list[Path]:
-    """Write plan.json, the best route in three formats, and both pictures."""
+def write_plan(plan: PlanData, folder: str | Path) -> list[Path]:
+    """Write plan.json, the best route in three formats, the plots, and the files of a front.
+
+    Parameters
+    ----------
+    plan : PlanData
+    folder : path
+
+    Returns
+    -------
+    list of Path
+        The files written.
+    """
     folder = make_folder(folder)
     plan.to_json(folder / "plan.json")
     files = [folder / "plan.json", *_write_formats(plan.best, folder)]
-    plan.plot(folder / "map.png")
+    draw_map(plan, folder / "map.png")
     draw_profile(plan.best, folder / "profile.png")
     files += [folder / "map.png", folder / "profile.png", *write_space_time_diagram(plan, folder)]
     return files if plan.front is None else files + _write_front(plan, folder)
 
 
-def _write_front(plan: Plan, folder: Path) -> list[Path]:
+def _write_front(plan: PlanData, folder: Path) -> list[Path]:
     """Write front.csv, front.png, comparison.csv and, in ``routes``, each route."""
     from thalweg.planning.plots.pareto_front_plot import draw_pareto_front
 
@@ -76,7 +90,7 @@ def _write_front(plan: Plan, folder: Path) -> list[Path]:
 
 
 def _write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> Path:
-    """Write plain rows as CSV; what is not known is left empty."""
+    """Write plain rows as CSV; unknown values are empty."""
     import csv
 
     with path.open("w", newline="", encoding="utf-8") as file:
@@ -87,7 +101,7 @@ def _write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> Path:
 
 
 def write_route(route: Route, folder: str | Path) -> list[Path]:
-    """Write a route as route.json, in three formats, and its profile."""
+    """Write a route as route.json, in three formats, and its profile; return the files."""
     folder = make_folder(folder)
     text = json.dumps(route.as_dict(), indent=2, allow_nan=False)
     (folder / "route.json").write_text(text + "\n", encoding="utf-8")
@@ -97,7 +111,7 @@ def write_route(route: Route, folder: str | Path) -> list[Path]:
 
 
 def draw_sea(sea: Sea, path: str | Path, *, time: TimeLike | None = None) -> Path:
-    """Draw a map of each main quantity of a sea over the coastline; return the picture's path."""
+    """Draw a map of each main quantity of a sea over the coastline; return its path."""
     from thalweg.chart import Chart
 
     path = Path(path)
@@ -106,15 +120,15 @@ def draw_sea(sea: Sea, path: str | Path, *, time: TimeLike | None = None) -> Pat
 
 
 def _coastlines(sea: Sea, chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the rims of the land inside what a sea covers, as (lat, lon)."""
+    """Return the outlines (lat, lon) of the land inside the coverage of a sea."""
     rows = sea.coverage()
     south, north = min(row.south for row in rows), max(row.north for row in rows)
     west, east = min(row.west for row in rows), max(row.east for row in rows)
-    rims = []
+    outlines = []
     for polygon in chart.land_polygons(south, north, west, east):
         lon, lat = np.asarray(polygon.exterior.coords).T
-        rims.append((lat, lon))
-    return rims
+        outlines.append((lat, lon))
+    return outlines
 
 
 def _write_formats(route: Route, folder: Path, name: str = "route") -> list[Path]:

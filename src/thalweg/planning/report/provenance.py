@@ -1,4 +1,4 @@
-"""What a plan tells besides its routes: warnings, and all that is needed to repeat it."""
+"""Warnings and provenance of a plan."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.network import Network
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.single.passage import PlanningContext
 from thalweg.route import Route
 from thalweg.sea.inspection import data_gaps
 
-#: The coarse depth of the world is looked at only this far off the coast [m] ...
+#: The coarse global depth is checked only at this distance off the coast [m] ...
 _MIN_SHORE_DISTANCE = 15_000.0
-#: ... and doubted when it leaves less than this under the keel [m].
+#: ... and a warning is given below this under-keel clearance [m].
 _MIN_PLAUSIBLE_CLEARANCE = 10.0
-#: Poleward of this [deg] ice is mentioned.
+#: Latitude [deg] beyond which a warning about ice is given.
 _ICE_WARNING_LATITUDE = 72.0
 
 
 def route_warnings(context: PlanningContext, route: Route) -> list[str]:
-    """Return the warnings about a route that no limit looks at."""
+    """Return warnings about a route that limits do not cover."""
     notes = ice_warnings(route) + data_gap_warnings(context, route)
     if not math.isfinite(context.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
         notes += shallow_water_warnings(context, route)
@@ -34,7 +34,7 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
 
 
 def shallow_water_warnings(context: PlanningContext, route: Route) -> list[str]:
-    """Warn where the embedded coarse depth of the world looks shallow, well off the coast."""
+    """Return a warning where the coarse global depth is shallow, well off the coast."""
     lat, lon = route.samples["lat"][::4], route.samples["lon"][::4]
     depth = np.asarray(context.chart.coarse_depth_at(lat, lon))
     offshore = (
@@ -46,33 +46,33 @@ def shallow_water_warnings(context: PlanningContext, route: Route) -> list[str]:
         return []
     worst = int(np.argmin(np.where(doubtful, depth, np.inf)))
     return [
-        f"The coarse depth of the world shows {max(float(depth[worst]), 0.0):.0f} m near "
+        f"The coarse global depth is {max(float(depth[worst]), 0.0):.0f} m near "
         f"{format_position(float(lat[worst]), float(lon[worst]))}: check the chart there."
     ]
 
 
 def data_gap_warnings(context: PlanningContext, route: Route) -> list[str]:
-    """Warn where files tell nothing for a part of the voyage: the ship cannot sail by them then."""
+    """Return warnings about gaps in the time of the data during a voyage."""
     if not math.isfinite(route.arrive):
         return []
     return [
-        f"{gap.source} tells nothing from {format_time(gap.after)} to {format_time(gap.before)}: "
-        "what it alone holds is not known then, and no leg is sailed on it."
+        f"{gap.source} has a gap from {format_time(gap.after)} to {format_time(gap.before)}: legs "
+        "in the gap that need its data are not sailed."
         for gap in data_gaps(context.sea)
         if gap.before > route.depart and gap.after < route.arrive
     ]
 
 
 def ice_warnings(route: Route) -> list[str]:
-    """Warn where ice is likely, which no limit looks at."""
+    """Return a warning where ice is likely."""
     lat = route.samples["lat"]
     worst = int(np.argmax(np.abs(lat)))
     if abs(float(lat[worst])) < _ICE_WARNING_LATITUDE:
         return []
     place = format_position(float(lat[worst]), float(route.samples["lon"][worst]))
     return [
-        f"The route comes as far as {place} and sea ice is not considered: give a via point or a "
-        "no-go zone if that water is closed."
+        f"The route reaches {place}, and sea ice is not modelled: give a via point or a no-go zone "
+        "if that water is closed."
     ]
 
 
@@ -82,7 +82,7 @@ def provenance(
     networks: list[dict[str, Any]],
     speeds_kn: list[float | None],
 ) -> dict[str, Any]:
-    """Return all that is needed to repeat a plan, as plain data."""
+    """Return the data needed to repeat a plan, as plain data."""
     from importlib.metadata import version
 
     table_error = dataclasses.asdict(context.table.error)
@@ -108,7 +108,7 @@ def provenance(
 def network_summary(
     network: Network, *, settled: int, depart: float, way: str = ""
 ) -> dict[str, Any]:
-    """Return what is told of a network that was searched."""
+    """Return the description of a network that was searched, for the provenance."""
     facts = {
         "kind": network.meta.kind,
         "nodes": int(network.n_nodes),
@@ -122,5 +122,5 @@ def network_summary(
 
 
 def finite_or_none(value: float) -> float | None:
-    """Return a number, or None where it is not one."""
+    """Return a number, or None if it is not finite."""
     return value if math.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""Which water a voyage may use: canals that are open and fit, ice left out, control areas."""
+"""Restrictions of the chart for a voyage: canals, ice latitudes, emission control areas."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from thalweg.chart import Chart
 from thalweg.chart.canals import Canal
 from thalweg.core.errors import ThalwegWarning
 from thalweg.core.geodesy import distance
-from thalweg.planning.pareto.objective import find_criterion
 from thalweg.planning.request.voyage_endpoints import Endpoint
-from thalweg.planning.voyage import TRADE_OFF_OBJECTIVES, Voyage
+from thalweg.planning.request.voyage_objective import priced_objective
+from thalweg.planning.voyage import Voyage
 from thalweg.ship import Ship
 
-#: Water beyond these latitudes [deg] is left out unless the voyage goes there: sea ice is not
-#: considered, and the passages round the north of America and Asia lie beyond the first.
+#: Water beyond these latitudes [deg] is excluded unless the voyage goes there: sea ice is not
+#: modelled, and the Northwest and Northeast Passages are north of the first.
 ICE_LIMIT_NORTH, ICE_LIMIT_SOUTH = 71.9, -65.0
-_DETOUR_RATIO = 1.3  # ways by a canal up to so many geodesics long are worth a word
-_ICE_LIMIT_MARGIN = 3.0  # degrees beyond a place of the voyage that stay open
+_DETOUR_RATIO = 1.3  # canals are mentioned if the route through them is at most so much longer
+_ICE_LIMIT_MARGIN = 3.0  # [deg] beyond the places of the voyage that remain open
 
 
 def exclude_closed_canals(
     chart: Chart, voyage: Voyage, ship: Ship, ends: Sequence[Endpoint]
 ) -> tuple[Chart, list[str]]:
-    """Return the chart without the canals that are forbidden or too small, and what to say.
+    """Return the chart without canals that are forbidden or too small, and notes about them.
 
-    Where the cost is made least and is in another currency than the dues of canals, which are in
-    USD, those with dues are left out, too. Only what lies on the way is said.
+    Canal dues are in USD: where the objective is a cost in another currency, canals with dues are
+    excluded as well. Only canals near the geodesic get a note.
 
     Raises
     ------
@@ -43,52 +43,52 @@ def exclude_closed_canals(
     for canal in chart.canals:
         why = canal.transit_restriction(draught=float(ship.draught) or None, beam=beam)
         if not why and currency and canal.fee > 0.0:
-            why = f"{canal.title}: its dues are in USD, and the prices are in {currency}"
+            why = f"{canal.title}: its dues are in USD, the prices in {currency}"
         if why:
             closed.append(canal.name)
             if any(_near_geodesic(canal, *pair) for pair in itertools.pairwise(ends)):
-                notes.append(f"Not passed: {why}.")
+                notes.append(f"Canal excluded: {why}.")
     return (chart.without_canals(*closed) if closed else chart), notes
 
 
 def _foreign_currency(voyage: Voyage, ship: Ship) -> str:
-    """Return the currency of the cost that is made least, where there is one and not USD."""
-    if voyage.objective not in TRADE_OFF_OBJECTIVES:
+    """Return the currency if the objective is a cost in another currency than USD, else ''."""
+    if not voyage.chooses_speeds:
         return ""
-    criterion = find_criterion(voyage, ship)
-    return criterion.unit if criterion.name == "cost" and criterion.unit != "USD" else ""
+    objective = priced_objective(voyage, ship)
+    return objective.unit if objective.name == "cost" and objective.unit != "USD" else ""
 
 
 def _near_geodesic(canal: Canal, start: Endpoint, goal: Endpoint) -> bool:
-    """Return whether the way by a canal is not much longer than the geodesic."""
+    """Return whether the route through a canal is not much longer than the geodesic."""
     a, b = (start.lat, start.lon), (goal.lat, goal.lon)
     one, other = canal.ends
-    ways = (
+    lengths = (
         distance(*a, *p) + canal.length + distance(*q, *b) for p, q in ((one, other), (other, one))
     )
-    return float(min(ways)) < _DETOUR_RATIO * float(distance(*a, *b))
+    return float(min(lengths)) < _DETOUR_RATIO * float(distance(*a, *b))
 
 
 def exclude_ice_latitudes(chart: Chart, ends: list[Endpoint]) -> Chart:
-    """Return the chart without the water where ice is likely, as far as the voyage allows."""
+    """Return the chart without the latitudes where ice is likely, as far as the voyage allows."""
     area = chart.area
     if area.width < 360.0 or area.south > -89.0 or area.north < 89.0:
-        return chart  # the user has drawn limits
+        return chart  # limited by the user
     north = max(ICE_LIMIT_NORTH, *(end.lat + _ICE_LIMIT_MARGIN for end in ends))
     south = min(ICE_LIMIT_SOUTH, *(end.lat - _ICE_LIMIT_MARGIN for end in ends))
     return chart.within(max(south, -90.0), min(north, 90.0), area.west, area.west + area.width)
 
 
 def add_emission_control_areas(chart: Chart, voyage: Voyage, ship: Ship) -> tuple[Chart, list[str]]:
-    """Return the chart with emission control areas where fuel counts otherwise in them.
+    """Return the chart with emission control areas where these affect the objective.
 
-    They are those in force on the day the package's data were looked up, whatever the departure:
-    weather of the past stands for weather to come. A chart with areas of its own keeps them.
+    They are the areas in force when the data of the package were compiled, for any departure, as
+    past weather often represents future weather. A chart with its own areas keeps them.
     """
-    if voyage.objective not in TRADE_OFF_OBJECTIVES:
+    if not voyage.chooses_speeds:
         return chart, []
-    criterion = find_criterion(voyage, ship)
-    if criterion.inside == criterion.outside or chart.zones.eca:
+    prices = priced_objective(voyage, ship).prices
+    if not prices.differs_in_control_areas or chart.zones.eca:
         return chart, []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ThalwegWarning)

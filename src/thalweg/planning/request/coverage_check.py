@@ -1,4 +1,4 @@
-"""Checks at the door: whether the ends of a voyage lie where the data know anything."""
+"""Coverage check: whether the data cover the end points of a voyage."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from thalweg.sea import Sea, standard_names
 from thalweg.ship import Ship
 
 _DIRECTIONS = ("sea_surface_wave_to_direction_east", "sea_surface_wave_to_direction_north")
-#: Where there is no end of the data, the ends are looked at over so long a time [s].
+#: Period that is checked where the data have no end [s].
 _MAX_PERIOD = 20 * 24 * HOUR
 _SAMPLE_TIMES = 24
 _SEARCH_RINGS, _SEARCH_BEARINGS, _MAX_CANDIDATES = 40, 72, 40
@@ -40,8 +40,8 @@ def check_argument_types(voyage: object, ship: object, sea: object, chart: objec
     for name, (value, kind, example) in wanted.items():
         if not isinstance(value, kind):
             raise InputError(
-                f"The {name} is {value!r}, which is no {kind.__name__}.",
-                f"It is made by {example}.",
+                f"The {name} is {value!r}, which is not a {kind.__name__}.",
+                f"Make one with {example}.",
                 f"Give a {kind.__name__}.",
                 field=name,
             )
@@ -55,33 +55,31 @@ def endpoints_within_coverage(
     sea: Sea,
     chart: Chart,
     needs: Requirements,
-    last: float,
 ) -> list[Endpoint]:
-    """Return the ends; ports move to the nearest water that is known and deep enough.
+    """Return the end points; ports are moved to the nearest water that is covered and deep enough.
 
     Parameters
     ----------
-    ends : sequence of End
-    voyage, ship, sea, chart, needs
-        What is asked and what is needed.
-    last : float
-        Last moment of the data [s since 1970]; may be infinite.
+    ends : sequence of Endpoint
+    voyage : Voyage
+    ship : Ship
+    sea : Sea
+    chart : Chart
+    needs : Requirements
 
     Raises
     ------
     OutsideAreaError
-        If the data never know all that is needed at an end.
+        If the data do not cover all required variables at an end point at any time.
     NoRouteError
-        If the water at an end is too shallow at any tide.
+        If the water at an end point is too shallow at any tide.
     """
-    coverage_probe = _CoverageProbe(
-        voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs, last=last
-    )
+    coverage_probe = _CoverageProbe(voyage=voyage, ship=ship, sea=sea, chart=chart, needs=needs)
     return [_moved_into_coverage(end, coverage_probe, chart) for end in ends]
 
 
 class _CoverageProbe:
-    """What the data must know at a place, and when it is looked for."""
+    """Samples the required variables at positions over the period of the voyage."""
 
     def __init__(
         self,
@@ -91,7 +89,6 @@ class _CoverageProbe:
         sea: Sea,
         chart: Chart,
         needs: Requirements,
-        last: float,
     ) -> None:
         channels = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
         self.names = sorted(
@@ -100,11 +97,15 @@ class _CoverageProbe:
         self.sea, self.chart = sea, chart
         self.depth = float(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
         first = voyage.earliest_departure
-        end = last if math.isfinite(last) else voyage.latest_departure + _MAX_PERIOD
+        end = (
+            needs.data_end
+            if math.isfinite(needs.data_end)
+            else voyage.latest_departure + _MAX_PERIOD
+        )
         self.times = np.linspace(first, end, _SAMPLE_TIMES)
 
     def missing(self, lat: FloatArray, lon: FloatArray) -> list[str]:
-        """Return what is not known at a place at any time."""
+        """Return the variables that are not known at a position at any time."""
         got = self._sample(self.names, lat, lon)
         lacking = [name for name in self.names if not np.isfinite(got[name]).any()]
         if math.isfinite(self.depth) and not np.isfinite(self._depths(lat, lon)).any():
@@ -112,7 +113,7 @@ class _CoverageProbe:
         return lacking
 
     def suits(self, lat: FloatArray, lon: FloatArray, *, harbour: bool) -> NDArray[np.bool_]:
-        """Return where all is known at some time; for a harbour, always and with water enough."""
+        """Return where all is known at some time; for a harbour, at all times and deep enough."""
         good = np.ones(lat.shape, bool)
         often = np.all if harbour else np.any
         for values in self._sample(self.names, lat, lon).values():
@@ -123,7 +124,7 @@ class _CoverageProbe:
         return good
 
     def check_deep_enough(self, end: Endpoint) -> None:
-        """Raise `NoRouteError` if the water at an end is too shallow at any tide of the data."""
+        """Raise `NoRouteError` if an end point is too shallow at any tide of the data."""
         if not math.isfinite(self.depth):
             return
         place = np.array([end.lat]), np.array([end.lon])
@@ -132,7 +133,7 @@ class _CoverageProbe:
             first, last = float(self.times[0]), float(self.times[-1])
             native = self.sea.times(first, last, names=[standard_names.WATER_LEVEL])
             native = native[(native >= first) & (native <= last)]
-            native = np.append(native, self.times)  # formulas have steps of their own
+            native = np.append(native, self.times)  # formulas have no native times
             level = self.sea.sample([standard_names.WATER_LEVEL], native, end.lat, end.lon)
             values = level[standard_names.WATER_LEVEL]
             if not np.isfinite(values).any():
@@ -146,7 +147,7 @@ class _CoverageProbe:
         return self.sea.sample(wanted, self.times[:, None], lat, lon) if wanted else {}
 
     def _depths(self, lat: FloatArray, lon: FloatArray) -> FloatArray:
-        """Return the depth at chart datum [m]; NaN where nothing tells it."""
+        """Return the depth at chart datum [m]; NaN where unknown."""
         depths = np.full(lat.shape, math.nan)
         if self.chart.has_depth:
             depths = np.asarray(self.chart.depth_at(lat, lon), float)
@@ -161,21 +162,21 @@ def _moved_into_coverage(end: Endpoint, coverage_probe: _CoverageProbe, chart: C
     if end.is_port and not coverage_probe.suits(*here, harbour=True)[0]:
         near = _nearest_suitable_water(end, coverage_probe, chart, harbour=True)
         if near is not None:
-            why = "in water that is shallow or outside the data"
+            why = "in water that is too shallow or outside the data"
             return replace(end, lat=near[0], lon=near[1], moved_distance_m=near[2], why=why)
     lacking = coverage_probe.missing(*here)
     if not lacking:
         coverage_probe.check_deep_enough(end)
         return end
     raise OutsideAreaError(
-        f"{end.name} lies outside the data: {', '.join(lacking)} "
+        f"{end.name} is outside the data: {', '.join(lacking)} "
         f"{'is' if len(lacking) == 1 else 'are'} not known there.",
         _coverage_hint(
             _nearest_suitable_water(end, coverage_probe, chart, harbour=False),
             coverage_probe,
             lacking,
         ),
-        "Choose a place inside, or add data that cover it.",
+        "Choose a place inside, or add data that cover this one.",
         lacking=lacking,
     )
 
@@ -185,9 +186,9 @@ def _too_shallow_error(end: Endpoint, depth: float, time: float, required: float
     when = "" if math.isnan(time) else f", at its highest tide at {format_time(time)}"
     return NoRouteError(
         f"{end.name} {dry}{when}.",
-        f"{required:.2f} m are needed: {required - depth:.2f} m too little at any tide of the "
+        f"{required:.2f} m are required: {required - depth:.2f} m too little at any tide of the "
         "data.",
-        "Choose a place in deeper water, sail lighter, or ask less clearance.",
+        "Choose a place in deeper water, load less, or require less clearance.",
         reasons={codes.REASONS[codes.DEPTH]: 1},
         nearest=(end.lat, end.lon),
         missing_m=required - depth,
@@ -220,16 +221,16 @@ def _coverage_hint(
 ) -> str:
     if near is not None:
         return (
-            f"The nearest water they know is {near[2] / NAUTICAL_MILE:.1f} nm away, at "
+            f"The nearest covered water is {near[2] / NAUTICAL_MILE:.1f} nm away, at "
             f"{format_position(near[0], near[1])}."
         )
     rows = [row for row in coverage_probe.sea.coverage() if row.variable in lacking]
     rows = [row for row in rows if row.north - row.south < 180.0]
     if not rows:
-        return f"They know none within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm."
+        return f"The data cover no water within {MAX_SNAP_PORT / NAUTICAL_MILE:.0f} nm."
     south, north = min(row.south for row in rows), max(row.north for row in rows)
     west, east = min(row.west for row in rows), max(row.east for row in rows)
     return (
-        f"The data lie between {format_position(south, west)} and {format_position(north, east)}, "
+        f"The data are between {format_position(south, west)} and {format_position(north, east)}, "
         "perhaps with gaps."
     )

@@ -1,8 +1,9 @@
-"""What the sea must supply for a ship and a voyage, and what is assumed where it does not."""
+"""Data that a ship and a voyage require of the sea, and the assumptions where there are none."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ _CHANNEL_OF = {name: channel for channel, name in standard_names.CHANNEL_VARIABL
 
 @dataclass(frozen=True)
 class Requirements:
-    """What is looked at along the way.
+    """What the legs of a voyage are computed from and checked against.
 
     Attributes
     ----------
@@ -29,12 +30,15 @@ class Requirements:
     limits : ndarray
         Limits for the kernels, in their order.
     notes : tuple of str
-        What is assumed because no data say otherwise.
+        Assumptions for data that are missing.
+    data_end : float
+        Last time at which the sea covers all channels [s since 1970]; may be infinite.
     """
 
     channels: tuple[int, ...]
     limits: np.ndarray
     notes: tuple[str, ...]
+    data_end: float
 
 
 def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -> Requirements:
@@ -44,7 +48,9 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
     ------
     MissingVariableError
         If a model or a limit of the ship needs a variable that no data hold, or a clearance is
-        demanded and there is no depth.
+        required and there is no depth.
+    OutsidePeriodError
+        If the departure is outside the period of the data.
     """
     _check_variables(ship, sea)
     notes = list(sea.assumptions)
@@ -62,16 +68,17 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
         if standard_names.BED_DEPTH in sea.variables:
             channels.add(codes.BED_DEPTH)
     limits = np.array([required, ship.limits.wave_height, ship.limits.wind_speed], float)
-    return Requirements(tuple(sorted(channels)), limits, tuple(notes))
+    data_end = _checked_data_end(voyage, sea, channels)
+    return Requirements(tuple(sorted(channels)), limits, tuple(notes), data_end)
 
 
 def _check_variables(ship: Ship, sea: Sea) -> None:
     missing = sorted(name for name in ship.needs if name not in sea.variables)
     if missing:
         raise MissingVariableError(
-            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not hold.",
-            f"The sea holds: {', '.join(sorted(sea.variables)) or 'nothing'}.",
-            "Add a file with it, or ask for a filling by name (for example --fill waves=0).",
+            f"The ship {ship.name!r} needs {', '.join(missing)}, which the sea does not provide.",
+            f"The sea provides: {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            "Add a file with it, or give a fill value by name (for example --fill waves=0).",
             missing=missing,
         )
 
@@ -80,15 +87,17 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
     known = chart.has_depth or standard_names.BED_DEPTH in sea.variables
     if voyage.min_ukc_m is not None and not known:
         raise MissingVariableError(
-            f"An under-keel clearance of {voyage.min_ukc_m:g} m is asked, but nothing tells depth.",
+            f"The voyage requires an under-keel clearance of {voyage.min_ukc_m:g} m, but neither "
+            "the chart nor the sea provides depth.",
             "Depth comes from a chart with depth (--depth FILE) or from a sea with a bed level.",
-            "Add depth, or plan without a clearance and check it on the chart.",
+            "Add depth, or plan without a clearance and check the depth on the chart.",
         )
     if "depth" in ship.reads and not known:
         raise MissingVariableError(
-            f"The speed of {ship.name!r} depends on the depth of the water, which nothing tells.",
+            f"The speed of {ship.name!r} depends on the water depth, but neither the chart nor the "
+            "sea provides depth.",
             "Depth comes from a chart with depth (--depth FILE) or from a sea with a bed level.",
-            "Add depth, or take a ship file without a method for shallow water.",
+            "Add depth, or use a ship file without a shallow-water method.",
         )
     if not known:
         notes.append("No depth in the data: under-keel clearance was not checked.")
@@ -97,21 +106,15 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
 
 
 def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
-    """Return the least under-keel clearance [m]: the voyage's, else the ship file's own limit."""
+    """Return the required under-keel clearance [m]: that of the voyage, else of the ship file."""
     if voyage.min_ukc_m is not None:
         return voyage.min_ukc_m
     return ship.min_under_keel_clearance
 
 
-def check_period(voyage: Voyage, sea: Sea, needs: Requirements) -> float:
-    """Return the last moment at which all that is needed is covered [s since 1970].
-
-    Raises
-    ------
-    OutsidePeriodError
-        If the departure lies outside the data.
-    """
-    needed = {standard_names.CHANNEL_VARIABLES[channel] for channel in needs.channels}
+def _checked_data_end(voyage: Voyage, sea: Sea, channels: Iterable[int]) -> float:
+    """Return the last time at which all channels are covered; check that the ship departs in it."""
+    needed = {standard_names.CHANNEL_VARIABLES[channel] for channel in channels}
     periods: dict[str, list[tuple[float, float]]] = {}
     for row in sea.coverage():
         if row.variable in needed:

@@ -1,4 +1,4 @@
-"""Where a voyage begins and ends: from text or degrees to navigable water."""
+"""End points of a voyage: from text or degrees to navigable water."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.planning.voyage import Place
+from thalweg.planning.voyage_parts import Place
 
-#: Charted coast is generalised: a position given in degrees may lie this far inside it [m].
+#: Greatest distance that a position is moved [m]; coastlines are generalised.
 MAX_SNAP_POSITION = 2_000.0
-#: Harbours lie on land at every resolution of the coastline [m].
+#: The same for ports [m]; harbours are on land at every resolution of the coastline.
 MAX_SNAP_PORT = 60_000.0
 
 
 @dataclass(frozen=True)
 class Endpoint:
-    """An end of a voyage on navigable water.
+    """An end point of a voyage on navigable water.
 
     Attributes
     ----------
     name : str
-        The port's name, or the position as text.
+        Name of the port, or the position as text.
     lat, lon : float
         Position used [deg].
     moved_distance_m : float
-        How far it was moved to reach navigable water [m].
+        Distance moved to navigable water [m].
     asked : (lat, lon), optional
-        Where it was asked for [deg], when it was moved.
+        Requested position [deg], where it was moved.
     is_port : bool
-        Whether it was given by the name of a port.
+        Whether the request was the name of a port.
     why : str
-        Why it was moved.
+        Reason for moving it.
     """
 
     name: str
@@ -46,16 +46,16 @@ class Endpoint:
 
     @property
     def origin(self) -> tuple[float, float]:
-        """Where it was asked for, as (lat, lon) [deg]."""
+        """Requested position (lat, lon) [deg]."""
         return self.asked or (self.lat, self.lon)
 
     @property
     def note(self) -> str:
-        """A sentence for the user when the end was moved, else nothing."""
+        """A note for the user where the position was moved, else empty."""
         if self.moved_distance_m < 1.0:
             return ""
         return (
-            f"{self.name} lies {self.why}: moved {self.moved_distance_m / NAUTICAL_MILE:.1f} nm to "
+            f"{self.name} is {self.why}: moved {self.moved_distance_m / NAUTICAL_MILE:.1f} nm to "
             f"open water at {format_position(self.lat, self.lon)}."
         )
 
@@ -66,7 +66,7 @@ def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
     Raises
     ------
     InputError
-        If the port is unknown (with near matches), or the place lies on land too far from water.
+        If the port is unknown (with near matches), or the place is on land and too far from water.
     """
     if isinstance(place, str):
         position = parse_position(place)
@@ -95,7 +95,7 @@ def _snap_to_water(
     near_lat, near_lon, moved = found
     if moved > limit:
         raise InputError(
-            f"The {what} {name} lies on land or in closed water.",
+            f"The {what} {name} is on land or in enclosed water.",
             f"The nearest navigable water is {moved / NAUTICAL_MILE:.1f} nm away, at "
             f"{format_position(near_lat, near_lon)}.",
             _swap_hint(lat, lon, chart) or "Give that position, or a port by name.",
@@ -106,13 +106,17 @@ def _snap_to_water(
 
 def _swap_hint(lat: float, lon: float, chart: Chart) -> str:
     if abs(lon) <= 90.0 and bool(chart.is_navigable(lon, lat)):
-        return f"Latitude comes first: {lon:g}, {lat:g} would be at sea. Are they swapped?"
+        return (
+            f"Latitude comes first: {lon:g}, {lat:g} is at sea. Are latitude and longitude swapped?"
+        )
     return ""
 
 
 def check_distinct(start: Endpoint, goal: Endpoint) -> None:
-    """Raise `InputError` when two ends are the same place."""
+    """Raise `InputError` if two end points are the same place."""
     if float(distance(start.lat, start.lon, goal.lat, goal.lon)) < 1.0:
         raise InputError(
-            f"{start.name} and {goal.name} are the same place.", "", "Choose two different places."
+            f"{start.name} and {goal.name} are the same place.",
+            "Two places in succession are at least 1 m apart.",
+            "Choose two different places.",
         )

@@ -1,4 +1,4 @@
-"""The shallowest water that cannot be avoided, at the highest tide: is there any way at all?"""
+"""Controlling depth: the greatest least depth between two places, at the highest tide."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _MAX_BISECTIONS = 60
 
 
 class ControllingDepth(NamedTuple):
-    """Where the best way is shallowest.
+    """The shallowest place of the deepest path.
 
     Attributes
     ----------
     depth : float
-        Greatest depth there ever is [m]; -inf where nothing is known.
+        Greatest depth over time [m]; -inf where unknown.
     lat, lon : float
         [deg].
     time : float
-        When the water is highest there [s since 1970]; NaN if it never changes.
+        Time of the highest water there [s since 1970]; NaN if it does not change.
     """
 
     depth: float
@@ -35,19 +35,19 @@ class ControllingDepth(NamedTuple):
 
 
 def find_controlling_depth(network: Network, fields: StationFields) -> ControllingDepth | None:
-    """Return the shallowest place of the way on which it is deepest, each at its highest tide.
+    """Return the shallowest place of the deepest path, each place at its highest tide.
 
     Parameters
     ----------
     network : Network
         With start and goal.
     fields : StationFields
-        The sea at its stations; depth and level where they are known.
+        The sea at its stations, with depth and level where known.
 
     Returns
     -------
-    Shallowest or None
-        None if nothing of the network joins start and goal.
+    ControllingDepth or None
+        None if the network does not connect start and goal.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -65,7 +65,7 @@ def find_controlling_depth(network: Network, fields: StationFields) -> Controlli
     if whole[start] != whole[goal]:
         return None
     levels = np.unique(greatest)
-    low, high = 0, len(levels) - 1  # joined at low; the highest at which they are is looked for
+    low, high = 0, len(levels) - 1  # connected at low; bisect for the highest level that connects
     for _ in range(_MAX_BISECTIONS):
         if low >= high:
             break
@@ -84,7 +84,7 @@ def find_controlling_depth(network: Network, fields: StationFields) -> Controlli
 
 
 def _detour_measure(network: Network, tails: np.ndarray, heads: np.ndarray) -> FloatArray:
-    """Return how far legs lie out of the way from start to goal [rough squares of degrees]."""
+    """Return the sum of rough distances of legs to start and goal [deg]."""
     lat = 0.5 * (network.station_lat[tails] + network.station_lat[heads])
     lon = 0.5 * (network.station_lon[tails] + network.station_lon[heads])
     away = np.zeros(len(lat))
@@ -95,7 +95,7 @@ def _detour_measure(network: Network, tails: np.ndarray, heads: np.ndarray) -> F
 
 
 def _maximum_depths(network: Network, fields: StationFields) -> tuple[FloatArray, np.ndarray]:
-    """Return the greatest depth ever along each edge [m], and the station where that is least."""
+    """Return the greatest depth over time of each edge [m], and its shallowest station."""
     bed = _maximum_over_time(fields, BED_DEPTH, math.inf)
     level = _maximum_over_time(fields, WATER_LEVEL, 0.0)
     charted = np.asarray(network.depth, float)
@@ -118,7 +118,7 @@ def _maximum_depths(network: Network, fields: StationFields) -> tuple[FloatArray
 
 
 def _maximum_over_time(fields: StationFields, channel: int, absent: float) -> FloatArray:
-    """Return the greatest value ever of a channel at every station; -inf where never known."""
+    """Return the greatest value over time of a channel at every station; -inf if unknown."""
     k = fields.channel_index[channel]
     if k < 0:
         return np.full(fields.values.shape[0], absent)

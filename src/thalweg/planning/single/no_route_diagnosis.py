@@ -1,4 +1,4 @@
-"""Why there is no route, in words a user can act on."""
+"""Errors for voyages without a route: the reason, and what the user can change."""
 
 from __future__ import annotations
 
@@ -33,44 +33,44 @@ def no_route_error(
     ----------
     network : Network
     result : SearchResult
-        Of the failed search.
-    ends : pair of End
+        Result of the failed search.
+    ends : pair of Endpoint
     depart : float
         Earliest departure [s since 1970].
     last : float
-        When the data end [s since 1970]; inf if they do not.
+        End of the data [s since 1970]; may be infinite.
     fields : StationFields, optional
-        The sea that was searched; with it and ``required`` it is told where the water is too
-        shallow at any tide, how high it comes there and when.
+        The sea that was searched; with it and ``required`` the error states where the water is
+        too shallow at any tide, the greatest depth there and its time.
     required : float, optional
-        Depth that is needed [m].
+        Required water depth [m].
     """
     reasons = {**network.meta.rejected}
     for reason, count in result.refused.items():
         reasons[reason] = reasons.get(reason, 0) + count
     reasons = {reason: count for reason, count in reasons.items() if count}
-    nearest, words = None, "Nothing beyond the start can be reached."
+    nearest, reached = None, "No point beyond the start can be reached."
     if result.nearest_node >= 0:
         lat = float(network.station_lat[result.nearest_node])
         lon = float(network.station_lon[result.nearest_node])
         nearest = (lat, lon)
         left = float(distance(lat, lon, ends[1].lat, ends[1].lon)) / NAUTICAL_MILE
-        words = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."
-    never = None if fields is None else _depth_deficit(network, fields, required)
-    if never is not None:
+        reached = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."
+    deficit = None if fields is None else _depth_deficit(network, fields, required)
+    if deficit is not None:
         return NoRouteError(
             f"No route from {ends[0].name} to {ends[1].name}: "
             "the water is too shallow at any tide.",
-            str(never),
+            str(deficit),
             _ADVICE_SHALLOW,
             reasons=reasons,
             nearest=nearest,
-            missing_m=never.missing,
+            missing_m=deficit.missing,
         )
     return NoRouteError(
         f"No route from {ends[0].name} to {ends[1].name} within the limits, departing "
         f"{format_time(depart)}.",
-        words,
+        reached,
         _advice(reasons, last),
         reasons=reasons,
         nearest=nearest,
@@ -78,28 +78,28 @@ def no_route_error(
 
 
 def late_arrival_error(arrive_by: float, earliest: float, *, window: bool = False) -> NoRouteError:
-    """Build the error for a latest arrival that even the fastest way misses.
+    """Build the error for a latest arrival that no route meets.
 
     Parameters
     ----------
     arrive_by : float
-        Latest arrival asked [s since 1970].
+        Latest arrival of the voyage [s since 1970].
     earliest : float
-        Arrival of the fastest way [s since 1970].
+        Earliest possible arrival [s since 1970].
     window : bool
-        Whether that is the shortest passage of a window of departures, not the earliest arrival.
+        Whether it is that of the shortest passage in a departure window.
     """
-    if earliest <= arrive_by:  # that of another objective
+    if earliest <= arrive_by:  # in time, but not with this objective
         return NoRouteError(
-            f"The shortest way does not arrive by {format_time(arrive_by)}.",
-            f"The fastest arrives at {format_time(earliest)}.",
-            "Ask for the least time, or allow a later arrival.",
+            f"The shortest route does not arrive by {format_time(arrive_by)}.",
+            f"The fastest route arrives at {format_time(earliest)}.",
+            "Choose the objective 'time', or allow a later arrival.",
             reasons={codes.REASONS[codes.ARRIVE_BY]: 1},
         )
-    told = "shortest passage of the window arrives at" if window else "earliest arrival is"
+    subject = "shortest passage of the window arrives at" if window else "earliest arrival is"
     return NoRouteError(
         f"No route arrives by {format_time(arrive_by)}.",
-        f"The {told} {format_time(earliest)}.",
+        f"The {subject} {format_time(earliest)}.",
         "Allow a later arrival, or depart earlier.",
         reasons={codes.REASONS[codes.ARRIVE_BY]: 1},
         earliest=format_time(earliest),
@@ -107,7 +107,21 @@ def late_arrival_error(arrive_by: float, earliest: float, *, window: bool = Fals
 
 
 class DepthDeficit(NamedTuple):
-    """Too little water at any tide: where, how much at most, when, and how much is needed."""
+    """Where and when the water is deepest on the best path, and still too shallow.
+
+    Attributes
+    ----------
+    lat, lon : float
+        [deg].
+    depth : float
+        Greatest depth there [m]; infinite if unknown.
+    time : float
+        When it is deepest [s since 1970]; NaN if the depth does not change.
+    required : float
+        Required depth [m].
+    until : float
+        End of the data [s since 1970].
+    """
 
     lat: float
     lon: float
@@ -118,23 +132,23 @@ class DepthDeficit(NamedTuple):
 
     @property
     def missing(self) -> float:
-        """By how much it misses [m]."""
+        """Required depth less greatest depth [m]."""
         return self.required - self.depth
 
     def __str__(self) -> str:
         place = format_position(self.lat, self.lon)
         if not math.isfinite(self.depth):
-            return f"No depth is known on the way near {place}."
+            return f"The depth near {place} is not known."
         when = "" if math.isnan(self.time) else f", at {format_time(self.time)}"
         until = "" if math.isnan(self.time) else f" before {format_time(self.until)}"
         return (
-            f"The best way there is has at most {self.depth:.2f} m near {place}{when}; "
-            f"{self.required:.2f} m are needed{until}: {self.missing:.2f} m too little."
+            f"The deepest path has at most {self.depth:.2f} m near {place}{when}; "
+            f"{self.required:.2f} m are required{until}: {self.missing:.2f} m too little."
         )
 
 
 def _depth_deficit(network: Network, fields: StationFields, required: float) -> DepthDeficit | None:
-    """Return the shallowest place of the best way if even the highest tide is too low there."""
+    """Return the controlling depth if it is less than required at any tide."""
     if not math.isfinite(required) or min(network.meta.start, network.meta.goal) < 0:
         return None
     found = find_controlling_depth(network, fields)
@@ -144,15 +158,15 @@ def _depth_deficit(network: Network, fields: StationFields, required: float) -> 
     return DepthDeficit(found.lat, found.lon, found.depth, found.time, required, end)
 
 
-_ADVICE_SHALLOW = "Sail lighter, ask less clearance, or come at a higher tide than these data hold."
+_ADVICE_SHALLOW = "Load less, require less clearance, or use data that include a higher tide."
 _ADVICE = {
-    codes.DEPTH: "Sail lighter, ask less clearance, or allow waiting for the tide.",
-    codes.WAVE_HEIGHT: "Leave later, or raise the limit of the ship.",
-    codes.WIND_SPEED: "Leave later, or raise the limit of the ship.",
-    codes.NO_DATA: "The data have gaps: add a layer that covers them, or name a filling.",
-    codes.CURRENT: "The current is faster than the ship: leave at another time.",
+    codes.DEPTH: "Load less, require less clearance, or allow waiting for the tide.",
+    codes.WAVE_HEIGHT: "Depart later, or raise the limit of the ship.",
+    codes.WIND_SPEED: "Depart later, or raise the limit of the ship.",
+    codes.NO_DATA: "The data have gaps: add a layer that covers them, or give a fill value.",
+    codes.CURRENT: "The current is faster than the ship: depart at another time.",
     codes.ARRIVE_BY: "Allow a later arrival.",
-    codes.SAFETY: "Leave later, order another speed, or loosen the limits of the ship file.",
+    codes.SAFETY: "Depart later, order another speed, or relax the limits of the ship file.",
 }
 
 
@@ -166,5 +180,5 @@ def _advice(reasons: dict[str, int], last: float) -> str:
     if counts[code]:
         return _ADVICE.get(code, "Change the limits or the area.")
     if reasons.get(codes.REASONS[codes.OUTSIDE_PERIOD]) and math.isfinite(last):
-        return f"The data end at {format_time(last)}: add later data or leave earlier."
+        return f"The data end at {format_time(last)}: add later data, or depart earlier."
     return "Try a finer resolution, or check that the places are not enclosed by land."

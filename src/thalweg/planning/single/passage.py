@@ -1,14 +1,13 @@
-"""One passage between two ends: network, frozen sea, exact search, refinement, referee."""
+"""One passage between two places: network, frozen sea, exact search, refinement, referee."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance, positions_along
 from thalweg.core.time import format_time
@@ -17,20 +16,17 @@ from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
-from thalweg.planning.network_selection.network_choice import NetworkChoice, build_network
-from thalweg.planning.request.requirements import Requirements, required_under_keel_clearance
+from thalweg.planning.network_selection.network_choice import build_network
+from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
-from thalweg.planning.voyage import Voyage
-from thalweg.route import Route, Track, better_route, evaluate
+from thalweg.route import Route, Track, better_route
 from thalweg.route.refinement.better_route import comparison_key
-from thalweg.sea import Sea
 from thalweg.search import LowerBound, SearchResult, best_departure, earliest_arrival, lower_bound
-from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
 
-#: How far ahead the sea is frozen, in multiples of the time the geodesic would take.
+#: Periods for which the sea is frozen, in multiples of the time along the geodesic.
 _HORIZONS = (2.5, 8.0, 30.0)
-#: Gap to the bound [fraction] from which the way of the bound is refined as well.
+#: Gap to the bound [fraction] above which the path of the bound is refined as well.
 _WIDE_GAP = 0.01
 #: Isochrones are drawn until this multiple of the passage's time.
 _ISOCHRONE_TIME_RATIO = 1.5
@@ -48,52 +44,25 @@ _TIGHTENING_SCHEDULE = (
 
 
 @dataclass(frozen=True)
-class PlanningContext:
-    """What stays the same for every passage of a voyage."""
-
-    voyage: Voyage
-    ship: Ship
-    sea: Sea
-    chart: Chart
-    needs: Requirements
-    table: PerformanceTable
-    setting: int
-    last: float
-    choice: NetworkChoice
-    tell: Callable[[str], None] = field(default=lambda text: None)
-
-    @property
-    def min_ukc(self) -> float:
-        """The least under-keel clearance asked [m]."""
-        return required_under_keel_clearance(self.voyage, self.ship)
-
-    @property
-    def latest(self) -> float:
-        """The latest arrival asked for [s since 1970]; inf without any."""
-        asked = self.voyage.arrive_by
-        return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
-
-
-@dataclass(frozen=True)
 class PassageResult:
-    """What came of one passage.
+    """Result of one passage.
 
     Attributes
     ----------
     route : Route
         The best route, scored by the referee.
     result : SearchResult
-        What the search on the network found.
-    bound : Bound
-        No route is better than this, in SI, on the evidence of the network.
-    floor : Bound
-        No route at all is better than this.
+        Result of the search on the network.
+    bound : LowerBound
+        Lower bound from the network, in SI.
+    floor : LowerBound
+        Lower bound for any departure, in SI.
     network : Network
         The network searched.
     isochrones : ndarray
-        Earliest arrival at every node [s since 1970], for the map; inf where never reached.
+        Earliest arrival at every node [s since 1970], for the map; inf where not reached.
     notes : tuple of str
-        What the user must know.
+        Notes for the user.
     """
 
     route: Route
@@ -108,7 +77,7 @@ class PassageResult:
 def plan_passage(
     context: PlanningContext, start: Endpoint, goal: Endpoint, window: tuple[float, float]
 ) -> PassageResult:
-    """Find the best route between two ends, departing inside a window of times.
+    """Find the best route between two places, departing in a window of times.
 
     Raises
     ------
@@ -139,20 +108,20 @@ def plan_passage(
             passage = tried
         if passage.route.feasible:
             break
-    assert passage is not None  # every way without one has raised
-    arrive, latest = passage.route.arrive, context.latest
+    assert passage is not None  # raised above otherwise
+    arrive, latest = passage.route.arrive, context.latest_arrival
     if latest + 1.0 < arrive < math.inf:
         raise late_arrival_error(latest, arrive, window=window[1] > window[0])
     return passage
 
 
 def _lattice_fallback_allowed(context: PlanningContext, network: Network) -> bool:
-    """Whether a lattice may take the place of the mesh that was chosen automatically."""
+    """Return whether a lattice may replace a mesh that was chosen automatically."""
     return context.choice.network == "auto" and network.meta.kind == "mesh"
 
 
 def _mesh_is_thinned(context: PlanningContext, network: Network) -> bool:
-    """Whether a mesh lacks nodes of the model, as a spacing was asked."""
+    """Return whether a mesh was thinned because the user set a spacing."""
     return network.meta.kind == "mesh" and context.choice.spacing is not None
 
 
@@ -162,10 +131,10 @@ def _network(
     finer: int,
     networks: Mapping[int, Network],
 ) -> Network:
-    context.tell(f"building the network from {ends[0].name} to {ends[1].name}")
+    context.report_progress(f"building the network from {ends[0].name} to {ends[1].name}")
     choice, first = context.choice, networks.get(1)
     if first is not None and _lattice_fallback_allowed(context, first):
-        # The nodes of a model cannot be made finer; a lattice over the same water can.
+        # The nodes of a model cannot be refined; a lattice over the same water can.
         spacing = networks[2].meta.spacing_m * 2 / finer if 2 in networks else choice.spacing
         choice = replace(choice, network="lattice", spacing=spacing)
     elif first is not None and first.meta.kind == "mesh":
@@ -174,7 +143,7 @@ def _network(
         choice = replace(choice, spacing=None)  # all nodes, or as many as can be searched
     elif first is not None:
         choice = replace(choice, spacing=first.meta.spacing_m / finer)
-    period = context.voyage.earliest_departure, context.last
+    period = context.voyage.earliest_departure, context.data_end
     return build_network(choice, context.chart, context.sea, ends, period=period)
 
 
@@ -185,10 +154,10 @@ def _search_and_refine(
     window: tuple[float, float],
     limits: np.ndarray,
 ) -> PassageResult:
-    """Search, refine and bound once."""
+    """Search, refine and bound the passage on one network with one set of limits."""
     frozen, result = _search(context, network, limits, window, ends)
     route = refine_track(context, track_from_result(network, result, context.setting), limits)
-    context.tell("bounding the answer")
+    context.report_progress("computing the lower bound")
     floor = _bound(context, network, frozen, result, route, any_departure=True)
     bound = floor
     if context.voyage.depart_window is None:
@@ -196,7 +165,7 @@ def _search_and_refine(
         other = _refined_bound_path(context, network, bound, route, limits)
         if other is not route:
             route, bound = other, _bound(context, network, frozen, result, other)
-    notes = tuple(f"The referee finds a limit broken: {v}." for v in route.violations[:5])
+    notes = tuple(f"The referee finds a limit exceeded: {v}." for v in route.violations[:5])
     until = route.depart + _ISOCHRONE_TIME_RATIO * route.time_h * HOUR if route.feasible else None
     arrival = isochrones(context, network, frozen, route.depart, until)
     return PassageResult(route, result, bound, floor, network, arrival, notes)
@@ -205,10 +174,10 @@ def _search_and_refine(
 def _refined_bound_path(
     context: PlanningContext, network: Network, bound: LowerBound, route: Route, limits: np.ndarray
 ) -> Route:
-    """Where the gap is wide, refine the way of the bound as well and return the better route.
+    """Where the gap is wide, refine the path of the bound as well and return the better route.
 
-    Weather that passes makes the network's ways sensitive to their delay: the way of the bound is
-    timed as a ship in open water would be.
+    In weather that passes quickly the best path depends on delays along the network; the path of
+    the bound has the times of a ship in open water.
     """
     value = _objective_value(context, route)
     if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
@@ -216,14 +185,14 @@ def _refined_bound_path(
     lat, lon = network.station_lat[bound.path], network.station_lon[bound.path]
     settings = np.full(len(lat) - 1, context.setting)
     other = refine_track(context, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
-    routes = (route, other)  # penalty zones count here as they did in the search
+    routes = (route, other)  # with penalty zones, as in the search
     return min(
         routes, key=lambda item: comparison_key(item, context.voyage.objective, context.chart)
     )
 
 
 def _objective_value(context: PlanningContext, route: Route) -> float:
-    """Return what a route is compared by: its length [m] or its time [s]."""
+    """Return the value by which routes are compared: length [m] or time [s]."""
     if context.voyage.objective == "distance":
         return float(route.legs["length"].sum())
     return route.time_h * HOUR
@@ -236,7 +205,7 @@ def isochrones(
     depart: float,
     until: float | None,
 ) -> np.ndarray:
-    """Return the earliest arrival everywhere [s since 1970], until a time when one is given."""
+    """Return the earliest arrival at every node [s since 1970], up to a time if one is given."""
     everywhere = earliest_arrival(
         network,
         frozen.stations,
@@ -254,16 +223,9 @@ def isochrones(
 
 
 def refine_track(context: PlanningContext, track: Track, limits: np.ndarray) -> Route:
-    """Let the referee score a track, refine it, and return the better route."""
-    context.tell("refining the route")
-    scored = evaluate(
-        track,
-        ship=context.ship,
-        sea=context.sea,
-        chart=context.chart,
-        min_ukc=context.min_ukc,
-        strict=False,
-    )
+    """Evaluate a track, refine it, and return the better route."""
+    context.report_progress("refining the route")
+    scored = context.evaluate(track)
     return better_route(
         scored,
         ship=context.ship,
@@ -278,7 +240,7 @@ def refine_track(context: PlanningContext, track: Track, limits: np.ndarray) -> 
 
 
 def track_from_result(network: Network, result: SearchResult, setting: int) -> Track:
-    """Turn a path on the network into a track with its waits."""
+    """Return a path on the network as a track with its waits."""
     path = result.path
     wait = np.maximum(0.0, result.path_depart - result.path_arrive)
     wait[-1] = 0.0
@@ -300,14 +262,14 @@ def _search(
 ) -> tuple[FrozenSea, SearchResult]:
     straight = float(distance(ends[0].lat, ends[0].lon, ends[1].lat, ends[1].lon))
     usual = straight / _expected_speed(context, ends, window[0])
-    latest = min(context.last, context.latest)
+    latest = min(context.data_end, context.latest_arrival)
     for number, horizon in enumerate(_HORIZONS):
         end = window[1] + horizon * usual + (_TWO_TIDES if number else 0.0)
         end = min(end, latest)
-        context.tell(f"freezing the sea until {format_time(end)}")
+        context.report_progress(f"freezing the sea until {format_time(end)}")
         frozen = freeze_at_stations(context, network, window[0], end)
         warm_up.wait_until_compiled()
-        context.tell("searching")
+        context.report_progress("searching")
         result = _run_search(context, network, frozen, limits, window)
         if result.found or end >= latest:
             break
@@ -315,7 +277,7 @@ def _search(
         if context.voyage.arrive_by is not None:
             raise _late_arrival_error(context, network, limits, window, ends)
         raise no_route_error(
-            network, result, ends, depart=context.voyage.earliest_departure, last=context.last,
+            network, result, ends, depart=context.voyage.earliest_departure, last=context.data_end,
             fields=frozen.stations, required=float(limits[codes.LIMIT_REQUIRED_DEPTH]),
         )  # fmt: skip
     return frozen, result
@@ -325,16 +287,18 @@ def _late_arrival_error(
     context: PlanningContext, network: Network, limits: np.ndarray, window: tuple[float, float],
     ends: tuple[Endpoint, Endpoint],
 ) -> NoRouteError:  # fmt: skip
-    """Return the error for a latest arrival that is missed; raise the one without it, if any."""
-    freely = replace(context, voyage=replace(context.voyage, arrive_by=None, objective="time"))
-    _, result = _search(freely, network, limits, window, ends)
-    return late_arrival_error(context.latest, result.arrive, window=window[1] > window[0])
+    """Return the error for a missed latest arrival; raises where there is no route at all."""
+    unrestricted = replace(
+        context, voyage=replace(context.voyage, arrive_by=None, objective="time")
+    )
+    _, result = _search(unrestricted, network, limits, window, ends)
+    return late_arrival_error(context.latest_arrival, result.arrive, window=window[1] > window[0])
 
 
 def _expected_speed(
     context: PlanningContext, ends: tuple[Endpoint, Endpoint], depart: float
 ) -> float:
-    """Return a speed [m/s] to expect: the setting's, or the mean of a speed field on the way."""
+    """Return the expected speed [m/s]: of the setting, or the mean of a speed field on the way."""
     if context.ship.speed_field is None:
         return float(context.ship.speeds[context.setting])
     start, goal = ends
@@ -344,14 +308,6 @@ def _expected_speed(
     speed = context.ship.speed_field(context.sea.sample(names, time, lat, lon), time, lat, lon)
     known = speed[np.isfinite(speed) & (speed > 0)]
     return float(known.mean()) if known.size else 1.0
-
-
-def performance_table_of(ship: Ship) -> PerformanceTable:
-    """Return the table of a ship; of one whose speed is a field, a table without any say."""
-    if ship.speed_field is None:
-        return ship.tabulate()
-    none = TablePart((), (), np.zeros(len(ship.speeds), np.float32))
-    return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))
 
 
 def _run_search(

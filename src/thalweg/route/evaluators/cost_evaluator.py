@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.errors import InputError
+from thalweg.core.objective import LegPrices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.table_lookup import TableArrays
@@ -17,7 +17,6 @@ from thalweg.route.canal_legs import canal_legs, canal_rates, canal_setting
 from thalweg.route.evaluators.population import Population
 from thalweg.route.evaluators.population_evaluator import (
     Evaluator,
-    ObjectivePrices,
     make_evaluator,
 )
 from thalweg.route.evaluators.time_evaluator import TrackBatch
@@ -28,52 +27,8 @@ if TYPE_CHECKING:
     from thalweg.route.track import Track
     from thalweg.sea import GridFields
     from thalweg.ship import PerformanceTable, Ship
-    from thalweg.ship.fuel_prices import FuelTerms
 
-OBJECTIVES = ("fuel", "cost", "co2")
 _ZONE_RESOLUTION = 0.25  # to which crossings of the borders of control areas are found [m]
-
-
-def objective_prices(objective: str, terms: FuelTerms, waiting_rate: float) -> ObjectivePrices:
-    """Return the prices of an objective, in its own unit.
-
-    Parameters
-    ----------
-    objective : {"fuel", "cost", "co2"}
-        Minimised in kg of fuel, money or kg of CO2.
-    terms : FuelTerms
-        Prices and carbon factors. Where the cost is that of cubed speed (`FuelTerms.by_speed`) the
-        prices are of a cubed speed for a second [m3/s2] in place of a kilogram of fuel.
-    waiting_rate : float
-        Fuel rate while waiting [kg/s].
-
-    Raises
-    ------
-    InputError
-        If there is no such objective, or a price or carbon factor it needs is unknown.
-    """
-    if objective not in OBJECTIVES:
-        raise InputError(
-            f"A route cannot be refined for {objective!r}.",
-            f"Objectives are {', '.join(OBJECTIVES)}.",
-            "Choose one of them.",
-            field="objective",
-        )
-    if objective == "cost" and terms.by_speed:
-        price = terms.cubed_speed_price
-        return ObjectivePrices(price, price, terms.time_price, 0.0, fees=True)
-    inside, outside = terms.per_kg(objective, True), terms.per_kg(objective, False)
-    if not (math.isfinite(inside) and math.isfinite(outside)):
-        what = "price" if objective == "cost" else "carbon factor"
-        raise InputError(
-            f"The {what} of the fuel is unknown.",
-            f"The objective {objective!r} needs it, inside and outside control areas.",
-            "Give it in the ship file, or give prices (FuelTerms.with_prices).",
-            field="terms",
-        )
-    money = objective == "cost"
-    time = terms.time_price if money else 0.0
-    return ObjectivePrices(inside, outside, time, waiting_rate * outside, fees=money)
 
 
 @dataclass(frozen=True)
@@ -110,7 +65,7 @@ class CostEvaluator:
         return self.evaluator.world.limits
 
     @property
-    def prices(self) -> ObjectivePrices:
+    def prices(self) -> LegPrices:
         """Prices of fuel and time."""
         return self.evaluator.prices
 
@@ -223,8 +178,7 @@ def make_cost_evaluator(
     limits: ArrayLike,
     chart: Chart | None,
     track: Track,
-    prices: ObjectivePrices,
-    by_cubed_speed: bool = False,
+    prices: LegPrices,
 ) -> CostEvaluator:
     """Return a cost evaluator for a track; times count from its departure.
 
@@ -233,7 +187,7 @@ def make_cost_evaluator(
     ship : Ship
         For the fuel rate in canals.
     table, fuel : PerformanceTable or TableArrays
-        Speed through water [m/s] and fuel rate [kg/s].
+        Speed through water [m/s], and the rate of consumption that is priced, such as fuel [kg/s].
     fields : GridFields
         The sea frozen around the track.
     limits : array_like of float
@@ -241,9 +195,7 @@ def make_cost_evaluator(
     chart : Chart or None
         Land, zones, canals and charted depth.
     track : Track
-    prices : ObjectivePrices
-    by_cubed_speed : bool
-        Whether ``fuel`` is the cubed speed [m3/s3] in place of a fuel rate.
+    prices : LegPrices
 
     Raises
     ------
@@ -253,7 +205,7 @@ def make_cost_evaluator(
     passed = canal_legs(track, chart)  # if there are none, canals are not looked up again
 
     def rate(canal: Canal) -> float:
-        if by_cubed_speed:
+        if prices.consumption == "cubed_speed":
             return float(ship.speeds[canal_setting(ship, canal)]) ** 3
         return canal_rates(ship, canal)[1]
 
@@ -268,12 +220,7 @@ def make_cost_evaluator(
         limits=limits,
         depart=track.depart,
         chart=chart,
-        weight_inside=prices.inside,
-        weight_outside=prices.outside,
-        time_price=prices.time,
-        waiting_fuel=prices.waiting,
-        waiting_weight=1.0,
-        fees=prices.fees,
+        prices=prices,
         total=float(track.lengths.sum()),
         canals=np.array(canals, float).reshape(-1, 3),
         zone_resolution=_ZONE_RESOLUTION,

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
+from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
@@ -34,29 +35,6 @@ _ZONE_RESOLUTION = 25.0  # to which crossings of the borders of control areas ar
 
 
 @dataclass(frozen=True)
-class ObjectivePrices:
-    """Prices of time and fuel, in one unit (kilograms of fuel, money, kilograms of CO2).
-
-    Attributes
-    ----------
-    inside, outside : float
-        Of a kilogram of fuel inside and outside emission control areas.
-    time : float
-        Of a second.
-    waiting : float
-        Of the fuel of a second of waiting.
-    fees : bool
-        Whether canal dues and the factors of price zones count.
-    """
-
-    inside: float = 1.0
-    outside: float = 1.0
-    time: float = 0.0
-    waiting: float = 0.0
-    fees: bool = True
-
-
-@dataclass(frozen=True)
 class Evaluator:
     """Scores tracks by time, cost and violations; make one with `make_evaluator`.
 
@@ -66,7 +44,7 @@ class Evaluator:
         Sea, ship, limits and terms, as the kernel takes them; times are seconds after ``depart``.
     time_evaluator : TimeEvaluator
         Looks up land and charted depth.
-    prices : ObjectivePrices
+    prices : LegPrices
     depart, latest : float
         [s since 1970-01-01T00:00Z]; ``latest`` may be +inf.
     canals : float64 array (C, 3)
@@ -77,7 +55,7 @@ class Evaluator:
 
     world: FitnessArrays
     time_evaluator: TimeEvaluator
-    prices: ObjectivePrices
+    prices: LegPrices
     depart: float
     latest: float
     canals: FloatArray
@@ -100,7 +78,7 @@ class Evaluator:
         if chart is None:
             return False
         zones = chart.zones
-        priced = self.prices.inside != self.prices.outside and len(getattr(zones, "eca", ()))
+        priced = self.prices.differs_in_control_areas and len(getattr(zones, "eca", ()))
         return bool(chart.has_depth or zones.penalty or zones.price or priced)
 
     def __call__(
@@ -201,9 +179,9 @@ class Evaluator:
         n, prices = len(lat1), self.prices
         chart: Any = self.chart
         blocked, charted = np.zeros(n), np.full(n, math.inf)
-        weight, penalty = np.full(n, prices.outside), np.ones(n)
+        inside, zone_factor, penalty = np.zeros(n), np.ones(n), np.ones(n)
         if chart is None:
-            return blocked, charted, weight, penalty
+            return blocked, charted, prices.of_legs(inside, zone_factor), penalty
         ends = (lat1, lon1, lat2, lon2)
         required = self.world.limits[codes.LIMIT_REQUIRED_DEPTH]
         if obstacles and chart.has_depth and math.isfinite(required):
@@ -214,13 +192,11 @@ class Evaluator:
         elif obstacles:
             blocked[:] = chart.legs_blocked(*ends)
         zones: Any = chart.zones
-        if prices.inside != prices.outside and len(getattr(zones, "eca", ())):
-            weight = weight + self._eca_fractions(ends) * (prices.inside - prices.outside)
+        if prices.differs_in_control_areas and len(getattr(zones, "eca", ())):
+            inside = self._eca_fractions(ends)
         if chart.zones.penalty or chart.zones.price:
-            factor, price = chart.zone_factor(*ends)
-            penalty = np.asarray(factor)
-            weight = weight * np.asarray(price) if prices.fees else weight
-        return blocked, charted, weight, penalty
+            penalty, zone_factor = (np.asarray(factor) for factor in chart.zone_factor(*ends))
+        return blocked, charted, prices.of_legs(inside, zone_factor), penalty
 
     def _eca_fractions(self, ends: tuple[FloatArray, ...]) -> FloatArray:
         """Return the shares of legs inside emission control areas."""
@@ -248,7 +224,7 @@ class Evaluator:
         legs = row[on], place[on]
         genes[*legs, columns.IS_BLOCKED], genes[*legs, columns.FIXED_TIME] = 0.0, time
         price = genes[*legs, columns.FUEL_PRICE]
-        genes[*legs, columns.FIXED_COST] = burnt * price + dues * self.prices.fees
+        genes[*legs, columns.FIXED_COST] = burnt * price + dues * self.prices.dues
 
     def finer(self, times: float) -> Evaluator:
         """Return an evaluator with pieces shorter by a factor ``times``."""
@@ -266,12 +242,7 @@ def make_evaluator(
     depart: float,
     chart: Chart | None = None,
     latest: float = math.inf,
-    weight_inside: float = 1.0,
-    weight_outside: float = 1.0,
-    time_price: float = 0.0,
-    waiting_fuel: float = 0.0,
-    waiting_weight: float | None = None,
-    fees: bool = True,
+    prices: LegPrices = FUEL_MASS,
     spacing: float | None = None,
     total: float = 0.0,
     canals: FloatArray | None = None,
@@ -293,16 +264,8 @@ def make_evaluator(
         Land, zones, emission control areas, canals and charted depth.
     latest : float
         Latest arrival [s since 1970-01-01T00:00Z].
-    weight_inside, weight_outside : float
-        Cost of a kilogram of fuel inside and outside emission control areas.
-    time_price : float
-        Cost of a second.
-    waiting_fuel : float
-        Fuel rate while waiting [kg/s].
-    waiting_weight : float, optional
-        Cost of a kilogram of it; ``weight_outside`` by default.
-    fees : bool
-        Whether canal dues and the factors of price zones count (not when the cost is fuel).
+    prices : LegPrices, optional
+        Prices of fuel, time, waiting and canal dues; by default 1 per kilogram of fuel.
     spacing : float, optional
         Longest piece that legs are cut into [m]; by default half a cell of the raster, at least a
         400th of ``total`` and at most 100 km.
@@ -318,11 +281,10 @@ def make_evaluator(
     Raises
     ------
     InputError
-        If a weight is negative or not a number, the latest arrival does not follow the
-        departure, or the tables differ in their settings.
+        If the latest arrival does not follow the departure, or the tables differ in their
+        settings.
     """
-    waiting_weight = weight_outside if waiting_weight is None else waiting_weight
-    _check_terms(depart, latest, (weight_inside, weight_outside, waiting_weight, time_price))
+    _check_latest_arrival(depart, latest)
     time_evaluator = make_time_evaluator(
         table=table,
         chart=chart,
@@ -341,15 +303,12 @@ def make_evaluator(
             "Tabulate both for the same speeds.",
         )
     terms = np.empty(columns.TERM_COUNT)
-    terms[columns.TIME_PRICE] = time_price
-    terms[columns.WAITING_PRICE] = waiting_fuel * waiting_weight
+    terms[columns.TIME_PRICE] = prices.time
+    terms[columns.WAITING_PRICE] = prices.waiting
     terms[columns.LATEST_ARRIVAL] = latest - depart
     terms[columns.PIECE_SPACING] = time_evaluator.spacing if spacing is None else spacing
     world = FitnessArrays(
         time_evaluator.raster, time_evaluator.table, rates, time_evaluator.limits, terms
-    )
-    prices = ObjectivePrices(
-        weight_inside, weight_outside, time_price, float(terms[columns.WAITING_PRICE]), fees
     )
     passed = _canal_table(chart, world) if canals is None else canals
     return Evaluator(world, time_evaluator, prices, depart, latest, passed, zone_resolution)
@@ -368,13 +327,7 @@ def _canal_table(chart: Any, world: FitnessArrays) -> FloatArray:
     return out
 
 
-def _check_terms(depart: float, latest: float, terms: Sequence[float]) -> None:
-    if not all(math.isfinite(value) and value >= 0.0 for value in terms):
-        raise InputError(
-            f"A price is negative or not a number: {', '.join(f'{x:g}' for x in terms)}.",
-            "Prices of fuel and time must be zero or more.",
-            "Correct the prices.",
-        )
+def _check_latest_arrival(depart: float, latest: float) -> None:
     if not latest > depart:
         raise InputError(
             f"The latest arrival {format_time(latest)} is not after the departure.",

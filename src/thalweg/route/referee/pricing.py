@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thalweg.core.types import FloatArray
 from thalweg.route.referee.leg_segments import TrackPoints
 from thalweg.route.referee.sailing import SailedTrack
+from thalweg.ship.methods.engine.fuel_properties import halem_cost
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -105,9 +106,9 @@ def cost_breakdown(sailed: SailedTrack, rates: ConsumptionRates, terms: FuelTerm
         "waiting_energy": total(np.where(sailing, 0.0, energy)),
     }
     if terms.by_speed:
-        spent = np.where(
-            sailing, terms.cubed_speed_price * _ordered_speeds(sailed)[parts.leg] ** 3 * time, 0.0
-        )
+        speed = _ordered_speeds(sailed)[parts.leg]
+        spent = halem_cost(time, speed, per_second=0.0, per_cube=terms.cubed_speed_price)
+        spent = np.where(sailing, spent, 0.0)
     else:
         spent = _weighted_fuel(parts, terms, "cost")[0]
     cost = total(parts.price * spent)
@@ -164,9 +165,7 @@ def _weighted_fuel(
     parts: _FuelByPart, terms: FuelTerms, what: str
 ) -> tuple[FloatArray, FloatArray]:
     """Return a sum of fuel over all parts, and over those inside control areas."""
-    within = np.where(parts.inside > 0.0, parts.inside * terms.per_kg(what, True), 0.0)
-    beyond = np.where(parts.inside < 1.0, (1.0 - parts.inside) * terms.per_kg(what, False), 0.0)
-    return parts.fuel * (within + beyond), parts.fuel * within
+    return terms.of_fuel(what, parts.fuel, parts.inside)
 
 
 def _zones_of_pieces(

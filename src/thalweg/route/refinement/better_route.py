@@ -21,6 +21,7 @@ from thalweg.route.refinement.feasible_interpolation import bisect_to_feasible
 from thalweg.route.refinement.simplification import simplified_route
 from thalweg.route.refinement.smoothing import smooth
 from thalweg.route.route import Route
+from thalweg.route.sea_raster import RasterSize, freeze_raster
 from thalweg.route.track import Track
 from thalweg.sea.standard_names import CHANNEL_VARIABLES
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from thalweg.ship import PerformanceTable, Ship
 
 LARGEST_RASTER = 4_000_000  #: numbers in the frozen raster of the sea around a track
-_MIN_ROWS, _MAX_ROWS = 12, 120  # cells along the longer side of the raster
+_CELLS = 12, 400  # least and greatest number of cells along the longer side of the track
 _RASTER_MARGINS = (
     0.2,
     0.4,
@@ -176,26 +177,15 @@ def freeze_around_track(
     until : float, optional
         Latest arrival [s since 1970-01-01T00:00Z]; by default that of the route.
     """
-    lon = unwrap_longitude(track.lon)
-    extent = max(np.ptp(track.lat), np.ptp(lon), 1e-5)
-    edge = margin * extent
-    south, north = max(track.lat.min() - edge, -89.9), min(track.lat.max() + edge, 89.9)
-    width = min(np.ptp(lon) + 2.0 * edge, 359.0)
-    west = 0.5 * (lon.min() + lon.max() - width)
     start = track.depart
     arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
     arrive = arrive if until is None else max(arrive, until)
     end = start + 1.1 * (arrive - start) + 600.0
     channels = _channels(ship, sea, np.asarray(limits, float))
     extra = {codes.SPEED_FIELD: ship.speed_field} if ship.speed_field is not None else None
-    numbers = max(len(sea.times(start, end)), 2) * max(len(channels) + bool(extra), 1)
-    finest = math.sqrt((north - south) * width * numbers / LARGEST_RASTER)
-    native = [r.spacing_deg for r in sea.coverage() if r.spacing_deg]
-    spacing = max(min([extent / _MAX_ROWS, *native]), finest, extent / 400.0)
-    spacing = min(spacing, extent / _MIN_ROWS)
-    return sea.freeze_grid(
-        south, north, west, west + width, start, end, channels, spacing_deg=spacing, extra=extra
-    )
+    size = RasterSize(margin, *_CELLS, LARGEST_RASTER)
+    lon = unwrap_longitude(track.lon)
+    return freeze_raster(sea, track.lat, lon, (start, end), channels, size, extra=extra)
 
 
 def _touches_raster_edge(track: Track, fields: GridFields) -> bool:

@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
+from thalweg.core.objective import Objective
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_ends
-from thalweg.route.evaluators.cost_evaluator import (
-    CostEvaluator,
-    make_cost_evaluator,
-    objective_prices,
-)
+from thalweg.route.evaluators.cost_evaluator import CostEvaluator, make_cost_evaluator
 from thalweg.route.evaluators.polyline import (
     Polyline,
     polyline_of_track,
@@ -33,7 +31,7 @@ from thalweg.route.refinement.speed_profile import choose_speeds
 from thalweg.route.refinement.string_pulling import string_pull
 from thalweg.route.route import Route
 from thalweg.route.track import Track
-from thalweg.ship.tables.tabulate import tabulate_cubed_speed
+from thalweg.ship.consumption import consumption_table, leg_prices
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -122,10 +120,12 @@ def polish(
     settings are chosen again until its time of arrival is met to a few millionths of the passage.
     """
     terms = ship.fuel_terms if terms is None else terms
-    prices = objective_prices(objective, terms, ship.waiting_fuel_rate)
-    by_cubed_speed = objective == "cost" and terms.by_speed
-    if by_cubed_speed:
-        fuel = tabulate_cubed_speed(ship.speeds)
+    if objective not in _OBJECTIVE_COLUMNS:
+        kind = "objective of a cost refinement"
+        raise unknown_name_error(kind, str(objective), _OBJECTIVE_COLUMNS)
+    prices = leg_prices(Objective.of(objective), ship, terms)
+    if prices.consumption == "cubed_speed":
+        fuel = consumption_table(ship, prices.consumption)
     latest = scored.arrive if arrive_by is None else max(parse_time(arrive_by), scored.arrive)
     if not (scored.feasible and math.isfinite(scored.arrive)):
         return scored
@@ -155,7 +155,6 @@ def polish(
             chart=chart,
             track=track,
             prices=prices,
-            by_cubed_speed=by_cubed_speed,
         )
 
     best = _best_attempt(scored, latest, evaluator_of, score, value)
@@ -285,7 +284,7 @@ def _split_long_legs(line: Polyline, evaluator: CostEvaluator, longest: float) -
 def _split_at_zone_borders(line: Polyline, evaluator: CostEvaluator) -> Polyline:
     """Return the line with a waypoint where a leg enters or leaves the control areas."""
     chart = evaluator.chart
-    if chart is None or not chart.zones.eca or evaluator.prices.inside == evaluator.prices.outside:
+    if chart is None or not chart.zones.eca or not evaluator.prices.differs_in_control_areas:
         return line
     share = chart.eca_fraction(line.lat[:-1], line.lon[:-1], line.lat[1:], line.lon[1:])
     crossed = (share > _MIN_ZONE_SHARE) & (share < 1.0 - _MIN_ZONE_SHARE)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.objective import LegPrices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import (
     AXIS_COUNT,
@@ -61,9 +62,8 @@ class FrontRequest(NamedTuple):
     depart: float
     latest: float
     settings: IntArray
-    weight: FloatArray
-    time_price: float
-    waiting_rate: float
+    prices: LegPrices
+    edge_price: FloatArray
     wait: bool
 
     @property
@@ -156,7 +156,7 @@ def _with_states(given: SearchProblem, request: FrontRequest) -> tuple[SearchPro
 def _prices(
     network: Network, origin: IntArray, ship: MultiSettingShip, request: FrontRequest
 ) -> EdgePrices:
-    fixed_time, fee = np.asarray(network.fixed_time), np.asarray(network.fee)
+    fixed_time, fee = np.asarray(network.fixed_time), request.prices.dues * np.asarray(network.fee)
     fuel, choice = np.zeros(len(origin)), np.zeros(len(origin), np.int64)
     fixed = fixed_time[origin]
     if not np.isnan(fixed).all():
@@ -166,13 +166,13 @@ def _prices(
             choice[e] = enough[0] if len(enough) else int(np.nanargmax(speeds))
             fuel[e] = rates[choice[e]] * fixed[e]
     return EdgePrices(
-        weight=np.ascontiguousarray(request.weight[origin], float),
+        weight=np.ascontiguousarray(request.edge_price[origin], float),
         fee=np.ascontiguousarray(fee[origin], float),
         fixed_time=np.ascontiguousarray(fixed, float),
         fixed_fuel=fuel,
         fixed_choice=choice,
-        time_price=request.time_price,
-        waiting_cost_rate=request.time_price + request.waiting_rate,
+        time_price=request.prices.time,
+        waiting_cost_rate=request.prices.time + request.prices.waiting,
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.pareto.edge_tables import EdgeTables
@@ -78,10 +79,8 @@ def pareto_front(
     limits: ArrayLike,
     latest: float,
     settings: Sequence[int] | NDArray[np.int64] | None = None,
-    weight: ArrayLike | None = None,
-    time_price: float = 0.0,
-    waiting_fuel: float = 0.0,
-    waiting_weight: float = 1.0,
+    prices: LegPrices = FUEL_MASS,
+    eca_fraction: ArrayLike | None = None,
     wait: bool = True,
     bin_s: float | None = None,
     memory_limit: float = MEMORY_LIMIT,
@@ -91,8 +90,9 @@ def pareto_front(
 ) -> NetworkFront:
     """Find the ways between two nodes that no other beats in both time and cost.
 
-    The cost of a way is the sum over its edges of fuel times weight and fee, plus the price of
-    the whole time, plus the fuel burnt while waiting.
+    The cost of a path is the sum over its edges of fuel times its price and of canal dues, plus
+    the price of the whole time, plus that of the fuel burnt while waiting
+    (`thalweg.core.objective.LegPrices`).
 
     Parameters
     ----------
@@ -112,14 +112,11 @@ def pareto_front(
     settings : sequence of int, optional
         Settings to choose from on every edge (default: all). The highest is taken to be the
         fastest everywhere.
-    weight : array_like (E,), optional
-        Cost of a kilogram of fuel on each edge, at least 0 (default: 1).
-    time_price : float
-        Cost of a second between departure and arrival.
-    waiting_fuel : float
-        Fuel rate while waiting [kg/s].
-    waiting_weight : float
-        Cost of a kilogram of it.
+    prices : LegPrices, optional
+        Prices of fuel, time, waiting and canal dues (default: 1 per kilogram of fuel).
+    eca_fraction : array_like (E,), optional
+        Fraction of each edge inside emission control areas, 0 to 1 (default: 0); see
+        `thalweg.network.eca_fractions`.
     wait : bool
         Whether the ship may wait at nodes that allow it, as long as it stays afloat.
     bin_s : float, optional
@@ -185,8 +182,8 @@ def pareto_front(
     """
     request = _request(
         network, table,
-        start=start, goal=goal, depart=depart, latest=latest, settings=settings, weight=weight,
-        time_price=time_price, waiting_rate=waiting_fuel * waiting_weight, wait=wait, bin_s=bin_s,
+        start=start, goal=goal, depart=depart, latest=latest, settings=settings,
+        prices=prices, eca_fraction=eca_fraction, wait=wait, bin_s=bin_s,
     )  # fmt: skip
     front_problem = make_front_problem(
         network, fields, table, fuel, request=request, limits=limits, top_speed=top_speed
@@ -360,9 +357,8 @@ def _request(
     depart: float,
     latest: float,
     settings: Sequence[int] | NDArray[np.int64] | None,
-    weight: ArrayLike | None,
-    time_price: float,
-    waiting_rate: float,
+    prices: LegPrices,
+    eca_fraction: ArrayLike | None,
     wait: bool,
     bin_s: float | None,
 ) -> FrontRequest:
@@ -387,25 +383,20 @@ def _request(
             "Both are times [s since epoch].",
             "Give a later arrival.",
         )
-    weights = np.broadcast_to(
-        np.asarray(1.0 if weight is None else weight, float), (network.n_edges,)
+    inside = np.broadcast_to(
+        np.asarray(0.0 if eca_fraction is None else eca_fraction, float), (network.n_edges,)
     )
-    if not (np.isfinite(weights).all() and (weights >= 0.0).all()):
+    if not ((inside >= 0.0) & (inside <= 1.0)).all():
         raise InputError(
-            "A weight of fuel is negative or no number.",
-            "Each edge has a cost per kilogram of fuel, at least 0.",
-            "Check the prices.",
+            "A fraction of an edge inside emission control areas is not between 0 and 1.",
+            "Each edge has one, as thalweg.network.eca_fractions returns them.",
+            "Correct the fractions.",
         )
     if bin_s is not None and not (math.isfinite(bin_s) and bin_s > 0.0):
         raise InputError(
             f"The bins of {bin_s} s hold no time.", "A bin has a positive width.", "Widen them."
         )
-    for name, value in (("price of time", time_price), ("price of waiting", waiting_rate)):
-        if not (math.isfinite(value) and value >= 0.0):
-            raise InputError(
-                f"The {name} is {value}.", "It is at least 0 per second.", "Check the prices."
-            )
     return FrontRequest(
-        int(start), int(goal), float(depart), float(latest), chosen, weights,
-        float(time_price), float(waiting_rate), bool(wait),
+        int(start), int(goal), float(depart), float(latest), chosen, prices,
+        prices.of_legs(inside, np.asarray(network.price, float)), bool(wait),
     )  # fmt: skip

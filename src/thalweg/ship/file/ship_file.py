@@ -61,8 +61,9 @@ def _read_file(path: Path) -> tuple[Any, str]:
         with path.open("rb") as stream:
             raw = stream.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as problem:
+        why = problem.strerror if isinstance(problem, OSError) else problem
         raise InputError(
-            f"The ship file {path} cannot be read: {getattr(problem, 'strerror', problem)}.",
+            f"The ship file {path} cannot be read: {why}.",
             f"Library: {', '.join(library_names())}.",
             "Give the path of a YAML file, or a name of the library.",
             file=str(path),
@@ -91,26 +92,6 @@ def parse_ship(text: str, source: str) -> Any:
     InputError
         With the line of the fault.
     """
-    import yaml
+    from thalweg.core.strict_yaml import parse_yaml  # reads a library that few calls need
 
-    from thalweg.core.strict_yaml import StrictLoader
-
-    try:
-        return yaml.load(text, Loader=StrictLoader)
-    except yaml.YAMLError as problem:
-        mark = getattr(problem, "problem_mark", None)
-        line = f" (line {mark.line + 1})" if mark else ""
-        what = getattr(problem, "problem", None) or "it is not YAML"
-        raise InputError(
-            f"The ship file {source} cannot be read{line}: {what}.",
-            "Ship files are YAML: 'key: value' lines, sections indented by spaces.",
-            "Correct that line.",
-            file=source,
-        ) from None
-    except (RecursionError, ValueError) as problem:
-        raise InputError(
-            f"The ship file {source} cannot be read: {str(problem)[:120]}.",
-            "Ship files are YAML: 'key: value' lines, sections indented by spaces.",
-            "Correct it.",
-            file=source,
-        ) from None
+    return parse_yaml(text, "ship", source)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.core.types import FloatArray
+from thalweg.ship.methods.array_conversion import as_float_array
 from thalweg.ship.methods.displacement import block_coefficient_of, displacement_volume
 from thalweg.ship.methods.hull_regressions import (
     block_from_froude,
@@ -43,7 +44,7 @@ class Estimator:
         buoyancy), our judgement.
     """
 
-    function: Callable[..., Floats]
+    function: Callable[..., FloatArray]
     inputs: tuple[str, ...]
     source: str
     typical_error: float

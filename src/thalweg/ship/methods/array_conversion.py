@@ -1,15 +1,15 @@
-"""One small conversion that every formula begins with."""
+"""Conversion of arguments to arrays of floats."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Floats = NDArray[np.float64]
+from thalweg.core.types import FloatArray
 
 
-def as_float_array(values: ArrayLike) -> Floats:
-    """Return values as an array of floats, without copying where they are one already.
+def as_float_array(values: ArrayLike) -> FloatArray:
+    """Return values as an array of floats; an array of floats is returned without a copy.
 
     Parameters
     ----------

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.core.types import FloatArray
+from thalweg.ship.methods.array_conversion import as_float_array
 
 _INF = float("inf")
 
@@ -182,12 +183,12 @@ def cii_ship_type(name: str) -> CiiShipType:
     return SHIP_TYPES[name]
 
 
-def _carbon_intensity(co2: ArrayLike, work: Floats) -> Floats:
+def _carbon_intensity(co2: ArrayLike, work: FloatArray) -> FloatArray:
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(work > 0.0, as_float_array(co2) * 1000.0 / work, np.nan)
 
 
-def attained_cii(co2: ArrayLike, *, capacity: ArrayLike, distance_nm: ArrayLike) -> Floats:
+def attained_cii(co2: ArrayLike, *, capacity: ArrayLike, distance_nm: ArrayLike) -> FloatArray:
     """Return the attained annual CII: CO2 over capacity times distance.
 
     Parameters
@@ -211,7 +212,7 @@ def attained_cii(co2: ArrayLike, *, capacity: ArrayLike, distance_nm: ArrayLike)
     return _carbon_intensity(co2, as_float_array(capacity) * as_float_array(distance_nm))
 
 
-def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> Floats:
+def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> FloatArray:
     """Return the operational indicator: sum of CO2 over sum of cargo times distance.
 
     Parameters
@@ -240,7 +241,7 @@ def eeoi(co2: ArrayLike, *, cargo_t: ArrayLike, distance_nm: ArrayLike) -> Float
     )
 
 
-def reference_cii(ship_type: str, *, capacity: ArrayLike) -> Floats:
+def reference_cii(ship_type: str, *, capacity: ArrayLike) -> FloatArray:
     """Return the 2019 reference line a capacity^-c of a ship type.
 
     Parameters
@@ -300,7 +301,7 @@ def reduction_factor(year: int) -> float:
     return REDUCTION_PERCENT[year]
 
 
-def required_cii(ship_type: str, *, capacity: ArrayLike, year: int) -> Floats:
+def required_cii(ship_type: str, *, capacity: ArrayLike, year: int) -> FloatArray:
     """Return the required annual CII: (1 - Z/100) times the reference line.
 
     Parameters
@@ -324,7 +325,7 @@ def required_cii(ship_type: str, *, capacity: ArrayLike, year: int) -> Floats:
     return (1.0 - reduction_factor(year) / 100.0) * reference_cii(ship_type, capacity=capacity)
 
 
-def rating_boundaries(ship_type: str, *, capacity: ArrayLike, year: int) -> Floats:
+def rating_boundaries(ship_type: str, *, capacity: ArrayLike, year: int) -> FloatArray:
     """Return the four boundaries between ratings A, B, C, D and E.
 
     Parameters

@@ -1,4 +1,4 @@
-"""The current triangle with crab angle, and Schless's rudder drag as an option."""
+"""The current triangle: crab angle and speed over ground; the rudder drag of Schless (2023)."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.ship.methods.array_conversion import as_float_array
 
 #: Rudder drag coefficient read off Lübke (2016) by Schless (2023), Fig. 3.7: degrees -> C_D.
 LUEBKE_ANGLES_DEG: Final = (0.0, 10.0, 20.0, 30.0, 35.0)
@@ -20,9 +21,9 @@ LARGEST_RUDDER_ANGLE: Final = float(np.radians(35.0))  #: end of the nodes [rad]
 
 @dataclass(frozen=True)
 class CurrentTriangle:
-    """How a ship holds a course over the ground through a current.
+    """Heading and speed of a ship that holds a course over ground in a current.
 
-    Parameters
+    Attributes
     ----------
     speed_over_ground : ndarray
         [m/s]; NaN where the course cannot be held or data are unknown.
@@ -31,13 +32,79 @@ class CurrentTriangle:
     crab_angle : ndarray
         Heading minus course [rad], positive to starboard.
     possible : ndarray of bool
-        Whether the ship makes way on the course; False where anything is unknown.
+        Whether the ship can hold the course and make headway; False where anything is unknown.
     """
 
-    speed_over_ground: Floats
-    heading: Floats
-    crab_angle: Floats
+    speed_over_ground: FloatArray
+    heading: FloatArray
+    crab_angle: FloatArray
     possible: NDArray[np.bool_]
+
+
+def current_along_and_across(
+    current_east: ArrayLike, current_north: ArrayLike, course: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """Return the current along a course and across it.
+
+    Parameters
+    ----------
+    current_east, current_north : array_like
+        Current, towards [m/s].
+    course : array_like
+        Course over ground [rad], clockwise from north.
+
+    Returns
+    -------
+    along, across : ndarray
+        c = u sin C + v cos C, and s = u cos C - v sin C, positive to starboard [m/s].
+    """
+    east, north = np.sin(course), np.cos(course)
+    u, v = as_float_array(current_east), as_float_array(current_north)
+    return u * east + v * north, u * north - v * east
+
+
+def drift_angle(across: ArrayLike, speed: ArrayLike) -> FloatArray:
+    """Return course minus heading, asin(s / V).
+
+    Parameters
+    ----------
+    across : array_like
+        Current across the course, positive to starboard [m/s].
+    speed : array_like
+        Speed through water [m/s].
+
+    Returns
+    -------
+    ndarray
+        [rad], positive where the bow points to port of the course; 0 where the speed is unknown
+        or not positive, and -pi/2 or pi/2 where the current across is stronger than the ship.
+    """
+    s, v = as_float_array(across), as_float_array(speed)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sine = np.where(v > 0.0, s / v, 0.0)
+    return np.arcsin(np.clip(np.where(np.isfinite(sine), sine, 0.0), -1.0, 1.0))
+
+
+def speed_over_ground(speed: ArrayLike, along: ArrayLike, across: ArrayLike) -> FloatArray:
+    """Return the speed over ground on the course, c + sqrt(V^2 - s^2).
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed through water [m/s].
+    along, across : array_like
+        Current along the course and across it, as in `current_along_and_across` [m/s].
+
+    Returns
+    -------
+    ndarray
+        [m/s]; NaN where the current across is not weaker than the ship, where the ship makes no
+        headway, and where anything is unknown.
+    """
+    v, c, s = as_float_array(speed), as_float_array(along), as_float_array(across)
+    with np.errstate(invalid="ignore"):
+        ground = c + np.sqrt(v * v - s * s)
+        return np.where((ground > 0.0) & (v > np.abs(s)), ground, np.nan)
 
 
 def current_triangle(
@@ -45,8 +112,8 @@ def current_triangle(
 ) -> CurrentTriangle:
     """Return speed over ground, heading and crab angle on a course through a current.
 
-    With the current along the course c and across it to starboard s:
-    SOG = sqrt(STW^2 - s^2) + c, crab angle = -asin(s / STW).
+    With the current along the course c and across it to starboard s, and the speed through
+    water V: speed over ground = c + sqrt(V^2 - s^2), crab angle = -asin(s / V).
 
     Parameters
     ----------
@@ -60,27 +127,22 @@ def current_triangle(
     Returns
     -------
     CurrentTriangle
-        Possible where the current across is not stronger than the ship and the ship gets ahead.
+        Possible where the current across is weaker than the ship and the ship makes headway.
 
     Notes
     -----
     Exact vector addition. Schless (2023), eqs. 3.46, 3.57 to 3.64, adds the current along the
     course to the ship's speed before taking the angle, and swaps the components along and across
-    in eqs. 3.61, 3.62, 3.67 and 3.68; that changes the energies there by -0.26 to +0.26 %.
+    in eqs. 3.61, 3.62, 3.67 and 3.68; this changes his energies by -0.26 to +0.26 %.
     van Halem (2019), eq. 2.4, prints tanh for atan2.
     """
-    stw, course_ = as_float_array(speed), as_float_array(course)
-    sin, cos = np.sin(course_), np.cos(course_)
-    along = as_float_array(current_east) * sin + as_float_array(current_north) * cos
-    across = as_float_array(current_east) * cos - as_float_array(current_north) * sin
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ahead = np.sqrt(stw**2 - across**2)
-        ground = ahead + along
-        possible = (ground > 0.0) & (stw > 0.0)
-        crab = -np.arcsin(np.where(possible, across / np.where(stw > 0.0, stw, np.nan), np.nan))
+    along, across = current_along_and_across(current_east, current_north, course)
+    ground = speed_over_ground(speed, along, across)
+    possible = np.isfinite(ground)
+    crab = np.where(possible, -drift_angle(across, speed), np.nan)
     return CurrentTriangle(
-        speed_over_ground=np.where(possible, ground, np.nan),
-        heading=np.mod(course_ + crab, 2.0 * np.pi),
+        speed_over_ground=ground,
+        heading=np.mod(as_float_array(course) + crab, 2.0 * np.pi),
         crab_angle=crab,
         possible=possible,
     )
@@ -88,20 +150,20 @@ def current_triangle(
 
 def distance_through_water(
     distance: ArrayLike, *, speed: ArrayLike, speed_over_ground: ArrayLike
-) -> Floats:
-    """Return the way made through the water: STW s / SOG [m].
+) -> FloatArray:
+    """Return the distance made through the water: V d / (speed over ground) [m].
 
     Parameters
     ----------
     distance : array_like
-        Way over the ground [m].
+        Distance d over ground [m].
     speed, speed_over_ground : array_like
         [m/s].
 
     Returns
     -------
     ndarray
-        Way through the water [m].
+        Distance through the water [m].
 
     Notes
     -----
@@ -111,7 +173,7 @@ def distance_through_water(
     return as_float_array(speed) * as_float_array(distance) / as_float_array(speed_over_ground)
 
 
-def _monotone_slopes(x: Floats, y: Floats) -> Floats:
+def _monotone_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
     """Return node slopes of the monotone cubic of Fritsch and Butland (1984)."""
     h, d = np.diff(x), np.diff(y) / np.diff(x)
     w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
@@ -123,14 +185,14 @@ _NODE_ANGLES_DEG, _NODE_DRAG = np.array(LUEBKE_ANGLES_DEG), np.array(LUEBKE_DRAG
 _NODE_SLOPES = np.clip(_monotone_slopes(_NODE_ANGLES_DEG, _NODE_DRAG), 0.0, None)
 
 
-def _interpolated_drag(degrees: Floats) -> Floats:
+def _interpolated_drag(degrees: FloatArray) -> FloatArray:
     """Return the monotone cubic through the nodes."""
     i = np.clip(
         np.searchsorted(_NODE_ANGLES_DEG, degrees, side="right") - 1, 0, _NODE_ANGLES_DEG.size - 2
     )
     h = _NODE_ANGLES_DEG[i + 1] - _NODE_ANGLES_DEG[i]
     t = (degrees - _NODE_ANGLES_DEG[i]) / h
-    value: Floats = (
+    value: FloatArray = (
         (1.0 + 2.0 * t) * (1.0 - t) ** 2 * _NODE_DRAG[i]
         + t * (1.0 - t) ** 2 * h * _NODE_SLOPES[i]
         + t**2 * (3.0 - 2.0 * t) * _NODE_DRAG[i + 1]
@@ -139,7 +201,7 @@ def _interpolated_drag(degrees: Floats) -> Floats:
     return value
 
 
-def rudder_drag_coefficient(angle: ArrayLike, *, curve: str = "nodes") -> Floats:
+def rudder_drag_coefficient(angle: ArrayLike, *, curve: str = "nodes") -> FloatArray:
     """Return the drag coefficient of a semi-balanced rudder at an angle.
 
     Parameters
@@ -178,7 +240,7 @@ def rudder_drag(
     rudder_area: ArrayLike,
     density: ArrayLike = SEA_WATER_DENSITY,
     curve: str = "nodes",
-) -> Floats:
+) -> FloatArray:
     """Return Schless's rudder drag in a cross current: 1/2 rho C_D(crab angle) A V^2 [N].
 
     Parameters
@@ -201,11 +263,11 @@ def rudder_drag(
 
     Notes
     -----
-    Do not use this without need. In a uniform current a ship holds its heading with no drift
+    Not recommended for planning. In a uniform current a ship holds its heading with no drift
     through the water: hull and rudder move with the water and feel no oblique flow (Galilean
     invariance). The crab angle is an angle over the ground, not an angle of attack. The 1 to
     1.7 % of speed lost in Table 4.5 of Schless (2023) at 30 to 150 degrees comes from the model,
-    not from the sea. It is here so that the tables there can be repeated.
+    not from the sea. It is offered to reproduce the tables of that thesis.
 
     References
     ----------

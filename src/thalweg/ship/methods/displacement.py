@@ -1,17 +1,18 @@
-"""Loading: how draught, weight, speed and displaced volume go together."""
+"""Loading and displacement: draught, weight and displaced volume between empty and full."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.core.types import FloatArray
+from thalweg.ship.methods.array_conversion import as_float_array
 
 
-def between_empty_and_full(load_factor: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
-    """Return a quantity that runs in a straight line from the empty to the full ship.
+def interpolate_loading(load_factor: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> FloatArray:
+    """Interpolate linearly between the empty and the full ship: x = (1 - r) x_empty + r x_full.
 
-    Draught, weight and service speed are treated so by van Halem (2019).
+    Van Halem (2019) applies it to draught, weight and service speed.
 
     Parameters
     ----------
@@ -29,13 +30,14 @@ def between_empty_and_full(load_factor: ArrayLike, *, empty: ArrayLike, full: Ar
     ----------
     J. P. van Halem, "Route optimization in dynamic currents", TU Delft (2019), section 3.2.3.
     """
-    r = as_float_array(load_factor)
-    inside = (r >= 0.0) & (r <= 1.0)
-    return (1.0 - np.where(inside, r, np.nan)) * as_float_array(empty) + r * as_float_array(full)
+    given = as_float_array(load_factor)
+    r = np.where((given >= 0.0) & (given <= 1.0), given, np.nan)
+    return (1.0 - r) * as_float_array(empty) + r * as_float_array(full)
 
 
-def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Floats:
-    """Return the load factor at which `between_empty_and_full` gives ``value``.
+def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> FloatArray:
+    """Return the load factor at which `interpolate_loading` gives ``value``:
+    r = (x - x_empty) / (x_full - x_empty).
 
     Parameters
     ----------
@@ -47,7 +49,7 @@ def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Fl
     Returns
     -------
     ndarray
-        Load factor [-], NaN where it would lie outside 0 to 1.
+        Load factor [-], NaN where it would be outside 0 to 1.
     """
     low = as_float_array(empty)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -57,7 +59,7 @@ def load_factor_of(value: ArrayLike, *, empty: ArrayLike, full: ArrayLike) -> Fl
 
 def displacement_volume(
     length: ArrayLike, breadth: ArrayLike, *, draught: ArrayLike, block_coefficient: ArrayLike
-) -> Floats:
+) -> FloatArray:
     """Return the displaced volume C_B L B T [m3] (definition of the block coefficient).
 
     Parameters
@@ -82,7 +84,7 @@ def displacement_volume(
 
 def block_coefficient_of(
     displacement: ArrayLike, *, length: ArrayLike, breadth: ArrayLike, draught: ArrayLike
-) -> Floats:
+) -> FloatArray:
     """Return the block coefficient of a displaced volume [m3]: volume / (L B T).
 
     Parameters
@@ -104,7 +106,7 @@ def block_coefficient_of(
 
 def block_at_draught(
     draught: ArrayLike, *, design_draught: ArrayLike, design_block: ArrayLike
-) -> Floats:
+) -> FloatArray:
     """Return the block coefficient at another draught: 1 - (1 - C_B)(T_design / T)^(1/3).
 
     Parameters
@@ -134,7 +136,7 @@ def displacement_at_draught(
     design_draught: ArrayLike,
     design_displacement: ArrayLike,
     waterplane_area: ArrayLike,
-) -> Floats:
+) -> FloatArray:
     """Return the displaced volume near the design draught, wall-sided: V + A_WP (T - T_design).
 
     Parameters

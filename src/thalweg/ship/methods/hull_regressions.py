@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import unknown_name_error
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.core.types import FloatArray
+from thalweg.ship.methods.array_conversion import as_float_array
 
 _WATERLINE: Final = {"tanker": 1.02, "container": 1.01, "ro_ro": 1.035}
 _PROPELLER: Final = {"tanker": (0.395, 1.30), "container": (0.623, -0.16), "ro_ro": (0.713, -0.08)}
@@ -23,7 +24,7 @@ def _value_for_ship_type(kind: str, table: Mapping[str, _T]) -> _T:
     return table[kind]
 
 
-def block_from_froude(froude: ArrayLike) -> Floats:
+def block_from_froude(froude: ArrayLike) -> FloatArray:
     """Return a usual block coefficient at a design Froude number.
 
     C_B = -4.22 + 27.8 sqrt(Fn) - 39.1 Fn + 46.6 Fn^3, for 0.15 < Fn < 0.32.
@@ -48,7 +49,7 @@ def block_from_froude(froude: ArrayLike) -> Floats:
     return -4.22 + 27.8 * np.sqrt(fn) - 39.1 * fn + 46.6 * fn**3
 
 
-def midship_from_block(block_coefficient: ArrayLike) -> Floats:
+def midship_from_block(block_coefficient: ArrayLike) -> FloatArray:
     """Return a usual midship section coefficient: 1 / (1 + (1 - C_B)^3.5).
 
     Parameters
@@ -68,7 +69,7 @@ def midship_from_block(block_coefficient: ArrayLike) -> Floats:
     return 1.0 / (1.0 + (1.0 - as_float_array(block_coefficient)) ** 3.5)
 
 
-def midship_kerlen(block_coefficient: ArrayLike) -> Floats:
+def midship_kerlen(block_coefficient: ArrayLike) -> FloatArray:
     """Return a usual midship section coefficient: 1.006 - 0.0056 C_B^-3.56.
 
     Parameters
@@ -88,7 +89,7 @@ def midship_kerlen(block_coefficient: ArrayLike) -> Floats:
     return 1.006 - 0.0056 * as_float_array(block_coefficient) ** -3.56
 
 
-def waterplane_from_block(block_coefficient: ArrayLike) -> Floats:
+def waterplane_from_block(block_coefficient: ArrayLike) -> FloatArray:
     """Return a usual waterplane coefficient of average sections: (1 + 2 C_B) / 3.
 
     Parameters
@@ -108,7 +109,7 @@ def waterplane_from_block(block_coefficient: ArrayLike) -> Floats:
     return (1.0 + 2.0 * as_float_array(block_coefficient)) / 3.0
 
 
-def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
+def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> FloatArray:
     """Return a usual centre of buoyancy, percent of length forward of midship: 19.4 C_P - 13.5.
 
     Parameters
@@ -129,7 +130,7 @@ def lcb_from_prismatic(prismatic_coefficient: ArrayLike) -> Floats:
     return 19.4 * as_float_array(prismatic_coefficient) - 13.5
 
 
-def lcb_from_froude(froude: ArrayLike) -> Floats:
+def lcb_from_froude(froude: ArrayLike) -> FloatArray:
     """Return a usual centre of buoyancy, percent of length forward of midship: 8.80 - 38.9 Fn.
 
     Parameters
@@ -151,7 +152,7 @@ def lcb_from_froude(froude: ArrayLike) -> Floats:
 
 def wetted_surface_denny_mumford(
     length: ArrayLike, *, draught: ArrayLike, displacement: ArrayLike
-) -> Floats:
+) -> FloatArray:
     """Return the wetted surface 1.7 L T + V / T [m2].
 
     Parameters
@@ -179,7 +180,7 @@ def wetted_surface_denny_mumford(
 
 def waterline_from_perpendiculars(
     length_between_perpendiculars: ArrayLike, *, kind: str = "tanker"
-) -> Floats:
+) -> FloatArray:
     """Return a usual waterline length: 1.02, 1.01 or 1.035 times L_PP [m].
 
     Parameters
@@ -202,7 +203,9 @@ def waterline_from_perpendiculars(
     return _value_for_ship_type(kind, _WATERLINE) * as_float_array(length_between_perpendiculars)
 
 
-def perpendiculars_from_waterline(length_waterline: ArrayLike, *, kind: str = "tanker") -> Floats:
+def perpendiculars_from_waterline(
+    length_waterline: ArrayLike, *, kind: str = "tanker"
+) -> FloatArray:
     """Return a usual length between perpendiculars, the inverse of the waterline rule [m].
 
     Parameters
@@ -224,7 +227,7 @@ def perpendiculars_from_waterline(length_waterline: ArrayLike, *, kind: str = "t
     return as_float_array(length_waterline) / _value_for_ship_type(kind, _WATERLINE)
 
 
-def length_over_surface_no_bulb(length_waterline: ArrayLike) -> Floats:
+def length_over_surface_no_bulb(length_waterline: ArrayLike) -> FloatArray:
     """Return the length over wetted surface of a hull without bulb: the waterline length [m].
 
     Parameters
@@ -244,7 +247,7 @@ def length_over_surface_no_bulb(length_waterline: ArrayLike) -> Floats:
     return as_float_array(length_waterline)
 
 
-def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker") -> Floats:
+def propeller_diameter_from_draught(draught: ArrayLike, *, kind: str = "tanker") -> FloatArray:
     """Return a usual propeller diameter: 0.395 T + 1.30 for tankers and the like [m].
 
     0.623 T - 0.16 for container ships, 0.713 T - 0.08 for ro-ro and passenger ships.
@@ -277,7 +280,7 @@ def wetted_surface_kristensen(
     design_draught: ArrayLike,
     design_displacement: ArrayLike,
     kind: str = "tanker",
-) -> Floats:
+) -> FloatArray:
     """Return the wetted surface of tankers or container ships at any draught [m2].
 
     0.99 (V/T + 1.9 L T) - 2.0 (T - T_now)(L + B) for tankers, bulk carriers and general cargo;
@@ -313,7 +316,7 @@ def wetted_surface_kristensen(
     return surface - rate * (full - as_float_array(draught)) * (size + as_float_array(breadth))
 
 
-def waterplane_kristensen(block_coefficient: ArrayLike) -> Floats:
+def waterplane_kristensen(block_coefficient: ArrayLike) -> FloatArray:
     """Return a usual waterplane coefficient: 0.55 + 0.45 C_B.
 
     Parameters
@@ -335,7 +338,7 @@ def waterplane_kristensen(block_coefficient: ArrayLike) -> Floats:
 
 def bulb_area_rakke(
     midship_coefficient: ArrayLike, *, breadth: ArrayLike, draught: ArrayLike
-) -> Floats:
+) -> FloatArray:
     """Return a usual bulb section at the forward perpendicular: 0.08 C_M B T [m2].
 
     Parameters
@@ -362,7 +365,7 @@ def bulb_area_rakke(
     )
 
 
-def bulb_height_rakke(draught: ArrayLike) -> Floats:
+def bulb_height_rakke(draught: ArrayLike) -> FloatArray:
     """Return a usual height of the centre of the bulb section above the keel: 0.4 T [m].
 
     Parameters
@@ -384,7 +387,7 @@ def bulb_height_rakke(draught: ArrayLike) -> Floats:
 
 def transom_area_rakke(
     midship_coefficient: ArrayLike, *, breadth: ArrayLike, draught: ArrayLike
-) -> Floats:
+) -> FloatArray:
     """Return a usual immersed transom: 0.051 C_M B T [m2].
 
     Parameters

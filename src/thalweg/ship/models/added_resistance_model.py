@@ -31,11 +31,11 @@ from thalweg.ship.methods.added_resistance.wind_resistance import (
     blendermann_1994,
     fujiwara_2006,
     ittc_curve,
-    relative_wind,
     wind_resistance,
     yu_2021_area,
     yu_2021_coefficient,
 )
+from thalweg.ship.methods.relative_angles import relative_wind
 from thalweg.ship.methods.resistance.holtrop_form import length_of_run
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of

@@ -13,7 +13,8 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.ship.conditions import Conditions
-from thalweg.ship.loading_state import Loading, interpolate_loading
+from thalweg.ship.loading_state import Loading
+from thalweg.ship.methods.displacement import interpolate_loading
 from thalweg.ship.methods.speed_loss import LastTermSign, ShipType, kwon_notes, kwon_speed_loss
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.model_protocol import setting_index
@@ -137,13 +138,15 @@ class KnownSpeedModel:
 
     def speeds(self, load_factor: float) -> FloatArray:
         """Calm-water speeds at a load factor [m/s]."""
-        return interpolate_loading(self.speeds_empty, self.speeds_full, load_factor)
+        return interpolate_loading(load_factor, empty=self.speeds_empty, full=self.speeds_full)
 
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
         """Speed through water [m/s]."""
         index = setting_index(setting, len(self.speeds_full))
         load_factor = conditions.load_factor
-        calm = interpolate_loading(self.speeds_empty[index], self.speeds_full[index], load_factor)
+        calm = interpolate_loading(
+            load_factor, empty=self.speeds_empty[index], full=self.speeds_full[index]
+        )
         if self.loss is not None:
             calm = calm * (1.0 - self.loss.share(conditions, calm))
         if self.squat is not None:
@@ -214,7 +217,7 @@ class KnownSpeedModel:
             *(self.speeds_full, self.speeds_empty),
             *(self.fuel_rates, self.powers),
         )
-        own, name = interpolate_loading(rows[1], rows[0], load_factor), self.law.name
+        own, name = interpolate_loading(load_factor, empty=rows[1], full=rows[0]), self.law.name
         low, high = (own[0], own[-1]) if name == "table" else (0.0, np.inf)
         if name == "none":
             high = own[-1] if len(own) > 1 else np.inf

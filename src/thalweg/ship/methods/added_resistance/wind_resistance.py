@@ -20,64 +20,6 @@ AIR_DENSITY: Final = 1.226  #: at 15 degC and 1013 hPa [kg/m3]
 _REFERENCE_HEIGHT: Final = 10.0
 
 
-def relative_wind(
-    wind_speed: ArrayLike, wind_angle: ArrayLike, *, ship_speed: ArrayLike
-) -> tuple[FloatArray, FloatArray]:
-    """Wind as felt on board, from the true wind in the frame in which the ship's speed is given.
-
-    Parameters
-    ----------
-    wind_speed : array_like
-        True wind speed [m/s].
-    wind_angle : array_like
-        Between the heading and where the true wind comes from [rad], 0 from ahead.
-    ship_speed : array_like
-        Along the heading, in the same frame as the wind [m/s].
-
-    Returns
-    -------
-    speed, angle : ndarray
-        Relative wind speed [m/s] and angle 0 to pi from the bow to where it comes from [rad].
-    """
-    wind = np.asarray(wind_speed, dtype=float)
-    angle = np.asarray(wind_angle, dtype=float)
-    ahead = wind * np.cos(angle) + np.asarray(ship_speed, dtype=float)
-    across = wind * np.abs(np.sin(angle))
-    return np.hypot(ahead, across), np.arctan2(across, ahead)
-
-
-def relative_wind_from_vectors(
-    wind_east: ArrayLike,
-    wind_north: ArrayLike,
-    *,
-    ship_east: ArrayLike,
-    ship_north: ArrayLike,
-    heading: ArrayLike,
-) -> tuple[FloatArray, FloatArray]:
-    """Wind as felt on board: a = wind (blowing towards) minus the velocity of the ship.
-
-    Parameters
-    ----------
-    wind_east, wind_north : array_like
-        True wind, towards [m/s].
-    ship_east, ship_north : array_like
-        Velocity of the ship over ground [m/s].
-    heading : array_like
-        [rad], clockwise from north.
-
-    Returns
-    -------
-    speed, angle : ndarray
-        As in `relative_wind`.
-    """
-    east = np.asarray(wind_east, dtype=float) - ship_east
-    north = np.asarray(wind_north, dtype=float) - ship_north
-    course = np.asarray(heading, dtype=float)
-    ahead = -(east * np.sin(course) + north * np.cos(course))
-    across = np.abs(east * np.cos(course) - north * np.sin(course))
-    return np.hypot(east, north), np.arctan2(across, ahead)
-
-
 def wind_at_height(
     wind_speed: ArrayLike, *, height: ArrayLike, reference_height: float = _REFERENCE_HEIGHT
 ) -> FloatArray:

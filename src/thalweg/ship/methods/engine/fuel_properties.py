@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.core.units import TONNE
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.core.errors import unknown_name_error
+from thalweg.core.types import FloatArray
+from thalweg.ship.methods.array_conversion import as_float_array
 
 
 @dataclass(frozen=True)
@@ -123,7 +122,7 @@ def fuel_named(name: str) -> Fuel:
     return FUELS[key]
 
 
-def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> Floats:
+def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> FloatArray:
     """Return the CO2 of a fuel mass: mass times carbon factor, in the unit of the mass.
 
     Parameters
@@ -145,7 +144,7 @@ def co2_mass(fuel_mass: ArrayLike, *, carbon_factor: ArrayLike) -> Floats:
     return as_float_array(fuel_mass) * as_float_array(carbon_factor)
 
 
-def equal_energy_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> Floats:
+def equal_energy_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> FloatArray:
     """Return the mass of another fuel with the same lower heating value.
 
     Parameters
@@ -163,106 +162,14 @@ def equal_energy_mass(fuel_mass: ArrayLike, *, of: Fuel, to: Fuel) -> Floats:
     return as_float_array(fuel_mass) * of.heating_value / to.heating_value
 
 
-def fuel_cost(fuel_mass: ArrayLike, *, price_t: ArrayLike) -> Floats:
-    """Return what a fuel mass [kg] costs at a price per tonne, in the currency of the price.
-
-    Parameters
-    ----------
-    fuel_mass : array_like
-        Fuel [kg].
-    price_t : array_like
-        Price [currency/t].
-
-    Returns
-    -------
-    ndarray
-        Cost.
-    """
-    return as_float_array(fuel_mass) / TONNE * as_float_array(price_t)
-
-
-@dataclass(frozen=True)
-class SwitchedFuel:
-    """What a ship burns along a route that enters emission control areas.
-
-    Parameters
-    ----------
-    mass : ndarray
-        Fuel burnt [kg], after the change of heating value.
-    co2 : ndarray
-        CO2 [kg].
-    cost : ndarray
-        Cost [currency]; NaN where no price was given.
-    """
-
-    mass: Floats
-    co2: Floats
-    cost: Floats
-
-
-def switch_in_control_area(
-    fuel_mass: ArrayLike,
-    share_inside: ArrayLike,
-    *,
-    outside: Fuel,
-    inside: Fuel,
-    price_outside_t: float = float("nan"),
-    price_inside_t: float = float("nan"),
-) -> SwitchedFuel:
-    """Return mass, CO2 and cost when another fuel is burnt inside emission control areas.
-
-    Parameters
-    ----------
-    fuel_mass : array_like
-        Fuel per leg [kg], as if ``outside`` were burnt everywhere.
-    share_inside : array_like
-        Share of the leg inside the area, 0 to 1 (or booleans).
-    outside, inside : Fuel
-        The fuels. Inside, the mass is changed so that the heat stays the same.
-    price_outside_t, price_inside_t : float
-        Prices [currency/t].
-
-    Returns
-    -------
-    SwitchedFuel
-        Per leg.
-
-    Raises
-    ------
-    InputError
-        When a share lies outside 0 to 1.
-
-    Notes
-    -----
-    Seuren (2020) gives one factor for fuel cost inside control areas, 1.5593 (Table 5.2); that is
-    ``price_inside_t / price_outside_t`` here with one fuel and no change of heating value.
-    """
-    share = as_float_array(share_inside)
-    if np.any((share < 0.0) | (share > 1.0)):
-        raise InputError(
-            "The share of a leg inside a control area lies outside 0 to 1.",
-            f"It runs from {np.nanmin(share):g} to {np.nanmax(share):g}.",
-            "Give lengths inside the area divided by leg lengths.",
-        )
-    mass_out = as_float_array(fuel_mass) * (1.0 - share)
-    mass_in = np.asarray(equal_energy_mass(np.asarray(fuel_mass) * share, of=outside, to=inside))
-    cost = np.where(mass_out > 0, mass_out * price_outside_t, 0.0 * mass_out)
-    cost = (cost + np.where(mass_in > 0, mass_in * price_inside_t, 0.0 * mass_in)) / TONNE
-    return SwitchedFuel(
-        mass=mass_out + mass_in,
-        co2=mass_out * outside.carbon_factor + mass_in * inside.carbon_factor,
-        cost=cost,
-    )
-
-
 def halem_cost(
     time: ArrayLike,
     speed: ArrayLike,
     *,
     per_second: float = 700_000.0 / 604_800.0,
     per_cube: float = 0.008,
-) -> Floats:
-    """Return van Halem's cost of sailing: time cost plus fuel with the cube of speed.
+) -> FloatArray:
+    """Return van Halem's cost of sailing: C = lambda_t t + lambda_f t V^3 [currency].
 
     Parameters
     ----------
@@ -271,14 +178,14 @@ def halem_cost(
     speed : array_like
         Speed the ship would make through deep water [m/s].
     per_second : float
-        Cost of time [currency/s]; 700 000 a week.
+        Cost of time lambda_t [currency/s]; 700 000 a week.
     per_cube : float
-        Cost of fuel [currency s2/m3].
+        Cost of fuel lambda_f [currency s2/m3].
 
     Returns
     -------
     ndarray
-        per_second t + per_cube t V^3 [currency].
+        Cost [currency].
 
     References
     ----------

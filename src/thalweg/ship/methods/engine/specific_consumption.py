@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, KNOT, TONNE
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.ship.methods.array_conversion import as_float_array
 
 #: kg/(W s) in one g/kWh.
 GRAM_PER_KILOWATT_HOUR: Final = 1e-3 / 3.6e6
@@ -128,7 +129,7 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
     return float(value), record
 
 
-def sfoc_load_factor(load: ArrayLike) -> Floats:
+def sfoc_load_factor(load: ArrayLike) -> FloatArray:
     """Return specific consumption over its base: 0.455 x^2 - 0.710 x + 1.280, x = P / MCR.
 
     Parameters
@@ -157,7 +158,7 @@ def fuel_rate(
     sfoc_g_kwh: ArrayLike,
     pilot_g_kwh: ArrayLike = 0.0,
     varies_with_load: bool = True,
-) -> Floats:
+) -> FloatArray:
     """Return the fuel one engine burns.
 
     Parameters
@@ -192,7 +193,7 @@ def fuel_rate(
 
 def engines_needed(
     power: ArrayLike, engine_mcr: ArrayLike, *, count: int, largest_load: float = 1.0
-) -> Floats:
+) -> FloatArray:
     """Return the fewest equal engines that carry a power.
 
     Parameters
@@ -225,7 +226,7 @@ def plant_fuel_rate(
     sfoc_g_kwh: ArrayLike,
     largest_load: float = 1.0,
     choice: str = "least_fuel",
-) -> tuple[Floats, Floats]:
+) -> tuple[FloatArray, FloatArray]:
     """Return the fuel of several equal engines that share a power, and how many of them run.
 
     Parameters
@@ -262,7 +263,7 @@ def plant_fuel_rate(
     return np.where(np.isnan(running), np.nan, best), running
 
 
-def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> Floats:
+def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> FloatArray:
     """Return the fuel of auxiliary engines at constant specific consumption.
 
     Parameters
@@ -319,7 +320,7 @@ SEUREN_TABLE_5_3: Final = EngineSettingsTable(
 )
 
 
-def table_fuel_rate(speed: ArrayLike, table: EngineSettingsTable) -> tuple[Floats, Floats]:
+def table_fuel_rate(speed: ArrayLike, table: EngineSettingsTable) -> tuple[FloatArray, FloatArray]:
     """Return the least fuel of a table at a calm-water speed, and how many engines run.
 
     Interpolated linearly between the settings of the same number of engines only; a speed that

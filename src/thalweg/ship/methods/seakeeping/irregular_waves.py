@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.core.types import FloatArray
+from thalweg.ship.methods.array_conversion import as_float_array
 
 SCHEMES = ("deterministic", "random")
 
@@ -25,7 +26,7 @@ class WaveComponents:
         The elevation is the real part of the sum of amplitude exp(i w t) [m].
     """
 
-    frequency: Floats
+    frequency: FloatArray
     amplitude: NDArray[np.complex128]
 
     @property
@@ -46,10 +47,10 @@ class WaveHistory:
         [m], [m/s], [m/s2].
     """
 
-    time: Floats
-    elevation: Floats
-    velocity: Floats
-    acceleration: Floats
+    time: FloatArray
+    elevation: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
 
 
 def wave_components(
@@ -120,7 +121,7 @@ def wave_components(
     return WaveComponents(w, root * (draws[0] - 1j * draws[1]))
 
 
-def _multiples(frequency: Floats) -> bool:
+def _multiples(frequency: FloatArray) -> bool:
     """Whether frequencies are rising multiples of one spacing, so that the history repeats."""
     if frequency.ndim != 1 or frequency.size < 2:
         return False

@@ -7,8 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.ship.methods.array_conversion import as_float_array
 
 #: Share of people sick per dose, unadapted men and women together (ISO 2631-1, annex D).
 MIXED_ADULT_SUSCEPTIBILITY: Final = 1.0 / 3.0
@@ -20,15 +21,15 @@ MEAN_ABSOLUTE: Final = float(np.sqrt(2.0 / np.pi))
 _F1, _F2, _F4, _Q4, _F5, _Q5, _F6, _Q6 = 0.08, 0.63, 0.25, 0.86, 0.0625, 0.80, 0.10, 0.80
 
 
-def _standard_normal_distribution(z: Floats) -> Floats:
+def _standard_normal_distribution(z: FloatArray) -> FloatArray:
     """Return the standard normal distribution function."""
     from scipy.special import ndtr
 
-    value: Floats = np.asarray(ndtr(z), dtype=float)
+    value: FloatArray = np.asarray(ndtr(z), dtype=float)
     return value
 
 
-def wf_weighting(frequency_hz: ArrayLike) -> Floats:
+def wf_weighting(frequency_hz: ArrayLike) -> FloatArray:
     """Return the frequency weighting W_f of ISO 2631-1 for motion sickness.
 
     Parameters
@@ -57,7 +58,7 @@ def wf_weighting(frequency_hz: ArrayLike) -> Floats:
     return high * low * fall * (_Q6 / _Q5) * np.sqrt(upper / lower)
 
 
-def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> Floats:
+def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> FloatArray:
     """Return the W_f-weighted root mean square of a vertical acceleration.
 
     Parameters
@@ -77,11 +78,11 @@ def weighted_acceleration(parts: ArrayLike, encounter_frequency: ArrayLike) -> F
     ISO 2631-1:1997, 6.1.
     """
     factor = wf_weighting(as_float_array(encounter_frequency) / (2.0 * np.pi))
-    value: Floats = np.sqrt(np.sum(as_float_array(parts) * factor**2, axis=-1))
+    value: FloatArray = np.sqrt(np.sum(as_float_array(parts) * factor**2, axis=-1))
     return value
 
 
-def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Floats:
+def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> FloatArray:
     """Return the motion sickness dose value MSDV_z = a_w sqrt(t) of a steady motion.
 
     Parameters
@@ -100,11 +101,11 @@ def motion_sickness_dose(weighted_rms: ArrayLike, *, duration: ArrayLike) -> Flo
     ----------
     ISO 2631-1:1997, annex D.
     """
-    value: Floats = as_float_array(weighted_rms) * np.sqrt(as_float_array(duration))
+    value: FloatArray = as_float_array(weighted_rms) * np.sqrt(as_float_array(duration))
     return value
 
 
-def combined_dose(weighted_rms: ArrayLike, *, durations: ArrayLike) -> Floats:
+def combined_dose(weighted_rms: ArrayLike, *, durations: ArrayLike) -> FloatArray:
     """Return the dose of consecutive stretches: the square root of the summed squares.
 
     Parameters
@@ -123,7 +124,7 @@ def combined_dose(weighted_rms: ArrayLike, *, durations: ArrayLike) -> Floats:
     ----------
     ISO 2631-1:1997, annex D.
     """
-    value: Floats = np.sqrt(
+    value: FloatArray = np.sqrt(
         np.sum(as_float_array(weighted_rms) ** 2 * as_float_array(durations), axis=-1)
     )
     return value
@@ -131,7 +132,7 @@ def combined_dose(weighted_rms: ArrayLike, *, durations: ArrayLike) -> Floats:
 
 def motion_sickness_percent_iso(
     dose: ArrayLike, *, susceptibility: ArrayLike = MIXED_ADULT_SUSCEPTIBILITY
-) -> Floats:
+) -> FloatArray:
     """Return the percentage of people who vomit by ISO 2631-1: K_m MSDV_z.
 
     Parameters
@@ -155,7 +156,7 @@ def motion_sickness_percent_iso(
 
 def motion_sickness_percent_mccauley(
     rms: ArrayLike, *, frequency_hz: ArrayLike, duration: ArrayLike, gravity: float = GRAVITY
-) -> Floats:
+) -> FloatArray:
     """Return the motion sickness incidence of McCauley et al. (1976).
 
     100 P(z_a) P(z_t) with P the normal distribution, a the rms acceleration in g, f in Hz and
@@ -199,7 +200,7 @@ def motion_sickness_percent_mccauley(
 
 def motion_sickness_percent_ohanlon(
     rms: ArrayLike, *, encounter_frequency: ArrayLike, gravity: float = GRAVITY
-) -> Floats:
+) -> FloatArray:
     """Return the motion sickness incidence after two hours by O'Hanlon and McCauley (1974).
 
     100 P((log(a/g) - m) / 0.4), m = -0.819 + 2.32 (log w_e)^2, with a the mean absolute

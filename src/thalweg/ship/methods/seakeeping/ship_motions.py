@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.ship.methods.array_conversion import as_float_array
 from thalweg.ship.methods.seakeeping.wave_spectra import (
     jonswap,
     most_probable_maximum,
@@ -68,7 +69,7 @@ class MotionHull:
 
 def encounter_ratio(
     frequency: ArrayLike, *, speed: ArrayLike, wave_angle: ArrayLike, gravity: float = GRAVITY
-) -> Floats:
+) -> FloatArray:
     """Return encounter over wave frequency in deep water: 1 + w V cos(angle) / g.
 
     Parameters
@@ -100,7 +101,7 @@ def jensen_motions(
     hull: MotionHull,
     decay: str = "published",
     gravity: float = GRAVITY,
-) -> tuple[Floats, Floats]:
+) -> tuple[FloatArray, FloatArray]:
     """Return the amplitudes of heave and pitch per wave amplitude.
 
     With k = w^2/g, a = encounter over wave frequency, B the breadth of the box, T the draught,
@@ -166,14 +167,14 @@ def jensen_motions(
     return heave, gain * k_e * np.abs(_slope_factor(half))
 
 
-def _slope_factor(s: Floats) -> Floats:
+def _slope_factor(s: FloatArray) -> FloatArray:
     """Return 3 (sin s - s cos s) / s^3, one at s = 0."""
     small = np.abs(s) < 0.02
     safe = np.where(small, 1.0, s)
     return np.where(small, 1.0 - s**2 / 10.0, 3.0 * (np.sin(safe) - safe * np.cos(safe)) / safe**3)
 
 
-def vertical_motion(heave: ArrayLike, pitch: ArrayLike, *, forward: ArrayLike) -> Floats:
+def vertical_motion(heave: ArrayLike, pitch: ArrayLike, *, forward: ArrayLike) -> FloatArray:
     """Return the vertical motion at a point from heave and pitch a quarter period apart.
 
     Parameters
@@ -204,15 +205,15 @@ class SeaResponse:
         Variance, and second moment over encounter frequency.
     """
 
-    m0: Floats
-    m2: Floats
+    m0: FloatArray
+    m2: FloatArray
 
     @property
-    def significant_amplitude(self) -> Floats:
+    def significant_amplitude(self) -> FloatArray:
         """Mean of the largest third of the amplitudes, 2 sqrt(m0)."""
         return 2.0 * np.sqrt(self.m0)
 
-    def most_probable_maximum(self, duration: ArrayLike = 10_800.0) -> Floats:
+    def most_probable_maximum(self, duration: ArrayLike = 10_800.0) -> FloatArray:
         """Return the most probable largest amplitude in a duration [s], 3 h if not given."""
         return most_probable_maximum(self.m0, self.m2, duration=duration)
 
@@ -241,8 +242,8 @@ class ShipResponse:
     pitch: SeaResponse
     motion: SeaResponse
     acceleration: SeaResponse
-    acceleration_parts: Floats
-    encounter_frequency: Floats
+    acceleration_parts: FloatArray
+    encounter_frequency: FloatArray
 
 
 def ship_response(
@@ -304,7 +305,7 @@ def ship_response(
     meeting = np.abs(w * encounter_ratio(w, speed=v, wave_angle=angle, gravity=gravity))
     point = vertical_motion(heave, pitch, forward=x)
 
-    def statistics(amplitude: Floats) -> SeaResponse:
+    def statistics(amplitude: FloatArray) -> SeaResponse:
         density = amplitude**2 * waves
         return SeaResponse(
             spectral_moment(density, weights, frequency=meeting, order=0),

@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.types import BoolArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import KNOT
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.ship.methods.array_conversion import as_float_array
 
 #: Half width of the sector of following and quartering seas [rad]: 135 to 225 degrees.
 SURF_RIDING_SECTOR: Final = float(np.radians(45.0))
@@ -34,10 +34,10 @@ class DangerousSituationMargins:
         when no roll period was given.
     """
 
-    surf_riding: Floats
-    high_waves: Floats
-    synchronous_roll: Floats
-    parametric_roll: Floats
+    surf_riding: FloatArray
+    high_waves: FloatArray
+    synchronous_roll: FloatArray
+    parametric_roll: FloatArray
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class DangerousSituations:
         all-clear: use `safe`.
     """
 
-    encounter_period: Floats
+    encounter_period: FloatArray
     surf_riding: BoolArray
     marginal_surging: BoolArray
     successive_high_waves: BoolArray
@@ -94,7 +94,7 @@ def roll_period(
     *,
     length_waterline: ArrayLike,
     metacentric_height: ArrayLike,
-) -> Floats:
+) -> FloatArray:
     """Return the natural roll period 2 C B / sqrt(GM), C = 0.373 + 0.023 B/T - 0.043 L/100.
 
     Parameters
@@ -119,11 +119,13 @@ def roll_period(
         + 0.023 * b / as_float_array(draught)
         - 0.043 * as_float_array(length_waterline) / 100.0
     )
-    value: Floats = 2.0 * coefficient * b / np.sqrt(np.where(gm > 0.0, gm, np.nan))
+    value: FloatArray = 2.0 * coefficient * b / np.sqrt(np.where(gm > 0.0, gm, np.nan))
     return value
 
 
-def encounter_period(wave_period: ArrayLike, *, speed: ArrayLike, wave_angle: ArrayLike) -> Floats:
+def encounter_period(
+    wave_period: ArrayLike, *, speed: ArrayLike, wave_angle: ArrayLike
+) -> FloatArray:
     """Return the encounter period 3 T^2 / (3 T + V cos(angle)), V in knots in the formula.
 
     Parameters
@@ -154,7 +156,9 @@ def encounter_period(wave_period: ArrayLike, *, speed: ArrayLike, wave_angle: Ar
         )
 
 
-def surf_riding_speed(wave_angle: ArrayLike, *, length: ArrayLike, factor: float = 1.8) -> Floats:
+def surf_riding_speed(
+    wave_angle: ArrayLike, *, length: ArrayLike, factor: float = 1.8
+) -> FloatArray:
     """Return the speed above which a ship may surf-ride: 1.8 sqrt(L) / cos(180 - angle) knots.
 
     Parameters
@@ -184,8 +188,8 @@ def surf_riding_speed(wave_angle: ArrayLike, *, length: ArrayLike, factor: float
 
 
 def _roll_resonance_margins(
-    encounter: Floats, period: Floats, tolerance: float
-) -> tuple[Floats, Floats]:
+    encounter: FloatArray, period: FloatArray, tolerance: float
+) -> tuple[FloatArray, FloatArray]:
     """Return relative distances from synchronous and parametric roll, less the tolerance."""
     with np.errstate(invalid="ignore", divide="ignore"):
         once = np.abs(encounter / period - 1.0)

@@ -7,15 +7,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.ship.methods.array_conversion import as_float_array
 
 #: Panels of the quadrature in units of the peak frequency, and points in each.
 PANEL_EDGES: Final = (0.35, 0.75, 1.0, 1.3, 2.0, 4.0, 8.0)
 POINTS_PER_PANEL: Final = 8
 
 
-def _panel_rule() -> tuple[Floats, Floats]:
+def _panel_rule() -> tuple[FloatArray, FloatArray]:
     nodes, weights = np.polynomial.legendre.leggauss(POINTS_PER_PANEL)
     low, high = np.array(PANEL_EDGES[:-1]), np.array(PANEL_EDGES[1:])
     half = (high - low)[:, None] / 2.0
@@ -25,7 +26,7 @@ def _panel_rule() -> tuple[Floats, Floats]:
 _NODES, _WEIGHTS = _panel_rule()
 
 
-def quadrature(period: ArrayLike) -> tuple[Floats, Floats]:
+def quadrature(period: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return wave frequencies and weights for integrals over a sea state.
 
     Parameters
@@ -45,7 +46,7 @@ def quadrature(period: ArrayLike) -> tuple[Floats, Floats]:
     return peak[..., None] * _NODES, peak[..., None] * _WEIGHTS
 
 
-def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> Floats:
+def dnv_peak_factor(height: ArrayLike, period: ArrayLike) -> FloatArray:
     """Return the peak factor gamma of a JONSWAP spectrum by DNV-RP-C205.
 
     5 for Tp / sqrt(Hs) <= 3.6; exp(5.75 - 1.15 Tp / sqrt(Hs)); 1 from 5 on.
@@ -77,7 +78,7 @@ def jonswap(
     height: ArrayLike,
     period: ArrayLike,
     peak_factor: ArrayLike | None = None,
-) -> Floats:
+) -> FloatArray:
     """Return the JONSWAP spectrum, scaled so that 4 sqrt(m0) is the significant height.
 
     S = (5/16) Hs^2 wp^4 w^-5 exp(-1.25 (wp/w)^4) (1 - 0.287 ln gamma) gamma^r with
@@ -128,7 +129,7 @@ def jonswap(
     return 0.3125 * hs**2 / peak * (1.0 - 0.287 * np.log(gamma)) * shape * enhance
 
 
-def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike) -> Floats:
+def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike) -> FloatArray:
     """Return the two-parameter Bretschneider (Pierson-Moskowitz type) spectrum.
 
     Parameters
@@ -148,7 +149,7 @@ def bretschneider(frequency: ArrayLike, *, height: ArrayLike, period: ArrayLike)
     return jonswap(frequency, height=height, period=period, peak_factor=1.0)
 
 
-def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> Floats:
+def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> FloatArray:
     """Return the peak period of a fully developed sea of given height [s].
 
     From m0 = 0.0081 g^2 / (5 wp^4): wp = 0.02592^(1/4) sqrt(g / Hs), 0.02592 = 16 0.0081 / 5.
@@ -169,13 +170,13 @@ def pierson_moskowitz_period(height: ArrayLike, *, gravity: float = GRAVITY) -> 
     ----------
     W. J. Pierson, L. Moskowitz, J. Geophys. Res. 69 (1964).
     """
-    period: Floats = 2.0 * np.pi / 0.02592**0.25 * np.sqrt(as_float_array(height) / gravity)
+    period: FloatArray = 2.0 * np.pi / 0.02592**0.25 * np.sqrt(as_float_array(height) / gravity)
     return period
 
 
 def spectral_moment(
     density: ArrayLike, weights: ArrayLike, *, frequency: ArrayLike, order: float
-) -> Floats:
+) -> FloatArray:
     """Return a spectral moment: the sum of |w|^n S over the last axis with weights.
 
     Parameters
@@ -197,11 +198,11 @@ def spectral_moment(
         m_n.
     """
     power = np.abs(as_float_array(frequency)) ** order if order else 1.0
-    total: Floats = np.sum(as_float_array(density) * as_float_array(weights) * power, axis=-1)
+    total: FloatArray = np.sum(as_float_array(density) * as_float_array(weights) * power, axis=-1)
     return total
 
 
-def significant_height(m0: ArrayLike) -> Floats:
+def significant_height(m0: ArrayLike) -> FloatArray:
     """Return the significant double amplitude 4 sqrt(m0).
 
     Parameters
@@ -217,7 +218,7 @@ def significant_height(m0: ArrayLike) -> Floats:
     return 4.0 * np.sqrt(as_float_array(m0))
 
 
-def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) -> Floats:
+def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) -> FloatArray:
     """Return the most probable largest amplitude in a time: sqrt(2 m0 ln N).
 
     N = duration / Tz with Tz = 2 pi sqrt(m0 / m2), the number of cycles, at least one.
@@ -245,7 +246,7 @@ def most_probable_maximum(m0: ArrayLike, m2: ArrayLike, *, duration: ArrayLike) 
     return np.where(variance == 0.0, 0.0 * as_float_array(m2), largest)
 
 
-def zero_crossing_period(m0: ArrayLike, m2: ArrayLike) -> Floats:
+def zero_crossing_period(m0: ArrayLike, m2: ArrayLike) -> FloatArray:
     """Return the mean period between upward zero crossings, 2 pi sqrt(m0 / m2) [s].
 
     Parameters

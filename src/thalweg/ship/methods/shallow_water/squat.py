@@ -7,8 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.types import FloatArray
 from thalweg.core.units import GRAVITY, KNOT
-from thalweg.ship.methods.array_conversion import Floats, as_float_array
+from thalweg.ship.methods.array_conversion import as_float_array
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 #: Width of open water that takes part in the flow, in ship breadths (van Halem 2019).
@@ -26,7 +27,7 @@ _BLOCK_COEFFICIENT_RANGE: Final = (0.5, 0.9)
 _LEAST_DEPTH_TO_DRAUGHT: Final = 1.1  # depth over draught
 
 
-def _waterway_width(breadth: ArrayLike, channel_width: ArrayLike | None) -> Floats:
+def _waterway_width(breadth: ArrayLike, channel_width: ArrayLike | None) -> FloatArray:
     if channel_width is None:
         return OPEN_WATER_BREADTHS * as_float_array(breadth)
     return as_float_array(channel_width)
@@ -38,7 +39,7 @@ def blockage_ratio(
     *,
     breadth: ArrayLike,
     channel_width: ArrayLike | None = None,
-) -> Floats:
+) -> FloatArray:
     """Return the blockage S2 = A_s / (b h - A_s): the ship's section over the water beside it.
 
     Parameters
@@ -71,7 +72,7 @@ def barrass_squat(
     breadth: ArrayLike,
     block_coefficient: ArrayLike,
     channel_width: ArrayLike | None = None,
-) -> Floats:
+) -> FloatArray:
     """Return the largest squat by Barrass (1979): C_B S2^(2/3) V_kn^2.08 / 30.
 
     Parameters
@@ -118,7 +119,7 @@ def barrass_2004_squat(
     breadth: ArrayLike,
     block_coefficient: ArrayLike,
     channel_width: ArrayLike | None = None,
-) -> Floats:
+) -> FloatArray:
     """Return the largest squat by Barrass's later form: C_B K^0.81 V_kn^2.08 / 20.
 
     K = B T / (b h) is the blockage factor; without a channel width b is Barrass's width of
@@ -169,7 +170,7 @@ def barrass_2004_speed(
     breadth: ArrayLike,
     block_coefficient: ArrayLike,
     channel_width: ArrayLike | None = None,
-) -> Floats:
+) -> FloatArray:
     """Return the speed at which `barrass_2004_squat` reaches a given squat [m/s].
 
     Parameters
@@ -204,7 +205,7 @@ def barrass_speed(
     breadth: ArrayLike,
     block_coefficient: ArrayLike,
     channel_width: ArrayLike | None = None,
-) -> Floats:
+) -> FloatArray:
     """Return the speed at which `barrass_squat` reaches a given squat.
 
     Parameters
@@ -244,7 +245,7 @@ def shallow_water_speed(
     breadth: ArrayLike,
     channel_width: ArrayLike | None = None,
     gravity: float = GRAVITY,
-) -> Floats:
+) -> FloatArray:
     """Return the speed left in shallow water of one that the ship makes in deep water.
 
     V = V_max sqrt(tanh(g h / V_max^2)) (1.002 + 0.005 q - 0.1159 q^2 + 0.0191 q^3), with
@@ -303,7 +304,7 @@ def shallow_water_speed_limit(
     clearance: ArrayLike = 0.0,
     channel_width: ArrayLike | None = None,
     gravity: float = GRAVITY,
-) -> Floats:
+) -> FloatArray:
     """Return the speed a depth allows: the smaller of `shallow_water_speed` and `barrass_speed`.
 
     The squat that is allowed is depth - draught - clearance.
@@ -361,7 +362,7 @@ def shallow_water_speed_limit(
 
 def dynamic_under_keel_clearance(
     depth: ArrayLike, draught: ArrayLike, *, squat: ArrayLike
-) -> Floats:
+) -> FloatArray:
     """Return the water under the keel of a moving ship: depth - draught - squat [m].
 
     Parameters

@@ -49,7 +49,7 @@ ANCHORAGE = zone("anchorage", 51.62, 51.68, 3.46, 3.52)
 BARRED = zone("no-waiting", 51.6, 51.9, 3.46, 3.6)
 
 
-def test_where_a_ship_may_wait() -> None:
+def test_positions_where_a_ship_may_wait() -> None:
     free = Chart.open_water(*AREA)
     assert free.may_wait([51.7, 51.65], [3.5, 3.5]).tolist() == [True, True]
     assert chart(ANCHORAGE).may_wait([51.7, 51.65], [3.5, 3.5]).tolist() == [False, True]
@@ -83,7 +83,7 @@ def waits(route):
     return [(float(route.track.lat[k]), float(route.track.lon[k])) for k in at]
 
 
-def test_the_ship_waits_in_the_anchorage_or_at_her_berth() -> None:
+def test_the_ship_waits_in_the_anchorage_or_at_the_start() -> None:
     free = sail(Chart.open_water(*AREA))
     route = sail(chart(ANCHORAGE))
     assert route.feasible and route.waiting_h > 1.0

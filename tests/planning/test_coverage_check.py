@@ -1,4 +1,4 @@
-"""Ends of a voyage against what the data know."""
+"""Coverage check of the end points of a voyage."""
 
 import numpy as np
 import pytest
@@ -27,19 +27,19 @@ def ask(start, goal, sea, chart=WATER, **more):
     return plan(voyage, ship=SHIP, sea=sea, chart=chart)
 
 
-def test_a_position_outside_the_data_is_refused_with_the_nearest_water_known():
+def test_a_position_outside_the_data_is_refused_with_the_nearest_covered_water():
     sea = known_where(lambda lat, lon: lon < 3.0)
-    with pytest.raises(OutsideAreaError, match=r"nearest water they know is 1\d\.\d nm") as caught:
+    with pytest.raises(OutsideAreaError, match=r"nearest covered water is 1\d\.\d nm") as caught:
         ask((50.5, 1.5), (50.5, 3.4), sea)
     assert "eastward_sea_water_velocity" in caught.value.asked
 
 
 def test_a_position_far_outside_the_data_is_refused():
-    with pytest.raises(OutsideAreaError, match="none within 32 nm"):
+    with pytest.raises(OutsideAreaError, match="no water within 32 nm"):
         ask((50.5, 1.5), (50.5, 4.5), known_where(lambda lat, lon: lon < 2.0))
 
 
-def test_a_port_moves_to_water_the_data_know_and_says_so():
+def test_a_port_moves_to_covered_water_with_a_note():
     found = ask((50.5, 1.5), "Rotterdam", known_where(lambda lat, lon: lon < 4.0))
     end = found.best.track
     assert 3.9 < end.lon[-1] < 4.0 and abs(end.lat[-1] - 51.9) < 0.1
@@ -53,13 +53,13 @@ def test_a_port_moves_to_water_deep_enough():
     assert found.best.min_ukc_m >= 0.0
 
 
-def test_depth_that_does_not_reach_an_end_is_named():
+def test_missing_depth_at_an_end_point_is_named():
     chart = WATER.with_depth(lambda lat, lon: np.where(lon < 3.0, 30.0, np.nan) + 0.0 * lat)
     with pytest.raises(OutsideAreaError, match="depth is not known there"):
         ask((50.5, 1.5), (50.5, 4.5), Sea.calm(), chart, min_ukc_m=1.0)
 
 
-def test_an_end_known_at_some_times_only_is_not_refused():
+def test_an_end_point_covered_at_some_times_only_is_not_refused():
     sea = Sea.from_functions(
         {
             "eastward_sea_water_velocity": lambda t, lat, lon: np.where(
@@ -82,7 +82,7 @@ def test_arguments_of_the_wrong_kind(wrong):
         plan(voyage, **{"ship": SHIP, "sea": Sea.calm(), "chart": WATER, **wrong})
 
 
-def test_a_voyage_that_is_no_voyage():
+def test_a_voyage_of_another_type_is_refused():
     with pytest.raises(InputError, match="Voyage"):
         plan({"start": (50.5, 1.5)}, ship=SHIP, sea=Sea.calm(), chart=WATER)
 

@@ -1,4 +1,4 @@
-"""Ways round: canals, ice and places between."""
+"""Restrictions of the chart: canals and ice latitudes; concatenated networks."""
 
 import numpy as np
 import pytest
@@ -92,10 +92,10 @@ def test_canals_are_left_out_of_a_cost_in_another_currency_than_their_dues():
     assert passed("EUR", "fuel") == (True, [])
     open_, notes = passed("EUR", "cost")
     assert not open_ and len(notes) == 1
-    assert "Kiel Canal: its dues are in USD, and the prices are in EUR" in notes[0]
+    assert "Kiel Canal: its dues are in USD, the prices in EUR" in notes[0]
 
 
-def test_ice_is_left_out_unless_the_voyage_goes_there():
+def test_ice_latitudes_are_excluded_unless_the_voyage_goes_there():
     def reach(lat):
         chart = exclude_ice_latitudes(
             CHART, [Endpoint("a", 60.0, 0.0, 0.0), Endpoint("b", lat, 10.0, 0.0)]
@@ -107,7 +107,7 @@ def test_ice_is_left_out_unless_the_voyage_goes_there():
     assert ICE_LIMIT_NORTH < 72.0  # Bellot Strait, the way round the north of America
 
 
-def test_no_way_without_canals_is_said():
+def test_a_missing_route_without_canals_is_reported():
     chart = Chart.gshhg("c").within(25.0, 45.0, 10.0, 40.0)  # the Mediterranean and the Red Sea
     voyage = Voyage(
         start=(33.0, 30.0), goal=(27.5, 34.5), depart="2026-01-01T00:00Z", forbid=["all"]

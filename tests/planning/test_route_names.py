@@ -1,4 +1,4 @@
-"""Names that tell ways round apart: on which side of which land they pass."""
+"""Labels of routes by the side on which they pass land."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from tests.reference.test_floro_santander_seuren_2020 import GOAL, SHIP, START, WAYS
 from thalweg import Chart, Sea, Ship, evaluate
 from thalweg.network import fixed_route
-from thalweg.planning.pareto.route_names import LANDMASSES, land_name, route_labels
+from thalweg.planning.pareto.route_names import land_name, landmasses, route_labels
 from thalweg.route import Route
 
 SLOW = Ship.simple(speed_kn=10.0, draught_m=5.0)
@@ -27,8 +27,8 @@ def islands(*boxes) -> Chart:
     return Chart.from_geojson({"type": "FeatureCollection", "features": features})
 
 
-def told(chart, *ways, names=None):
-    """Return the names of ways over the Gulf of Guinea, the first of them the network."""
+def labels(chart, *ways, names=None):
+    """Return the labels of routes over the Gulf of Guinea, the first of them the network."""
     routes = [sailed(way, chart) for way in ways]
     names = names or ["open sea"] * len(routes)
     return route_labels(
@@ -40,28 +40,28 @@ WEST, EAST = (0.0, -2.0), (0.0, 2.0)
 NORTHERN, SOUTHERN = [WEST, (0.7, 0.0), EAST], [WEST, (-0.7, 0.0), EAST]
 
 
-def test_ways_on_either_side_of_an_island_are_told_apart():
+def test_routes_on_either_side_of_an_island_get_different_labels():
     chart = islands((-0.3, -0.3, 0.3, 0.3))
-    north, south, again = told(chart, NORTHERN, SOUTHERN, NORTHERN)
+    north, south, again = labels(chart, NORTHERN, SOUTHERN, NORTHERN)
     assert north == again == "north of the land at 0.0000N 0.0000E"
     assert south == "south of the land at 0.0000N 0.0000E"
 
 
-def test_ways_on_the_same_side_keep_their_name():
+def test_routes_on_the_same_side_keep_their_name():
     chart = islands((-0.3, -0.3, 0.3, 0.3))
-    assert told(chart, NORTHERN, [WEST, (0.9, 0.2), EAST]) == ("open sea", "open sea")
-    assert told(Chart.open_water(), NORTHERN, SOUTHERN) == ("open sea", "open sea")
+    assert labels(chart, NORTHERN, [WEST, (0.9, 0.2), EAST]) == ("open sea", "open sea")
+    assert labels(Chart.open_water(), NORTHERN, SOUTHERN) == ("open sea", "open sea")
 
 
-def test_small_islands_make_no_other_way():
+def test_small_islands_do_not_change_labels():
     chart = islands((-0.01, -0.01, 0.01, 0.01))
-    assert told(chart, NORTHERN, SOUTHERN) == ("open sea", "open sea")
+    assert labels(chart, NORTHERN, SOUTHERN) == ("open sea", "open sea")
 
 
 def test_canals_stay_in_the_name_and_ways_by_others_are_not_compared():
     chart = islands((-0.3, -0.3, 0.3, 0.3))
     names = ["suez", "suez", "open sea"]
-    first, second, third = told(chart, NORTHERN, SOUTHERN, SOUTHERN, names=names)
+    first, second, third = labels(chart, NORTHERN, SOUTHERN, SOUTHERN, names=names)
     assert first == "suez, north of the land at 0.0000N 0.0000E"
     assert second == "suez, south of the land at 0.0000N 0.0000E"
     assert third == "open sea"
@@ -70,7 +70,7 @@ def test_canals_stay_in_the_name_and_ways_by_others_are_not_compared():
 def test_every_way_between_two_islands_has_a_name_of_its_own():
     chart = islands((-1.0, -0.2, -0.6, 0.2), (0.6, -0.2, 1.0, 0.2))
     ways = [[WEST, (a, -0.8), (0.0, 0.0), (b, 0.8), EAST] for a in (0.5, -0.5) for b in (0.5, -0.5)]
-    names = told(chart, *ways)
+    names = labels(chart, *ways)
     assert len(set(names)) == 4
     assert all(name.count(" of the land at ") == 2 for name in names)
 
@@ -95,4 +95,4 @@ def test_land_has_its_name(name):
         if land_name(lat, lon) == name:
             found.append((lat, lon))
     assert len(found) == 1
-    assert found[0][0].min() < LANDMASSES[name][0] < found[0][0].max()
+    assert found[0][0].min() < landmasses()[name][0] < found[0][0].max()

@@ -1,4 +1,4 @@
-"""Pictures: lines without jumps, whatever the longitude."""
+"""Maps: lines without jumps at any longitude."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_a_line_longer_than_half_the_world_has_no_jump(turns):
     assert box.line(wrapped) == pytest.approx(lon)
 
 
-def test_pictures_across_the_antimeridian(tmp_path):
+def test_maps_across_the_antimeridian(tmp_path):
     chart = Chart.open_water(-20.0, -10.0, 170.0, -170.0).with_depth(
         lambda lat, lon: 40.0 + 10.0 * np.sin(lat) + 0.0 * lon
     )
@@ -50,7 +50,7 @@ def lines_in_a_map(figure, south, north, west, east):
     return int(((x > west) & (x < east) & (y > south) & (y < north)).sum())
 
 
-def test_isochrones_end_at_the_land_that_a_mesh_leaves_out():
+def test_isochrones_end_at_land_outside_a_mesh():
     """Coronado is a hole in the mesh of San Diego Bay, and there is no coastline."""
     path = data_file("tide/adh_sandiego_waterlevel_ugrid_30min.nc")
     sea = Sea.open(path, mapping={"crs": "EPSG:32611"})

@@ -1,4 +1,4 @@
-"""Voyages by way of other places: the parts follow one another in time and place."""
+"""Via points: passages follow one another in time and place."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ SEA = Sea.from_functions(
 
 
 @pytest.mark.parametrize("objective", ["time", "distance"])
-def test_two_places_on_the_way(objective):
+def test_two_via_points(objective):
     # The second part leaves at an arrival that is no round number of anything.
     via = ((51.5, 2.0), (50.5, 3.0))
     voyage = Voyage(
@@ -32,7 +32,7 @@ def test_two_places_on_the_way(objective):
     assert np.all(np.diff(best.samples["time"]) >= 0)
 
 
-def test_a_penalty_zone_is_sailed_round_when_that_costs_less():
+def test_a_penalty_zone_is_avoided_when_that_costs_less():
     square = [[2.9, 51.4], [3.3, 51.4], [3.3, 52.4], [2.9, 52.4], [2.9, 51.4]]
     zone = {
         "type": "Feature",

@@ -1,11 +1,11 @@
-"""Ctrl-C while a front is planned: what is found by then is kept and marked, else nothing."""
+"""Ctrl-C while a front is planned: the best front so far is returned and marked."""
 
 import json
 import signal
 
 import pytest
 
-from tests.planning.test_trade import CHART, GOAL, START, cubic_ship
+from tests.planning.test_trade_off_planner import CHART, GOAL, START, cubic_ship
 from thalweg import Sea, Voyage, plan
 from thalweg.cli.main import main
 
@@ -30,18 +30,18 @@ def stopped(stage, times=1, **more):
 
 
 @pytest.mark.parametrize("stage", ["building", "freezing", "searching: ", "refining the route"])
-def test_before_any_route_is_found_nothing_is_kept(stage):
+def test_before_any_route_is_found_nothing_is_returned(stage):
     with pytest.raises(KeyboardInterrupt):
         stopped(stage)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_before_the_front_is_found_the_fastest_route_is_kept():
+def test_before_the_front_is_found_the_fastest_route_is_returned():
     found = stopped("searching the front")
     assert found.cancelled and found.front.stages == ("fastest",)
     assert found.best.feasible
     assert found.best.time_h == pytest.approx(120.0 / 12.0, rel=0.01)
-    assert "the fastest route is kept" in found.notes[0]
+    assert "the plan holds the fastest route" in found.notes[0]
     told = json.loads(found.to_json())
     assert told["cancelled"] is True and told["front"]["lower"] == []
     assert told["lower_bound"] <= told["routes"][0]["time_h"]
@@ -49,7 +49,7 @@ def test_before_the_front_is_found_the_fastest_route_is_kept():
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_before_refinement_the_exact_front_is_kept_and_refereed():
+def test_before_refinement_the_exact_front_is_returned_and_evaluated():
     found = stopped("drawing the ways")
     assert found.cancelled and set(found.front.stages) <= {"exact", "fastest", "way round"}
     assert 10 < len(found.routes) <= 22
@@ -60,24 +60,24 @@ def test_before_refinement_the_exact_front_is_kept_and_refereed():
     assert found.front.comparison is None
 
 
-def test_in_refinement_the_best_so_far_is_kept():
+def test_in_refinement_the_best_so_far_is_returned():
     found = stopped("refining the front")
     assert found.cancelled and len(found.routes) > 10
     assert "Stopped by Ctrl-C" in found.notes[0]
 
 
-def test_least_fuel_is_kept_too():
+def test_a_plan_for_least_fuel_is_returned_as_well():
     found = stopped("refining the front", objective="fuel")
     assert found.cancelled and found.best.fuel_t == min(route.fuel_t for route in found.routes)
 
 
-def test_pressed_again_it_ends_all():
+def test_pressed_again_it_interrupts():
     with pytest.raises(KeyboardInterrupt):
         stopped("searching the front", times=2)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_a_plan_that_was_not_stopped_does_not_say_so():
+def test_a_complete_plan_is_not_marked():
     found = stopped("no such stage", method="exact")
     assert not found.cancelled and "cancelled" not in json.loads(found.to_json())
 

@@ -123,7 +123,7 @@ def test_the_front_reaches_to_the_cheapest_however_slow_the_current_makes_it(spe
     assert answer.routes[0].time_h == pytest.approx(fastest, rel=1e-3)
 
 
-def test_the_earliest_arrival_is_told_however_slow_the_current_makes_it():
+def test_the_earliest_arrival_is_reported_however_slow_the_current_makes_it():
     depart = 1767225600.0
     with pytest.raises(NoRouteError) as refusal:
         against(3.0, (4.0,), arrive_by=depart + 20.0 * HOUR)
@@ -143,14 +143,14 @@ def test_waiting_is_hardly_chosen_where_nothing_changes():
     assert all(route.waiting_h <= 2 * bins for route in answer.routes)
 
 
-def test_what_the_front_saves_over_constant_speeds_is_told():
+def test_what_the_front_saves_over_constant_speeds_is_reported():
     answer = still("front", cubic_ship())
     rows = answer.front.comparison.rows
     assert [row["speed_kn"] for row in rows] == pytest.approx([12.0, 10.0, 8.0, 6.0])
     assert all(abs(row["saved"]) < 0.01 * row["value"] for row in rows)  # still water: nothing
 
 
-def test_the_json_tells_the_whole_front():
+def test_the_json_contains_the_whole_front():
     answer = still("front", cubic_ship(), fuel_price_usd=500.0)
     told = json.loads(answer.to_json())
     assert told["front"]["criterion"] == "cost" and told["front"]["unit"] == "USD"
@@ -166,7 +166,7 @@ def test_the_same_request_gives_the_same_plan():
     assert [r.fuel_t for r in first.routes] == [r.fuel_t for r in second.routes]
 
 
-def test_exact_alone_is_possible_and_says_so():
+def test_the_exact_method_alone_is_possible_and_marked():
     answer = still("front", cubic_ship(), method="exact")
     assert set(answer.front.stages) <= {"exact", "fastest", "constant speed"}
 
@@ -237,7 +237,7 @@ def test_a_voyage_with_prices_round_trips(tmp_path):
     assert not math.isnan(voyage.fuel_price_usd)
 
 
-def test_of_a_plan_for_least_fuel_the_cheapest_routes_are_sailed_in_all_members():
+def test_the_routes_with_least_fuel_are_evaluated_in_all_members():
     """They come with the best first and the rest by time: the first ten would be the fastest."""
     answer = still("fuel", cubic_ship(), method="exact")
     picked = _routes_to_evaluate(answer)
@@ -248,11 +248,11 @@ def test_of_a_plan_for_least_fuel_the_cheapest_routes_are_sailed_in_all_members(
 
 
 def test_a_choice_over_members_needs_members():
-    with pytest.raises(InputError, match="no members"):
+    with pytest.raises(InputError, match="not have members"):
         still("fuel", cubic_ship(), ensemble="mean")
 
 
-def test_a_speed_that_waves_forbid_leaves_the_slower_ones():
+def test_slower_settings_remain_where_waves_forbid_the_highest():
     # 1.8 sqrt(150) = 22.05 kn dead astern: 24 kn would surf, 18 kn does not
     ship = Ship.from_dict(
         {

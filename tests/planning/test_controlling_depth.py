@@ -1,4 +1,4 @@
-"""Water that is too shallow at any tide: where, how much there is at most, and when."""
+"""Controlling depth: water that is too shallow at any tide, with place, depth and time."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def asked(sea, start=(51.71, 3.45), goal=(51.77, 3.70), ukc=1.0, **more):
     return plan(voyage, ship=SHIP, sea=sea, chart=Chart.open_water(*AREA))
 
 
-def test_a_way_that_is_too_shallow_at_any_tide_says_where_when_and_by_how_much() -> None:
+def test_a_path_too_shallow_at_any_tide_is_reported_with_place_time_and_depth() -> None:
     with pytest.raises(NoRouteError) as caught:
         asked(estuary(5.5))
     error = caught.value
@@ -52,7 +52,7 @@ def test_a_way_that_is_too_shallow_at_any_tide_says_where_when_and_by_how_much()
     assert error.remedy
 
 
-def test_a_way_that_opens_at_high_water_is_sailed() -> None:
+def test_a_path_that_opens_at_high_water_is_sailed() -> None:
     best = asked(estuary(6.5)).best
     assert best.feasible and best.waiting_h > 0.0
 
@@ -93,7 +93,7 @@ def test_an_arrival_before_a_window_allows_it() -> None:
     assert "shortest passage of the window" in caught.value.possible
 
 
-def test_water_that_is_never_deep_enough_is_told_whatever_the_arrival() -> None:
+def test_water_that_is_never_deep_enough_is_reported_for_any_arrival() -> None:
     with pytest.raises(NoRouteError, match="too shallow at any tide") as caught:
         asked(estuary(5.5), arrive_by=LOW + 3 * 3600.0)
     # 5.5 + 1.5 m at high water, which is after the latest arrival; 6.5 + 1 m are needed
@@ -101,7 +101,7 @@ def test_water_that_is_never_deep_enough_is_told_whatever_the_arrival() -> None:
 
 
 @pytest.mark.parametrize("end", ["start", "goal"])
-def test_an_end_in_water_that_is_never_deep_enough(end) -> None:
+def test_an_end_point_in_water_that_is_never_deep_enough(end) -> None:
     with pytest.raises(NoRouteError, match="at any tide of the data") as caught:
         asked(estuary(6.5), **{end: (51.65, 3.575)})
     # 3 + 1.5 m; 7.5 m are needed
@@ -126,12 +126,12 @@ def test_levels_without_a_bed_are_not_a_depth() -> None:
     voyage = Voyage(
         start=(51.02, 3.005), goal=(51.02, 3.03), depart="2026-01-01T01:00Z", min_ukc_m=1.0
     )
-    with pytest.raises(MissingVariableError, match="nothing tells depth") as caught:
+    with pytest.raises(MissingVariableError, match="provides depth") as caught:
         plan(voyage, ship=SHIP, sea=Sea.open(data), chart=Chart.open_water(50.9, 51.2, 2.9, 3.3))
     assert "bed level" in caught.value.possible and caught.value.remedy
 
 
-def test_nobody_sails_through_a_gap_in_time() -> None:
+def test_routes_do_not_pass_a_gap_in_time() -> None:
     """No data from 3 h to 9 h: a ship lies at her berth until then, or has no route."""
     sea = Sea.open(hydro.dhi().isel(time=[0, 1, 2, 3, 9, 10, 11, 12]))
     given = {

@@ -1,4 +1,4 @@
-"""The s/t diagram: closed periods against the analytic tide, and what is drawn."""
+"""Space-time diagram: closed periods against the analytic tide, and what is drawn."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ SHIP = Ship.simple(speed_kn=10.0, draught_m=6.5)
 TRACK = [(51.75, 3.45), (51.75, 3.70)]
 
 
-def test_what_is_closed_is_what_the_tide_closes() -> None:
+def test_closed_periods_are_those_of_the_tide() -> None:
     route = evaluate(TRACK, ship=SHIP, sea=bar(), depart=LOW + 5 * 3600.0, min_ukc=1.0)
     times = LOW + np.linspace(-0.5, 1.5, 401) * M2
     found = find_closures(route, ship=SHIP, sea=bar(), min_ukc=1.0, times=times, places=100)
@@ -78,7 +78,7 @@ def test_a_current_too_strong_closes_the_track_only_while_it_runs() -> None:
     assert not found.shallow.any()
 
 
-def test_what_nobody_knows_is_neither_open_nor_shallow() -> None:
+def test_unknown_water_is_neither_open_nor_shallow() -> None:
     half = Sea.from_functions(
         {
             BED: lambda t, y, x: np.where(x < 3.603, 20.0, np.nan) + 0.0 * y,
@@ -128,7 +128,7 @@ def test_the_ship_keeps_out_of_what_is_closed(waiting) -> None:
     assert found.closed.any()
 
 
-def test_pictures_of_plans_and_routes(waiting, tmp_path) -> None:
+def test_diagrams_of_plans_and_routes(waiting, tmp_path) -> None:
     figure = draw_space_time_diagram(waiting, tmp_path / "plan.png")
     told = [text.get_text() for text in figure.legends[0].get_texts()]
     assert told == ["too little water", "ship", f"waits {waiting.best.waiting_h:.2f} h in all",

@@ -1,0 +1,37 @@
+"""Tracks of the points of a network front."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.geodesy import inverse
+from thalweg.core.types import FloatArray
+from thalweg.network import Network
+from thalweg.route import Track
+
+#: Course changes below this [rad] are ignored: 1 m of cross-track error on a leg of 100 km.
+_MIN_COURSE_CHANGE = 2e-5
+
+
+def track_from_front_point(network: Network, point: Any) -> Track:
+    """Return a point of a network front as a track."""
+    path = np.asarray(point.path)
+    wait = np.maximum(0.0, np.asarray(point.path_depart) - np.asarray(point.path_arrive))
+    wait[-1] = 0.0
+    wait = np.where(wait < 1.0, 0.0, wait)
+    setting = np.asarray(point.setting)
+    lat, lon = network.station_lat[path], network.station_lon[path]
+    kept = np.flatnonzero(_essential_nodes(lat, lon, setting, wait))
+    return Track(lat[kept], lon[kept], float(point.path_arrive[0]), wait[kept], setting[kept[:-1]])
+
+
+def _essential_nodes(lat: FloatArray, lon: FloatArray, setting: Any, wait: FloatArray) -> Any:
+    """Return at which points of a path the ship turns, waits or changes its speed."""
+    keep = np.ones(len(lat), bool)
+    _, course, back = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    turn = np.angle(np.exp(1j * (course[1:] - back[:-1])))
+    same = (np.abs(turn) < _MIN_COURSE_CHANGE) & (setting[1:] == setting[:-1]) & (wait[1:-1] == 0.0)
+    keep[1:-1] = ~same
+    return keep

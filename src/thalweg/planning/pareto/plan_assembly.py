@@ -1,0 +1,257 @@
+"""Assembly of a plan from the evaluated candidates of a trade-off."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import NoRouteError
+from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT
+from thalweg.network import shortest_path
+from thalweg.planning.pareto.baseline import (
+    compare_with_baseline,
+    evaluate_weather_blind,
+    weather_blind_tracks,
+)
+from thalweg.planning.pareto.bounds import (
+    absolute_lower_bound,
+    correction_factors,
+    correction_notes,
+    derive_proof,
+    open_water_lower_front,
+)
+from thalweg.planning.pareto.plan_front import ParetoFront
+from thalweg.planning.pareto.route_names import route_labels
+from thalweg.planning.pareto.search_horizon import shortest_path_length
+from thalweg.planning.pareto.trade_off_context import (
+    ExploredAlternative,
+    RefereedCandidate,
+    TrackCandidate,
+    TradeOffContext,
+)
+from thalweg.planning.plan import Plan
+from thalweg.planning.plan_data import PlotContext
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.report.provenance import (
+    finite_or_none,
+    network_summary,
+    provenance,
+    route_warnings,
+)
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.route import Route
+
+#: Routes that end within this time of the end of the data are taken as limited by it [s].
+_DATA_END_MARGIN = 3.0 * HOUR
+
+
+def assemble_trade_off_plan(
+    trade_off: TradeOffContext,
+    ends: list[Endpoint],
+    explored: list[ExploredAlternative],
+    scored: list[RefereedCandidate],
+) -> Plan:
+    """Assemble the plan of a trade-off: order, lower front, baseline, notes and provenance.
+
+    Raises
+    ------
+    NoRouteError
+        If no candidate reaches the goal.
+    """
+    context = trade_off.context
+    blind = _weather_blind_routes(trade_off, explored)
+    ordered = _in_order(trade_off, _including_constant_speeds(trade_off, scored, blind))
+    if not ordered:
+        raise _no_feasible_route_error(trade_off, explored)
+    front, corrections = _pareto_front(trade_off, explored, ordered, blind)
+    stopped = trade_off.interrupt_guard.stopped()
+    notes = [
+        *(_interruption_notes(explored, front) if stopped else ()),
+        *_notes(trade_off, ends, explored, ordered),
+        *trade_off.notes,
+        *corrections,
+    ]
+    return Plan(
+        voyage=context.voyage,
+        routes=tuple(item.route for item in ordered),
+        proof=derive_proof(trade_off, explored, front, whole=context.voyage.objective == "front"),
+        rejections=_rejections(explored),
+        notes=tuple(dict.fromkeys(notes)),
+        provenance=provenance(context, ends, _network_summaries(explored), _speeds_kn(trade_off)),
+        plot_context=_plot_context(context, explored),
+        front=front,
+        cancelled=stopped,
+    )
+
+
+def _in_order(
+    trade_off: TradeOffContext, scored: list[RefereedCandidate]
+) -> list[RefereedCandidate]:
+    """Return candidates in order of time; unless the whole front is required, the best first."""
+    ordered = sorted(scored, key=lambda item: item.route.time_h)
+    if trade_off.context.voyage.objective == "front" or not ordered:
+        return ordered
+    best = min(ordered, key=lambda item: item.value)
+    return [best, *(item for item in ordered if item is not best)]
+
+
+def _pareto_front(
+    trade_off: TradeOffContext,
+    explored: list[ExploredAlternative],
+    ordered: list[RefereedCandidate],
+    blind: list[Route],
+) -> tuple[ParetoFront, list[str]]:
+    """Return the front, and notes about the correction of its lower front."""
+    context, objective = trade_off.context, trade_off.objective
+    routes = tuple(item.route for item in ordered)
+    values = np.array([item.value for item in ordered])
+    lower = open_water_lower_front(explored, absolute_lower_bound(trade_off, explored)[1])
+    factors = correction_factors(lower, np.array([route.time_h for route in routes]), values)
+    networks = {one.alternative.name: one.alternative.network for one in explored}
+    shortest = min(networks, key=lambda name: shortest_path_length(networks[name]))
+    front = ParetoFront(
+        criterion=objective.name,
+        unit=objective.unit,
+        values=values,
+        stages=tuple(item.candidate.stage for item in ordered),
+        ways=route_labels(
+            routes,
+            [item.candidate.alternative or shortest for item in ordered],
+            networks,
+            context.chart,
+        ),
+        lower=lower * factors[:, None],
+        comparison=compare_with_baseline(context, objective, routes, values, blind),
+    )
+    return front, correction_notes(factors)
+
+
+def _interruption_notes(explored: list[ExploredAlternative], front: ParetoFront) -> list[str]:
+    """Return a note about the contents of a plan that Ctrl-C ended."""
+    if all(one.exact is None for one in explored):
+        content = "before there was a front: the plan holds the fastest route"
+    elif set(front.stages) <= {"exact", "fastest"}:
+        content = "before refinement: the plan holds the exact front of the network"
+    else:
+        content = "before refinement was complete: the plan holds the best front so far"
+    return [f"Stopped by Ctrl-C {content}; a longer run may improve it."]
+
+
+def _weather_blind_routes(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative]
+) -> list[Route]:
+    """Return the weather-blind routes of the shortest alternative, in the weather of the plan."""
+    if trade_off.interrupt_guard.stopped():
+        return []
+    network = min((one.alternative.network for one in explored), key=shortest_path_length)
+    _, path = shortest_path(network, network.meta.start, network.meta.goal)
+    trade_off.context.report_progress("evaluating the weather-blind route")
+    tracks = weather_blind_tracks(
+        trade_off.context, network.lat[path], network.lon[path], trade_off.settings
+    )
+    sailed = evaluate_weather_blind(trade_off.context, trade_off.objective, tracks)
+    if not sailed:
+        trade_off.notes.append(
+            "The weather-blind route cannot be sailed to its end in these data: it is not compared."
+        )
+    return sailed
+
+
+def _including_constant_speeds(
+    trade_off: TradeOffContext, scored: list[RefereedCandidate], blind: list[Route]
+) -> list[RefereedCandidate]:
+    """Return the non-dominated routes, with constant speeds on the shortest route included."""
+    latest = trade_off.context.latest_arrival
+    constant = [
+        RefereedCandidate(
+            TrackCandidate(r.track, "constant speed", "", r.time_h * HOUR, value), r, value
+        )
+        for r, value in ((route, trade_off.objective.value(route)) for route in blind)
+        if r.feasible and r.arrive <= latest + 1.0
+    ]
+    if not any(item.route.feasible for item in scored):
+        return constant or scored
+    pool = [*scored, *constant]
+    time = np.array([item.route.time_h for item in pool])
+    value = np.array([item.value for item in pool])
+    return [
+        pool[index] for index in non_dominated_indices(time, value, tolerance=ROUNDING_TOLERANCE)
+    ]
+
+
+def _rejections(explored: list[ExploredAlternative]) -> dict[str, int]:
+    refused: Counter[str] = Counter()
+    for one in explored:
+        refused.update(one.alternative.network.meta.rejected)
+        refused.update(one.first.refused)
+        refused.update(one.exact.refused if one.exact else {})
+    return {reason: count for reason, count in refused.items() if count}
+
+
+def _network_summaries(explored: list[ExploredAlternative]) -> list[dict[str, Any]]:
+    return [
+        network_summary(
+            one.alternative.network,
+            settled=int(one.first.settled),
+            depart=one.fastest.depart,
+            way=one.alternative.name,
+        )
+        for one in explored
+    ]
+
+
+def _speeds_kn(trade_off: TradeOffContext) -> list[float | None]:
+    return [
+        finite_or_none(float(trade_off.context.ship.speeds[s]) / KNOT) for s in trade_off.settings
+    ]
+
+
+def _plot_context(context: PlanningContext, explored: list[ExploredAlternative]) -> PlotContext:
+    """Return the data of the plots, with the earliest arrivals of all alternatives."""
+    networks = [one.alternative.network for one in explored]
+    return PlotContext(
+        lat=np.concatenate([network.lat for network in networks]),
+        lon=np.concatenate([network.lon for network in networks]),
+        arrival=np.concatenate([one.isochrones for one in explored]),
+        chart=context.chart,
+        sea=context.sea,
+        ship=context.ship,
+    )
+
+
+def _notes(
+    trade_off: TradeOffContext,
+    ends: list[Endpoint],
+    explored: list[ExploredAlternative],
+    ordered: list[RefereedCandidate],
+) -> list[str]:
+    context, best = trade_off.context, ordered[0].route
+    notes = [end.note for end in ends if end.note] + list(context.needs.notes)
+    notes += [f"The referee finds a limit exceeded: {v}." for v in best.violations[:5]]
+    notes += route_warnings(context, best)
+    slowest = max(item.route.arrive for item in ordered)
+    bounded = context.voyage.arrive_by is None and math.isfinite(context.data_end)
+    if bounded and slowest > context.data_end - _DATA_END_MARGIN:
+        notes.append(
+            f"The data end at {format_time(context.data_end)}: slower routes were not considered."
+        )
+    return notes
+
+
+def _no_feasible_route_error(
+    trade_off: TradeOffContext, explored: list[ExploredAlternative]
+) -> NoRouteError:
+    latest = trade_off.context.latest_arrival
+    by = f" by {format_time(latest)}" if math.isfinite(latest) else ""
+    soonest = min(one.first.arrive for one in explored)
+    return NoRouteError(
+        f"No route arrives{by} when the referee evaluates it in small steps.",
+        f"The earliest arrival on the network is {format_time(soonest)}.",
+        "Allow more time, or relax the limits.",
+        reasons=_rejections(explored),
+    )

@@ -1,0 +1,127 @@
+"""What the steps of a trade-off share: the context, explored alternatives, candidate tracks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from thalweg.core.interrupt import InterruptGuard
+from thalweg.core.types import FloatArray
+from thalweg.planning.frozen_sea import FrozenSea
+from thalweg.planning.network_selection.route_alternatives import RouteAlternative
+from thalweg.planning.planning_context import PlanningContext
+from thalweg.planning.request.voyage_endpoints import Endpoint
+from thalweg.planning.request.voyage_objective import PricedObjective
+from thalweg.route import Route, Track
+from thalweg.search import NetworkFront, SearchResult
+from thalweg.ship import PerformanceTable
+from thalweg.ship.consumption import calm_water_consumption
+
+
+@dataclass(frozen=True)
+class TradeOffContext:
+    """What all route alternatives of a trade-off share.
+
+    Attributes
+    ----------
+    context : PlanningContext
+    objective : PricedObjective
+        What is traded against time.
+    consumption : PerformanceTable
+        Consumption that the objective prices (`thalweg.ship.consumption.consumption_table`).
+    ends : tuple of Endpoint
+        Start, via points and goal.
+    settings : int64 array
+        Speed settings to choose from, ascending.
+    limits : Limits
+        Limits along the route, perhaps tightened.
+    interrupt_guard : InterruptGuard
+    notes : list of str
+        Notes for the plan; steps add theirs.
+    """
+
+    context: PlanningContext
+    objective: PricedObjective
+    consumption: PerformanceTable
+    ends: tuple[Endpoint, ...]
+    settings: np.ndarray
+    limits: np.ndarray
+    interrupt_guard: InterruptGuard
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def via(self) -> tuple[Endpoint, ...]:
+        """The via points."""
+        return self.ends[1:-1]
+
+    @cached_property
+    def calm_water_cost_rates(self) -> FloatArray:
+        """Cost of a second in calm water at each of `settings`; infinite if unknown."""
+        prices = self.objective.prices
+        rates = calm_water_consumption(self.context.ship, prices.consumption)[self.settings]
+        cost = prices.outside * rates + prices.time
+        return np.where(np.isfinite(cost), cost, np.inf)
+
+
+@dataclass(frozen=True)
+class ExploredAlternative:
+    """Result of one route alternative.
+
+    Attributes
+    ----------
+    alternative : RouteAlternative
+    frozen : FrozenSea
+    fastest : Route
+        The fastest route, refined and scored by the referee.
+    first : SearchResult
+        The fastest path on the network.
+    exact : NetworkFront or None
+        The exact front of the network; None where its search was interrupted.
+    isochrones : ndarray
+        Earliest arrival at every node [s since 1970]; inf where not reached.
+    factor : float
+        Least length of a route in open water over that of the path on the network.
+    """
+
+    alternative: RouteAlternative
+    frozen: FrozenSea
+    fastest: Route
+    first: SearchResult
+    exact: NetworkFront | None
+    isochrones: np.ndarray
+    factor: float
+
+
+@dataclass(frozen=True)
+class TrackCandidate:
+    """A track with its time and value as computed by a solver.
+
+    Attributes
+    ----------
+    track : Track
+    stage : str
+        Origin, as in `ParetoFront.stages`.
+    alternative : str
+        Name of its route alternative.
+    time : float
+        [s].
+    value : float
+        [unit of the objective].
+    """
+
+    track: Track
+    stage: str
+    alternative: str
+    time: float
+    value: float
+
+
+@dataclass(frozen=True)
+class RefereedCandidate:
+    """A candidate with its route and value as scored by the referee."""
+
+    candidate: TrackCandidate
+    route: Route
+    value: float

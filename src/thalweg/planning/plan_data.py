@@ -1,0 +1,215 @@
+"""`PlanData`: the routes found, their proof, and what is needed to repeat the plan."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.objective import Objective
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, NAUTICAL_MILE
+from thalweg.planning.pareto.plan_front import ParetoFront
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route
+
+
+@dataclass(frozen=True)
+class Proof:
+    """Lower bounds of the objective, and the total of the search.
+
+    Attributes
+    ----------
+    lower_bound : float
+        Lower bound of the objective [its unit].
+    kind : str
+        How the bound was found, and its assumptions.
+    certain : float
+        Lower bound in free space, independent of the network: the geodesic at the greatest speed
+        over ground in the data.
+    solver_total : float
+        Total of the search on the network, before refinement and referee.
+    """
+
+    lower_bound: float
+    kind: str
+    certain: float
+    solver_total: float
+
+
+@dataclass(frozen=True)
+class PlotContext:
+    """Data of the plots: arrival times over the network, chart, sea and ship.
+
+    Attributes
+    ----------
+    lat, lon : ndarray (n,)
+        Nodes of the networks [deg].
+    arrival : ndarray (n,)
+        Earliest arrival at the nodes [s since 1970]; inf where not reached.
+    chart : Chart
+    sea : Sea
+    ship : Ship
+    """
+
+    lat: np.ndarray
+    lon: np.ndarray
+    arrival: np.ndarray
+    chart: Any
+    sea: Any
+    ship: Any
+
+
+@dataclass(frozen=True)
+class PlanData:
+    """The answer to a voyage, as data; `thalweg.planning.plan.Plan` also plots and writes it.
+
+    Attributes
+    ----------
+    voyage : Voyage
+        The request.
+    routes : tuple of Route
+        The routes found, each scored by the referee; the first is the best.
+    proof : Proof
+        The lower bound and the solver's own total.
+    rejections : mapping of str to int
+        Number of legs rejected, by reason.
+    notes : tuple of str
+        Assumptions and warnings for the user.
+    provenance : mapping
+        What is needed to repeat the plan: version, data fingerprints, ship, network, seed.
+    plot_context : PlotContext, optional
+        For plots; not part of the JSON.
+    front : ParetoFront, optional
+        Time against fuel, energy, cost or CO2, for objectives with a choice of speed. Its points
+        are `routes`; with the objective ``"front"`` they are in order of time.
+    ensemble : tuple of mappings
+        With an ensemble forecast: the distribution of each route over the members.
+    cancelled : bool
+        Whether Ctrl-C ended planning: the routes are the best so far, as the notes state.
+    """
+
+    voyage: Voyage
+    routes: tuple[Route, ...]
+    proof: Proof
+    rejections: Mapping[str, int]
+    notes: tuple[str, ...]
+    provenance: Mapping[str, Any]
+    plot_context: PlotContext | None = field(default=None, repr=False, compare=False)
+    front: ParetoFront | None = None
+    ensemble: tuple[Mapping[str, Any], ...] = ()
+    cancelled: bool = False
+
+    @property
+    def best(self) -> Route:
+        """The best route."""
+        return self.routes[0]
+
+    @property
+    def objective_value(self) -> float:
+        """Value of the best route as scored by the referee, in `unit`.
+
+        With the objective ``"front"`` the hours of the fastest route; the other points are in
+        `front`.
+        """
+        return self._objective.value(self.best)
+
+    @property
+    def unit(self) -> str:
+        """The unit of the objective: ``"h"``, ``"nm"``, ``"t"``, ``"MWh"`` or the currency."""
+        return self._objective.unit
+
+    @property
+    def _objective(self) -> Objective:
+        name: str = self.voyage.objective
+        currency = "USD" if self.front is None else self.front.unit
+        return Objective.of("time" if name == "front" else name, currency=currency)
+
+    @property
+    def lower_bound(self) -> float:
+        """Lower bound of the objective, in `unit`."""
+        return self.proof.lower_bound
+
+    @property
+    def solver_total(self) -> float:
+        """The total of the search on its network, in `unit`."""
+        return self.proof.solver_total
+
+    @property
+    def gap(self) -> float:
+        """Excess of the best route over the lower bound, as a fraction of its value."""
+        value = self.objective_value
+        return max(0.0, (value - self.lower_bound) / value) if value > 0 else 0.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the plan as plain data, ready for JSON (unknown numbers are None)."""
+        more: dict[str, Any] = {"cancelled": True} if self.cancelled else {}
+        if self.ensemble:
+            more["ensemble"] = [dict(row) for row in self.ensemble]
+        if self.front is not None:
+            more["front"] = self.front.as_dict(self.routes)
+            if self.front.comparison is not None:
+                more["comparison"] = [dict(row) for row in self.front.comparison.rows]
+        return {
+            "voyage": self.voyage.to_dict(),
+            "objective": self.voyage.objective,
+            "objective_unit": self.unit,
+            "routes": [route_dict(route, self.voyage.objective) for route in self.routes],
+            "lower_bound": _finite_or_none(self.lower_bound),
+            "lower_bound_kind": self.proof.kind,
+            "lower_bound_certain": _finite_or_none(self.proof.certain),
+            "gap": _finite_or_none(self.gap),
+            "solver_total": _finite_or_none(self.solver_total),
+            "rejections": dict(self.rejections),
+            "notes": list(self.notes),
+            **more,
+            "provenance": dict(self.provenance),
+        }
+
+    def to_json(self, path: str | Path | None = None) -> str:
+        """Return the plan as JSON text.
+
+        Parameters
+        ----------
+        path : path, optional
+            Where to write it as well.
+        """
+        text = json.dumps(self.to_dict(), indent=2, allow_nan=False)
+        if path is not None:
+            Path(path).write_text(text + "\n", encoding="utf-8")
+        return text
+
+
+def route_dict(route: Route, objective: str) -> dict[str, Any]:
+    """Return one refereed route as plain data with the units in the names."""
+    return {
+        "objective": objective,
+        "depart": format_time(route.depart),
+        "arrive": format_time(route.arrive),
+        "time_h": _finite_or_none(route.time_h),
+        "distance_nm": _finite_or_none(route.distance_nm),
+        "fuel_t": _finite_or_none(route.fuel_t),
+        "energy_mwh": _finite_or_none(route.energy_mwh),
+        "co2_t": _finite_or_none(route.co2_t),
+        route.cost_name: _finite_or_none(route.cost),
+        "fuel_eca_t": _finite_or_none(route.fuel_eca_t),
+        "waiting_h": _finite_or_none(route.waiting_h),
+        "min_ukc_m": _finite_or_none(route.min_ukc_m),
+        "referee_tolerance_h": _finite_or_none(route.tolerance_s / HOUR),
+        "feasible": route.feasible,
+        "violations": [violation.as_dict() for violation in route.violations],
+        "waypoints": route.waypoints(),
+    }
+
+
+def in_objective_unit(value: float, objective: str) -> float:
+    """Convert seconds or metres to the unit of an objective."""
+    return value / (NAUTICAL_MILE if objective == "distance" else HOUR)
+
+
+def _finite_or_none(value: float | None) -> float | None:
+    return None if value is None or not np.isfinite(value) else float(value)

@@ -1,0 +1,108 @@
+"""What the steps of planning one voyage share: the request, the data, the ship as tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from thalweg.chart import Chart
+from thalweg.planning.network_selection.network_choice import NetworkChoice
+from thalweg.planning.request.requirements import Requirements, required_under_keel_clearance
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route, Track, evaluate
+from thalweg.sea import Sea
+from thalweg.ship import PerformanceTable, Ship, TableError, TablePart
+from thalweg.ship.fuel_prices import FuelTerms
+
+
+@dataclass(frozen=True)
+class ShipTables:
+    """A ship as the searches use it.
+
+    Attributes
+    ----------
+    speed : PerformanceTable
+        Speed through water [m/s].
+    setting : int
+        Speed setting of a search at one setting; the highest where the voyage asks for none.
+    """
+
+    speed: PerformanceTable
+    setting: int
+
+
+@dataclass(frozen=True)
+class PlanningContext:
+    """What stays the same for every passage of a voyage.
+
+    Attributes
+    ----------
+    voyage : Voyage
+    ship : Ship
+    sea : Sea
+    chart : Chart
+    needs : Requirements
+        Channels of the sea, limits and the end of the data.
+    tables : ShipTables
+    choice : NetworkChoice
+    report_progress : callable
+        Called with a short text at each stage.
+    """
+
+    voyage: Voyage
+    ship: Ship
+    sea: Sea
+    chart: Chart
+    needs: Requirements
+    tables: ShipTables
+    choice: NetworkChoice
+    report_progress: Callable[[str], None] = field(default=lambda text: None)
+
+    @property
+    def table(self) -> PerformanceTable:
+        """Speed through water [m/s]."""
+        return self.tables.speed
+
+    @property
+    def setting(self) -> int:
+        """Speed setting of a search at one setting."""
+        return self.tables.setting
+
+    @property
+    def data_end(self) -> float:
+        """Last time that the data cover [s since 1970]; may be infinite."""
+        return self.needs.data_end
+
+    @property
+    def min_ukc(self) -> float:
+        """Least under-keel clearance that is required [m]."""
+        return required_under_keel_clearance(self.voyage, self.ship)
+
+    @property
+    def latest_arrival(self) -> float:
+        """Latest arrival that the voyage allows [s since 1970]; inf without any."""
+        asked = self.voyage.arrive_by
+        return math.inf if asked is None else float(asked)  # type: ignore[arg-type]
+
+    def evaluate(self, track: Track, terms: FuelTerms | None = None) -> Route:
+        """Return a track scored by the referee; broken limits are listed, not raised."""
+        return evaluate(
+            track,
+            ship=self.ship,
+            sea=self.sea,
+            chart=self.chart,
+            min_ukc=self.min_ukc,
+            strict=False,
+            terms=terms,
+        )
+
+
+def performance_table_of(ship: Ship) -> PerformanceTable:
+    """Return the speed table of a ship; a placeholder where its speed is a field of the sea."""
+    if ship.speed_field is None:
+        return ship.tabulate()
+    none = TablePart((), (), np.zeros(len(ship.speeds), np.float32))
+    return PerformanceTable((none,), ship.speeds, ship.fingerprint(), TableError(0.0, 0.0, 0.0))

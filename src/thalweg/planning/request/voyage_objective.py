@@ -1,0 +1,74 @@
+"""The objective of a voyage with the prices of its ship."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thalweg.core.objective import LegPrices, Objective
+from thalweg.core.units import DAY, HOUR
+from thalweg.planning.voyage import Voyage
+from thalweg.route import Route
+from thalweg.ship import Ship
+from thalweg.ship.consumption import leg_prices
+from thalweg.ship.fuel_prices import FuelTerms
+
+
+@dataclass(frozen=True)
+class PricedObjective:
+    """What is traded against time in a voyage with a choice of speed.
+
+    Attributes
+    ----------
+    objective : Objective
+    terms : FuelTerms
+        Prices and carbon factors, for the referee.
+    prices : LegPrices
+        The objective on legs, for searches and refinement.
+    """
+
+    objective: Objective
+    terms: FuelTerms
+    prices: LegPrices
+
+    @property
+    def name(self) -> str:
+        """The key figure that is minimised: fuel, energy, cost or co2."""
+        return self.objective.name
+
+    @property
+    def unit(self) -> str:
+        """Its unit: t, MWh, or the currency of the prices."""
+        return self.objective.unit
+
+    def value(self, route: Route) -> float:
+        """Return the value of a refereed route [`unit`]; infinite where it is not known."""
+        return self.objective.value(route)
+
+
+def priced_objective(voyage: Voyage, ship: Ship) -> PricedObjective:
+    """Return what a voyage trades against time, with prices where they are needed.
+
+    The objective ``"front"`` is that of fuel, or of cost where the voyage gives a price.
+
+    Parameters
+    ----------
+    voyage : Voyage
+        With an objective that needs a choice of speed.
+    ship : Ship
+
+    Raises
+    ------
+    InputError
+        If a price or a carbon factor is needed and not known.
+    """
+    hourly = voyage.time_price_usd_per_h
+    terms = ship.fuel_terms.with_prices(
+        usd_per_t=voyage.fuel_price_usd,
+        eca_price_factor=voyage.eca_price_factor,
+        time_usd_per_day=None if hourly is None else hourly * DAY / HOUR,
+    )
+    name: str = voyage.objective
+    if name == "front":
+        name = "cost" if voyage.any_price else "fuel"
+    objective = Objective.of(name, currency=terms.currency or "USD")
+    return PricedObjective(objective, terms, leg_prices(objective, ship, terms))

@@ -1,0 +1,259 @@
+"""The parts of a voyage, each with its checks: places, schedule, prices and search."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Integral
+from typing import Any, Literal, TypeAlias
+
+from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.geodesy import Position, check_position
+from thalweg.core.objective import ObjectiveName
+from thalweg.core.time import TimeLike, format_time, parse_time
+
+Place: TypeAlias = "Position | str"
+VoyageObjective: TypeAlias = ObjectiveName | Literal["front"]
+
+OBJECTIVES: tuple[VoyageObjective, ...] = (
+    "time", "distance", "fuel", "energy", "cost", "co2", "front",
+)  # fmt: skip
+#: Objectives for which the ship's speed is chosen leg by leg.
+TRADE_OFF_OBJECTIVES: tuple[VoyageObjective, ...] = ("fuel", "energy", "cost", "co2", "front")
+METHODS = ("default", "exact", "nsga2", "spea2", "mpaes")
+RISK_MEASURES = ("mean", "cvar")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Itinerary:
+    """Where a voyage goes.
+
+    Parameters
+    ----------
+    start, goal : (lat, lon) or str
+    via : sequence of places
+    forbid : sequence of str
+        Canals that may not be used.
+    """
+
+    start: Place
+    goal: Place
+    via: Sequence[Place] = ()
+    forbid: Sequence[str] = ()
+
+    def _check_itinerary(self) -> None:
+        """Check places and canals, and bring them to one form."""
+        if isinstance(self.via, str) or not isinstance(self.via, Sequence):
+            raise InputError(
+                f"The via points are {self.via!r}, which is not a list of places.",
+                "They are places in order, such as via=[(51.0, 2.0), 'Dover'].",
+                "Put a single place in brackets as well.",
+                field="via",
+            )
+        places = [_place(place, f"via point {i + 1}") for i, place in enumerate(self.via)]
+        forbidden = (self.forbid,) if isinstance(self.forbid, str) else _as_list(self.forbid)
+        object.__setattr__(self, "start", _place(self.start, "start"))
+        object.__setattr__(self, "goal", _place(self.goal, "goal"))
+        object.__setattr__(self, "via", tuple(places))
+        object.__setattr__(self, "forbid", tuple(str(name).casefold() for name in forbidden))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Schedule:
+    """When a voyage departs and arrives, and whether it may wait on the way.
+
+    Parameters
+    ----------
+    depart : time, optional
+    depart_window : pair of times, optional
+    arrive_by : time, optional
+    wait : bool
+    """
+
+    depart: TimeLike | None = None
+    depart_window: tuple[TimeLike, TimeLike] | None = None
+    arrive_by: TimeLike | None = None
+    wait: bool = True
+
+    @property
+    def earliest_departure(self) -> float:
+        """The departure, or the start of its window [s since 1970]."""
+        first = self.depart if self.depart_window is None else self.depart_window[0]
+        return parse_time(first)  # type: ignore[arg-type]
+
+    @property
+    def latest_departure(self) -> float:
+        """The departure, or the end of its window [s since 1970]."""
+        last = self.depart if self.depart_window is None else self.depart_window[1]
+        return parse_time(last)  # type: ignore[arg-type]
+
+    def _check_schedule(self) -> None:
+        """Check the times, and turn them into seconds since 1970."""
+        if (self.depart is None) == (self.depart_window is None):
+            raise InputError(
+                "A voyage needs a departure: a time or a window, and not both.",
+                "Either depart=... or depart_window=(earliest, latest).",
+                "Give one of them.",
+            )
+        if self.depart_window is not None:
+            object.__setattr__(self, "depart_window", _window(self.depart_window))
+        else:
+            assert self.depart is not None  # by the check above
+            object.__setattr__(self, "depart", parse_time(self.depart))
+        if self.arrive_by is not None:
+            latest = parse_time(self.arrive_by)
+            object.__setattr__(self, "arrive_by", latest)
+            if latest <= self.earliest_departure:
+                raise InputError(
+                    f"The latest arrival {format_time(latest)} is not after the departure "
+                    f"({format_time(self.earliest_departure)}).",
+                    "A voyage arrives after it departs.",
+                    "Give a later arrival or an earlier departure.",
+                )
+
+
+@dataclass(frozen=True, kw_only=True)
+class VoyagePrices:
+    """Prices that replace those of the ship file.
+
+    Parameters
+    ----------
+    fuel_price_usd : float, optional
+        [USD/t].
+    eca_price_factor : float, optional
+    time_price_usd_per_h : float, optional
+        [USD/h].
+    """
+
+    fuel_price_usd: float | None = None
+    eca_price_factor: float | None = None
+    time_price_usd_per_h: float | None = None
+
+    @property
+    def any_price(self) -> bool:
+        """Whether a price is given."""
+        given = (self.fuel_price_usd, self.eca_price_factor, self.time_price_usd_per_h)
+        return any(value is not None for value in given)
+
+    def _check_prices(self) -> None:
+        low = -1e-9  # zero is allowed
+        _check_number("fuel_price_usd", self.fuel_price_usd, above=low, below=1e5, unit="USD/t")
+        _check_number("eca_price_factor", self.eca_price_factor, above=0.0, below=100.0, unit="")
+        _check_number(
+            "time_price_usd_per_h", self.time_price_usd_per_h, above=low, below=1e7, unit="USD/h"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchRequest:
+    """What is minimised, how it is searched, and what the ship keeps to.
+
+    Parameters
+    ----------
+    objective : {"time", "distance", "fuel", "energy", "cost", "co2", "front"}
+    method : {"default", "exact", "nsga2", "spea2", "mpaes"}
+    ensemble : {"mean", "cvar"}, optional
+    seed : int
+    speed_kn : float, optional
+        [kn].
+    min_ukc_m : float, optional
+        [m].
+    """
+
+    objective: VoyageObjective = "time"
+    method: str = "default"
+    ensemble: str | None = None
+    seed: int = 0
+    speed_kn: float | None = None
+    min_ukc_m: float | None = None
+
+    @property
+    def chooses_speeds(self) -> bool:
+        """Whether the speed is chosen leg by leg (all objectives but time and distance)."""
+        return self.objective in TRADE_OFF_OBJECTIVES
+
+    def _check_search(self) -> None:
+        if self.objective not in OBJECTIVES:
+            raise unknown_name_error("objective", str(self.objective), OBJECTIVES)
+        _check_number("speed_kn", self.speed_kn, above=0.0, below=100.0, unit="kn")
+        _check_number("min_ukc_m", self.min_ukc_m, above=-1e-9, below=100.0, unit="m")
+        if not isinstance(self.seed, Integral) or self.seed < 0:
+            raise InputError(
+                f"The seed is {self.seed!r}.",
+                "A seed is a whole number of zero or more.",
+                "Give such a number.",
+                field="seed",
+            )
+        if self.method not in METHODS:
+            raise unknown_name_error("method", str(self.method), METHODS)
+        if self.ensemble is not None and self.ensemble not in RISK_MEASURES:
+            raise unknown_name_error(
+                "risk measure of an ensemble", str(self.ensemble), RISK_MEASURES
+            )
+
+
+def _window(given: Any) -> tuple[float, float]:
+    """Return a departure window as seconds since 1970."""
+    if isinstance(given, str) or len(_as_list(given)) != 2:
+        raise InputError(
+            f"The departure window is {given!r}.",
+            "A departure window is two times.",
+            "Give depart_window=(earliest, latest).",
+        )
+    first, last = (parse_time(t) for t in given)
+    if not first <= last:
+        raise InputError(
+            f"The departure window ends ({format_time(last)}) before it begins "
+            f"({format_time(first)}).",
+            "The first time is the earliest departure.",
+            "Give the earlier time first.",
+        )
+    return first, last
+
+
+def _as_list(given: Any) -> tuple[Any, ...]:
+    """Return an iterable as a tuple; a single value as a tuple of one."""
+    try:
+        return tuple(given)
+    except TypeError:
+        return (given,)
+
+
+def _place(place: Any, what: str) -> Place:
+    if isinstance(place, str):
+        if not place.strip():
+            raise InputError(
+                f"The {what} is empty.", "A place is lat, lon or a port.", "Give one of these."
+            )
+        return place.strip()
+    try:
+        lat, lon = place
+        return check_position(float(lat), float(lon), what)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            f"The {what} {place!r} is not a place.",
+            'A place is (lat, lon) in degrees or text such as "52.0N 4.1E" or a port.',
+            "Write it that way.",
+        ) from None
+
+
+def _check_number(name: str, value: Any, *, above: float, below: float, unit: str) -> None:
+    if value is None:
+        return
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise InputError(
+            f"{name} must be a number, not {value!r}.",
+            f"It is between {max(above, 0):g} and {below:g} {unit}.",
+            f"Give it in {unit}." if unit else "Give a number.",
+        )
+    if not above < value < below:
+        raise InputError(
+            f"{name} = {value:g} {unit} is out of range.",
+            f"It is between {max(above, 0):g} and {below:g} {unit}.",
+            "Correct it.",
+            field=name,
+            value=value,
+        )

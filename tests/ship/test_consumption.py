@@ -1,0 +1,61 @@
+"""Prices on legs of a ship for each objective, and what it consumes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from thalweg.core.errors import InputError
+from thalweg.core.objective import Objective
+from thalweg.ship import Ship
+from thalweg.ship.consumption import calm_water_consumption, consumption_table, leg_prices
+
+BULKER = Ship.load("handysize-bulker")
+
+
+def test_fuel_and_co2_are_counted_in_tonnes():
+    fuel = leg_prices(Objective.of("fuel"), BULKER)
+    assert (fuel.inside, fuel.outside, fuel.dues) == (1e-3, 1e-3, 0.0)
+    terms = BULKER.fuel_terms
+    co2 = leg_prices(Objective.of("co2"), BULKER)
+    assert co2.outside == pytest.approx(terms.carbon_outside / 1000.0)
+    assert fuel.waiting == pytest.approx(BULKER.waiting_fuel_rate / 1000.0)
+
+
+def test_cost_counts_fuel_time_and_dues():
+    terms = BULKER.fuel_terms.with_prices(600.0, 1.4, time_usd_per_day=24_000.0)
+    cost = leg_prices(Objective.of("cost"), BULKER, terms)
+    assert cost.outside == pytest.approx(0.6)
+    assert cost.inside == pytest.approx(0.84 * terms.relative_mass_inside)
+    assert cost.time == pytest.approx(24_000.0 / 86_400.0)
+    assert cost.dues == 1.0
+    double = leg_prices(Objective(cost=2.0, time=36.0), BULKER, terms)
+    assert double.outside == 2.0 * cost.outside
+    assert double.time == pytest.approx(2.0 * cost.time + 0.01)
+
+
+def test_energy_is_counted_in_megawatt_hours():
+    energy = leg_prices(Objective.of("energy"), BULKER)
+    assert energy.consumption == "energy"
+    assert energy.outside * 3.6e9 == pytest.approx(1.0)
+    assert energy.waiting == pytest.approx(BULKER.hotel_power / 3.6e9)
+
+
+def test_cubed_speed_stands_for_fuel_without_a_price():
+    costs = {"per_week": 604_800.0, "per_second_per_cubed_speed": 0.008}
+    hull, speeds = {"draught_m": 5.0}, [6.0, 8.0]
+    ship = Ship.from_dict({"name": "x", "hull": hull, "speeds_kn": speeds, "costs": costs})
+    prices = leg_prices(Objective.of("cost"), ship)
+    assert (prices.consumption, prices.outside, prices.time) == ("cubed_speed", 0.008, 1.0)
+    cubes = np.asarray(ship.speeds) ** 3
+    assert calm_water_consumption(ship, "cubed_speed") == pytest.approx(cubes)
+    assert consumption_table(ship, "cubed_speed").kernel_arrays().n_settings == 2
+
+
+@pytest.mark.parametrize(
+    "objective",
+    [Objective.of("time"), Objective(fuel=1.0, co2=1.0), Objective(fuel=1.0, distance=1.0)],
+)
+def test_other_sums_are_refused(objective):
+    with pytest.raises(InputError, match="Speeds are chosen for one of"):
+        leg_prices(objective, BULKER)
