@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from tests.sea.worlds import T0, clock, mesh, regular
+from tests.sea.small_datasets import T0, clock, mesh, regular
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm

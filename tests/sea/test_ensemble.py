@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.sea.worlds import EAST, HS, NORTH, T0, affine, mesh, regular, value
+from tests.sea.small_datasets import EAST, HS, NORTH, T0, affine, mesh, regular, value
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.sea.ensemble_layer import EnsembleLayer
@@ -167,7 +167,7 @@ def test_members_that_do_not_belong_together(tmp_path) -> None:
     other = Sea.open(regular(fields={"zos": {}}))
     refused("lacks sea_surface_wave", lambda: Sea.ensemble(one + other, other))
     refused("has sea_surface_height", lambda: Sea.ensemble(one, one + other))
-    refused("2 layers, member 0 1", lambda: Sea.ensemble(one, one + one))
+    refused("2 layers, member 0 has 1", lambda: Sea.ensemble(one, one + one))
     refused("another area", lambda: Sea.ensemble(current(1.0), current(1.0, (0, 1, 0, 1))))
     refused("itself an ensemble", lambda: Sea.ensemble(one, Sea.open(members())))
     refused("two or more", lambda: Sea.ensemble(one))
@@ -190,5 +190,5 @@ def test_members_that_do_not_exist(index) -> None:
 
 
 def test_one_sea_has_no_members() -> None:
-    refused("no ensemble", lambda: Sea.calm().member(0))
+    refused("not an ensemble", lambda: Sea.calm().member(0))
     assert Sea.open(members(2).isel(number=[0])).members == 0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.sea.worlds import value
+from tests.sea.small_datasets import value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
 from thalweg.sea import Sea

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from tests.conftest import data_file
-from tests.sea.worlds import EAST, HS, NORTH, value
+from tests.sea.small_datasets import EAST, HS, NORTH, value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
 from thalweg.sea import Sea

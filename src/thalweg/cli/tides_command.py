@@ -153,7 +153,7 @@ def _model(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
 
     _refuse(arguments, ("at", "unit", "days_since"), "a model run", "a record")
     analysis = tidal_analysis(
-        Sea.open(arguments.file, mapping=options.variable_mapping(arguments)),
+        Sea.open(arguments.file, mapping=options.variable_mapping(arguments)).layers,
         constituents=arguments.constituents,
         rayleigh=arguments.rayleigh,
         progress=_progress(arguments),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, eq=False)
 class Coverage:
-    """Where and when one variable of one layer is known.
+    """The area and period in which one variable of one layer is known.
 
     Attributes
     ----------

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.sea.files.block_cache import GridWindow
 from thalweg.sea.files.grid_detection import GridPlacement
+from thalweg.sea.grids.source_variables import GridWindow
 
 Combine = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
 

@@ -8,12 +8,12 @@ from typing import Any, Final
 
 from thalweg.core.errors import DatasetError
 from thalweg.sea.ensemble_layer import combine_member_layers
-from thalweg.sea.files.conform import (
+from thalweg.sea.files.file_contents import layer_candidates
+from thalweg.sea.files.layer_candidate import (
     FileContents,
     LayerCandidate,
     OpenedFile,
     PlacementCache,
-    layer_candidates,
 )
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.layer import Layer

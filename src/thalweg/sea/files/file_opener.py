@@ -14,12 +14,13 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea.files import conform, grib, netcdf3_check, time_concatenation
-from thalweg.sea.files.block_cache import READ_ERRORS, GridWindow
-from thalweg.sea.files.conform import FileContents, OpenedFile
+from thalweg.sea.files import grib, netcdf3_check, time_concatenation
 from thalweg.sea.files.ensemble_members import check_member_counts, combine_members, ensemble_file
+from thalweg.sea.files.file_contents import NothingRecognised, layer_candidates
+from thalweg.sea.files.layer_candidate import FileContents, LayerCandidate, OpenedFile
 from thalweg.sea.files.variable_recognition import IgnoredVariable, check_mapping
 from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.source_variables import READ_ERRORS, GridWindow
 from thalweg.sea.layer import Layer
 
 HDF5_MAGIC: Final = b"\x89HDF\r\n\x1a\n"
@@ -62,9 +63,7 @@ def open_layers(
     ensembles = {k: found for k, f in enumerate(files) if (found := ensemble_file(f)) is not None}
     if not ensembles:
         return list(
-            _checked_layers(
-                _layers_of_files(files, lambda k: conform.layer_candidates(files[k], mapping))
-            )
+            _checked_layers(_layers_of_files(files, lambda k: layer_candidates(files[k], mapping)))
         )
     plain: dict[int, FileContents] = {}
 
@@ -72,7 +71,7 @@ def open_layers(
         if k in ensembles:
             return ensembles[k].candidates(index, mapping)
         if k not in plain:
-            plain[k] = conform.layer_candidates(files[k], mapping)
+            plain[k] = layer_candidates(files[k], mapping)
         return plain[k]
 
     count = check_member_counts(list(ensembles.values()))
@@ -101,14 +100,14 @@ def _layers_of_files(
     files: Sequence[OpenedFile], draft: Callable[[int], FileContents]
 ) -> list[GridLayer]:
     """Return the layers of files; a part of a file may hold nothing if another part does."""
-    candidates: list[conform.LayerCandidate] = []
+    candidates: list[LayerCandidate] = []
     ignored: dict[str, list[IgnoredVariable]] = {}
     faults: dict[str, DatasetError] = {}
     useful: set[str] = set()
     for k, file in enumerate(files):
         try:
             found, left = draft(k)
-        except conform.NothingRecognised as fault:
+        except NothingRecognised as fault:
             faults.setdefault(file.source, fault)
             continue
         useful.add(file.source)

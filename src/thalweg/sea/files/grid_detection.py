@@ -11,8 +11,11 @@ import numpy as np
 from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray
 from thalweg.sea.files import coordinates as co
+from thalweg.sea.files import projections
 from thalweg.sea.files.ugrid import MeshLayout
-from thalweg.sea.grids.point_location import Grid, RectilinearGrid, curvilinear_grid
+from thalweg.sea.grids.grid_protocol import Grid
+from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
+from thalweg.sea.grids.triangle_grid import curvilinear_grid
 
 NEMO_U_COORDINATES = ("glamu", "gphiu")
 
@@ -137,7 +140,7 @@ def _curvilinear_placement(dataset: Any, lat: Any, lon: Any) -> GridPlacement:
     rising = is_plain and (np.diff(columns) > 0.0).all()
     if rising and ((np.diff(rows) > 0.0).all() or _is_decreasing(rows)):
         return GridPlacement(key, RectilinearGrid(rows.copy(), columns), dims)
-    angle = co.grid_angle(y, x)
+    angle = projections.grid_angle(y, x)
     if _runs_backwards(dataset, dims[1]):
         angle = angle + np.pi
     return GridPlacement(key, curvilinear_grid(y, x), dims, angle)
@@ -163,26 +166,18 @@ def _projected_placement(
             axes[standard[11]] = axis
     if len(axes) < 2:
         raise _no_field_error(array, source, "has no positions: no latitude and longitude along it")
-    crs = co.projection_of(dataset, array, mapping, source)
+    crs = projections.projection_of(dataset, array, mapping, source)
     if crs is None:
-        raise no_projection_error(source)
+        raise projections.no_projection_error(source)
     scale = [1000.0 if axes[k].attrs.get("units") == "km" else 1.0 for k in "xy"]
     x, y = np.meshgrid(
         np.asarray(axes["x"].values, float) * scale[0],
         np.asarray(axes["y"].values, float) * scale[1],
     )
-    lat, lon = co.to_degrees(crs, x, y)
+    lat, lon = projections.to_degrees(crs, x, y)
     dims = (str(axes["y"].dims[0]), str(axes["x"].dims[0]))
-    return GridPlacement(dims, curvilinear_grid(lat, lon), dims, co.meridian_angle(crs, x, y))
-
-
-def no_projection_error(source: str) -> DatasetError:
-    """Return the error for projected positions without a projection."""
-    return DatasetError(
-        f"{source}: positions are in metres of a projection that the file does not name.",
-        "Positions need latitude and longitude, or a projection.",
-        "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
-        file=source,
+    return GridPlacement(
+        dims, curvilinear_grid(lat, lon), dims, projections.meridian_angle(crs, x, y)
     )
 
 

@@ -7,11 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from thalweg.sea.files.block_cache import BlockCache, Quantity
-from thalweg.sea.files.conform import LayerCandidate
 from thalweg.sea.files.grid_detection import GridPlacement
+from thalweg.sea.files.layer_candidate import LayerCandidate
 from thalweg.sea.files.variable_recognition import IgnoredVariable
-from thalweg.sea.grids.gridded_layer import GridLayer, RecognitionRecord, TimeAxis
+from thalweg.sea.grids.block_cache import BlockCache
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.source_variables import Quantity
+from thalweg.sea.grids.time_axis import TimeAxis
+from thalweg.sea.recognition_record import RecognitionRecord
 
 
 def join_in_time(

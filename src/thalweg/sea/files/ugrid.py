@@ -19,7 +19,8 @@ from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.files import coordinates as co
-from thalweg.sea.grids.point_location import TriangleGrid
+from thalweg.sea.files import projections
+from thalweg.sea.grids.triangle_grid import TriangleGrid
 from thalweg.sea.grids.triangle_mesh import Mesh
 
 
@@ -178,7 +179,7 @@ def _mesh_layouts_of_topology(
     connectivity = _required_names(dataset, attributes, "face_node_connectivity", source)[0]
     axes = _required_names(dataset, attributes, "node_coordinates", source)
     x, y, crs = _node_positions(dataset, axes, mapping, source)
-    lat, lon = (y, x) if crs is None else co.to_degrees(crs, x, y)
+    lat, lon = (y, x) if crs is None else projections.to_degrees(crs, x, y)
     _check_positions(lat, lon, source)
     table = dataset[connectivity]
     face_dim = str(attributes.get("face_dimension", table.dims[0]))
@@ -186,7 +187,7 @@ def _mesh_layouts_of_topology(
     faces = read_faces(table.transpose(face_dim, ...), lat.size, source)
     node_dim = str(dataset[axes[0]].dims[0])
     topology = MeshTopology(name, lat, lon, faces, node_dim, face_dim)
-    angle = None if crs is None else co.meridian_angle(crs, x, y)
+    angle = None if crs is None else projections.meridian_angle(crs, x, y)
     return [_node_layout(topology, angle), _face_layout(topology, angle)]
 
 
@@ -214,13 +215,11 @@ def _node_positions(
     x, y = np.asarray(first.values, np.float64), np.asarray(second.values, np.float64)
     if co.is_longitude(first, str(first.name)) and co.is_latitude(second, str(second.name)):
         return x, y, None
-    crs = co.projection_of(dataset, first, mapping, source)
+    crs = projections.projection_of(dataset, first, mapping, source)
     if crs is not None and crs.is_geographic:
         return x, y, None
     if crs is None:
-        from thalweg.sea.files.grid_detection import no_projection_error
-
-        raise no_projection_error(source)
+        raise projections.no_projection_error(source)
     return x, y, crs
 
 

@@ -80,7 +80,7 @@ def read_noos(text: str, source: str) -> WaterLevelSeries:
             rows.append((found[1], found[2]))
     unit, zone = header.get("unit", "waterlevel"), header.get("timezone", "GMT").upper()
     if not unit.lower().startswith("waterlevel"):
-        raise _series_file_error(source, f"holds  {unit!r}, not a water level")
+        raise _series_file_error(source, f"holds {unit!r}, not a water level")
     if zone not in TIME_ZONES:
         raise _series_file_error(
             source, f"keeps the clock of {zone!r}; known are {', '.join(TIME_ZONES)}"
@@ -96,7 +96,7 @@ def _noos_times(stamps: list[str], source: str) -> FloatArray:
     try:
         return np.array(iso, "datetime64[s]").astype(np.float64)
     except ValueError as error:
-        raise _series_file_error(source, f"holds  a date that is none ({error})") from error
+        raise _series_file_error(source, f"holds a date that is none ({error})") from error
 
 
 def _noos_position(header: dict[str, str]) -> tuple[float, float] | None:
@@ -112,7 +112,7 @@ def _parse_levels(words: list[str], source: str) -> FloatArray:
     try:
         return np.array(words, np.float64)
     except ValueError as error:
-        raise _series_file_error(source, f"holds  a level that is no number ({error})") from error
+        raise _series_file_error(source, f"holds a level that is no number ({error})") from error
 
 
 def read_dia(text: str, source: str) -> WaterLevelSeries:
@@ -125,7 +125,7 @@ def read_dia(text: str, source: str) -> WaterLevelSeries:
     """
     heads, *bodies = text.split("[WRD]")
     if len(bodies) != 1:
-        raise _series_file_error(source, f"holds  {len(bodies)} series; one can be read")
+        raise _series_file_error(source, f"holds {len(bodies)} series; one can be read")
     keys = {line.split(";")[0]: line.strip().split(";")[1:] for line in heads.splitlines()}
     told = keys.get("PAR") or keys.get("GHD") or [""]
     if not told[0].startswith("WATH"):
@@ -165,7 +165,7 @@ def _dia_levels(body: str, source: str) -> FloatArray:
     try:
         value, quality = np.array(pairs, np.float64).T
     except ValueError as error:
-        raise _series_file_error(source, f"holds  values that are no numbers ({error})") from error
+        raise _series_file_error(source, f"holds values that are no numbers ({error})") from error
     return np.where(quality == MISSING_VALUE_QUALITY, np.nan, value)
 
 
@@ -173,7 +173,7 @@ def _dia_position(place: list[str]) -> tuple[float, float] | None:
     """Return (lat, lon) of a location: code, name, kind, system, x, y."""
     if len(place) < 6 or place[3] not in COORDINATE_SYSTEMS:
         return None
-    from thalweg.sea.files.coordinates import to_degrees
+    from thalweg.sea.files.projections import to_degrees
 
     code, size = COORDINATE_SYSTEMS[place[3]]
     try:

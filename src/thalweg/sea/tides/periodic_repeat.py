@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,11 +22,9 @@ from thalweg.core.types import FloatArray
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
+from thalweg.sea.sea import Sea
 from thalweg.sea.tides import schureman
 from thalweg.sea.tides.astronomy import HOUR
-
-if TYPE_CHECKING:
-    from thalweg.sea.sea import Sea
 
 FORTNIGHT_H: Final = 360.0  #: 30 S2; M2 is 5.7 degrees early
 MONTH_H: Final = 707.974  #: 57 M2; S2 is 0.8 degrees early
@@ -151,10 +149,7 @@ def repeat_in_time(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> S
     InputError
         If the period does not bring the tide back, or the data do not cover it.
     """
-    from thalweg.sea.sea import Sea as SeaClass
-
     sea.check_single()
-
     off = {n: drift_deg(period_h, n) for n in ("M2", "S2")}
     worst = max(abs(x) for x in off.values())
     if not (np.isfinite(period_h) and period_h > 24.0 and worst <= MAX_DRIFT):
@@ -167,7 +162,7 @@ def repeat_in_time(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> S
             value=period_h,
         )
     begin, length = parse_time(start), period_h * HOUR
-    layers: list[Any] = []
+    layers: list[Layer] = []
     for layer in sea.layers:
         span = layer.period
         if span is None:
@@ -181,4 +176,4 @@ def repeat_in_time(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> S
             )
         layers.append(RepeatedLayer(layer, begin, length))
     told = f"fields of {period_h:g} h from {format_time(begin)} repeated for ever"
-    return SeaClass(tuple(layers), (*sea.assumptions, told))
+    return Sea(tuple(layers), (*sea.assumptions, told))

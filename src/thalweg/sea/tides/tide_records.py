@@ -19,8 +19,8 @@ import numpy as np
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
+from thalweg.sea import plausible_values
 from thalweg.sea import standard_names as nm
-from thalweg.sea.files import plausible_values
 from thalweg.sea.tides.astronomy import DAY
 from thalweg.sea.tides.noos_dia_series import (
     LENGTH_UNITS,

@@ -12,7 +12,9 @@ from thalweg.core.units import KNOT
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea.models import cyclone_formulas as models
-from thalweg.sea.models.cyclone_layer import AmbientSea, load_best_track, vortex_state
+from thalweg.sea.models.cyclone_layer import AmbientSea
+from thalweg.sea.models.cyclone_track import load_best_track
+from thalweg.sea.models.cyclone_vortex import vortex_state
 
 HS = "sea_surface_wave_significant_height"
 STILL = AmbientSea(wind=(0.0, 0.0), wave_height=0.0)

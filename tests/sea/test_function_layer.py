@@ -63,7 +63,7 @@ def test_the_same_thing_twice_is_refused() -> None:
     wind = dict.fromkeys(
         ("eastward_wind", "northward_wind", "wind_speed"), lambda t, y, x: 0.0 * t + 9.0
     )
-    with pytest.raises(InputError, match="'wind_speed' is another spelling"):
+    with pytest.raises(InputError, match="'wind_speed' is another name"):
         Sea.from_functions(wind)
 
 

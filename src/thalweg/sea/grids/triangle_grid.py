@@ -1,167 +1,22 @@
-"""Where a point lies in a grid: corners and weights, for every kind of grid alike.
-
-A grid has ``shape`` (rows, columns) of places that hold values (a mesh has one row), and
-``locate`` returns for points the flat places of the corners around them and the weights.
-"""
+"""Grids of triangles: unstructured meshes and curvilinear grids, linear in each triangle."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
+from thalweg.sea.grids.grid_protocol import GridLocation
 from thalweg.sea.grids.triangle_mesh import Mesh
 
-MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin above which bins are made smaller ...
-MAX_BINS, MAX_ITEMS_PER_TRIANGLE = (
-    1500,
-    20.0,
-)  #: ... up to so many a side, or entries for each triangle
-
-
-class GridLocation(NamedTuple):
-    """Corners around points: flat places (N, C), -1 first where outside; weights (N, C)."""
-
-    corner: IntArray
-    weight: FloatArray
-
-
-class Grid(Protocol):
-    """Anything that can say where points lie in it."""
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Rows and columns of places."""
-        ...
-
-    @property
-    def wraps(self) -> bool:
-        """Whether the last column is followed by the first."""
-        ...
-
-    @property
-    def area(self) -> BoundingBox:
-        """The box around the grid."""
-        ...
-
-    @property
-    def spacing(self) -> float:
-        """Typical spacing [deg]."""
-        ...
-
-    def locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
-        """Return corners and weights for points [deg]."""
-        ...
-
-    def mesh(self) -> Mesh | None:
-        """Return nodes and triangles, if the grid is a mesh."""
-        ...
-
-
-@dataclass(frozen=True, eq=False)
-class RectilinearGrid:
-    """Latitude and longitude axes; bilinear in a cell.
-
-    Attributes
-    ----------
-    lat : float64 array (Y,)
-        Strictly increasing or decreasing [deg].
-    lon : float64 array (X,)
-        Strictly increasing [deg], unwrapped (may pass 180 or 360).
-    """
-
-    lat: FloatArray
-    lon: FloatArray
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
-        return self.lat.size, self.lon.size
-
-    @cached_property
-    def wraps(self) -> bool:
-        """Whether the axis goes once around the world."""
-        if self.lon.size < 3:
-            return False
-        step = float(np.median(np.diff(self.lon)))
-        return bool(abs(self.lon[-1] + step - self.lon[0] - 360.0) < 0.5 * step)
-
-    @cached_property
-    def area(self) -> BoundingBox:
-        """The box from the first to the last row and column; the world around if it wraps."""
-        south, north = float(self.lat.min()), float(self.lat.max())
-        if self.wraps:
-            return BoundingBox(south, north, -180.0, 180.0)
-        return BoundingBox(south, north, float(self.lon[0]), float(self.lon[-1]))
-
-    @property
-    def spacing(self) -> float:
-        """Median spacing of latitudes [deg]."""
-        return float(np.median(np.abs(np.diff(self.lat)))) if self.lat.size > 1 else 0.0
-
-    def mesh(self) -> Mesh | None:
-        """A grid of axes is no mesh."""
-        return None
-
-    def locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
-        """Return the four corners of each point's cell and the bilinear weights."""
-        row, fy, inside_y = _locate_on_axis(self._rows, lat)
-        if self.lat.size > 1 and self.lat[1] < self.lat[0]:
-            row, step = self.lat.size - 1 - row, -1
-        else:
-            step = 1
-        column, fx, inside_x = _locate_on_axis(
-            self._columns, (lon - self._west) % 360.0 + self._west
-        )
-        below = np.clip(row + step, 0, self.lat.size - 1)
-        right = (
-            (column + 1) % self.lon.size
-            if self.wraps
-            else np.minimum(column + 1, self.lon.size - 1)
-        )
-        columns = self.lon.size
-        index = np.empty((lat.size, 4), np.int64)
-        index[:, 0] = row * columns + column
-        index[:, 1] = row * columns + right
-        index[:, 2] = below * columns + column
-        index[:, 3] = below * columns + right
-        weight = np.empty((lat.size, 4))
-        weight[:, 0] = (1.0 - fy) * (1.0 - fx)
-        weight[:, 1] = (1.0 - fy) * fx
-        weight[:, 2] = fy * (1.0 - fx)
-        weight[:, 3] = fy * fx
-        index[~(inside_y & inside_x), 0] = -1
-        return GridLocation(index, weight)
-
-    @cached_property
-    def _rows(self) -> FloatArray:
-        return np.sort(self.lat)
-
-    @cached_property
-    def _columns(self) -> FloatArray:
-        return np.append(self.lon, self.lon[0] + 360.0) if self.wraps else self.lon
-
-    @property
-    def _west(self) -> float:
-        return float(self.lon[0]) - EDGE_TOLERANCE
-
-
-def _locate_on_axis(
-    axis: FloatArray, value: FloatArray
-) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
-    """Return the place before each value on an increasing axis, the way to the next, and inside."""
-    inside = (value >= axis[0] - EDGE_TOLERANCE) & (value <= axis[-1] + EDGE_TOLERANCE)
-    if axis.size == 1:
-        return np.zeros(value.shape, np.int64), np.zeros(value.shape), inside
-    place = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
-    fraction = (value - axis[place]) / (axis[place + 1] - axis[place])
-    return place, np.where(inside, np.clip(fraction, 0.0, 1.0), 0.0), inside
+MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin; with more, bins are made smaller
+MAX_BINS = 1500  #: bins per side at most
+MAX_ITEMS_PER_TRIANGLE = 20.0  #: bin entries per triangle at most
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.sea import hydro
+from tests.sea import hydrodynamic_runs as hydro
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea.files.vertical_levels import VerticalLayers
-from thalweg.sea.grids.point_location import TriangleGrid
+from thalweg.sea.files.draught_averaging import VerticalLayers
+from thalweg.sea.grids.triangle_grid import TriangleGrid
 
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
 LEVEL = "sea_surface_height_above_geopotential_datum"
@@ -220,7 +220,7 @@ def test_many_times_are_averaged_in_parts(monkeypatch) -> None:
     y, x = lat[hydro.quads()].mean(axis=1), lon[hydro.quads()].mean(axis=1)
     times = hydro.T0 + 3600.0 * hydro.HOURS
     whole = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
-    monkeypatch.setattr("thalweg.sea.files.block_cache.MAX_LAYERED_VALUES", 1000)
+    monkeypatch.setattr("thalweg.sea.grids.source_variables.MAX_LAYERED_VALUES", 1000)
     parts = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
     assert np.array_equal(whole, parts, equal_nan=True)
 

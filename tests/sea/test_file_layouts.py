@@ -8,10 +8,10 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.sea.worlds import EAST, HS, NORTH, T0, affine, axis, clock, mesh, regular, value
+from tests.sea.small_datasets import EAST, HS, NORTH, T0, affine, axis, clock, mesh, regular, value
 from thalweg.kernels import codes
 from thalweg.sea import Sea
-from thalweg.sea.grids.point_location import TriangleGrid
+from thalweg.sea.grids.triangle_grid import TriangleGrid
 
 HOUR = 3600.0
 
@@ -283,7 +283,7 @@ def test_components_that_grib_tells_along_the_grid_are_turned() -> None:
 def test_the_x_axis_of_a_projection_is_turned_by_its_convergence(crs) -> None:
     from pyproj import Geod, Transformer
 
-    from thalweg.sea.files.coordinates import meridian_angle
+    from thalweg.sea.files.projections import meridian_angle
 
     back = Transformer.from_crs(4326, crs, always_xy=True)
     lat, lon = np.array([52.5, 55.5, 53.0]), np.array([4.5, 9.0, 6.5])
@@ -303,7 +303,7 @@ def test_grid_over_the_pole_and_over_the_dateline() -> None:
         if positions is None:
             x, y = np.meshgrid(np.linspace(5e5, 9e5, 21), np.linspace(1e6, 1.2e6, 17))
             positions = [(9.9, 179.9), (9.9, -179.9), (9.9, 180.0)]
-        from thalweg.sea.files.coordinates import to_degrees
+        from thalweg.sea.files.projections import to_degrees
 
         lat, lon = to_degrees(crs, x, y)
         dataset = xr.Dataset(
@@ -342,7 +342,7 @@ def test_projected_axes_with_a_grid_mapping_only() -> None:
             "y": ("y", y, {"standard_name": "projection_y_coordinate", "units": "m"}),
         },
     )
-    from thalweg.sea.files.coordinates import to_degrees
+    from thalweg.sea.files.projections import to_degrees
 
     lat, lon = to_degrees("EPSG:32631", np.array([5.2e5]), np.array([5.81e6]))
     assert value(Sea.open(dataset), HS, T0, lat, lon) == pytest.approx(3.0, abs=1e-4)
