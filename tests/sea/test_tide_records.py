@@ -61,7 +61,7 @@ def test_a_noos_series(tmp_path):
     assert record.times.tolist() == [start, start + 600.0, start + 1200.0, start + 2400.0]
     assert np.array_equal(record.series[nm.WATER_LEVEL], [2.5, 2.46, np.nan, 2.3], equal_nan=True)
     assert record.position == (51.443861, 3.597577)
-    assert record.told == "NOOS series, vlissingen, observed"
+    assert record.description == "NOOS series, vlissingen, observed"
 
 
 def test_a_noos_series_with_the_clock_of_middle_europe(tmp_path):

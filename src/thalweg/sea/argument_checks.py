@@ -1,4 +1,4 @@
-"""Checks of what users give for areas, periods and steps."""
+"""Checks of the areas, periods and time steps that users give."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float
         return None
     if isinstance(period, str) or len(period) != 2:
         raise InputError(
-            f"The period {period!r} is none.", "A period is (start, end).", "Give two times."
+            f"The period {period!r} is not valid.", "A period is (start, end).", "Give two times."
         )
     start, end = parse_time(period[0]), parse_time(period[1])
     if end < start:
@@ -43,13 +43,13 @@ def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float
 
 
 def parse_time_step(time_step: float | None, *, least: float = 0.0) -> float | None:
-    """Return a time step [s] that is None, or not less than the least one."""
+    """Return a time step [s] that is None, or not less than the smallest allowed."""
     if time_step is not None and not (np.isfinite(time_step) and time_step >= least):
         raise InputError(
             f"A time step of {time_step!r} s cannot be used.",
             f"It must be {least:g} s or more."
             if least
             else "It must be positive, or 0 for fields that never change.",
-            "Leave it out to have one chosen.",
+            "Correct it, or omit it to use the default.",
         )
     return None if time_step is None else float(time_step)

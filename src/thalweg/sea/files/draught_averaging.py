@@ -35,7 +35,8 @@ class VerticalLayers:
     dim : str
         The dimension.
     is_sigma : bool
-        Whether edges are shares of the water depth (0 surface, 1 bed); else depths below datum [m].
+        Whether edges are fractions of the water depth (0 surface, 1 bed), else depths [m below
+        datum].
     top, bottom : float64 array (L,)
         Upper and lower edge of each layer.
     """
@@ -47,7 +48,7 @@ class VerticalLayers:
 
     @property
     def surface(self) -> int:
-        """The layer next to the surface."""
+        """Index of the layer at the surface."""
         return int(np.argmin(self.top))
 
     def describe(self) -> str:
@@ -55,19 +56,19 @@ class VerticalLayers:
         return f"{self.top.size} {'sigma' if self.is_sigma else 'z'} layers"
 
     def shares(self, draught: float, column: FloatArray) -> FloatArray:
-        """Return what each layer has of the water within a draught [m].
+        """Return the thickness of each layer within a draught.
 
         Parameters
         ----------
         draught : float
-            From the surface down [m].
+            Depth below the surface [m].
         column : float64 array (T, Y, X)
-            Water depth of the moment [m] for sigma layers, water level [m above datum] for others.
+            Water depth at each time [m] for sigma layers, water level [m above datum] for others.
 
         Returns
         -------
         float64 array (T, L, Y, X)
-            Thickness within the draught [m]; for water without depth all of it in the top layer.
+            Thickness within the draught [m]; without positive water depth, 1 in the top layer.
         """
         high, low = (e[None, :, None, None] for e in (self.top, self.bottom))
         wide = column[:, None]
@@ -86,15 +87,22 @@ class VerticalLayers:
 def draught_averaging(
     layers: VerticalLayers, draught: float, depth: Callable[[Sequence[FloatArray]], FloatArray]
 ) -> Callable[[Sequence[FloatArray]], Sequence[FloatArray]]:
-    """Return what makes the mean over the draught of two components.
+    """Return a function that averages two components over the draught.
 
     Parameters
     ----------
-    layers : Layers
+    layers : VerticalLayers
+        The layers of both components.
     draught : float
-        [m].
+        Draught [m].
     depth : callable
-        Of all arrays, the two components (T, L, Y, X) first: what `VerticalLayers.shares` needs.
+        ``depth(arrays)`` returns the ``column`` that `VerticalLayers.shares` needs, from all
+        arrays, of which the first two are the components (T, L, Y, X).
+
+    Returns
+    -------
+    callable
+        ``combine(arrays)`` returns the two means (T, Y, X).
     """
 
     def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
@@ -105,7 +113,7 @@ def draught_averaging(
 
 
 def _weighted_mean(values: FloatArray, shares: FloatArray) -> FloatArray:
-    """Return the weighted mean over layers (axis 1) of what is known."""
+    """Return the weighted mean over layers (axis 1), of the layers that are known."""
     weight = np.where(np.isnan(values), 0.0, np.broadcast_to(shares, values.shape))
     total = weight.sum(axis=1)
     summed = np.where(weight > 0.0, values * weight, 0.0).sum(axis=1)
@@ -116,21 +124,21 @@ def _weighted_mean(values: FloatArray, shares: FloatArray) -> FloatArray:
 def find_vertical_layers(
     dataset: Any, array: Any, keep: frozenset[str], source: str
 ) -> VerticalLayers | None:
-    """Return the layers of a variable, None if it has none.
+    """Return the vertical layers of a variable; None without any.
 
     Parameters
     ----------
     dataset, array
         The file and one of its variables.
     keep : frozenset of str
-        Its dimensions of time and place.
+        Its dimensions of time and position.
     source : str
         File name for messages.
 
     Raises
     ------
     DatasetError
-        If its layers lie neither at shares of the depth nor at depths.
+        If its layers are given neither as fractions of the depth nor as depths.
     """
     dims = [str(d) for d in array.dims if d not in keep and array.sizes[d] > 1]
     if len(dims) != 1:
@@ -156,7 +164,7 @@ def find_vertical_layers(
 
 
 def _sigma_layers(dataset: Any, coordinate: Any, dim: str, values: FloatArray) -> VerticalLayers:
-    """Return layers at shares of the depth, told downwards or upwards, from 0 or from -1."""
+    """Return layers in fractions of the depth; sigma may run downwards or upwards, from 0 or -1."""
     sign, offset = sigma_sign_and_offset(coordinate, values)
     top, bottom = _layer_edges(
         dataset, coordinate, sign, sign * values + offset, offset, (0.0, 1.0)
@@ -172,10 +180,10 @@ def _layer_edges(
     offset: float = 0.0,
     ends: tuple[float, float] | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return upper and lower edges: as told, else half-way between the layers' middles."""
-    told = _stated_edges(dataset, coordinate)
-    if told is not None:
-        edges = sign * told + offset
+    """Return upper and lower edges: those of the file, else midway between the layer centres."""
+    stated = _stated_edges(dataset, coordinate)
+    if stated is not None:
+        edges = sign * stated + offset
         return edges.min(axis=1), edges.max(axis=1)
     order = np.argsort(middle)
     inner = 0.5 * (middle[order][1:] + middle[order][:-1])
@@ -188,7 +196,7 @@ def _layer_edges(
 
 
 def _stated_edges(dataset: Any, coordinate: Any) -> FloatArray | None:
-    """Return edges (L, 2) from bounds, or from the interfaces that belong to the layers."""
+    """Return edges (L, 2) from the bounds of a coordinate, or from its layer interfaces."""
     bounds = str(coordinate.attrs.get("bounds", ""))
     if bounds in dataset.variables and dataset[bounds].shape == (coordinate.size, 2):
         return np.asarray(dataset[bounds].values, float)
@@ -205,19 +213,19 @@ def _unknown_layers_error(array: Any, dim: str, fault: str, source: str) -> Data
     return DatasetError(
         f"{source}: the layers of {array.name!r} along {dim!r} {fault}; they cannot be averaged.",
         "Sigma layers (ocean_sigma_coordinate, 0 at the surface to -1) and depths or heights with "
-        "units and a direction (positive up or down) can be.",
-        "Add the coordinate to the file, or leave out draught_m to take the surface layer.",
+        "units and a direction (positive up or down) can be averaged.",
+        "Add the coordinate to the file, or omit draught_m to use the surface layer.",
         file=source,
         variable=str(array.name),
     )
 
 
 def missing_depth_error(names: Sequence[str], source: str) -> DatasetError:
-    """Return the error for sigma layers in water whose depth the file does not tell."""
+    """Return the error for sigma layers in a file without the water depth."""
     return DatasetError(
-        f"{source}: {' and '.join(names)} lie in sigma layers, and no depth on the same grid tells "
-        "how thick they are.",
-        "It takes a bed level or bed depth (and a water level), or a total depth, where they lie.",
-        "Add it to the file, or leave out draught_m to take the surface layer.",
+        f"{source}: {' and '.join(names)} are in sigma layers, and the file has no depth on the "
+        "same grid that gives their thickness.",
+        "A bed level or bed depth (and a water level), or a total depth, is needed on that grid.",
+        "Add it to the file, or omit draught_m to use the surface layer.",
         file=source,
     )

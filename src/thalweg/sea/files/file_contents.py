@@ -32,18 +32,27 @@ CURRENT_ROLES = frozenset((*nm.CURRENT.pair, sp.X_CURRENT, sp.Y_CURRENT))
 
 
 class NothingRecognised(DatasetError):
-    """A dataset holds no variable that is known."""
+    """A dataset holds no known variable."""
 
 
 def layer_candidates(
     file: OpenedFile, mapping: Mapping[str, str], placement_cache: PlacementCache | None = None
 ) -> FileContents:
-    """Return what one file holds, by grid and time axis, and what is ignored in it.
+    """Return the quantities of one file by grid and time axis, and the variables ignored.
+
+    Parameters
+    ----------
+    file : OpenedFile
+        The file.
+    mapping : mapping of str to str
+        Given by the user: canonical name to name in the file.
+    placement_cache : PlacementCache, optional
+        Grids of an earlier file with the same positions.
 
     Raises
     ------
     DatasetError
-        If nothing in it is recognised, or something recognised cannot be placed.
+        If no variable is recognised, or a recognised one has no usable grid or times.
     """
     skip = _coordinates(file.dataset)
     chosen, ignored = recognise_variables(
@@ -54,11 +63,11 @@ def layer_candidates(
     placement_cache = placement_cache or PlacementCache()
     if placement_cache.meshes is None:
         placement_cache.meshes = ugrid.mesh_layouts(file.dataset, mapping, file.source)
-    ingredients = {
+    placed = {
         role: _placed_variable(file, one, mapping, placement_cache) for role, one in chosen.items()
     }
-    assembly = QuantityAssembler(file, ingredients, ignored)
-    assembly.all()
+    assembly = QuantityAssembler(file, placed, ignored)
+    assembly.assemble()
     if not assembly.candidates:
         raise _nothing_recognised_error(file, assembly.ignored)
     return assembly.candidates, assembly.ignored
@@ -78,7 +87,7 @@ def _coordinates(dataset: Any) -> frozenset[str]:
         ):
             names.add(str(n))
         if array.ndim == 1 and array.dims[0] not in places and "positive" in array.attrs:
-            names.add(str(n))  # heights of layers
+            names.add(str(n))  # vertical coordinates of layers
         for key in ("bounds", "climatology"):
             if key in array.attrs:
                 names.add(str(array.attrs[key]))
@@ -88,10 +97,10 @@ def _coordinates(dataset: Any) -> frozenset[str]:
 def _nothing_recognised_error(
     file: OpenedFile, ignored: Sequence[IgnoredVariable]
 ) -> NothingRecognised:
-    told = "; ".join(f"{i.variable}: {i.reason}" for i in ignored[:12])
+    reasons = "; ".join(f"{i.variable}: {i.reason}" for i in ignored[:12])
     return NothingRecognised(
         f"{file.source}: no wind, waves, currents, level or depth was recognised in it.",
-        f"It holds {told}." if told else "It holds no numeric field.",
+        f"It holds {reasons}." if reasons else "It holds no numeric field.",
         "Name the variables with mapping={'eastward_wind': 'name in the file', ...}.",
         file=file.source,
     )
@@ -146,7 +155,7 @@ def _placed_variable(
 
 
 def _refuse_undated(dataset: Any, array: Any, source: str) -> None:
-    """Raise for variables along a time axis that has no dates."""
+    """Raise `DatasetError` for variables along a time axis without dates."""
     for dim in array.dims:
         name = str(dim).lower()
         if name in ("time", "t", "ocean_time", "time_counter") and array.sizes[dim] >= 1:

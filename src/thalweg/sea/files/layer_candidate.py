@@ -17,18 +17,18 @@ from thalweg.sea.recognition_record import RecognisedVariable
 
 @dataclass(frozen=True, eq=False)
 class OpenedFile:
-    """A file that was opened but not read.
+    """A file that was opened; its values are read later.
 
     Attributes
     ----------
     dataset : xarray.Dataset
-        Lazy.
+        Not loaded.
     source : str
         Its name, for messages.
     facts : mapping
-        Name, size and time of change.
+        Name, size and modification time.
     draught : float or None
-        Draught [m] over which currents in layers are averaged; None: the surface layer is taken.
+        Draught [m] over which currents in layers are averaged; None for the surface layer.
     """
 
     dataset: Any
@@ -39,7 +39,23 @@ class OpenedFile:
 
 @dataclass(frozen=True, eq=False)
 class PlacedVariable:
-    """A recognised variable, placed in space and time."""
+    """A recognised variable with its grid, times and vertical layers.
+
+    Attributes
+    ----------
+    chosen : AssignedVariable
+        The variable and its role.
+    variable : SourceVariable
+        Reads its values.
+    place : GridPlacement
+        Its grid.
+    times : float64 array (T,)
+        Its times [s since epoch]; empty without any.
+    rotated : bool
+        Whether GRIB states that components are along the grid.
+    layers : VerticalLayers or None
+        Layers over which it is averaged.
+    """
 
     chosen: AssignedVariable
     variable: SourceVariable
@@ -51,7 +67,21 @@ class PlacedVariable:
 
 @dataclass(eq=False)
 class LayerCandidate:
-    """Quantities on one grid and one time axis of one file, before files are joined."""
+    """Quantities on one grid and one time axis of one file, before files are concatenated.
+
+    Attributes
+    ----------
+    place : GridPlacement
+        The grid.
+    times : float64 array (T,)
+        Times [s since epoch]; empty for fields that hold at all times.
+    file : OpenedFile
+        The file.
+    quantities : list of Quantity
+        Quantities found so far.
+    recognised : list of RecognisedVariable
+        How they were recognised.
+    """
 
     place: GridPlacement
     times: FloatArray
@@ -62,14 +92,14 @@ class LayerCandidate:
 
 @dataclass(eq=False)
 class PlacementCache:
-    """Positions worked out before, for files that lie on the same ones (members of an ensemble).
+    """Grids found earlier, for files on the same positions (members of an ensemble).
 
     Attributes
     ----------
     meshes : list of MeshLayout or None
         Meshes of the file.
     places : dict
-        Where each variable lies.
+        The grid of each variable.
     """
 
     meshes: list[MeshLayout] | None = None

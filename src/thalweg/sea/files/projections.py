@@ -12,7 +12,27 @@ from thalweg.core.types import FloatArray
 
 
 def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: str) -> Any:
-    """Return the projection (pyproj CRS) of a variable or dataset, or None if none is stated."""
+    """Return the projection of a variable or dataset.
+
+    Parameters
+    ----------
+    dataset, array : xarray.Dataset, xarray.DataArray
+        The file and one of its variables.
+    mapping : mapping of str to str
+        Its key "crs" has priority over the file.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    pyproj.CRS or None
+        None if the file names no projection.
+
+    Raises
+    ------
+    DatasetError
+        If the projection is not valid.
+    """
     from pyproj import CRS
     from pyproj.exceptions import CRSError
 
@@ -39,8 +59,8 @@ def projection_of(dataset: Any, array: Any, mapping: Mapping[str, str], source: 
                 return CRS.from_user_input(str(dataset.attrs[key]))
     except (CRSError, ValueError, KeyError) as error:
         raise DatasetError(
-            f"{source}: its projection cannot be understood ({error}).",
-            "An EPSG code, WKT, PROJ text or CF grid mapping is read.",
+            f"{source}: its projection is not valid ({error}).",
+            "An EPSG code, WKT, PROJ text or CF grid mapping can be read.",
             "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
             file=source,
         ) from error
@@ -60,7 +80,7 @@ def _grid_mappings(dataset: Any, array: Any) -> list[str]:
 
 
 def to_degrees(crs: Any, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return lat and lon [deg] of projected positions [m]."""
+    """Return lat and lon [deg] of projected positions [m], of their shape; NaN stays NaN."""
     from pyproj import Transformer
 
     known = np.isfinite(x) & np.isfinite(y)
@@ -72,17 +92,27 @@ def to_degrees(crs: Any, x: FloatArray, y: FloatArray) -> tuple[FloatArray, Floa
 
 
 def meridian_angle(crs: Any, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the angle [rad] from true east, counter-clockwise, of the x axis of a projection."""
+    """Return the angle [rad] from true east, counter-clockwise, to the x axis of a projection."""
     lat, lon = to_degrees(crs, x, y)
     lat2, lon2 = to_degrees(crs, x + 100.0, y)
     return np.arctan2(lat2 - lat, ((lon2 - lon + 180.0) % 360.0 - 180.0) * np.cos(np.radians(lat)))
 
 
 def grid_angle(lat: FloatArray, lon: FloatArray) -> FloatArray:
-    """Return the angle [rad] from true east, counter-clockwise, in which columns of a grid run.
+    """Return the angle from true east to the direction of increasing column number of a grid.
 
-    From the positions of the neighbouring columns, as a vector in space: right at the
-    antimeridian and near the poles.
+    It is computed from the positions of neighbouring columns as vectors in space, so it is correct
+    at the antimeridian and near the poles.
+
+    Parameters
+    ----------
+    lat, lon : float64 array (Y, X)
+        Positions [deg].
+
+    Returns
+    -------
+    float64 array (Y, X)
+        Angle [rad], counter-clockwise.
     """
     a, o = np.radians(lat), np.radians(lon)
     place = np.stack([np.cos(a) * np.cos(o), np.cos(a) * np.sin(o), np.sin(a)])
@@ -99,7 +129,7 @@ def no_projection_error(source: str) -> DatasetError:
     """Return the error for projected positions without a projection."""
     return DatasetError(
         f"{source}: positions are in metres of a projection that the file does not name.",
-        "Positions need latitude and longitude, or a projection.",
+        "Latitude and longitude are needed, or a projection.",
         "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
         file=source,
     )

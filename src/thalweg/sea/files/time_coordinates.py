@@ -20,12 +20,24 @@ def is_time(array: Any) -> bool:
 
 
 def read_times(array: Any, source: str) -> FloatArray:
-    """Return times as seconds since the epoch.
+    """Return the times of a time axis.
+
+    Parameters
+    ----------
+    array : xarray.DataArray
+        The time axis, decoded or not.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    float64 array (T,)
+        Seconds since 1970-01-01T00:00Z, strictly increasing.
 
     Raises
     ------
     DatasetError
-        If the calendar is not the real one, a time is missing, or times do not increase.
+        If the calendar has no real dates, a time is missing, or times do not increase.
     """
     import xarray as xr
 
@@ -46,7 +58,7 @@ def read_times(array: Any, source: str) -> FloatArray:
     step = np.diff(times)
     if (step <= 0.0).any():
         where = int(np.flatnonzero(step <= 0.0)[0])
-        fault = "stands twice" if step[where] == 0.0 else "is followed by an earlier one"
+        fault = "is repeated" if step[where] == 0.0 else "is followed by an earlier one"
         raise _time_fault(
             source, name, f"does not increase: step {where} ({stamps[where]}) {fault}"
         )
@@ -57,8 +69,8 @@ def _time_fault(source: str, name: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source}: the time axis {name!r} {fault}.",
         "Times must be UTC dates that strictly increase.",
-        "Sort the file and remove doubles (for example with xarray: ds.sortby('time')."
-        "drop_duplicates('time')), or fetch it again.",
+        "Sort the file and remove duplicates (for example with xarray: ds.sortby('time')."
+        "drop_duplicates('time')), or download it again.",
         file=source,
     )
 

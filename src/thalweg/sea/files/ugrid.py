@@ -1,10 +1,10 @@
-"""UGRID: unstructured meshes of triangles, or of polygons cut into triangles.
+"""UGRID: unstructured meshes of triangles, or of polygons divided into triangles.
 
-Values at nodes are linear in each triangle. Values of faces are kept at the centre of the face
-and averaged to its nodes (over the faces that are known at that moment, weighted by the inverse
-of the distance to their centres); each face is cut into triangles between its centre and its
-edges, and values are linear in those. So a field is continuous, has the file's value at every
-face centre, and is unknown throughout a face that is unknown (dry).
+Values at nodes are linear in each triangle. Values of faces are kept at the centre of the face and
+averaged to its nodes (over the faces that are known at that time, weighted by the inverse of the
+distance to their centres). Each face is divided into triangles between its centre and its edges,
+and values are linear in those. So a field is continuous, has the file's value at every face centre,
+and is unknown throughout a face that is unknown (dry).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from thalweg.sea.grids.triangle_mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class FaceAveraging:
-    """How face values become node values: faces around each node, and their weights.
+    """Averaging of face values to nodes: the faces around each node and their weights.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class FaceAveraging:
 
 @dataclass(frozen=True, eq=False)
 class MeshLayout:
-    """One dimension of a mesh that carries values.
+    """The values along one dimension of a mesh: nodes or faces.
 
     Attributes
     ----------
@@ -59,10 +59,10 @@ class MeshLayout:
     dim : str
         Dimension of nodes or of faces.
     grid : TriangleGrid
-        Places and triangles.
+        Grid points and triangles.
     angle : float64 array or None
         Angle [rad] of the projection's x axis from east at each value, (1, values).
-    averaging : Averaging or None
+    averaging : FaceAveraging or None
         For faces.
     """
 
@@ -75,7 +75,7 @@ class MeshLayout:
 
 @dataclass(frozen=True, eq=False)
 class MeshTopology:
-    """A mesh as the file tells it: node positions and the nodes of each face (-1 = no more)."""
+    """A mesh of a file: node positions and the nodes of each face (-1 after the last one)."""
 
     name: str
     lat: FloatArray
@@ -85,24 +85,24 @@ class MeshTopology:
     face_dim: str
 
 
-#: names of connectivity in files that tell no topology (ADCIRC, FVCOM)
+#: names of the connectivity in files without mesh topology (ADCIRC, FVCOM)
 _CONNECTIVITY_NAMES = ("element", "elements", "nv", "tri")
 
 
 def topologies(dataset: Any) -> dict[str, Mapping[str, Any]]:
-    """Return the two-dimensional meshes of a dataset: name and what it tells of each.
+    """Return the two-dimensional meshes of a dataset: name and attributes of each.
 
-    Where no topology is told, connectivity between nodes at positions makes one.
+    In a file without mesh topology, a connectivity table between nodes with positions gives one.
     """
-    told = {
+    stated = {
         str(n): dataset[n].attrs
         for n in dataset.variables
         if dataset[n].attrs.get("cf_role") == "mesh_topology"
     }
-    if told:
+    if stated:
         return {
             name: attributes
-            for name, attributes in told.items()
+            for name, attributes in stated.items()
             if int(attributes.get("topology_dimension", attributes.get("dimension", 2))) == 2
         }
     return _inferred_topology(dataset)
@@ -149,7 +149,7 @@ def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[
 
 
 def mesh_description_variables(dataset: Any) -> frozenset[str]:
-    """Return the variables that describe meshes and carry no field."""
+    """Return the variables that describe meshes and hold no field."""
     names: set[str] = set()
     for mesh, attributes in topologies(dataset).items():
         names.add(mesh)
@@ -160,7 +160,7 @@ def mesh_description_variables(dataset: Any) -> frozenset[str]:
 
 
 def mesh_dimensions(dataset: Any) -> frozenset[str]:
-    """Return the dimensions of nodes and of faces of every mesh, as far as they are told."""
+    """Return the dimensions of nodes and of faces of every mesh, as far as the file has them."""
     dims: set[str] = set()
     for attributes in topologies(dataset).values():
         for key in ("node_coordinates", "face_coordinates", "face_node_connectivity"):
@@ -198,9 +198,9 @@ def _required_names(
     if names and all(n in dataset.variables for n in names):
         return names
     raise DatasetError(
-        f"{source}: the mesh does not tell its {key}.",
+        f"{source}: the mesh has no {key}.",
         "UGRID meshes with node_coordinates and face_node_connectivity can be read.",
-        "Write the file with complete UGRID topology.",
+        "Write the file with a complete UGRID topology.",
         file=source,
     )
 
@@ -226,7 +226,7 @@ def _node_positions(
 def _check_positions(lat: FloatArray, lon: FloatArray, source: str) -> None:
     if not (np.isfinite(lat).all() and np.isfinite(lon).all() and (np.abs(lat) <= 90.0).all()):
         raise DatasetError(
-            f"{source}: nodes of the mesh have positions that do not exist.",
+            f"{source}: nodes of the mesh have impossible positions.",
             "Every node needs a latitude and a longitude.",
             "Check the projection of the file.",
             file=source,
@@ -234,9 +234,27 @@ def _check_positions(lat: FloatArray, lon: FloatArray, source: str) -> None:
 
 
 def read_faces(table: Any, nodes: int, source: str) -> IntArray:
-    """Return the nodes of each face from 0, -1 where it has no more.
+    """Return the nodes of each face, counted from 0.
 
-    The table may be of floats with NaN, hold its fill value undecoded, and count from 0 or 1.
+    Parameters
+    ----------
+    table : xarray.DataArray
+        Connectivity (M, largest number of nodes); it may hold floats with NaN or an undecoded
+        fill value, and count from 0 or 1.
+    nodes : int
+        Number of nodes of the mesh.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    int64 array (M, largest number of nodes)
+        -1 after the last node of a face.
+
+    Raises
+    ------
+    DatasetError
+        If a face refers to a node that does not exist.
     """
     raw = np.asarray(table.values, np.float64)
     fill = table.attrs.get("_FillValue", table.encoding.get("_FillValue"))
@@ -250,8 +268,8 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
         if not (low >= 1.0 and high <= nodes):
             raise DatasetError(
                 f"{source}: faces of the mesh use nodes {low:g} to {high:g} of {nodes}.",
-                "Each face must be made of nodes of the mesh.",
-                "Repair face_node_connectivity and its start_index.",
+                "Each face must refer to nodes of the mesh.",
+                "Correct face_node_connectivity and its start_index.",
                 file=source,
             )
         start = 1
@@ -259,7 +277,7 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
 
 
 def triangulate_faces(faces: IntArray) -> IntArray:
-    """Return triangles of faces, each cut from its first node."""
+    """Return triangles (K, 3) of faces (M, N), each face divided from its first node."""
     pieces = []
     for k in range(1, faces.shape[1] - 1):
         whole = faces[:, k + 1] >= 0

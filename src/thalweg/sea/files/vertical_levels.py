@@ -14,7 +14,7 @@ VERTICAL_NAMES: Final = (
     "depth", "lev", "level", "height", "sigma", "s_rho", "deptht", "depthu", "depthv", "altitude",
     "isobaric", "pressure", "plev",
 )  # fmt: skip
-WIND_HEIGHT: Final = 10.0  #: [m] height at which wind is used
+WIND_HEIGHT: Final = 10.0  #: [m] height above the sea of the wind that is used
 CLIMATOLOGY_NAMES: Final = ("month", "season", "dayofyear", "climatology")
 SIGMA_STANDARD_NAME: Final = "ocean_sigma_coordinate"
 HEIGHT_NAMES: Final = ("altitude", "height", "height_above_mean_sea_level", "height_above_geoid")
@@ -23,9 +23,26 @@ _ROUNDING_TOLERANCE: Final = 1e-6
 
 
 def pick_surface(dataset: Any, array: Any, keep: frozenset[str], role: str, source: str) -> Any:
-    """Reduce dimensions that are neither time nor place: one entry, or the surface level.
+    """Select one index along dimensions that are neither time nor position.
 
-    Of levels the one nearest to the surface is taken; of heights of wind the one at 10 m.
+    Of vertical levels the one nearest to the surface is used; of heights of wind the one nearest
+    to 10 m.
+
+    Parameters
+    ----------
+    dataset, array : xarray.Dataset, xarray.DataArray
+        The file and one of its variables.
+    keep : frozenset of str
+        Its dimensions of time and position.
+    role : str
+        Role of the variable.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If a dimension is not a vertical axis, or wind is given at pressure levels.
     """
     for dim in [d for d in array.dims if d not in keep]:
         size = array.sizes[dim]
@@ -42,7 +59,7 @@ def _select_level(dim: str, levels: Any, role: str, name: str, source: str) -> i
     if any(word in lower for word in CLIMATOLOGY_NAMES):
         raise _layout_fault(
             source, name, f"is a climatology along {dim!r}: a mean year has no dates",
-            "Make a file with real dates, one for each month you sail in.",
+            "Make a file with real dates, one for each month of the voyage.",
         )  # fmt: skip
     attributes = levels.attrs if levels is not None else {}
     is_vertical = (
@@ -53,24 +70,24 @@ def _select_level(dim: str, levels: Any, role: str, name: str, source: str) -> i
     )
     if levels is None or not is_vertical:
         raise _layout_fault(
-            source, name, f"has a dimension {dim!r} that is neither time, place nor level",
-            "Select one entry of it into a file first.",
+            source, name, f"has a dimension {dim!r} that is neither time, position nor level",
+            "Write a file with one index along it.",
         )  # fmt: skip
     if "wind" not in role:
         return surface_index(levels)
     if _is_pressure(levels):
         raise _layout_fault(
             source, name, f"is wind at levels of pressure ({levels.name}), none of them at 10 m",
-            "Fetch the wind at 10 m (u10 and v10).",
+            "Download the wind at 10 m (u10 and v10).",
         )  # fmt: skip
     return int(np.argmin(np.abs(np.asarray(levels.values, float) - WIND_HEIGHT)))
 
 
 def wind_height_fault(dataset: Any, array: Any) -> str | None:
-    """Return why a wind cannot be used if the file says it is not at 10 m above the sea.
+    """Return why a wind cannot be used, if the file states that it is not at 10 m; else None.
 
-    What counts is the variable's own vertical axis; without one, a single height that the
-    variable names (or that GRIB gives).
+    The variable's own vertical axis decides; without one, a single height that the variable names
+    (or that GRIB gives).
     """
     named = array.encoding.get("coordinates", array.attrs.get("coordinates", ""))
     stated = {"heightAboveGround", *str(named or "").split()}
@@ -93,7 +110,7 @@ def wind_height_fault(dataset: Any, array: Any) -> str | None:
 
 
 def _is_pressure(axis: Any) -> bool:
-    """Return whether a vertical axis counts in pressure."""
+    """Return whether a vertical axis is in units of pressure."""
     named = str(axis.name).lower().startswith(("isobaric", "pressure", "plev"))
     return (
         named or unit_conversion.si_factor(str(axis.attrs.get("units", "")), "pressure") is not None
@@ -116,7 +133,7 @@ def _layout_fault(source: str, name: str, fault: str, remedy: str) -> DatasetErr
 
 
 def level_coordinate(dataset: Any, dim: str) -> Any:
-    """Return the coordinate of levels along a dimension: its own, or one that is told as such."""
+    """Return the coordinate of levels along a dimension: its own, or another vertical one."""
     if dim in dataset.variables:
         return dataset[dim]
     along = [dataset[n] for n in dataset.variables if dataset[n].dims == (dim,)]
@@ -125,7 +142,7 @@ def level_coordinate(dataset: Any, dim: str) -> Any:
 
 
 def is_sigma(coordinate: Any) -> bool:
-    """Return whether a coordinate is a share of the water depth."""
+    """Return whether a coordinate is a fraction of the water depth."""
     standard = str(coordinate.attrs.get("standard_name", ""))
     if standard:
         return standard == SIGMA_STANDARD_NAME
@@ -133,7 +150,7 @@ def is_sigma(coordinate: Any) -> bool:
 
 
 def depth_sign(coordinate: Any) -> float | None:
-    """Return the sign that makes a coordinate a depth below datum, or None if it is none."""
+    """Return the sign that converts a coordinate to a depth below datum; None if it is not one."""
     standard = str(coordinate.attrs.get("standard_name", ""))
     positive = str(coordinate.attrs.get("positive", "")).lower()
     unit = str(coordinate.attrs.get("units", ""))
@@ -152,7 +169,7 @@ def depth_sign(coordinate: Any) -> float | None:
 
 
 def sigma_sign_and_offset(coordinate: Any, values: FloatArray) -> tuple[float, float]:
-    """Return the sign and offset that make sigma a share of the depth, 0 at the surface."""
+    """Return sign and offset that convert sigma to a fraction of the depth, 0 at the surface."""
     if values.min() < -_ROUNDING_TOLERANCE:  # the convention: 0 at the surface, -1 at the bed
         return -1.0, 0.0
     down = str(coordinate.attrs.get("positive", "up")).lower() == "down"
@@ -160,7 +177,7 @@ def sigma_sign_and_offset(coordinate: Any, values: FloatArray) -> tuple[float, f
 
 
 def surface_index(coordinate: Any) -> int:
-    """Return the place of the level nearest to the surface."""
+    """Return the index of the level nearest to the surface."""
     values = np.asarray(coordinate.values, float)
     if is_sigma(coordinate):
         sign, offset = sigma_sign_and_offset(coordinate, values)

@@ -15,7 +15,7 @@ MAX_UNION_VALUES = 30_000_000  #: larger blocks are not extended to hold the pre
 
 
 class CachedBlock(NamedTuple):
-    """What was read: values (levels, places) by name, for a window."""
+    """Values (times, points) by name, read for a window."""
 
     window: GridWindow
     values: dict[str, RawArray]
@@ -28,9 +28,13 @@ class BlockCache:
     Attributes
     ----------
     shape : tuple of int
-        Levels, rows and columns of the whole.
+        Times, rows and columns of the whole grid.
     wraps : bool
-        Whether columns go round.
+        Whether columns wrap around the globe.
+    blocks : dict
+        Block by names of the quantity.
+    misses : dict
+        Number of reads after the first, by names of the quantity.
     """
 
     shape: tuple[int, int, int]
@@ -39,7 +43,7 @@ class BlockCache:
     misses: dict[tuple[str, ...], int] = field(default_factory=dict)
 
     def block(self, quantity: Quantity, wanted: GridWindow) -> CachedBlock:
-        """Return a block that holds the wanted window, reading it if need be."""
+        """Return a block that contains a window, reading it if necessary."""
         key = quantity.names
         kept = self.blocks.get(key)
         columns = self.shape[2]
@@ -73,7 +77,7 @@ class BlockCache:
         )
 
     def _union(self, a: GridWindow, b: GridWindow) -> GridWindow:
-        """Return the least window that holds both."""
+        """Return the smallest window that contains both."""
         nx = self.shape[2]
         x0, width = _column_union((a.x0, a.width), (b.x0, b.width), nx, self.wraps)
         return GridWindow(
@@ -82,7 +86,7 @@ class BlockCache:
 
 
 def _columns_in_grid(x0: int, width: int, columns: int, wraps: bool) -> tuple[int, int]:
-    """Return a range of columns brought into the grid."""
+    """Return a range of columns limited to the grid."""
     if wraps:
         return (0, columns) if width >= columns else (x0 % columns, width)
     end = min(columns, x0 + width)
@@ -92,7 +96,7 @@ def _columns_in_grid(x0: int, width: int, columns: int, wraps: bool) -> tuple[in
 def _column_union(
     a: tuple[int, int], b: tuple[int, int], columns: int, wraps: bool
 ) -> tuple[int, int]:
-    """Return the shortest range of columns that holds two ranges."""
+    """Return the shortest range of columns that contains two ranges."""
     if not wraps:
         x0 = min(a[0], b[0])
         return x0, max(a[0] + a[1], b[0] + b[1]) - x0

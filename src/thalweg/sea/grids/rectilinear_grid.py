@@ -15,7 +15,7 @@ from thalweg.sea.grids.triangle_mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class RectilinearGrid:
-    """Latitude and longitude axes; bilinear in a cell.
+    """A grid of latitude and longitude axes; bilinear in each cell.
 
     Attributes
     ----------

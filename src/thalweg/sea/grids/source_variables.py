@@ -23,7 +23,7 @@ MAX_LAYERED_VALUES = 4_000_000  #: values in vertical layers that are read at on
 
 
 class GridWindow(NamedTuple):
-    """A part of a grid: levels [t0, t1), rows [y0, y1), ``width`` columns from ``x0`` on, round."""
+    """A part of a grid: times [t0, t1), rows [y0, y1), ``width`` columns from ``x0``, wrapping."""
 
     t0: int
     t1: int
@@ -33,7 +33,7 @@ class GridWindow(NamedTuple):
     width: int
 
     def contains(self, other: GridWindow, columns: int) -> bool:
-        """Return whether another window lies within this one."""
+        """Return whether this window contains another."""
         offset = (other.x0 - self.x0) % columns
         return (
             self.t0 <= other.t0
@@ -45,7 +45,7 @@ class GridWindow(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many values it holds."""
+        """Number of values."""
         return (self.t1 - self.t0) * (self.y1 - self.y0) * self.width
 
 
@@ -56,13 +56,13 @@ class VariableInFile:
     Attributes
     ----------
     array : xarray.DataArray
-        Dimensions (time, row, column), (row, column), (time, place) or (place,); not loaded.
+        Dimensions (time, row, column), (row, column), (time, node) or (node,); not loaded.
     levels : int
         Number of times.
     has_time : bool
-        Whether time is its first dimension; else all its values belong to one time, or to all.
+        Whether time is its first dimension; else its values belong to one time, or to all.
     factor : float
-        What its values are multiplied with for SI; files of one layer may differ in units.
+        Conversion of its values to SI; files of one layer may differ in units.
     """
 
     array: Any
@@ -79,17 +79,17 @@ class SourceVariable:
     ----------
     name : str
         Its name in the files.
-    pieces : tuple of Piece
+    pieces : tuple of VariableInFile
         One per file.
     timed : bool
-        Whether it has times at all; if not, there is one piece that holds always.
+        Whether it has times; if not, there is one piece, which holds at all times.
     is_mesh : bool
-        Whether places are in one dimension (always read whole) instead of rows and columns.
+        Whether positions are along one dimension (always read whole) instead of rows and columns.
     source : str
         File names, for messages.
     shift : tuple of int
-        (rows, columns) by which a staggered variable is behind its cell: (0, 1) for velocities on
-        the east side of cells, (1, 0) on the north side; it is averaged to the centre of the cell.
+        Offset (rows, columns) of a staggered variable: (0, 1) for velocities on the east side of
+        cells, (1, 0) on the north side; it is averaged to the centre of the cell.
     """
 
     name: str
@@ -101,13 +101,13 @@ class SourceVariable:
 
     @property
     def is_double(self) -> bool:
-        """Whether the file keeps more digits than single precision."""
+        """Whether the file stores double precision."""
         array = self.pieces[0].array
         stored = array.encoding.get("dtype", array.dtype)
         return "scale_factor" not in array.encoding and np.dtype(stored) == np.float64
 
     def read(self, window: GridWindow, columns: int) -> RawArray:
-        """Return values (levels, rows, columns); a variable without time has one level."""
+        """Return values (times, rows, columns); a variable without time has one time."""
         try:
             if any(self.shift):
                 return self._averaged_to_centres(window, columns)
@@ -116,7 +116,7 @@ class SourceVariable:
             raise DatasetError(
                 f"{self.source}: {self.name!r} cannot be read ({error}).",
                 "The file opens, but its data are damaged or incomplete.",
-                "Fetch the file again.",
+                "Download the file again.",
                 file=self.source,
                 variable=self.name,
             ) from error
@@ -137,7 +137,7 @@ class SourceVariable:
     def _read_rows_and_columns(
         self, piece: VariableInFile, levels: slice, window: GridWindow, columns: int
     ) -> RawArray:
-        """Read rows and columns in SI, in two pieces where the window goes round."""
+        """Read rows and columns in SI, in two parts where the window wraps around the grid."""
         values = self._stored(piece.array[levels], window, columns)
         return values if piece.factor == 1.0 else np.asarray(values, np.float64) * piece.factor
 
@@ -152,7 +152,7 @@ class SourceVariable:
         return np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
 
     def _averaged_to_centres(self, window: GridWindow, columns: int) -> RawArray:
-        """Average a staggered variable with its neighbour behind; the first has none."""
+        """Average a staggered variable with its value one row or column before; NaN without one."""
         dy, dx = self.shift
         y0, x0 = max(0, window.y0 - dy), max(0, window.x0 - dx)
         wide = window._replace(y0=y0, x0=x0, width=window.width + window.x0 - x0)
@@ -176,15 +176,15 @@ class Quantity:
     Attributes
     ----------
     names : tuple of str
-        Canonical names made.
-    variables : tuple of Variable
-        What they are made from.
+        Canonical names.
+    variables : tuple of SourceVariable
+        The file variables they are made from.
     make : callable
-        ``make(arrays, window) -> arrays``: unit conversion, components, rotation.
+        ``make(arrays, window) -> arrays``: components, rotation, averaging.
     source : str
         File names.
     layers : int
-        Values that are read over the depth for each one that is made.
+        Number of vertical layers that are read for each value.
     """
 
     names: tuple[str, ...]
@@ -194,7 +194,7 @@ class Quantity:
     layers: int = 1
 
     def read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
-        """Return arrays (levels, places) by canonical name, checked for sense."""
+        """Return arrays (times, points) by canonical name, checked for plausible values."""
         at_once = max(
             1, MAX_LAYERED_VALUES // max(1, self.layers * window.size // _level_count(window))
         )

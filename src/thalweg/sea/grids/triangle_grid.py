@@ -21,20 +21,20 @@ MAX_ITEMS_PER_TRIANGLE = 20.0  #: bin entries per triangle at most
 
 @dataclass(frozen=True, eq=False)
 class TriangleGrid:
-    """Places joined by triangles; linear (barycentric) in each, in the plane of lon and lat.
+    """Grid points connected by triangles; linear (barycentric) in each, in lon and lat.
 
-    Around a pole, where that plane has no meaning, a polar stereographic plane is used.
+    Around a pole, where longitude is singular, a polar stereographic plane is used.
 
     Attributes
     ----------
     lat, lon : float64 array (M,)
-        Places that hold values [deg].
+        Grid points that hold values [deg].
     triangles : int64 array (K, 3)
-        Flat places.
+        Flat indices of grid points.
     shape : tuple of int
-        Rows and columns of places (1 row for a mesh).
+        Rows and columns of grid points (1 row for a mesh).
     network : Mesh or None
-        Nodes and triangles for others to build on.
+        Nodes and triangles from which a network can be built.
     """
 
     lat: FloatArray
@@ -46,7 +46,7 @@ class TriangleGrid:
 
     @cached_property
     def area(self) -> BoundingBox:
-        """The box around all places."""
+        """The box around all grid points."""
         known = np.isfinite(self.lat) & np.isfinite(self.lon)
         south, north = float(self.lat[known].min()), float(self.lat[known].max())
         west, width = _narrowest_range(self.lon[known])
@@ -77,7 +77,7 @@ class TriangleGrid:
 
     @cached_property
     def _last(self) -> dict[str, tuple[FloatArray, FloatArray, GridLocation]]:
-        """What was asked last: several layers lie on one mesh and are asked for the same points."""
+        """The last result: several layers on one mesh are sampled at the same points."""
         return {}
 
     def _locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
@@ -108,7 +108,7 @@ class TriangleGrid:
 
 
 class MapPlane(NamedTuple):
-    """A flat map: pole 0 is plain lon and lat from a west edge, +-1 polar stereographic."""
+    """A plane: pole 0 is lon and lat from a west edge, +-1 polar stereographic."""
 
     pole: int
     west: float
@@ -136,13 +136,13 @@ class TriangleBins(NamedTuple):
 def make_triangle_bins(
     plane: MapPlane, lat: FloatArray, lon: FloatArray, triangles: IntArray
 ) -> TriangleBins:
-    """Sort triangles into bins; those with unknown corners or around a pole are left out."""
+    """Sort triangles into bins; those with unknown corners or around a pole are omitted."""
     x, y = plane.of(lat[triangles], lon[triangles])
     if plane.pole == 0:
         x = x[:, :1] + _wrap(x - x[:, :1])
     whole = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
     whole &= (x.max(axis=1) - x.min(axis=1)) < 180.0
-    if not whole.any():  # nothing can be found in a single point
+    if not whole.any():  # a single degenerate triangle contains no point
         x, y, whole = np.zeros_like(x), np.zeros_like(y), np.arange(len(x)) == 0
     x, y, corners = x[whole], y[whole], triangles[whole]
     if plane.pole == 0:
@@ -156,10 +156,10 @@ def make_triangle_bins(
 
 
 def _refined_bins(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return bins, as many as triangles or more where these crowd in some, and their counts.
+    """Return bins and their counts: about as many bins as triangles, more for uneven meshes.
 
-    Coastal meshes have small triangles in a bay and large ones off it: what counts is how many
-    triangles a point in a small one has to be compared with.
+    Coastal meshes have small triangles in bays and large ones offshore. The measure is the number
+    of triangles that a point in a small triangle is compared with.
     """
     n = max(1, int(np.sqrt(len(x))))
     low, high = (x.min(), y.min()), (x.max(), y.max())
@@ -182,9 +182,11 @@ def _refined_bins(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
 def _repeat_across_seam(
     plane: MapPlane, x: FloatArray, y: FloatArray, corners: IntArray
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Repeat triangles that stick out over either edge of the map on its other side."""
+    """Repeat triangles that extend over one edge of the plane at its other edge."""
     right = x.max(axis=1) > plane.west + 360.0 - 2.0 * EDGE_TOLERANCE
-    left = x.min(axis=1) < plane.west - EDGE_TOLERANCE + 1e-9  # points begin a rim before the edge
+    left = (
+        x.min(axis=1) < plane.west - EDGE_TOLERANCE + 1e-9
+    )  # points start slightly before the edge
     return (
         np.concatenate([x, x[right] - 360.0, x[left] + 360.0]),
         np.concatenate([y, y[right], y[left]]),
@@ -197,7 +199,7 @@ def _wrap(lon: FloatArray) -> FloatArray:
 
 
 def _narrowest_range(lon: FloatArray) -> tuple[float, float]:
-    """Return west edge in [-180, 180) and width of the narrowest range that holds longitudes."""
+    """Return west edge in [-180, 180) and width [deg] of the narrowest range of longitudes."""
     ordered = np.unique(lon % 360.0)
     gaps = np.diff(np.append(ordered, ordered[0] + 360.0))
     k = int(np.argmax(gaps))
@@ -206,7 +208,7 @@ def _narrowest_range(lon: FloatArray) -> tuple[float, float]:
 
 
 def curvilinear_grid(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
-    """Return the grid of 2-D coordinates: each cell is cut into two triangles."""
+    """Return the grid of 2-D coordinates (Y, X) [deg]; each cell is divided into two triangles."""
     rows, columns = lat.shape
     place = np.arange(rows * columns, dtype=np.int64).reshape(rows, columns)
     a, b = place[:-1, :-1].ravel(), place[:-1, 1:].ravel()
