@@ -10,7 +10,23 @@ from thalweg.core.time import TimeLike, parse_time
 
 
 def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
-    """Return the box for (south, north, west, east) [deg]; the world for None."""
+    """Return the box for (south, north, west, east) [deg]; the world for None.
+
+    Parameters
+    ----------
+    area : tuple of float or None
+        (south, north, west, east) [deg].
+
+    Returns
+    -------
+    BoundingBox
+        With ``east`` above ``west``; it may exceed 180.
+
+    Raises
+    ------
+    InputError
+        If the values are not four finite numbers with south below north.
+    """
     if area is None:
         return WORLD
     try:
@@ -27,7 +43,18 @@ def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
 
 
 def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:
-    """Return (start, end) [s since epoch]."""
+    """Return (start, end) [s since epoch].
+
+    Parameters
+    ----------
+    period : tuple of time or None
+        Start and end; None stays None.
+
+    Raises
+    ------
+    InputError
+        If there are not two times, or the end is before the start.
+    """
     if period is None:
         return None
     if isinstance(period, str) or len(period) != 2:
@@ -43,7 +70,20 @@ def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float
 
 
 def parse_time_step(time_step: float | None, *, least: float = 0.0) -> float | None:
-    """Return a time step [s] that is None, or not less than the smallest allowed."""
+    """Return a time step [s] that is None, or not less than the smallest allowed.
+
+    Parameters
+    ----------
+    time_step : float or None
+        Time step [s]; None stays None.
+    least : float
+        Smallest allowed step [s].
+
+    Raises
+    ------
+    InputError
+        If the step is not finite or too small.
+    """
     if time_step is not None and not (np.isfinite(time_step) and time_step >= least):
         raise InputError(
             f"A time step of {time_step!r} s cannot be used.",

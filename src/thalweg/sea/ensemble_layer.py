@@ -69,7 +69,7 @@ class EnsembleLayer:
         return self.member_layers[0].times(start, end)
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie where the members may know values."""
+        """Return whether the members may know values at positions."""
         return self.member_layers[0].inside(lat, lon)
 
     def coverage(self) -> list[Coverage]:
@@ -129,6 +129,13 @@ def ensemble_not_allowed_error(count: int) -> InputError:
 def select_member(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
     """Return the layers with one member of every ensemble among them.
 
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers, of which at least one is an ensemble.
+    index : int
+        From 0 to the number of members minus 1.
+
     Raises
     ------
     InputError
@@ -161,6 +168,11 @@ def select_member(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
 def ensemble_layers(seas: Sequence[Sequence[Layer]]) -> tuple[Layer, ...]:
     """Return the layers of an ensemble of seas, each given by its layers (see `Sea.ensemble`).
 
+    Parameters
+    ----------
+    seas : sequence of sequence of Layer
+        The layers of each member.
+
     Raises
     ------
     InputError
@@ -190,6 +202,11 @@ def ensemble_layers(seas: Sequence[Sequence[Layer]]) -> tuple[Layer, ...]:
 
 def combine_member_layers(layers: Sequence[Layer]) -> Layer:
     """Return one ensemble layer from the layer of each member; a layer they share stays as it is.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        The layer of each member.
 
     Raises
     ------

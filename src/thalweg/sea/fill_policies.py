@@ -76,7 +76,20 @@ def layers_filled(
 
 
 def fill_values(policy: str, value: float | tuple[float, float] | str) -> dict[str, float]:
-    """Return canonical variables and values [SI] for a fill policy (see `Sea.filled`)."""
+    """Return canonical variables and values [SI] for a fill policy (see `Sea.filled`).
+
+    Parameters
+    ----------
+    policy : str
+        "currents", "wind", "waves", "water_level" or "ice".
+    value : float or tuple of float
+        A value, or (east, north) of a vector [m/s].
+
+    Raises
+    ------
+    InputError
+        If the policy is unknown, or the value is impossible or has no direction.
+    """
     if policy not in FILLABLE_VARIABLES:
         raise unknown_name_error("filling policy", policy, FILLABLE_VARIABLES)
     names = FILLABLE_VARIABLES[policy]

@@ -63,7 +63,25 @@ def freeze_station_fields(
     channels: Sequence[int],
     extra: Mapping[int, DerivedChannel],
 ) -> StationFields:
-    """Sample layers at stations for all native times of a window (see `Sea.freeze_stations`)."""
+    """Sample layers at stations for all native times of a window (see `Sea.freeze_stations`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    lat, lon : float64 array (S,)
+        Stations [deg].
+    window : tuple of float
+        Start and end [s since epoch].
+    channels : sequence of int
+        Channels of `thalweg.kernels.codes`.
+    extra : mapping of int to callable
+        Functions of derived channels.
+
+    Returns
+    -------
+    StationFields
+    """
     lat, lon = np.ascontiguousarray(lat, np.float64), np.ascontiguousarray(lon, np.float64)
     index, present = locate_channels(layers, channels, extra)
     times = times_to_freeze(
@@ -86,7 +104,28 @@ def freeze_grid_fields(
     spacing_deg: float,
     extra: Mapping[int, DerivedChannel],
 ) -> GridFields:
-    """Sample layers on a regular grid for all native times (see `Sea.freeze_grid`)."""
+    """Sample layers on a regular grid for all native times (see `Sea.freeze_grid`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    box : tuple of float
+        South, north, west and east [deg].
+    window, channels, extra
+        As `freeze_station_fields`.
+    spacing_deg : float
+        Largest spacing [deg].
+
+    Returns
+    -------
+    GridFields
+
+    Raises
+    ------
+    InputError
+        If the spacing is not positive or the box is empty.
+    """
     south, north, west, east = box
     if not (spacing_deg > 0.0 and north > south):
         raise InputError(

@@ -109,7 +109,13 @@ def inspect_layers(layers: Sequence[Layer]) -> Inspection:
 
 
 def data_gaps(layers: Sequence[Layer]) -> tuple[DataGap, ...]:
-    """Return the gaps in the time axes of the layers that were read from files."""
+    """Return the gaps in the time axes of the layers that were read from files.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        The layers of a sea.
+    """
     return tuple(
         DataGap(layer.source, float(layer.axis.times[k]), float(layer.axis.times[k + 1]))
         for layer in layers

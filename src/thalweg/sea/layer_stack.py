@@ -36,7 +36,24 @@ def stack_provides(layers: Sequence[Layer], name: str) -> bool:
 def sample_stack(
     layers: Sequence[Layer], names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
 ) -> Samples:
-    """Return values at points (see `thalweg.sea.Sea.sample`)."""
+    """Return values at points (see `thalweg.sea.Sea.sample`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    names : sequence of str
+        Canonical names, or CF names of a vector's speed and direction.
+    time : array_like
+        Seconds since 1970-01-01T00:00Z.
+    lat, lon : array_like
+        Positions [deg]; all three are broadcast together.
+
+    Returns
+    -------
+    dict of str to float64 array
+        Values [SI] of the broadcast shape; NaN where unknown.
+    """
     check_not_ensemble(layers)
     names = [names] if isinstance(names, str) else names
     arrays = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in (time, lat, lon)))
@@ -58,7 +75,24 @@ def series_of_stack(
     lat: FloatArray,
     lon: FloatArray,
 ) -> Samples:
-    """Return values (S, T) at stations (S,) for every time (T,) (see `thalweg.sea.Sea.series`)."""
+    """Return values (S, T) at stations (S,) for every time (T,) (see `thalweg.sea.Sea.series`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    names : sequence of str
+        Canonical names, or CF names of a vector's speed and direction.
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+    lat, lon : float64 array (S,)
+        Stations [deg].
+
+    Returns
+    -------
+    dict of str to float64 array (S, T)
+        Values [SI]; NaN where unknown.
+    """
     check_not_ensemble(layers)
 
     def read(layer: Layer, wanted: Sequence[str], rows: Any) -> Samples:
@@ -72,7 +106,22 @@ def series_of_stack(
 def stack_times(
     layers: Sequence[Layer], start: float, end: float, *, names: Sequence[str] | None = None
 ) -> FloatArray:
-    """Return the native times of the layers over a window (see `thalweg.sea.Sea.times`)."""
+    """Return the native times of the layers over a window (see `thalweg.sea.Sea.times`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers of a sea.
+    start, end : float
+        Window [s since epoch].
+    names : sequence of str, optional
+        Only layers that hold these; all by default.
+
+    Returns
+    -------
+    float64 array (T,)
+        Strictly increasing [s since epoch]; empty if no layer covers the window.
+    """
     if names is not None:
         layers = _holders(layers, names)
     found = [layer.times(start, end) for layer in layers]
@@ -96,7 +145,24 @@ def stack_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, 
 
 
 def missing_reason(layers: Sequence[Layer], name: str, time: float, lat: float, lon: float) -> str:
-    """Return why a value is NaN (see `thalweg.sea.Sea.why_missing`)."""
+    """Return why a value is NaN (see `thalweg.sea.Sea.why_missing`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers of a sea.
+    name : str
+        Name of the variable.
+    time : float
+        Time [s since epoch].
+    lat, lon : float
+        Position [deg].
+
+    Returns
+    -------
+    str
+        "variable", "area", "period" or "gap".
+    """
     holders = _holders(layers, [name])
     if not holders or not stack_provides(layers, name):
         return "variable"

@@ -29,7 +29,19 @@ RANGE_TOLERANCE: Final = 0.01  #: fraction of the range by which packed values m
 
 
 def check_plausible(name: str, value: NDArray[Any], variables: list[str], source: str) -> None:
-    """Raise `DatasetError` if values are outside the plausible range of a variable."""
+    """Raise `DatasetError` if values are outside the plausible range of a variable.
+
+    Parameters
+    ----------
+    name : str
+        Canonical name.
+    value : array
+        Values [SI], NaN where unknown.
+    variables : list of str
+        Names in the file, for messages.
+    source : str
+        File name for messages.
+    """
     if name not in PLAUSIBLE_RANGES or value.size == 0:
         return
     low, high = PLAUSIBLE_RANGES[name]

@@ -81,7 +81,26 @@ def draw_maps(
     area: BoundingBox | None = None,
     coastline: Sequence[CoastlinePart] = (),
 ) -> None:
-    """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`)."""
+    """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    path : path-like
+        PNG file to write.
+    time : float, optional
+        Time [s since epoch]; by default that of the largest values.
+    area : BoundingBox, optional
+        By default the box of the smallest layer of files.
+    coastline : sequence of (lat, lon)
+        Lines [deg] drawn on top.
+
+    Raises
+    ------
+    InputError
+        If the sea is an ensemble, or holds no quantity that can be drawn.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -196,6 +215,20 @@ def _draw_panel(
     bar.outline.set_visible(False)
     bar.ax.tick_params(labelsize=8, colors=TEXT_COLOUR, length=2)
     bar.set_label(panel.unit, fontsize=8, color=TEXT_COLOUR)
+    _set_axes(axis, panel, area)
+    if not np.isfinite(values).any():
+        axis.text(
+            0.5,
+            0.5,
+            "no data at this time",
+            transform=axis.transAxes,
+            ha="center",
+            color=TEXT_COLOUR,
+        )
+
+
+def _set_axes(axis: Any, panel: MapPanel, area: BoundingBox) -> None:
+    """Set title, limits, position labels and grid lines of a panel."""
     axis.set_title(panel.title, fontsize=10, loc="left", color=TEXT_COLOUR)
     axis.set_xlim(area.west, area.east)
     axis.set_ylim(area.south, area.north)
@@ -208,15 +241,6 @@ def _draw_panel(
     for side in axis.spines.values():
         side.set_linewidth(0.5)
         side.set_color("#9aa3af")
-    if not np.isfinite(values).any():
-        axis.text(
-            0.5,
-            0.5,
-            "no data at this time",
-            transform=axis.transAxes,
-            ha="center",
-            color=TEXT_COLOUR,
-        )
 
 
 def _colour_limits(values: FloatArray, panel: MapPanel) -> tuple[float, float]:

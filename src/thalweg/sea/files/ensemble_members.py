@@ -125,7 +125,13 @@ def check_member_counts(files: Sequence[EnsembleFile]) -> int:
 
 
 def combine_members(members: Sequence[Sequence[GridLayer]]) -> list[Layer]:
-    """Return the layers of an ensemble; a layer that is the same for all members stays single."""
+    """Return the layers of an ensemble; a layer that is the same for all members stays single.
+
+    Parameters
+    ----------
+    members : sequence of sequence of GridLayer
+        The layers of each member, in the same order.
+    """
     layers: list[Layer] = []
     for group in zip(*members):
         first = group[0].provenance()

@@ -42,6 +42,15 @@ def open_layers(
 ) -> list[Layer]:
     """Return the layers of files, in order of priority (see `thalweg.sea.Sea.open`).
 
+    Parameters
+    ----------
+    sources : sequence of path-like or xarray.Dataset
+        Files in order of priority.
+    mapping : mapping of str to str or None
+        Canonical name to name in the file.
+    draught : float, optional
+        Draught [m] over which currents in layers are averaged.
+
     Raises
     ------
     InputError
@@ -135,7 +144,24 @@ def check_readable(layer: GridLayer) -> None:
 
 
 def open_file(source: Any) -> list[OpenedFile]:
-    """Return the datasets in a file (one, except for GRIB with several kinds of levels)."""
+    """Return the datasets in a file (one, except for GRIB with several kinds of levels).
+
+    Parameters
+    ----------
+    source : path-like or xarray.Dataset
+        A file, a Zarr folder or a dataset.
+
+    Returns
+    -------
+    list of OpenedFile
+
+    Raises
+    ------
+    InputError
+        If the file does not exist or the source is of another type.
+    DatasetError
+        If the file is empty, damaged, compressed or in an unknown format.
+    """
     if hasattr(source, "data_vars"):
         return [
             OpenedFile(

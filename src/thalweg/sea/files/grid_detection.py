@@ -81,7 +81,7 @@ def grid_placement(
         return _curvilinear_placement(dataset, lat, lon)
     if lat.ndim == 1 and lon.ndim == 1 and lat.dims != lon.dims:
         return _rectilinear_grid(lat, lon, source)
-    raise _no_field_error(array, source, "is given at single points, not on a grid or mesh")
+    raise _no_field_error(array, source, "is given at single points, and no mesh connects them")
 
 
 def _find_coordinate(dataset: Any, array: Any, test: Any, order: tuple[str, ...]) -> Any:

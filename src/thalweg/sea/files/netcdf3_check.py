@@ -53,6 +53,11 @@ class _Header:
 def expected_length(path: Path) -> int:
     """Return the shortest length [bytes] of a classic NetCDF file with all its data.
 
+    Parameters
+    ----------
+    path : Path
+        A classic NetCDF file.
+
     Raises
     ------
     EOFError, KeyError

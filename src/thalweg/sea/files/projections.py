@@ -80,7 +80,20 @@ def _grid_mappings(dataset: Any, array: Any) -> list[str]:
 
 
 def to_degrees(crs: Any, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return lat and lon [deg] of projected positions [m], of their shape; NaN stays NaN."""
+    """Return lat and lon [deg] of projected positions [m], of their shape; NaN stays NaN.
+
+    Parameters
+    ----------
+    crs : pyproj.CRS or int
+        Projection, or its EPSG code.
+    x, y : float64 array
+        Projected positions [m], of one shape.
+
+    Returns
+    -------
+    lat, lon : float64 array
+        Positions [deg]; NaN where unknown.
+    """
     from pyproj import Transformer
 
     known = np.isfinite(x) & np.isfinite(y)
@@ -92,7 +105,20 @@ def to_degrees(crs: Any, x: FloatArray, y: FloatArray) -> tuple[FloatArray, Floa
 
 
 def meridian_angle(crs: Any, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the angle [rad] from true east, counter-clockwise, to the x axis of a projection."""
+    """Return the angle [rad] from true east, counter-clockwise, to the x axis of a projection.
+
+    Parameters
+    ----------
+    crs : pyproj.CRS
+        Projection.
+    x, y : float64 array
+        Projected positions [m], of one shape.
+
+    Returns
+    -------
+    float64 array
+        Angle [rad], the negative of the meridian convergence for north-up projections.
+    """
     lat, lon = to_degrees(crs, x, y)
     lat2, lon2 = to_degrees(crs, x + 100.0, y)
     return np.arctan2(lat2 - lat, ((lon2 - lon + 180.0) % 360.0 - 180.0) * np.cos(np.radians(lat)))

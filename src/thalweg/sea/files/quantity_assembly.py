@@ -139,55 +139,42 @@ class QuantityAssembler:
 
     def _bed_and_level(self) -> None:
         """Make bed depth and water level from depth, bed level and total depth, as present."""
-        level, total = self.remaining.get(nm.WATER_LEVEL), self.remaining.pop(nm.TOTAL_DEPTH, None)
-        bed = self.remaining.pop(nm.BED_DEPTH, None)
-        sign = 1.0
+        bed, sign = self._bed()
+        total = self.remaining.get(nm.TOTAL_DEPTH)
+        if total is None:
+            return
+        level = self.remaining.get(nm.WATER_LEVEL)
+        other = bed if bed is not None else level
+        if other is None:
+            del self.remaining[nm.TOTAL_DEPTH]
+            how = "total depth, no level"
+            self._add((nm.BED_DEPTH,), [total], derived_variables.identity, how)
+        elif bed is None and self._both_present((nm.TOTAL_DEPTH, nm.WATER_LEVEL)):
+            del self.remaining[nm.TOTAL_DEPTH]
+            how = "total depth minus water level"
+            self._add((nm.BED_DEPTH,), [total, other], derived_variables.subtract(1.0), how)
+        elif level is None and total.place.key == other.place.key:
+            del self.remaining[nm.TOTAL_DEPTH]
+            how = "total depth minus bed depth"
+            self._add((nm.WATER_LEVEL,), [total, other], derived_variables.subtract(sign), how)
+        elif bed is None:
+            reason = "the water level needed to convert it is not on its grid and at its times"
+            self._leave(nm.TOTAL_DEPTH, reason)
+        else:
+            self._leave(nm.TOTAL_DEPTH, "bed depth and water level are used")
+
+    def _bed(self) -> tuple[PlacedVariable | None, float]:
+        """Make the bed depth from a depth or a bed level; return that variable and its sign."""
+        bed, sign = self.remaining.pop(nm.BED_DEPTH, None), 1.0
         if bed is None and sp.BED_LEVEL in self.remaining:
             bed = self.remaining.pop(sp.BED_LEVEL)
             sign = -1.0 if _is_positive_up(bed) else 1.0
         elif sp.BED_LEVEL in self.remaining:
             self._leave(sp.BED_LEVEL, "the bed depth is used")
         if bed is not None:
-            self._add(
-                (nm.BED_DEPTH,),
-                [bed],
-                derived_variables.scale_by(sign),
-                bed.chosen.how + _sign_note(sign),
-            )
-        if total is None:
-            return
-        self.remaining[nm.TOTAL_DEPTH] = total
-        other = bed if bed is not None else level
-        if other is None:
-            self._add(
-                (nm.BED_DEPTH,),
-                [self.remaining.pop(nm.TOTAL_DEPTH)],
-                derived_variables.identity,
-                "total depth, no level",
-            )
-        elif bed is None and self._both_present((nm.TOTAL_DEPTH, nm.WATER_LEVEL)):
-            pair = [self.remaining.pop(nm.TOTAL_DEPTH), other]
-            self._add(
-                (nm.BED_DEPTH,),
-                pair,
-                derived_variables.subtract(1.0),
-                "total depth minus water level",
-            )
-        elif level is None and total.place.key == other.place.key:
-            pair = [self.remaining.pop(nm.TOTAL_DEPTH), other]
-            self._add(
-                (nm.WATER_LEVEL,),
-                pair,
-                derived_variables.subtract(sign),
-                "total depth minus bed depth",
-            )
-        elif bed is None:
-            self._leave(
-                nm.TOTAL_DEPTH,
-                "the water level needed to convert it is not on its grid and at its times",
-            )
-        else:
-            self._leave(nm.TOTAL_DEPTH, "bed depth and water level are used")
+            how = bed.chosen.how + _sign_note(sign)
+            self._add((nm.BED_DEPTH,), [bed], derived_variables.scale_by(sign), how)
+        return bed, sign
 
     def _leave(self, role: str, reason: str) -> None:
         self.ignored.append(IgnoredVariable(self.remaining.pop(role).chosen.variable, reason))

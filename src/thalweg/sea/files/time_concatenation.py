@@ -20,7 +20,19 @@ from thalweg.sea.recognition_record import RecognitionRecord
 def join_in_time(
     candidates: Sequence[LayerCandidate], ignored: Mapping[str, list[IgnoredVariable]]
 ) -> list[GridLayer]:
-    """Return layers; files of the same grid and variables that follow in time become one."""
+    """Return layers; files of the same grid and variables that follow in time become one.
+
+    Parameters
+    ----------
+    candidates : sequence of LayerCandidate
+        Candidates of all files, in order of priority.
+    ignored : mapping of str to list of IgnoredVariable
+        Variables that are not used, by file.
+
+    Returns
+    -------
+    list of GridLayer
+    """
     joined: list[list[LayerCandidate]] = []
     for candidate in candidates:
         group = next((g for g in joined if _continues(g, candidate)), None)

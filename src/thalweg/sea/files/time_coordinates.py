@@ -76,7 +76,18 @@ def _time_fault(source: str, name: str, fault: str) -> DatasetError:
 
 
 def time_coordinate(dataset: Any, array: Any) -> Any:
-    """Return the time coordinate of a variable: along one of its dimensions, or scalar, or None."""
+    """Return the time coordinate of a variable: along one of its dimensions, or scalar, or None.
+
+    Parameters
+    ----------
+    dataset, array : xarray.Dataset, xarray.DataArray
+        The file and one of its variables.
+
+    Returns
+    -------
+    xarray.DataArray or None
+        One-dimensional; a scalar time has the dimension ``one_time``.
+    """
     along = [
         dataset[n]
         for n in dataset.variables

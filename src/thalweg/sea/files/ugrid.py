@@ -140,7 +140,22 @@ def _inferred_node_coordinates(dataset: Any, not_along: frozenset[str]) -> list[
 
 
 def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[MeshLayout]:
-    """Return the layouts for node and face data of every two-dimensional mesh of a dataset."""
+    """Return the layouts for node and face data of every two-dimensional mesh of a dataset.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The file.
+    mapping : mapping of str to str
+        Given by the user; its key "crs" names the projection.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If the topology is incomplete or positions are impossible.
+    """
     return [
         layout
         for name, attributes in topologies(dataset).items()

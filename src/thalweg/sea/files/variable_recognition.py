@@ -154,7 +154,15 @@ def _role_for(name: str) -> str:
 
 
 def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
-    """Raise `InputError` if the mapping names a variable that is in none of the files."""
+    """Raise `InputError` if the mapping names a variable that is in none of the files.
+
+    Parameters
+    ----------
+    mapping : mapping of str to str
+        Canonical name to name in the file.
+    present : frozenset of str
+        Names of the variables in the files.
+    """
     for name, variable in mapping.items():
         if name != "crs" and variable not in present:
             near = close_matches(variable, present)

@@ -223,7 +223,24 @@ def storm_layer(
     ambient: AmbientSea | None = None,
     time_step: float = TIME_STEP,
 ) -> StormLayer:
-    """Return the layer of an embedded storm (see `Sea.storm`)."""
+    """Return the layer of an embedded storm (see `Sea.storm`).
+
+    Parameters
+    ----------
+    name : str
+        Name of an embedded storm.
+    start : time, optional
+        First time of the track; its true date by default.
+    ambient : AmbientSea, optional
+        The surrounding sea.
+    time_step : float
+        Step of frozen times [s], 1 or more.
+
+    Raises
+    ------
+    InputError
+        If there is no storm of that name, or the step is too small.
+    """
     step = parse_time_step(time_step, least=1.0) or TIME_STEP
     track = load_best_track(name)
     if start is not None:

@@ -130,7 +130,17 @@ def _taper(radius: FloatArray) -> FloatArray:
 
 
 def local_axes(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return unit vectors (N, 3) up, east and north at positions [deg]."""
+    """Return unit vectors (N, 3) up, east and north at positions [deg].
+
+    Parameters
+    ----------
+    lat, lon : float64 array (N,)
+        Positions [deg].
+
+    Returns
+    -------
+    up, east, north : float64 array (N, 3)
+    """
     a, o = np.radians(lat), np.radians(lon)
     zero = np.zeros_like(a)
     up = np.stack([np.cos(a) * np.cos(o), np.cos(a) * np.sin(o), np.sin(a)], axis=-1)

@@ -152,7 +152,15 @@ def automatic_times(start: float, end: float, time_step: float | None = None) ->
 
 
 def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
-    """Return a layer with the same values [SI] everywhere and at all times."""
+    """Return a layer with the same values [SI] everywhere and at all times.
+
+    Parameters
+    ----------
+    values : mapping of str to float
+        Value [SI] by canonical name.
+    label : str
+        Origin of the values.
+    """
 
     def evaluate(
         names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray

@@ -160,6 +160,11 @@ class WindSeaLayer:
 def wind_sea_layer(layers: Sequence[Layer]) -> WindSeaLayer:
     """Return a layer of the waves that the wind of the layers raises.
 
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+
     Raises
     ------
     InputError

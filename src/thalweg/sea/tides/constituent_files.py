@@ -77,7 +77,15 @@ def _check_station(constants: Constituents, station: str | None, source: str) ->
 
 
 def write_constituents(constituents: Constituents, path: str | Path) -> None:
-    """Write constituents as JSON, which `read_constituents` reads."""
+    """Write constituents as JSON, which `read_constituents` reads.
+
+    Parameters
+    ----------
+    constituents : Constituents
+        Constants.
+    path : path
+        JSON file to write.
+    """
     text = json.dumps(as_dict(constituents), indent=1, allow_nan=False)
     Path(path).write_text(text, encoding="utf-8")
 
@@ -103,7 +111,20 @@ def as_dict(constituents: Constituents) -> dict[str, Any]:
 
 
 def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constituents:
-    """Return constituents from the plain data of `as_dict`."""
+    """Return constituents from the plain data of `as_dict`.
+
+    Parameters
+    ----------
+    data : mapping
+        Plain data.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If the format is another, or a key or array is missing or invalid.
+    """
     if data.get("format") != FILE_FORMAT:
         raise _constituent_file_error(source, f"is not of the format {FILE_FORMAT}")
     try:

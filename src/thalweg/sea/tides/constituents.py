@@ -221,7 +221,19 @@ class Constituents:
 
 
 def tidal_signal(coefficient: ComplexArray, wave: ComplexArray) -> FloatArray:
-    """Return the real part of a product of complex matrices (N, C) and (C, T), as one real one."""
+    """Return the real part of a product of complex matrices (N, C) and (C, T), as one real one.
+
+    Parameters
+    ----------
+    coefficient : complex128 array (N, C)
+        ``A exp(-i g)`` at nodes, in the unit of the variable.
+    wave : complex128 array (C, T)
+        Transposed unit phasors.
+
+    Returns
+    -------
+    float64 array (N, T)
+    """
     left = np.concatenate([coefficient.real, -coefficient.imag], axis=1)
     right = np.concatenate([wave.real, wave.imag], axis=0)
     return np.asarray(left @ right, np.float64)

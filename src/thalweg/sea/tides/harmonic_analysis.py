@@ -309,6 +309,15 @@ def select_constituents(
 def check_rayleigh(names: Sequence[str], length_h: float, rayleigh: float = RAYLEIGH) -> None:
     """Check that a record is long enough to separate constituents from each other and the mean.
 
+    Parameters
+    ----------
+    names : sequence of str
+        Constituents.
+    length_h : float
+        Length of the record [h].
+    rayleigh : float
+        Least difference of two constituents [cycles over the record].
+
     Raises
     ------
     InputError

@@ -69,6 +69,17 @@ def is_dia(text: str) -> bool:
 def read_noos(text: str, source: str) -> WaterLevelSeries:
     """Return the water level of a NOOS file.
 
+    Parameters
+    ----------
+    text : str
+        Contents of the file.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    WaterLevelSeries
+
     Raises
     ------
     DatasetError
@@ -132,6 +143,17 @@ def _parse_levels(words: list[str], source: str) -> FloatArray:
 
 def read_dia(text: str, source: str) -> WaterLevelSeries:
     """Return the water level of a DIA file with one series at equal steps.
+
+    Parameters
+    ----------
+    text : str
+        Contents of the file.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    WaterLevelSeries
 
     Raises
     ------

@@ -115,7 +115,7 @@ class TidalLayer:
         return automatic_times(start, end, self.time_step) if end > start else np.array([start])
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie in the grid or the area."""
+        """Return whether positions are in the grid or the area."""
         return np.asarray(self._locate(lat, lon).corner[:, 0] >= 0)
 
     def coverage(self) -> list[Coverage]:
@@ -268,8 +268,8 @@ def _layer_from_constituents(constants: Constituents, area: BoundingBox | None) 
     if constants.lat.size == 1:
         if area is None:
             raise InputError(
-                "One station does not tell where its tide holds.",
-                "It can be taken for a whole area, on your word.",
+                "Constituents of a single station are given without an area.",
+                "The tide of one station can be applied to an area that you name.",
                 "Give area=(south, north, west, east) in degrees.",
             )
         return TidalLayer(constants, None, area, source=source, facts=facts)
