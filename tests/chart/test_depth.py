@@ -138,10 +138,10 @@ def test_unclear_or_broken_depth_is_refused(tmp_path):
         OPEN.with_depth(xr.Dataset({"a": ("t", [1.0, 2.0])}))
     broken = tmp_path / "broken.nc"
     broken.write_bytes(b"CDF\x01 nonsense")
-    with pytest.raises(DatasetError, match="cut or damaged"):
+    with pytest.raises(DatasetError, match="truncated or damaged"):
         OPEN.with_depth(broken)
     broken.write_text("lat,lon,depth")
-    with pytest.raises(DatasetError, match="does not begin like any file"):
+    with pytest.raises(DatasetError, match="is not in a known format"):
         OPEN.with_depth(broken)
     with pytest.raises(InputError, match="There is no file"):
         OPEN.with_depth(tmp_path / "depths.nc")

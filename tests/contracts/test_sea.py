@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from tests.sea.worlds import T0, clock, mesh, regular
+from tests.sea.small_datasets import T0, clock, mesh, regular
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm
@@ -87,7 +87,7 @@ def test_vectors_are_known_or_unknown_as_pairs(sea) -> None:
             assert np.array_equal(np.isnan(got[vector.east]), np.isnan(got[vector.north]))
 
 
-def test_every_unknown_has_a_reason(sea) -> None:
+def test_every_unknown_value_has_a_reason(sea) -> None:
     time, lat, lon = points(sea)
     for name in sea.variables:
         got = sea.sample([name], time, lat, lon)[name]
@@ -107,7 +107,7 @@ def test_series_equal_samples(sea) -> None:
         assert series[name] == pytest.approx(one, rel=1e-9, abs=1e-12, nan_ok=True)
 
 
-def test_frozen_fields_are_what_kernels_expect(sea) -> None:
+def test_frozen_fields_have_the_layout_of_kernels(sea) -> None:
     _, lat, lon = points(sea)
     fields = sea.freeze_stations(lat, lon, T0, T0 + 3600.0, range(codes.CHANNEL_COUNT))
     assert fields.values.dtype == np.float32
@@ -160,7 +160,7 @@ def test_seas_cannot_be_changed(sea) -> None:
     assert other.fingerprint() != before
 
 
-def test_nothing_is_calm_by_accident() -> None:
+def test_missing_data_never_become_calm_weather() -> None:
     sea = Sea.open(regular().assign_coords(time=clock([0.0, 1.0, 3.0])))
     unknown = sea.sample(["eastward_wind", "sea_water_speed", "wind_speed"], T0, 11.0, 21.0)
     assert all(np.isnan(v) for v in unknown.values())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.sea import hydro
+from tests.sea import hydrodynamic_runs as hydro
 from thalweg import Chart, Sea, Ship, Voyage, plan
 from thalweg.core.errors import MissingVariableError, NoRouteError
 from thalweg.core.time import parse_time

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.sea.worlds import EAST, HS, NORTH, T0, affine, mesh, regular, value
+from tests.sea.small_datasets import EAST, HS, NORTH, T0, affine, mesh, regular, value
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.sea.ensemble_layer import EnsembleLayer
@@ -37,7 +37,7 @@ def test_a_dimension_of_a_file_is_an_ensemble(dim) -> None:
         assert sea.member(k).members == 0
 
 
-def test_a_dimension_is_known_by_its_standard_name_too() -> None:
+def test_a_member_dimension_is_recognised_by_its_standard_name() -> None:
     data = members(dim="scenario").assign_coords(
         scenario=("scenario", [1, 2, 3], {"standard_name": "realization"})
     )
@@ -74,7 +74,7 @@ def test_a_file_for_each_member(tmp_path) -> None:
     assert sea.member(1).coverage()[0].end == T0 + 3 * 3600.0
 
 
-def test_what_is_the_same_for_all_members_is_one_plain_layer(tmp_path) -> None:
+def test_fields_without_members_are_one_plain_layer(tmp_path) -> None:
     members(bed=True).to_netcdf(tmp_path / "members.nc")
     regular(fields={"zos": {}}, hours=(0.0, 3.0)).to_netcdf(tmp_path / "level.nc")
     sea = Sea.open(tmp_path / "members.nc", tmp_path / "level.nc")
@@ -112,7 +112,7 @@ def current(speed, area=None):
     )
 
 
-def test_seas_and_what_lies_over_and_under_them() -> None:
+def test_ensembles_combined_with_single_seas() -> None:
     forecast = Sea.ensemble(current(1.0), current(2.0))
     sea = (forecast + Sea.calm()).filled(water_level=0.5)
     assert sea.members == 2
@@ -121,7 +121,7 @@ def test_seas_and_what_lies_over_and_under_them() -> None:
     assert any("water level = 0.5" in text for text in sea.member(1).assumptions)
 
 
-def test_an_ensemble_has_no_value_of_its_own() -> None:
+def test_an_ensemble_has_no_values_itself() -> None:
     sea = Sea.open(members()) + Sea.calm()
     uses = [
         lambda: sea.sample([HS], T0, 11.0, 21.0),
@@ -136,7 +136,7 @@ def test_an_ensemble_has_no_value_of_its_own() -> None:
             use()
 
 
-def test_what_an_ensemble_tells_of_itself() -> None:
+def test_coverage_and_provenance_of_an_ensemble() -> None:
     sea = Sea.open(members())
     row = sea.coverage()[0]
     assert row.source == "dataset, member 0 and 2 more members"
@@ -155,7 +155,7 @@ def refused(word, make, kind=InputError):
     return caught.value
 
 
-def test_members_that_do_not_belong_together(tmp_path) -> None:
+def test_members_that_do_not_match(tmp_path) -> None:
     one = Sea.open(regular())
     refused("another grid", lambda: Sea.ensemble(one, Sea.open(regular(lon=(20.0, 21.0, 22.5)))))
     refused("another grid", lambda: Sea.ensemble(one, Sea.open(regular(lat=(10.0, 11.0)))))
@@ -167,7 +167,7 @@ def test_members_that_do_not_belong_together(tmp_path) -> None:
     other = Sea.open(regular(fields={"zos": {}}))
     refused("lacks sea_surface_wave", lambda: Sea.ensemble(one + other, other))
     refused("has sea_surface_height", lambda: Sea.ensemble(one, one + other))
-    refused("2 layers, member 0 1", lambda: Sea.ensemble(one, one + one))
+    refused("2 layers, member 0 has 1", lambda: Sea.ensemble(one, one + one))
     refused("another area", lambda: Sea.ensemble(current(1.0), current(1.0, (0, 1, 0, 1))))
     refused("itself an ensemble", lambda: Sea.ensemble(one, Sea.open(members())))
     refused("two or more", lambda: Sea.ensemble(one))
@@ -189,6 +189,6 @@ def test_members_that_do_not_exist(index) -> None:
         sea.member(index)
 
 
-def test_one_sea_has_no_members() -> None:
-    refused("no ensemble", lambda: Sea.calm().member(0))
+def test_a_single_sea_has_no_members() -> None:
+    refused("not an ensemble", lambda: Sea.calm().member(0))
     assert Sea.open(members(2).isel(number=[0])).members == 0

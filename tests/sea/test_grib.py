@@ -1,4 +1,4 @@
-"""GRIB 1 and 2: written by eccodes in a process of its own, decoded in another."""
+"""GRIB 1 and 2: written by eccodes in a separate process, decoded in another."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.sea.worlds import value
+from tests.sea.small_datasets import value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
 from thalweg.sea import Sea
@@ -103,7 +103,7 @@ def test_truncated(tmp_path, share) -> None:
     assert check_messages(path) == 8
     cut = tmp_path / "cut.grib"
     cut.write_bytes(path.read_bytes()[: int(path.stat().st_size * share)])
-    with pytest.raises(DatasetError, match="cut or damaged"):
+    with pytest.raises(DatasetError, match="truncated or damaged"):
         Sea.open(cut)
 
 
@@ -165,10 +165,10 @@ def test_temporary_arrays_are_removed_with_the_sea(tmp_path, monkeypatch) -> Non
 
 
 @pytest.mark.parametrize("tail", [b"GRIB hello", b"GRIB\0\0\0\1", b"GRIB" + bytes(20)])
-def test_a_head_without_a_message(tmp_path, tail) -> None:
+def test_a_header_without_a_message(tmp_path, tail) -> None:
     path = tmp_path / "head.grb"
     path.write_bytes(tail)
-    with pytest.raises(DatasetError, match="cut or damaged"):
+    with pytest.raises(DatasetError, match="truncated or damaged"):
         Sea.open(path)
 
 

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from tests.conftest import data_file
-from tests.sea.worlds import EAST, HS, NORTH, value
+from tests.sea.small_datasets import EAST, HS, NORTH, value
 from thalweg.core.errors import DatasetError
 from thalweg.core.time import parse_time
 from thalweg.sea import Sea
@@ -107,7 +107,7 @@ def test_hourly_level_with_wind_speed_only() -> None:
     assert sea.layers[1].axis.step == 3600.0
 
 
-def test_oresund_in_utm_with_velocities_turned_by_the_meridian_convergence() -> None:
+def test_oresund_in_utm_with_velocities_rotated_by_the_meridian_convergence() -> None:
     path = data_file("metocean/oresund_hd_daily_20180307_11_dhi_ugrid.nc")
     raw, sea = xr.open_dataset(path), Sea.open(path)
     from pyproj import Proj, Transformer
@@ -132,7 +132,7 @@ def test_oresund_in_utm_with_velocities_turned_by_the_meridian_convergence() -> 
     assert got[LEVEL] == pytest.approx(step.zeta.values, abs=2e-2, nan_ok=True)
 
 
-def test_arctic_components_are_turned_from_the_polar_grid() -> None:
+def test_arctic_components_are_rotated_from_the_polar_grid() -> None:
     path = data_file("metocean/metno_arctic20km_surface_current_ice_20160201_05.nc")
     raw, sea = xr.open_dataset(path), Sea.open(path)
     spot = raw.isel(time=1, Y=20, X=40)
@@ -148,7 +148,7 @@ def test_arctic_components_are_turned_from_the_polar_grid() -> None:
     assert got[DEPTH] == pytest.approx(float(spot.h), rel=1e-6)
 
 
-def test_arome_wind_is_turned_from_the_lambert_grid() -> None:
+def test_arome_wind_is_rotated_from_the_lambert_grid() -> None:
     path = data_file("metocean/metno_arome_wind_20160114_lambert.nc")
     raw, sea = xr.open_dataset(path), Sea.open(path)
     spot = raw.isel(time=1, y=70, x=60)
@@ -175,7 +175,7 @@ def test_nemo_currents_at_centres() -> None:
     assert got[NORTH] == pytest.approx(u * np.sin(turn) + v * np.cos(turn), abs=1e-4)
 
 
-def test_met_norway_grib_has_height_and_leaves_the_direction_to_the_user() -> None:
+def test_met_norway_grib_has_height_and_a_direction_that_must_be_mapped() -> None:
     pytest.importorskip("cfgrib")
     path = data_file("metocean/metno_mywavewam_northsea_20191106_09_hourly.grb")
     sea = Sea.open(path)
@@ -227,7 +227,7 @@ def test_gfs_wind_without_unit_attributes() -> None:
     ) == pytest.approx(float(spot.ugrd10m))
 
 
-def test_wrt_layout_takes_wind_at_ten_metres_and_surface_currents() -> None:
+def test_wrt_layout_uses_wind_at_ten_metres_and_surface_currents() -> None:
     path = data_file("metocean/wrt_weather_gfs_cmems_baltic_20230720_21.nc")
     raw, sea = xr.open_dataset(path), Sea.open(path)
     spot = raw.isel(time=3, latitude=5, longitude=5)
@@ -278,13 +278,13 @@ def test_san_diego_tide_needs_a_projection_and_names() -> None:
     [
         ("metocean/buoy_HKNA_Hm0_20171026_29.nc", "no positions"),
         ("metocean/coads_climatology_wind_2deg_monthly.nc", "climatology"),
-        ("metocean/dhi_model_points_storm_20171027_29.csv", "does not begin"),
-        ("metocean/nora10_point_1958_3h.txt.gz", "is packed .gzip"),
-        ("metocean/norkystda_point_current_hourly.csv.gz", "is packed .gzip"),
+        ("metocean/dhi_model_points_storm_20171027_29.csv", "is not in a known format"),
+        ("metocean/nora10_point_1958_3h.txt.gz", "is compressed .gzip"),
+        ("metocean/norkystda_point_current_hourly.csv.gz", "is compressed .gzip"),
         ("tide/dhi_vanuatu_tidal_current_line_hourly_202108.nc", "no positions"),
     ],
 )
-def test_files_that_are_no_fields_say_why(name, why) -> None:
+def test_files_without_fields_give_the_reason(name, why) -> None:
     with pytest.raises(DatasetError, match=why) as caught:
         Sea.open(data_file(name))
     assert caught.value.possible
@@ -306,11 +306,11 @@ def test_herwart_over_era5_by_priority() -> None:
 
 def test_inspection_and_map_of_a_real_file(tmp_path) -> None:
     sea = Sea.open(data_file("metocean/northsea_storm_herwart_20171027_29_dhi_ugrid.nc"))
-    told = sea.describe().as_dict()
-    rows = {r["variable"]: r for r in told["recognised"]}
+    report = sea.describe().as_dict()
+    rows = {r["variable"]: r for r in report["recognised"]}
     assert rows[HS]["file_variables"] == ("swh",)
     assert "direction from to components" in rows["eastward_wind"]["how"]
-    wave = next(c for c in told["coverage"] if c["variable"] == HS)
+    wave = next(c for c in report["coverage"] if c["variable"] == HS)
     assert (wave["start"], wave["end"], wave["step_s"]) == (
         "2017-10-27T00:00:00Z",
         "2017-10-29T18:00:00Z",

@@ -1,4 +1,4 @@
-"""Records of water level as their keepers write them: what a file is shows in what it holds."""
+"""Records of water level in NOOS, DIA and CSV files, recognised by their contents."""
 
 import gzip
 
@@ -61,10 +61,10 @@ def test_a_noos_series(tmp_path):
     assert record.times.tolist() == [start, start + 600.0, start + 1200.0, start + 2400.0]
     assert np.array_equal(record.series[nm.WATER_LEVEL], [2.5, 2.46, np.nan, 2.3], equal_nan=True)
     assert record.position == (51.443861, 3.597577)
-    assert record.told == "NOOS series, vlissingen, observed"
+    assert record.description == "NOOS series, vlissingen, observed"
 
 
-def test_a_noos_series_with_the_clock_of_middle_europe(tmp_path):
+def test_a_noos_series_in_middle_european_time(tmp_path):
     record = read_record(_file(tmp_path, NOOS.replace("GMT", "MET")))
     assert record.times[0] == parse_time("2017-12-31T23:00Z")
 
@@ -72,13 +72,13 @@ def test_a_noos_series_with_the_clock_of_middle_europe(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("GMT", "PST", "clock of 'PST'"),
+        ("GMT", "PST", "time zone 'PST'"),
         (": waterlevel", ": wave_height_hm0", "not a water level"),
         ("201801010020", "# Location : hansweert\n201801010020", "several series"),
         ("2.4600", "2.4600 3", "line 13"),
-        ("201801010010", "201813010010", "no"),
-        ("2.4600", "high", "no number"),
-        ("2.4600", "999.0", "missing values that are not marked"),
+        ("201801010010", "201813010010", "invalid date"),
+        ("2.4600", "high", "not a number"),
+        ("2.4600", "999.0", "missing values not marked"),
     ],
 )
 def test_a_noos_series_that_cannot_be_read(tmp_path, old, new, words):
@@ -87,7 +87,7 @@ def test_a_noos_series_that_cannot_be_read(tmp_path, old, new, words):
     assert "record.txt" in str(caught.value)
 
 
-def test_a_dia_series_is_in_middle_european_time_all_year(tmp_path):
+def test_a_dia_series_is_in_middle_european_time_throughout_the_year(tmp_path):
     path = tmp_path / "v.dia.gz"
     path.write_bytes(gzip.compress(DIA.replace("20190101", "20190701").encode()))
     assert is_text_record(path)
@@ -105,10 +105,10 @@ def test_a_dia_series_is_in_middle_european_time_all_year(tmp_path):
     [
         ("WATHTBRKD;Waterhoogte", "GETETBRKD2;Getijextreem", "not a water level"),
         (";10;min", "", "not equal steps"),
-        (";10;min", ";0;min", "no series"),
-        ("52/0:", "", "tells of 6 values and has 5"),
+        (";10;min", ";0;min", "not a series"),
+        ("52/0:", "", "states 6 values and has 5"),
         ("I;cm", "I;bar", "levels in 'bar'"),
-        ("52/0:", "52:", "no numbers"),
+        ("52/0:", "52:", "not numbers"),
         ("[WRD]", "[WRD]\n1/0:\n[W3H]\n[WRD]", "holds 2 series"),
     ],
 )
@@ -121,7 +121,7 @@ def test_a_dia_series_without_a_known_position(tmp_path):
     assert read_record(_file(tmp_path, DIA.replace(";RD;", ";XY;"))).position is None
 
 
-def test_two_bare_columns_need_their_unit_and_first_day(tmp_path):
+def test_columns_without_a_header_need_unit_and_first_day(tmp_path):
     path = _file(tmp_path, BARE, "gauge.asc")
     record = read_record(path, unit="mm", days_since="1700-01-01")
     start = parse_time("2010-01-01T00:00Z")
@@ -135,11 +135,11 @@ def test_two_bare_columns_need_their_unit_and_first_day(tmp_path):
         read_record(path, unit="inch", days_since="1700-01-01")
     with pytest.raises(DatasetError, match="reaches 1290 m"):
         read_record(path, unit="m", days_since="1700-01-01")
-    with pytest.raises(InputError, match="tells its own unit"):
+    with pytest.raises(InputError, match="states its own unit"):
         read_record(_file(tmp_path, NOOS), unit="cm")
 
 
-def test_csv_is_known_by_its_header_whatever_its_name(tmp_path):
+def test_csv_is_recognised_by_its_header_not_its_name(tmp_path):
     text = "time;water_level\n".replace(";", ",") + "2026-01-01T00:00+01:00,1.5\n2026-01-01,\n"
     record = read_record(_file(tmp_path, text, "gauge.dat"))
     assert record.times.tolist() == [
@@ -158,12 +158,12 @@ def test_csv_is_known_by_its_header_whatever_its_name(tmp_path):
         ("\n", "cannot be read"),
     ],
 )
-def test_text_that_is_no_record(tmp_path, text, words):
+def test_text_that_is_not_a_record(tmp_path, text, words):
     with pytest.raises(DatasetError, match=words):
         read_record(_file(tmp_path, text))
 
 
-def test_a_record_that_cannot_be_unpacked(tmp_path):
+def test_a_record_that_cannot_be_decompressed(tmp_path):
     path = tmp_path / "cut.noos.gz"
     path.write_bytes(gzip.compress(NOOS.encode())[:-20])
     with pytest.raises(DatasetError, match="cannot be read"):
@@ -181,11 +181,11 @@ def test_a_record_that_cannot_be_unpacked(tmp_path):
         ("tide", False),
     ],
 )
-def test_records_are_told_from_model_runs(name, is_one):
+def test_records_are_distinguished_from_model_runs(name, is_one):
     assert is_text_record(data_file(name)) == is_one
 
 
-def test_the_official_files_are_read_whole():
+def test_the_official_files_are_read_completely():
     noos = read_record(data_file("tide/rws_vlissingen_waterlevel_20180101_20180401.noos"))
     assert noos.times.size == 12752  # lines; 209 of the 10-min steps are not given
     assert noos.times[[0, -1]].tolist() == [parse_time("2018-01-01"), parse_time("2018-04-01")]

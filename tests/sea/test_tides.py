@@ -171,7 +171,7 @@ def test_tidal_currents_of_a_line_in_vanuatu_as_utide_solves_them_in_two_dimensi
     st.floats(-2.0, 2.0),
     st.integers(0, 12000),
 )
-def test_any_tide_comes_back_from_its_record(table, latitude, mean, day):
+def test_constants_are_recovered_from_a_record(table, latitude, mean, day):
     truth = Constituents.single(LEVEL, table, mean=mean, lat=latitude, convention="foreman")
     times = _hours(18, start=START + 86400.0 * (day - 6000))
     record = truth.predict(LEVEL, times)[0]
@@ -183,7 +183,7 @@ def test_any_tide_comes_back_from_its_record(table, latitude, mean, day):
     assert np.allclose(found.predict(LEVEL, other), truth.predict(LEVEL, other), atol=1e-6)
 
 
-def test_constants_come_back_and_hold_eleven_years_later():
+def test_constants_are_recovered_and_valid_eleven_years_later():
     truth = Constituents.single(LEVEL, TABLE, mean=0.2, lat=51.4, convention="foreman")
     times = _hours(35, 0.25)
     record = truth.predict(LEVEL, times)[0]
@@ -197,7 +197,7 @@ def test_constants_come_back_and_hold_eleven_years_later():
     assert found.mean[LEVEL] == pytest.approx([0.2])
 
 
-def test_nodes_known_at_other_times_are_solved_each_on_its_own():
+def test_nodes_with_different_gaps_are_solved_separately():
     times = _hours(40)
     truth = Constituents.single(LEVEL, TABLE, lat=51.4, convention="foreman")
     record = np.repeat(truth.predict(LEVEL, times), 5, axis=0)
@@ -211,7 +211,7 @@ def test_nodes_known_at_other_times_are_solved_each_on_its_own():
     assert np.isnan(sizes[:, 3:]).all()  # known for less than half the record
 
 
-def test_a_node_known_at_half_days_only_has_no_tide():
+def test_a_node_with_values_at_half_days_only_has_no_tide():
     """There S2 stands still: solved all the same, its amplitude would come out at kilometres."""
     coarse = START + 43200.0 * np.arange(119)
     times = np.concatenate([coarse, coarse[-1] + 3600.0 * np.arange(1, 121)])
@@ -228,7 +228,7 @@ def test_a_node_known_at_half_days_only_has_no_tide():
     assert np.isnan(sizes[:, 1]).all()
 
 
-def test_share_of_variance_that_is_tidal():
+def test_tidal_fraction_of_variance():
     times = _hours(60)
     tide = _gauge().predict(LEVEL, times)[0]
     rng = np.random.default_rng(3)
@@ -243,20 +243,20 @@ def test_share_of_variance_that_is_tidal():
     ("count", "wanted", "words"),
     [(1, None, "1 time"), (2, None, "2 time"), (48, ["Z0", "M2"], "the mean"), (48, [], "named")],
 )
-def test_what_no_record_tells(count, wanted, words):
+def test_records_with_unresolved_constituents_are_refused(count, wanted, words):
     with pytest.raises(InputError, match=words):
         harmonic_analysis.select_constituents(3600.0 * np.arange(count), wanted)
 
 
-def test_progress_is_told_to_the_end():
-    told = []
+def test_progress_is_reported_to_the_end():
+    reports = []
     record = np.repeat(_gauge().predict(LEVEL, _hours(20)), 3, axis=0)
     analyse(
         _hours(20), {EAST: record, NORTH: record}, lat=50.0, constituents=["M2"],
-        progress=lambda done, total: told.append((done, total)),
+        progress=lambda done, total: reports.append((done, total)),
     )  # fmt: skip
-    assert told[-1] == (6, 6)
-    assert told == sorted(told)
+    assert reports[-1] == (6, 6)
+    assert reports == sorted(reports)
 
 
 # --- what an analysis refuses
@@ -282,7 +282,7 @@ def test_rayleigh_of_m2_and_s2():
         check_rayleigh(["MM"], 600.0)
 
 
-def test_without_names_only_what_can_be_told_apart_is_analysed():
+def test_without_names_only_separable_constituents_are_analysed():
     names = harmonic_analysis.select_constituents(_hours(16), None)
     assert {"M2", "S2", "K1", "O1"} <= set(names)
     assert not {"N2", "K2", "P1", "SSA"} & set(names)
@@ -295,7 +295,7 @@ def test_without_names_only_what_can_be_told_apart_is_analysed():
         (_hours(40, 3.0), ["M2", "M8"], "coarse"),
         (_hours(400, 12.0), ["SSA", "S2"], "coarse"),
         (_hours(40)[::-1], ["M2"], "increase"),
-        (_hours(0.3, 0.1), None, "tells no tidal"),
+        (_hours(0.3, 0.1), None, "too short to separate"),
         (_hours(40), ["M2", "M22"], "M22"),
     ],
 )
@@ -372,7 +372,7 @@ def test_land_and_outside_stay_unknown(run):
     assert sea.why_missing(EAST, START, 53.0, 3.0) == "area"
 
 
-def test_the_share_that_is_tidal_is_told(run):
+def test_the_tidal_fraction_is_reported(run):
     sea = Sea.from_tides(Sea.open(run), constituents=["M2"])
     layer = next(x for x in sea.provenance()["layers"] if x["kind"] == "tide")
     assert layer["constituents"] == ["M2"]
@@ -380,7 +380,7 @@ def test_the_share_that_is_tidal_is_told(run):
     assert layer["tidal_share"][NORTH] > 0.999
 
 
-def test_kernels_get_the_tide_between_its_steps(run):
+def test_frozen_tides_are_accurate_between_steps(run):
     sea = Sea.from_tides(Sea.open(run), constituents=["M2", "S2"])
     start = parse_time("2030-01-01")
     frozen = sea.freeze_stations([52.1], [3.1], start, start + 86400.0, [codes.WATER_LEVEL])
@@ -389,7 +389,7 @@ def test_kernels_get_the_tide_between_its_steps(run):
     assert np.allclose(frozen.values[0, :, 0], exact[0], atol=1e-6)
 
 
-def test_an_analysis_is_kept_on_disk(run, monkeypatch):
+def test_an_analysis_is_cached_on_disk(run, monkeypatch):
     first = Sea.from_tides(Sea.open(run), constituents=["M2", "S2"])
 
     def never(*args, **kwargs):
@@ -405,7 +405,7 @@ def test_an_analysis_is_kept_on_disk(run, monkeypatch):
             Sea.from_tides(Sea.open(run), constituents=["M2", "S2"], cache=False)
 
 
-def test_a_damaged_cache_is_made_anew(run, tmp_path):
+def test_a_damaged_cache_is_replaced(run, tmp_path):
     first = Sea.from_tides(Sea.open(run), constituents=["M2"])
     (kept,) = (tmp_path / "cache" / "tides").glob("*.npz")
     kept.write_bytes(kept.read_bytes()[:200])
@@ -430,7 +430,7 @@ def test_tides_on_a_mesh_of_a_real_model():
     assert np.isfinite(known) and abs(known) < 3.0
 
 
-def test_one_station_holds_where_it_is_told_to():
+def test_one_station_applies_to_the_area_given():
     sea = Sea.from_tides(_gauge(), area=(51.0, 52.0, 3.0, 4.0))
     found = sea.sample([LEVEL], START, [51.5, 51.9, 52.5], [3.1, 3.9, 3.5])[LEVEL]
     expected = _gauge().predict(LEVEL, [START])[0, 0]
@@ -441,39 +441,41 @@ def test_one_station_holds_where_it_is_told_to():
         Sea.from_tides(_gauge())
 
 
-def test_constants_are_picked_and_areas_that_mean_nothing_refused(run):
+def test_constituents_are_selected_and_unneeded_areas_refused(run):
     area = (51.0, 52.0, 3.0, 4.0)
     only = Sea.from_tides(_gauge(), area=area, constituents=["M2"])
     expected = _gauge().predict(LEVEL, [START], only=["M2"])[0]
     assert only.sample([LEVEL], START, 51.5, 3.5)[LEVEL] == pytest.approx(expected[0])
     assert abs(expected[0] - _gauge().predict(LEVEL, [START])[0, 0]) > 0.01
-    with pytest.raises(InputError, match="places of their own"):
+    with pytest.raises(InputError, match="tides that have positions"):
         Sea.from_tides(Sea.open(run), area=area)
-    found = model_run_analysis.tidal_analysis(Sea.open(run), constituents=["M2"])
-    with pytest.raises(InputError, match="places of their own"):
+    found = model_run_analysis.tidal_analysis(Sea.open(run).layers, constituents=["M2"])
+    with pytest.raises(InputError, match="tides that have positions"):
         Sea.from_tides(found, area=area)
 
 
-def test_another_run_of_the_same_name_size_and_date_is_analysed_anew(run):
+def test_another_run_of_the_same_name_size_and_date_is_analysed_again(run):
     sea = Sea.open(run)
-    first = model_run_analysis.tidal_analysis(sea, constituents=["M2", "S2"])
+    first = model_run_analysis.tidal_analysis(sea.layers, constituents=["M2", "S2"])
     stamp, raw = run.stat(), xr.load_dataset(run, decode_times=False)
     raw["h"] = raw["h"] * 2.0
     raw.to_netcdf(run.with_suffix(".new"))
     os.replace(run.with_suffix(".new"), run)
     os.utime(run, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
     assert run.stat().st_size == stamp.st_size
-    again = model_run_analysis.tidal_analysis(Sea.open(run), constituents=["M2", "S2"])
+    again = model_run_analysis.tidal_analysis(Sea.open(run).layers, constituents=["M2", "S2"])
     ratio = again.constituents.amplitude[LEVEL][0] / first.constituents.amplitude[LEVEL][0]
     assert np.nanmax(np.abs(ratio - 2.0)) < 1e-6
 
 
-def test_what_lies_on_another_grid_is_told(run):
+def test_variables_on_another_grid_are_reported(run):
     data = xr.load_dataset(run)
     moved = data["h"].isel(lat=slice(0, 2)).rename(lat="y", lon="x")
     both = data.drop_vars("h").assign(h=moved)
     with pytest.warns(ThalwegWarning, match="sea_surface_height_above_geopotential_datum on"):
-        found = model_run_analysis.tidal_analysis(Sea.open(both), constituents=["M2"], cache=False)
+        found = model_run_analysis.tidal_analysis(
+            Sea.open(both).layers, constituents=["M2"], cache=False
+        )
     assert found.constituents.variables == {EAST, NORTH}
 
 
@@ -503,7 +505,7 @@ def test_half_a_current_is_refused():
 # --- files
 
 
-def test_constituents_survive_their_file(tmp_path):
+def test_constituents_are_equal_after_writing_and_reading(tmp_path):
     path = tmp_path / "gauge.json"
     constituent_files.write_constituents(_gauge(facts={"station": "X"}), path)
     back = constituent_files.read_constituents(path)
@@ -525,7 +527,7 @@ CURRENT = {
 }  # fmt: skip
 
 
-def test_currents_of_a_station_run_along_the_flood(tmp_path):
+def test_currents_of_a_station_are_along_the_flood_direction(tmp_path):
     found = constituent_files.read_constituents(_set(tmp_path, [CURRENT]))
     times = _hours(1)
     east, north = (found.predict(n, times)[0] for n in (EAST, NORTH))
@@ -536,7 +538,7 @@ def test_currents_of_a_station_run_along_the_flood(tmp_path):
     assert set(found.names) == {"M2", "LAMBDA2"}
 
 
-def test_a_station_must_be_named_where_there_are_many(tmp_path):
+def test_a_station_must_be_named_in_a_file_with_several(tmp_path):
     path = _set(tmp_path, [CURRENT, {**CURRENT, "id": "noaa/X2", "name": "Race"}])
     assert constituent_files.read_constituents(path, station="Race").facts["station"] == "noaa/X2"
     with pytest.raises(InputError, match="none is named"):
@@ -545,7 +547,7 @@ def test_a_station_must_be_named_where_there_are_many(tmp_path):
         constituent_files.read_constituents(path, station="Narows")
 
 
-def test_constituents_without_argument_are_left_out_aloud(tmp_path):
+def test_constituents_without_argument_are_omitted_with_a_warning(tmp_path):
     odd = {**CURRENT, "constituents": [["M2", 2.0, 10.0], ["XYZ9", 0.2, 1.0]]}
     with pytest.warns(ThalwegWarning, match="XYZ9"):
         found = constituent_files.read_constituents(_set(tmp_path, [odd]))
@@ -597,14 +599,14 @@ def test_two_sources_of_one_gauge_agree():
         ' "convention": "rws", "variables": {}}',
     ],
 )
-def test_files_that_hold_no_constituents(tmp_path, text):
+def test_files_without_constituents_are_refused(tmp_path, text):
     path = tmp_path / "x.txt"
     path.write_text(text)
     with pytest.raises(DatasetError):
         constituent_files.read_constituents(path)
 
 
-def test_a_station_asked_of_a_file_that_is_no_set_must_be_the_one_it_holds(tmp_path):
+def test_a_station_named_for_a_file_with_one_station_must_match_it(tmp_path):
     path = tmp_path / "x.txt"
     path.write_text("STAT VLISSGN WATHTE NAP cm 1\nCOMP 65 28.984104 10.0 20.0 M2\n")
     assert constituent_files.read_constituents(path, station="VLISSGN").names == ("M2",)
@@ -612,12 +614,12 @@ def test_a_station_asked_of_a_file_that_is_no_set_must_be_the_one_it_holds(tmp_p
         constituent_files.read_constituents(path, station="HOEKVHLD")
 
 
-def test_a_file_that_is_not_there():
+def test_a_missing_file():
     with pytest.raises(DatasetError):
         constituent_files.read_constituents("no/such/file.txt")
 
 
-def test_constants_that_make_no_sense():
+def test_invalid_constants_are_refused():
     with pytest.raises(InputError):
         Constituents.single(LEVEL, {"M2": (-1.0, 0.0)})
     with pytest.raises(InputError):
@@ -643,7 +645,7 @@ def test_the_spring_neap_period_repeats_the_envelope_not_the_tide():
     assert drift_deg(707.974, "S2") == pytest.approx(-0.8, abs=0.05)
 
 
-def test_spring_tide_comes_back_as_low_water_after_the_envelope():
+def test_high_water_becomes_low_water_after_the_spring_neap_period():
     tide = Constituents.single(LEVEL, {"M2": (1.0, 0.0), "S2": (0.4, 0.0)})
     times = _hours(1, 0.1)
     now, envelope, month = (
@@ -687,10 +689,10 @@ def test_a_repeated_run_is_frozen_up_to_its_seam():
 
 @pytest.mark.parametrize("period", [354.367, 355.0, 12.4, 0.0, float("nan")])
 def test_other_periods_are_refused(run, period):
-    with pytest.raises(InputError, match="not back"):
+    with pytest.raises(InputError, match="not in phase"):
         repeat_in_time(Sea.open(run), START, period_h=period)
 
 
-def test_what_is_repeated_must_be_there(run):
+def test_the_data_must_cover_the_repeated_period(run):
     with pytest.raises(InputError, match="Repeating needs"):
         repeat_in_time(Sea.open(run), START, period_h=707.974)

@@ -40,10 +40,10 @@ def test_waves_travel_with_the_wind_and_are_unknown_where_it_is():
     assert got[nm.WAVE_TO_EAST][0] == pytest.approx(12.0 / 13.0)
     assert got[nm.WAVE_TO_NORTH][0] == pytest.approx(5.0 / 13.0)
     assert all(np.isnan(values[1]) for values in got.values())
-    assert any("Carter 1982" in told for told in sea.assumptions)
+    assert any("Carter 1982" in text for text in sea.assumptions)
 
 
-def test_known_waves_come_first_and_frozen_values_agree():
+def test_known_waves_have_priority_and_frozen_values_agree():
     known = {"sea_surface_wave_significant_height": lambda t, lat, lon: 9.0 + 0.0 * t + 0.0 * lat}
     sea = Sea.from_functions({**WIND, **known}).filled(waves="wind")
     assert sea.sample(WAVES[:1], 0.0, 45.0, 0.0)[nm.WAVE_HEIGHT] == pytest.approx(9.0)
@@ -64,7 +64,7 @@ def test_no_wind_no_waves():
 
 
 def test_waves_alone_are_frozen_at_the_times_of_the_wind():
-    """A ship that asks for waves only gets them, and gaps are told by the wind's own reasons."""
+    """Waves alone can be frozen, and gaps have the reasons of the wind."""
     sea = Sea.from_functions(WIND, area=(40.0, 60.0, -10.0, 10.0), period=(0.0, 86400.0))
     sea = sea.filled(waves="wind")
     frozen = sea.freeze_stations([45.0], [0.0], 0.0, 3600.0, [codes.WAVE_HEIGHT_CHANNEL])

@@ -144,7 +144,7 @@ def _record(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
                 "than there are constants to find.",
                 "Take out a part of the record with fewer gaps, or ask for fewer constituents.",
             )
-    return analysis, f"{record.told} at {place[0]:.4f}, {place[1]:.4f}"
+    return analysis, f"{record.description} at {place[0]:.4f}, {place[1]:.4f}"
 
 
 def _model(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
@@ -153,7 +153,7 @@ def _model(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
 
     _refuse(arguments, ("at", "unit", "days_since"), "a model run", "a record")
     analysis = tidal_analysis(
-        Sea.open(arguments.file, mapping=options.variable_mapping(arguments)),
+        Sea.open(arguments.file, mapping=options.variable_mapping(arguments)).layers,
         constituents=arguments.constituents,
         rayleigh=arguments.rayleigh,
         progress=_progress(arguments),

@@ -1,4 +1,4 @@
-"""Checks of what users give for areas, periods and steps."""
+"""Checks of the areas, periods and time steps that users give."""
 
 from __future__ import annotations
 
@@ -10,7 +10,23 @@ from thalweg.core.time import TimeLike, parse_time
 
 
 def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
-    """Return the box for (south, north, west, east) [deg]; the world for None."""
+    """Return the box for (south, north, west, east) [deg]; the world for None.
+
+    Parameters
+    ----------
+    area : tuple of float or None
+        (south, north, west, east) [deg].
+
+    Returns
+    -------
+    BoundingBox
+        With ``east`` above ``west``; it may exceed 180.
+
+    Raises
+    ------
+    InputError
+        If the values are not four finite numbers with south below north.
+    """
     if area is None:
         return WORLD
     try:
@@ -27,12 +43,23 @@ def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
 
 
 def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float] | None:
-    """Return (start, end) [s since epoch]."""
+    """Return (start, end) [s since epoch].
+
+    Parameters
+    ----------
+    period : tuple of time or None
+        Start and end; None stays None.
+
+    Raises
+    ------
+    InputError
+        If there are not two times, or the end is before the start.
+    """
     if period is None:
         return None
     if isinstance(period, str) or len(period) != 2:
         raise InputError(
-            f"The period {period!r} is none.", "A period is (start, end).", "Give two times."
+            f"The period {period!r} is not valid.", "A period is (start, end).", "Give two times."
         )
     start, end = parse_time(period[0]), parse_time(period[1])
     if end < start:
@@ -43,13 +70,26 @@ def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float
 
 
 def parse_time_step(time_step: float | None, *, least: float = 0.0) -> float | None:
-    """Return a time step [s] that is None, or not less than the least one."""
+    """Return a time step [s] that is None, or not less than the smallest allowed.
+
+    Parameters
+    ----------
+    time_step : float or None
+        Time step [s]; None stays None.
+    least : float
+        Smallest allowed step [s].
+
+    Raises
+    ------
+    InputError
+        If the step is not finite or too small.
+    """
     if time_step is not None and not (np.isfinite(time_step) and time_step >= least):
         raise InputError(
             f"A time step of {time_step!r} s cannot be used.",
             f"It must be {least:g} s or more."
             if least
             else "It must be positive, or 0 for fields that never change.",
-            "Leave it out to have one chosen.",
+            "Correct it, or omit it to use the default.",
         )
     return None if time_step is None else float(time_step)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, eq=False)
 class Coverage:
-    """Where and when one variable of one layer is known.
+    """The area and period in which one variable of one layer is known.
 
     Attributes
     ----------
@@ -16,13 +16,13 @@ class Coverage:
     south, north, west, east : float
         Box [deg]; ``east`` may pass 180.
     start, end : float or None
-        Period [s since epoch]; None if always.
+        Period [s since epoch]; None for all times.
     step_s : float or None
         Median time step [s]; None for a single or no time.
     spacing_deg : float or None
         Typical spacing of the grid [deg of latitude]; None for formulas.
     source : str
-        File name or a word for the formula.
+        File name, or a name for the formula.
     """
 
     variable: str

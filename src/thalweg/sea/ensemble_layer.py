@@ -1,7 +1,7 @@
-"""Ensembles: one sea in several versions, each as likely as the others.
+"""Ensembles: several versions of one sea, each as likely as the others.
 
-An ensemble lies in the layers of a sea like any other source, so it can be put over tides or
-depths that are the same for all members. It has no value of its own: `Sea.member` takes one.
+An ensemble is a layer of a sea like any other source, so it can be combined with tides or depths
+that are the same for all members. It has no values itself: `Sea.member` selects a member.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,18 +24,15 @@ from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
 
-if TYPE_CHECKING:
-    from thalweg.sea.layer_stack import LayeredSea
-
 
 @dataclass(frozen=True, eq=False)
 class EnsembleLayer:
-    """The same layer in several versions, on one grid and one time axis.
+    """Several versions of one layer, on one grid and one time axis.
 
     Attributes
     ----------
     member_layers : tuple of Layer
-        One per member.
+        One layer for each member.
     """
 
     member_layers: tuple[Layer, ...]
@@ -47,24 +44,24 @@ class EnsembleLayer:
 
     @property
     def area(self) -> BoundingBox:
-        """The box of positions the members may know."""
+        """The box of positions where the members may know values."""
         return self.member_layers[0].area
 
     @property
     def period(self) -> tuple[float, float] | None:
-        """First and last time of every member [s since epoch], or None if they hold always."""
+        """First and last time of every member [s since epoch]; None if they hold always."""
         return self.member_layers[0].period
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
-        """Raise: an ensemble has no value of its own."""
+        """Raise `InputError`: an ensemble has no values itself."""
         raise ensemble_not_allowed_error(len(self.member_layers))
 
     def series(
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
-        """Raise: an ensemble has no value of its own."""
+        """Raise `InputError`: an ensemble has no values itself."""
         raise ensemble_not_allowed_error(len(self.member_layers))
 
     def times(self, start: float, end: float) -> FloatArray:
@@ -72,11 +69,11 @@ class EnsembleLayer:
         return self.member_layers[0].times(start, end)
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie where the members may know values."""
+        """Return whether the members may know values at positions."""
         return self.member_layers[0].inside(lat, lon)
 
     def coverage(self) -> list[Coverage]:
-        """Return where and when each variable is known, of all members alike."""
+        """Return where and when each variable is known; the same for all members."""
         count = len(self.member_layers)
         rows = self.member_layers[0].coverage()
         return [replace(row, source=f"{row.source} and {count - 1} more members") for row in rows]
@@ -94,62 +91,87 @@ class EnsembleLayer:
 
 
 def member_count(layers: Sequence[Layer]) -> int:
-    """Return how many members the ensembles among layers have, 0 without any.
+    """Return the number of members of the ensembles among layers; 0 without an ensemble.
 
     Raises
     ------
     InputError
-        If there are several of different sizes.
+        If there are ensembles of different sizes.
     """
     sizes = {len(x.member_layers) for x in layers if isinstance(x, EnsembleLayer)}
     if len(sizes) > 1:
         raise InputError(
-            f"Ensembles of {' and '.join(map(str, sorted(sizes)))} members lie in one sea.",
-            "Member i of the one is taken with member i of the other.",
-            "Give ensembles of as many members, or take Sea.member(i) of one of them.",
+            f"One sea contains ensembles of {' and '.join(map(str, sorted(sizes)))} members.",
+            "Member i of one ensemble is combined with member i of the other.",
+            "Give ensembles of equal size, or select a member of one with Sea.member(i).",
         )
     return sizes.pop() if sizes else 0
 
 
+def check_not_ensemble(layers: Sequence[Layer]) -> None:
+    """Raise `InputError` if the layers hold an ensemble where a single sea is needed."""
+    count = member_count(layers)
+    if count:
+        raise ensemble_not_allowed_error(count)
+
+
 def ensemble_not_allowed_error(count: int) -> InputError:
-    """Return the error for an ensemble where one sea is needed."""
+    """Return the error for an ensemble where a single sea is needed."""
     return InputError(
         f"This sea is an ensemble of {count} members, and one sea is needed here.",
-        f"Its members are sea.member(0) to sea.member({count - 1}); evaluate_members scores a "
+        f"Its members are sea.member(0) to sea.member({count - 1}); evaluate_members evaluates a "
         "route in all of them.",
-        "Take one with sea.member(i).",
+        "Select one with sea.member(i).",
         members=count,
     )
 
 
 def select_member(layers: Sequence[Layer], index: int) -> tuple[Layer, ...]:
-    """Return layers with one version of every ensemble among them.
+    """Return the layers with one member of every ensemble among them.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers, of which at least one is an ensemble.
+    index : int
+        From 0 to the number of members minus 1.
 
     Raises
     ------
     InputError
-        If there is no ensemble, or no such member.
+        If there is no ensemble, or it has no such member.
     """
     count = member_count(layers)
     if count == 0:
         raise InputError(
-            f"Member {index!r} is asked of a sea that is no ensemble.",
+            f"Member {index!r} was requested, but the sea is not an ensemble.",
             "Ensembles come from files with a dimension such as number or realization, or from "
             "Sea.ensemble.",
             "Use the sea as it is.",
         )
     if isinstance(index, bool) or not isinstance(index, (int, np.integer)):
-        raise InputError(f"A member {index!r} cannot be.", "It is a whole number.", "Correct it.")
+        raise InputError(
+            f"The member number {index!r} is not an integer.",
+            f"Members are numbered 0 to {count - 1}.",
+            "Give an integer.",
+        )
     if not 0 <= index < count:
         raise InputError(
-            f"There is no member {index}.", f"They are 0 to {count - 1}.", "Choose one."
+            f"There is no member {index}.",
+            f"Members are numbered 0 to {count - 1}.",
+            "Choose one of them.",
         )
     picked = int(index)
     return tuple(x.member_layers[picked] if isinstance(x, EnsembleLayer) else x for x in layers)
 
 
-def ensemble_layers(seas: Sequence[LayeredSea]) -> tuple[Layer, ...]:
-    """Return the layers of an ensemble of seas (see `Sea.ensemble`).
+def ensemble_layers(seas: Sequence[Sequence[Layer]]) -> tuple[Layer, ...]:
+    """Return the layers of an ensemble of seas, each given by its layers (see `Sea.ensemble`).
+
+    Parameters
+    ----------
+    seas : sequence of sequence of Layer
+        The layers of each member.
 
     Raises
     ------
@@ -158,26 +180,33 @@ def ensemble_layers(seas: Sequence[LayeredSea]) -> tuple[Layer, ...]:
     """
     if len(seas) < 2:
         raise InputError(
-            f"An ensemble of {len(seas)} member(s) cannot be.", "It has two or more.", "Give more."
+            f"An ensemble of {len(seas)} member(s) was requested.",
+            "An ensemble has two or more members.",
+            "Give more members, or use the one sea as it is.",
         )
     first = seas[0]
-    for number, sea in enumerate(seas):
-        if sea.members:
-            raise _member_mismatch_error(number, f"is itself an ensemble of {sea.members}")
-        for name in sorted(first.variables ^ sea.variables):
-            has = "lacks" if name in first.variables else "has"
+    names = [frozenset().union(*(layer.variables for layer in layers)) for layers in seas]
+    for number, layers in enumerate(seas):
+        members = member_count(layers)
+        if members:
+            raise _member_mismatch_error(number, f"is itself an ensemble of {members}")
+        for name in sorted(names[0] ^ names[number]):
+            has = "lacks" if name in names[0] else "has"
             raise _member_mismatch_error(number, f"{has} {name}, unlike member 0")
-        if len(sea.layers) != len(first.layers):
+        if len(layers) != len(first):
             raise _member_mismatch_error(
-                number, f"has {len(sea.layers)} layers, member 0 {len(first.layers)}"
+                number, f"has {len(layers)} layers, member 0 has {len(first)}"
             )
-    return tuple(
-        combine_member_layers([sea.layers[k] for sea in seas]) for k in range(len(first.layers))
-    )
+    return tuple(combine_member_layers([layers[k] for layers in seas]) for k in range(len(first)))
 
 
 def combine_member_layers(layers: Sequence[Layer]) -> Layer:
-    """Return one layer for what several members have in one place: theirs, or the one they share.
+    """Return one ensemble layer from the layer of each member; a layer they share stays as it is.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        The layer of each member.
 
     Raises
     ------
@@ -195,7 +224,7 @@ def combine_member_layers(layers: Sequence[Layer]) -> Layer:
 
 
 def _layer_difference(first: Layer, other: Layer) -> str:
-    """Return in which way a layer cannot be a version of another; nothing if it can."""
+    """Return why two layers cannot be members of one ensemble; empty if they can."""
     if first.variables != other.variables:
         return "has its variables in other layers than member 0"
     if first.period != other.period:
@@ -206,11 +235,11 @@ def _layer_difference(first: Layer, other: Layer) -> str:
         a, b = first.grid, other.grid
         same = a is b or (a.shape == b.shape and _same_positions(a, b))
         rows, columns = b.shape
-        return "" if same else f"lies on another grid ({rows} x {columns} places) than member 0"
+        return "" if same else f"is on another grid ({rows} x {columns} points) than member 0"
     mine = [replace(row, source="") for row in first.coverage()]
     theirs = [replace(row, source="") for row in other.coverage()]
     same = [_coverage_values(row) for row in mine] == [_coverage_values(row) for row in theirs]
-    return "" if same else "covers another area or period, or steps differently, than member 0"
+    return "" if same else "covers another area or period, or has other time steps, than member 0"
 
 
 def _coverage_values(row: Coverage) -> list[Any]:
@@ -226,14 +255,14 @@ def _same_positions(a: Any, b: Any) -> bool:
 
 def _period_text(period: tuple[float, float] | None) -> str:
     if period is None:
-        return "for ever"
+        return "at all times"
     return f"from {format_time(period[0])} to {format_time(period[1])}"
 
 
 def _member_mismatch_error(number: int, difference: str) -> InputError:
     return InputError(
         f"Member {number} of the ensemble {difference}.",
-        "All members lie on the same grid and cover the same times with the same variables.",
-        "Cut or regrid the members alike.",
+        "All members must have the same grid, times and variables.",
+        "Select or interpolate the same part of every member.",
         member=number,
     )

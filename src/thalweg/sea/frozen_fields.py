@@ -1,4 +1,4 @@
-"""What the sea room hands to others: frozen fields for kernels, coverage, meshes."""
+"""Fields of the sea frozen as arrays, the input of the compiled kernels."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class StationFields:
     times : float64 array (T,)
         Strictly increasing [s since 1970-01-01T00:00Z].
     values : float32 array (S, T, K)
-        C order; one slice per channel that is present; NaN where unknown.
+        (stations, times, channels), C order; one index per channel present; NaN where unknown.
     channel_index : int64 array (CHANNELS,)
-        Channel of `thalweg.kernels.codes` to its place in the last axis, -1 if absent.
+        Index in the last axis of each channel of `thalweg.kernels.codes`, -1 if absent.
     """
 
     times: FloatArray
@@ -38,12 +38,12 @@ class GridFields:
     times : float64 array (T,)
         Strictly increasing [s since 1970-01-01T00:00Z].
     lat0, dlat, lon0, dlon : float
-        South-west corner and spacing [deg]. Longitude is unwrapped: column x lies at
+        South-west corner and spacing [deg]. Longitude is unwrapped: column x is at
         ``lon0 + x * dlon``, which may pass 180; shift a query by 360 to fit.
     values : float32 array (T, Y, X, K)
-        C order; NaN where unknown.
+        (times, rows, columns, channels), C order; NaN where unknown.
     channel_index : int64 array (CHANNELS,)
-        Channel of `thalweg.kernels.codes` to its place in the last axis, -1 if absent.
+        Index in the last axis of each channel of `thalweg.kernels.codes`, -1 if absent.
     """
 
     times: FloatArray

@@ -1,57 +1,34 @@
-"""What a sea knows about its files: recognised, ignored, covered, missing."""
+"""A report on the files of a sea: variables recognised and ignored, coverage, missing data."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from thalweg.core.time import format_time
 from thalweg.sea.coverage import Coverage
+from thalweg.sea.ensemble_layer import member_count, select_member
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.source_variables import GridWindow
+from thalweg.sea.layer import Layer
+from thalweg.sea.recognition_record import RecognisedVariable
 
-if TYPE_CHECKING:
-    from thalweg.sea.grids.gridded_layer import GridLayer
-    from thalweg.sea.sea import Sea
-
-SAMPLED_LEVELS = 8  #: levels looked at for the share of missing values
-
-
-@dataclass(frozen=True)
-class RecognisedVariable:
-    """A canonical variable and what it is made from.
-
-    Attributes
-    ----------
-    variable : str
-        Canonical name.
-    file_variables : tuple of str
-        Names in the file.
-    units : str
-        As the file spells them.
-    how : str
-        How it was recognised and converted.
-    source : str
-        File names.
-    """
-
-    variable: str
-    file_variables: tuple[str, ...]
-    units: str
-    how: str
-    source: str
+SAMPLED_TIMES = 8  #: times at which the fraction of missing values is measured
 
 
 @dataclass(frozen=True)
 class DataGap:
-    """A stretch of time for which a file has no data between data.
+    """A period without data between two times with data.
 
     Attributes
     ----------
     source : str
         File names.
     after, before : float
-        Last time before and first time after [s since epoch].
+        Last time before and first time after the gap [s since epoch].
     """
 
     source: str
@@ -61,23 +38,23 @@ class DataGap:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What was recognised in the data behind a sea.
+    """The report on the data of a sea.
 
     Attributes
     ----------
-    recognised : tuple of Recognised
+    recognised : tuple of RecognisedVariable
         Variables that are used.
     ignored : tuple of (file, variable, reason)
-        Variables that are not.
+        Variables that are not used.
     coverage : tuple of Coverage
         Where and when each variable is known.
     missing : mapping of str to float
-        Share of grid places without a value (land, ice, gaps), by source and variable, from up
-        to 8 times spread over the period.
-    gaps : tuple of Gap
-        Holes in time axes, which are not bridged.
+        Fraction of grid points without a value (land, ice, gaps), 0 to 1, by source and variable,
+        measured at up to 8 times spread over the period.
+    gaps : tuple of DataGap
+        Gaps in time axes; values are not interpolated across them.
     members : int
-        Size of the ensemble, of which the first member is shown; 0 if it is one sea.
+        Size of the ensemble, of which the first member is reported; 0 for a single sea.
     """
 
     recognised: tuple[RecognisedVariable, ...]
@@ -88,7 +65,7 @@ class Inspection:
     members: int = 0
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain data, ready for JSON; times as ISO 8601."""
+        """Return plain data for JSON; times as ISO 8601."""
         plain: dict[str, Any] = {
             "recognised": [asdict(r) for r in self.recognised],
             "ignored": [{"source": s, "variable": v, "reason": r} for s, v, r in self.ignored],
@@ -108,50 +85,50 @@ def _time_text(time: float | None) -> str | None:
     return None if time is None else format_time(time)
 
 
-def inspect_sea(sea: Sea) -> Inspection:
-    """Return what is known about the data behind a sea; reads a few levels of every file."""
-    from thalweg.sea.grids.gridded_layer import GridLayer
+def inspect_layers(layers: Sequence[Layer]) -> Inspection:
+    """Return the report on the layers of a sea; reads a few times of every file.
 
-    one = sea.member(0) if sea.members else sea
-    layers = [layer for layer in one.layers if isinstance(layer, GridLayer)]
+    Of an ensemble, the first member is reported.
+    """
+    members = member_count(layers)
+    single = select_member(layers, 0) if members else tuple(layers)
+    gridded = [layer for layer in single if isinstance(layer, GridLayer)]
     missing: dict[str, float] = {}
-    for layer in layers:
+    for layer in gridded:
         for name, share in _missing_fractions(layer).items():
             missing[f"{layer.source}: {name}"] = share
-    ignored = dict.fromkeys(row for layer in layers for row in layer.record.ignored)
+    ignored = dict.fromkeys(row for layer in gridded for row in layer.record.ignored)
     return Inspection(
-        tuple(r for layer in layers for r in layer.record.recognised),
+        tuple(r for layer in gridded for r in layer.record.recognised),
         tuple(ignored),
-        tuple(one.coverage()),
+        tuple(row for layer in single for row in layer.coverage()),
         missing,
-        data_gaps(one),
-        sea.members,
+        data_gaps(single),
+        members,
     )
 
 
-def data_gaps(sea: Sea) -> tuple[DataGap, ...]:
-    """Return the stretches of time for which files have no data between data."""
-    from thalweg.sea.grids.gridded_layer import GridLayer
+def data_gaps(layers: Sequence[Layer]) -> tuple[DataGap, ...]:
+    """Return the gaps in the time axes of the layers that were read from files.
 
+    Parameters
+    ----------
+    layers : sequence of Layer
+        The layers of a sea.
+    """
     return tuple(
-        gap for layer in sea.layers if isinstance(layer, GridLayer) for gap in _layer_gaps(layer)
+        DataGap(layer.source, float(layer.axis.times[k]), float(layer.axis.times[k + 1]))
+        for layer in layers
+        if isinstance(layer, GridLayer)
+        for k in np.flatnonzero(layer.axis.gaps)
     )
-
-
-def _layer_gaps(layer: GridLayer) -> list[DataGap]:
-    times = layer.axis.times
-    return [
-        DataGap(layer.source, float(times[k]), float(times[k + 1]))
-        for k in np.flatnonzero(layer.axis.holes)
-    ]
 
 
 def _missing_fractions(layer: GridLayer) -> dict[str, float]:
-    from thalweg.sea.files.block_cache import GridWindow
-
+    """Return the fraction of grid points without a value, by variable."""
     rows, columns = layer.grid.shape
     count = max(1, layer.axis.times.size)
-    levels = np.unique(np.linspace(0, count - 1, SAMPLED_LEVELS).round().astype(int))
+    levels = np.unique(np.linspace(0, count - 1, SAMPLED_TIMES).round().astype(int))
     shares: dict[str, list[float]] = {}
     for level in levels:
         window = GridWindow(int(level), int(level) + 1, 0, rows, 0, columns)

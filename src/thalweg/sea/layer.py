@@ -1,19 +1,18 @@
-"""What every layer of a sea can do, whatever its data come from."""
+"""The protocol of a layer: one source of data of a sea, whatever its kind."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.bounding_box import BoundingBox
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.triangle_mesh import Mesh
 
-Samples = dict[str, FloatArray]
+Samples: TypeAlias = dict[str, FloatArray]
 
 
 class Layer(Protocol):
@@ -21,23 +20,23 @@ class Layer(Protocol):
 
     @property
     def variables(self) -> frozenset[str]:
-        """Canonical names of what the layer holds."""
+        """Canonical names of the variables of the layer."""
         ...
 
     @property
     def area(self) -> BoundingBox:
-        """The box of positions the layer may know."""
+        """The box of positions where the layer may know values."""
         ...
 
     @property
     def period(self) -> tuple[float, float] | None:
-        """First and last time [s since epoch], or None if the layer holds for all times."""
+        """First and last time [s since epoch]; None if the layer holds at all times."""
         ...
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
-        """Return values (N,) at points (N,); NaN where unknown."""
+        """Return values (N,) in SI units at points (N,); NaN where unknown."""
         ...
 
     def series(
@@ -47,11 +46,11 @@ class Layer(Protocol):
         ...
 
     def times(self, start: float, end: float) -> FloatArray:
-        """Return native times in [start, end] and one beyond each side; empty if it has none."""
+        """Return native times in [start, end] and one beyond each side; empty without any."""
         ...
 
-    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions (N,) lie where the layer may know values."""
+    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return whether the layer may know values at positions (N,)."""
         ...
 
     def coverage(self) -> list[Coverage]:
@@ -63,12 +62,12 @@ class Layer(Protocol):
         ...
 
     def provenance(self) -> Mapping[str, Any]:
-        """Return plain facts about the source; they make up the fingerprint."""
+        """Return plain facts about the source; the fingerprint is a hash of them."""
         ...
 
 
 def nan_pairs(samples: Samples, pairs: Sequence[tuple[str, str]]) -> Samples:
-    """Make both components of a vector unknown where either is."""
+    """Make both components of a vector NaN where one of them is."""
     for east, north in pairs:
         if east in samples and north in samples:
             unknown = np.isnan(samples[east]) | np.isnan(samples[north])

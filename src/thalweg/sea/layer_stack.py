@@ -1,227 +1,264 @@
-"""Reading a sea: layers by priority, answered as one."""
+"""Several layers read as one: for each variable the first layer that knows a value wins.
+
+The layers of a `thalweg.sea.Sea` stand in order of priority. Both components of a vector come from
+the same layer. A value that no layer knows is NaN.
+"""
 
 from __future__ import annotations
 
-import hashlib
-import json
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Self
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.coverage import Coverage
-from thalweg.sea.ensemble_layer import ensemble_not_allowed_error, member_count, select_member
-from thalweg.sea.grids.triangle_mesh import Mesh
+from thalweg.sea.ensemble_layer import check_not_ensemble
 from thalweg.sea.layer import Layer, Samples
-from thalweg.sea.layer_priority import merge_layers, period_edges, point_reader, series_reader
 
-_DUPLICATE_TOLERANCE = 1e-3  #: [s] within which two layers mean the same time
+LayerReader: TypeAlias = Callable[[Layer, Sequence[str], Any], Samples]
+
+_DUPLICATE_TOLERANCE = 1e-3  #: [s] two layers' times closer than this are the same time
 
 
-@dataclass(frozen=True, eq=False)
-class LayeredSea:
-    """Layers by priority, read as one sea.
+def stack_variables(layers: Sequence[Layer]) -> frozenset[str]:
+    """Return the canonical names of all variables that at least one layer holds."""
+    return frozenset().union(*(layer.variables for layer in layers))
 
-    For each variable the first layer that knows a value wins; both components of a vector come
-    from the same layer. What no layer knows is NaN. Layers may hold an ensemble; then only its
-    members have values.
 
-    Attributes
+def stack_provides(layers: Sequence[Layer], name: str) -> bool:
+    """Return whether the layers hold a variable, or the variables it is derived from."""
+    variables = stack_variables(layers)
+    return all(n in variables for n in _sources(variables, name))
+
+
+def sample_stack(
+    layers: Sequence[Layer], names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
+) -> Samples:
+    """Return values at points (see `thalweg.sea.Sea.sample`).
+
+    Parameters
     ----------
-    layers : tuple of Layer
-        Sources, first one first.
-    assumptions : tuple of str
-        What was assumed on the user's word.
+    layers : sequence of Layer
+        Layers in order of priority.
+    names : sequence of str
+        Canonical names, or CF names of a vector's speed and direction.
+    time : array_like
+        Seconds since 1970-01-01T00:00Z.
+    lat, lon : array_like
+        Positions [deg]; all three are broadcast together.
+
+    Returns
+    -------
+    dict of str to float64 array
+        Values [SI] of the broadcast shape; NaN where unknown.
     """
+    check_not_ensemble(layers)
+    names = [names] if isinstance(names, str) else names
+    arrays = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in (time, lat, lon)))
+    shape = arrays[0].shape
+    times, lats, lons = (np.ascontiguousarray(a).reshape(-1) for a in arrays)
 
-    layers: tuple[Layer, ...]
-    assumptions: tuple[str, ...] = ()
+    def read(layer: Layer, wanted: Sequence[str], rows: Any) -> Samples:
+        pick = slice(None) if rows is None else rows
+        return layer.sample(wanted, times[pick], lats[pick], lons[pick])
 
-    def __post_init__(self) -> None:
-        member_count(self.layers)
+    base = _merged(layers, _base_variables(layers, names), read, times.shape)
+    return {name: _derived(name, base).reshape(shape) for name in names}
 
-    @property
-    def members(self) -> int:
-        """How many members the sea has as an ensemble; 0 if it is one sea."""
-        return member_count(self.layers)
 
-    def member(self, index: int) -> Self:
-        """Return one member of an ensemble, a sea like any other.
+def series_of_stack(
+    layers: Sequence[Layer],
+    names: Sequence[str],
+    times: FloatArray,
+    lat: FloatArray,
+    lon: FloatArray,
+) -> Samples:
+    """Return values (S, T) at stations (S,) for every time (T,) (see `thalweg.sea.Sea.series`).
 
-        Parameters
-        ----------
-        index : int
-            From 0 to ``members - 1``.
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    names : sequence of str
+        Canonical names, or CF names of a vector's speed and direction.
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+    lat, lon : float64 array (S,)
+        Stations [deg].
 
-        Raises
-        ------
-        InputError
-            If the sea is no ensemble or has no such member.
-        """
-        return replace(self, layers=select_member(self.layers, index))
+    Returns
+    -------
+    dict of str to float64 array (S, T)
+        Values [SI]; NaN where unknown.
+    """
+    check_not_ensemble(layers)
 
-    @property
-    def variables(self) -> frozenset[str]:
-        """Canonical names of everything some layer holds (vectors as components)."""
-        return frozenset().union(*(layer.variables for layer in self.layers))
+    def read(layer: Layer, wanted: Sequence[str], rows: Any) -> Samples:
+        pick = slice(None) if rows is None else rows
+        return layer.series(wanted, times, lat[pick], lon[pick])
 
-    def provides(self, name: str) -> bool:
-        """Return whether some layer holds the variable, or what it can be derived from."""
-        return all(n in self.variables for n in self._sources(name))
+    base = _merged(layers, _base_variables(layers, names), read, (lat.size, times.size))
+    return {name: _derived(name, base) for name in names}
 
-    def coverage(self) -> list[Coverage]:
-        """Return where and when each variable of each layer is known."""
-        return [row for layer in self.layers for row in layer.coverage()]
 
-    def sample(
-        self, names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
-    ) -> dict[str, FloatArray]:
-        """Return values at points, linear in time and space.
+def stack_times(
+    layers: Sequence[Layer], start: float, end: float, *, names: Sequence[str] | None = None
+) -> FloatArray:
+    """Return the native times of the layers over a window (see `thalweg.sea.Sea.times`).
 
-        Parameters
-        ----------
-        names : sequence of str
-            Canonical names, or CF names of a vector's speed and direction [deg].
-        time : array_like
-            Seconds since 1970-01-01T00:00Z.
-        lat, lon : array_like
-            Positions [deg]; all three are broadcast together.
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers of a sea.
+    start, end : float
+        Window [s since epoch].
+    names : sequence of str, optional
+        Only layers that hold these; all by default.
 
-        Returns
-        -------
-        dict of str to float64 array
-            One array of the broadcast shape per name; NaN where nothing is known (see
-            `why_missing`).
+    Returns
+    -------
+    float64 array (T,)
+        Strictly increasing [s since epoch]; empty if no layer covers the window.
+    """
+    if names is not None:
+        layers = _holders(layers, names)
+    found = [layer.times(start, end) for layer in layers]
+    if len(layers) > 1:
+        found += [_period_edges(x.period, start, end) for x in layers if x.period is not None]
+    if not any(f.size for f in found):
+        return np.empty(0)
+    times = _without_duplicates(np.unique(np.concatenate(found)))
+    return times if times.size > 1 else np.append(times, times + 1.0)
 
-        Raises
-        ------
-        InputError
-            If the sea is an ensemble (see `member`).
-        """
-        self.check_single()
-        names = [names] if isinstance(names, str) else names
-        arrays = np.broadcast_arrays(*(np.asarray(a, np.float64) for a in (time, lat, lon)))
-        shape = arrays[0].shape
-        flat = [np.ascontiguousarray(a).reshape(-1) for a in arrays]
-        base = merge_layers(
-            self.layers, self._base(names), point_reader(flat[0], flat[1], flat[2]), flat[0].shape
-        )
-        return {name: self._derive(name, base).reshape(shape) for name in names}
 
-    def series(
-        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
-    ) -> dict[str, FloatArray]:
-        """Return values (S, T) at stations (S,) for every time (T,); faster than `sample`."""
-        self.check_single()
-        read = series_reader(times, lat, lon)
-        base = merge_layers(self.layers, self._base(names), read, (lat.size, times.size))
-        return {name: self._derive(name, base) for name in names}
+def stack_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, float]:
+    """Return the first and last time [s since epoch] at which a layer knows any of the names.
 
-    def check_single(self) -> None:
-        """Raise `InputError` if the sea is an ensemble, where one sea is needed."""
-        if self.members:
-            raise ensemble_not_allowed_error(self.members)
+    A layer that holds always makes them infinite; without a layer that holds a name both are NaN.
+    """
+    spans = [layer.period or (-np.inf, np.inf) for layer in _holders(layers, names)]
+    if not spans:
+        return np.nan, np.nan
+    return min(s[0] for s in spans), max(s[1] for s in spans)
 
-    def why_missing(self, name: str, time: float, lat: float, lon: float) -> str:
-        """Return why a value is NaN: "variable", "area", "period" or "gap" (a hole in the data)."""
-        holders = [x for x in self.layers if set(self._sources(name)) & x.variables]
-        if not holders or not self.provides(name):
-            return "variable"
-        point = np.array([lat], float), np.array([lon], float)
-        holders = [x for x in holders if x.inside(*point)[0]]
-        if not holders:
-            return "area"
-        spans = [x.period for x in holders]
-        if not any(p is None or p[0] <= time <= p[1] for p in spans):
-            return "period"
-        return "gap"
 
-    def period_of(self, names: Sequence[str]) -> tuple[float, float]:
-        """Return first and last time [s] some layer knows any of the names; infinite if always."""
-        sources = {s for n in names for s in self._sources(n)}
-        spans = [x.period or (-np.inf, np.inf) for x in self.layers if x.variables & sources]
-        if not spans:
-            return np.nan, np.nan
-        return min(s[0] for s in spans), max(s[1] for s in spans)
+def missing_reason(layers: Sequence[Layer], name: str, time: float, lat: float, lon: float) -> str:
+    """Return why a value is NaN (see `thalweg.sea.Sea.why_missing`).
 
-    def times(self, start: float, end: float, *, names: Sequence[str] | None = None) -> FloatArray:
-        """Return the times at which the sea is known natively, over a window.
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers of a sea.
+    name : str
+        Name of the variable.
+    time : float
+        Time [s since epoch].
+    lat, lon : float
+        Position [deg].
 
-        Parameters
-        ----------
-        start, end : float
-            Window [s since epoch].
-        names : sequence of str, optional
-            Only layers that hold these; all by default.
+    Returns
+    -------
+    str
+        "variable", "area", "period" or "gap".
+    """
+    holders = _holders(layers, [name])
+    if not holders or not stack_provides(layers, name):
+        return "variable"
+    point = np.array([lat], float), np.array([lon], float)
+    holders = [x for x in holders if x.inside(*point)[0]]
+    if not holders:
+        return "area"
+    spans = [x.period for x in holders]
+    if not any(p is None or p[0] <= time <= p[1] for p in spans):
+        return "period"
+    return "gap"
 
-        Returns
-        -------
-        float64 array
-            Strictly increasing: the union over layers, with one native step beyond each side of
-            the window; formulas add their own uniform steps. Empty if no layer knows the window.
-        """
-        sources = None if names is None else {s for n in names for s in self._sources(n)}
-        layers = [x for x in self.layers if sources is None or x.variables & sources]
-        found = [layer.times(start, end) for layer in layers]
-        if len(layers) > 1:
-            found += [period_edges(x.period, start, end) for x in layers if x.period is not None]
-        if not any(f.size for f in found):
-            return np.empty(0)
-        times = _without_duplicates(np.unique(np.concatenate(found)))
-        return times if times.size > 1 else np.append(times, times + 1.0)
 
-    def mesh(self) -> Mesh | None:
-        """Return nodes and triangles of the first layer that lies on a mesh, if any."""
-        return next((m for layer in self.layers if (m := layer.mesh()) is not None), None)
+def _holders(layers: Sequence[Layer], names: Sequence[str]) -> list[Layer]:
+    """Return the layers that hold a source of any of the names."""
+    variables = stack_variables(layers)
+    sources = {s for n in names for s in _sources(variables, n)}
+    return [layer for layer in layers if layer.variables & sources]
 
-    def provenance(self) -> dict[str, Any]:
-        """Return plain facts about every layer and assumption, ready for JSON."""
-        return {
-            "layers": [dict(layer.provenance()) for layer in self.layers],
-            "assumptions": list(self.assumptions),
-            "fingerprint": self.fingerprint(),
-        }
 
-    def fingerprint(self) -> str:
-        """Return a hash that changes when a file, its variables or an assumption changes."""
-        facts = [dict(layer.provenance()) for layer in self.layers]
-        text = json.dumps([facts, self.assumptions], sort_keys=True, default=str)
-        return hashlib.sha256(text.encode()).hexdigest()[:32]
+def _sources(variables: frozenset[str], name: str) -> tuple[str, ...]:
+    """Return the canonical variables from which a name is derived."""
+    name = nm.canonical_name(name)
+    derived = nm.vector_of_derived_name(name)
+    if derived is None or (name in variables and derived[0].east not in variables):
+        return (name,)
+    return derived[0].pair
 
-    def _sources(self, name: str) -> tuple[str, ...]:
-        """Return the canonical variables a name is made from."""
-        name = nm.canonical_name(name)
-        derived = nm.vector_of_derived_name(name)
-        if derived is None or (name in self.variables and derived[0].east not in self.variables):
-            return (name,)
-        return derived[0].pair
 
-    def _base(self, names: Sequence[str]) -> list[str]:
-        """Return all variables that must be read, vectors complete."""
-        wanted = [s for name in names for s in self._sources(name)]
-        whole = [part for name in wanted for part in nm.inseparable_variables(name)]
-        return list(dict.fromkeys(whole))
+def _base_variables(layers: Sequence[Layer], names: Sequence[str]) -> list[str]:
+    """Return all variables that must be read, vectors complete."""
+    variables = stack_variables(layers)
+    wanted = [s for name in names for s in _sources(variables, name)]
+    whole = [part for name in wanted for part in nm.inseparable_variables(name)]
+    return list(dict.fromkeys(whole))
 
-    def _derive(self, name: str, base: Samples) -> FloatArray:
-        kept = nm.canonical_name(name)
-        if kept in base:
-            return base[kept]
-        vector, part = nm.vector_of_derived_name(kept) or (nm.WIND, "speed")
-        east, north = base[vector.east], base[vector.north]
-        if part == "speed":
-            return np.asarray(np.hypot(east, north), np.float64)
-        sign = 1.0 if part == "towards" else -1.0
-        return np.degrees(np.arctan2(sign * east, sign * north)) % 360.0
+
+def _derived(name: str, base: Samples) -> FloatArray:
+    """Return a variable, or the speed [m/s] or direction [deg] derived from two components."""
+    kept = nm.canonical_name(name)
+    if kept in base:
+        return base[kept]
+    vector, part = nm.vector_of_derived_name(kept) or (nm.WIND, "speed")
+    east, north = base[vector.east], base[vector.north]
+    if part == "speed":
+        return np.asarray(np.hypot(east, north), np.float64)
+    sign = 1.0 if part == "towards" else -1.0
+    return np.degrees(np.arctan2(sign * east, sign * north)) % 360.0
+
+
+def _merged(
+    layers: Sequence[Layer], names: Sequence[str], read: LayerReader, shape: tuple[int, ...]
+) -> Samples:
+    """Return the variables, each value from the first layer that knows it; NaN without one."""
+    found: Samples = {}
+    for layer in layers:
+        have = [n for n in names if n in layer.variables]
+        rows = _unknown_rows(have, found)
+        if have and (rows is None or rows.size):
+            _fill_unknown(found, read(layer, have, rows), rows)
+    for name in names:
+        found.setdefault(name, np.full(shape, np.nan))
+    return found
+
+
+def _unknown_rows(names: Sequence[str], merged: Samples) -> Any:
+    """Return the rows where at least one variable is still unknown; None for all rows."""
+    if not names or any(name not in merged for name in names):
+        return None
+    unknown = np.zeros(merged[names[0]].shape, bool)
+    for name in names:
+        unknown |= np.isnan(merged[name])
+    return np.flatnonzero(unknown if unknown.ndim == 1 else unknown.any(axis=1))
+
+
+def _fill_unknown(merged: Samples, found: Samples, rows: Any) -> None:
+    """Write values that a layer found where none was known; layers return vectors NaN in pairs."""
+    for name, value in found.items():
+        if name not in merged:
+            merged[name] = value
+            continue
+        pick = slice(None) if rows is None else rows
+        old = merged[name] = np.array(merged[name])
+        old[pick] = np.where(np.isnan(old[pick]), value, old[pick])
+
+
+def _period_edges(period: tuple[float, float], start: float, end: float) -> FloatArray:
+    """Return times just outside a layer's period, where another layer takes over."""
+    edges = np.array([period[0] - 1.0, period[1] + 1.0])
+    return edges[(edges > start) & (edges < end)]
 
 
 def _without_duplicates(times: FloatArray) -> FloatArray:
     """Return ascending times without those that follow another within a millisecond.
 
-    The first and the last stay exactly as they are: a ship may leave at the one to the bit.
+    The first and last stay exactly as they are, because a departure may equal the first one.
     """
     kept: FloatArray = times[np.append(True, np.diff(times) > _DUPLICATE_TOLERANCE)]
     if kept.size > 1:

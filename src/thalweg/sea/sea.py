@@ -1,49 +1,64 @@
-"""`Sea`: wind, waves, currents, level and depth, from any number of sources, as one thing."""
+"""`Sea`: wind, waves, currents, water level and depth from any number of sources."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.sea import inspection
-from thalweg.sea import standard_names as nm
+from thalweg.core.types import FloatArray
+from thalweg.sea import layer_stack, sea_maps
 from thalweg.sea.argument_checks import parse_area, parse_period, parse_time_step
-from thalweg.sea.ensemble_layer import ensemble_layers
-from thalweg.sea.fill_policies import CALM_VALUES, fill_values
-from thalweg.sea.freeze import FreezableSea
-from thalweg.sea.inspection import Inspection
+from thalweg.sea.coverage import Coverage
+from thalweg.sea.ensemble_layer import (
+    check_not_ensemble,
+    ensemble_layers,
+    member_count,
+    select_member,
+)
+from thalweg.sea.files.file_opener import open_layers
+from thalweg.sea.fill_policies import CALM_VALUES, layers_filled
+from thalweg.sea.freeze import DerivedChannel, freeze_grid_fields, freeze_station_fields
+from thalweg.sea.frozen_fields import GridFields, StationFields
+from thalweg.sea.grids.triangle_mesh import Mesh
+from thalweg.sea.inspection import Inspection, inspect_layers
 from thalweg.sea.layer import Layer
 from thalweg.sea.models import cyclone_layer
-from thalweg.sea.models import function_layer as formulas
-from thalweg.sea.models.wind_sea import WindSeaLayer
-
-if TYPE_CHECKING:
-    from thalweg.sea.tides.constituents import Constituents
-    from thalweg.sea.tides.harmonic_analysis import TideAnalysis
+from thalweg.sea.models.function_layer import FieldFunction, constant_layer, layer_of_functions
+from thalweg.sea.tides.constituents import Constituents
+from thalweg.sea.tides.harmonic_analysis import TideAnalysis
+from thalweg.sea.tides.tidal_layer import tidal_layers
 
 
 @dataclass(frozen=True, eq=False)
-class Sea(FreezableSea):
-    """Met-ocean fields from layers by priority; never changed, never guessed.
+class Sea:
+    """Met-ocean fields from layers in order of priority; immutable.
 
-    Make one with `Sea.open`, `Sea.from_functions`, `Sea.storm` or `Sea.calm`; put one over another
-    with ``+`` (the left one first). For each variable the first layer that knows a value wins; both
-    components of a vector come from the same layer. What no layer knows is NaN.
+    Make one with `Sea.open`, `Sea.from_functions`, `Sea.storm`, `Sea.from_tides` or `Sea.calm`;
+    combine two with ``+`` (the left one has priority). For each variable the first layer that knows
+    a value wins; both components of a vector come from the same layer. A value that no layer knows
+    is NaN. Layers may hold an ensemble; then only its members have values.
 
     Attributes
     ----------
     layers : tuple of Layer
-        Sources, first one first.
+        Sources, in order of priority.
     assumptions : tuple of str
-        What was assumed on the user's word (see `filled`).
+        Values that were assumed at the user's request (see `filled`).
     """
+
+    layers: tuple[Layer, ...]
+    assumptions: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        member_count(self.layers)
 
     @classmethod
     def open(
@@ -52,36 +67,38 @@ class Sea(FreezableSea):
         mapping: Mapping[str, str] | None = None,
         draught_m: float | None = None,
     ) -> Sea:
-        """Open files of met-ocean data; nothing is loaded until it is asked for.
+        """Open files of met-ocean data; values are read when they are needed.
 
         Reads NetCDF (classic, netCDF-4), GRIB 1 and 2, and Zarr: regular, rectilinear and
-        curvilinear grids, projected grids, and UGRID meshes with values at nodes or faces. Of
-        files with one layout that follow each other in time one layer is made; otherwise the first
-        file goes before the second. Of vertical levels the one nearest to the surface is taken, of
-        wind the one at 10 m. A dimension of members (number, realization, ...) makes an ensemble.
+        curvilinear grids, projected grids, and UGRID meshes with values at nodes or faces. Files
+        with the same layout that follow each other in time become one layer; otherwise the first
+        file has priority over the second. Of vertical levels the one nearest to the surface is
+        used, of wind the one at 10 m. A dimension of members (number, realization, ...) makes an
+        ensemble.
 
-        Variables are recognised by CF standard name, else by the spellings of ECMWF, GFS, CMEMS,
-        MET Norway, DHI, 52North, NEMO, COADS and Delft3D-FM; units are converted to SI; speed and
-        direction become components before anything is interpolated; components along a grid are
-        turned to true east and north. NEMO's velocities on cell sides are averaged to the centres
-        where the file has the positions of both, else taken to lie at the positions given.
+        Variables are recognised by CF standard name, otherwise by the names that ECMWF, GFS, CMEMS,
+        MET Norway, DHI, 52North, NEMO, COADS and Delft3D-FM use. Units are converted to SI. Speed
+        and direction are converted to components before interpolation. Components along a grid are
+        rotated to true east and north. NEMO's velocities on cell sides are averaged to the cell
+        centres where the file has the positions of both; otherwise they apply at the positions
+        given.
 
-        Between times values are linear, but a step more than 2.5 times as long as both its
-        neighbours is a hole and stays unknown. A single time holds at that instant only. Fields
-        without a time hold always. Beyond the first and last row and column nothing is known.
+        Values are linear in time, but a step more than 2.5 times as long as both its neighbours
+        is a gap and stays unknown. A single time is valid at that instant only. Fields without a
+        time hold at all times. Beyond the first and last row and column values are unknown.
 
         Parameters
         ----------
         *paths : path-like or xarray.Dataset
-            Files (or Zarr folders), the most trusted first.
+            Files (or Zarr folders), in order of priority.
         mapping : mapping of str to str, optional
-            Where the file does not say it clearly: canonical name to name in the file
+            For variables that the file does not identify: canonical name to name in the file
             (``{"sea_surface_wave_from_direction": "p107"}``), for any file that has it. The key
             "crs" gives the projection of a file that does not name it (``"EPSG:32611"``). Other
             keys make plain variables that a ship's function may read.
         draught_m : float, optional
             Average currents given in sigma or z layers from the surface down to this draught [m];
-            by default the layer nearest to the surface is taken.
+            by default the layer nearest to the surface is used.
 
         Returns
         -------
@@ -92,11 +109,9 @@ class Sea(FreezableSea):
         InputError
             If a file is missing or the mapping names variables that are in no file.
         DatasetError
-            If a file is damaged, cut, not data, ambiguous, in impossible units, or laid out in a
-            way that cannot be sailed on (points, lines, climatologies); the message says why.
+            If a file is damaged, truncated, not data, ambiguous, in impossible units, or has a
+            layout that cannot be used (points, lines, climatologies); the message gives the reason.
         """
-        from thalweg.sea.files.file_opener import open_layers
-
         return cls(tuple(open_layers(paths, mapping, draught_m)))
 
     @classmethod
@@ -108,17 +123,21 @@ class Sea(FreezableSea):
     ) -> Sea:
         """Return one sea in several versions, each as likely as the others.
 
-        A file with a dimension for its members needs no more than `Sea.open`. An ensemble has no
-        values of its own: take `member` 0 to ``members - 1``, or score a route in all of them with
-        `thalweg.route.evaluate_members`. Put over or under other seas with ``+``, its members
-        share those.
+        For a file with a dimension of members use `Sea.open`. An ensemble has no values itself:
+        select `member` 0 to ``members - 1``, or evaluate a route in all of them with
+        `thalweg.route.evaluate_members`. Combined with other seas by ``+``, the members share
+        those.
 
         Parameters
         ----------
         *members : Sea, path-like or sequence of path-like
-            Two or more; what is no Sea is opened, each by itself.
+            Two or more; paths are opened, one sea for each argument.
         mapping, draught_m
             For the files, as in `open`.
+
+        Returns
+        -------
+        Sea
 
         Raises
         ------
@@ -131,13 +150,13 @@ class Sea(FreezableSea):
             return cls.open(*several, mapping=mapping, draught_m=draught_m)
 
         seas = [one if isinstance(one, Sea) else opened(one) for one in members]
-        told = tuple(dict.fromkeys(text for sea in seas for text in sea.assumptions))
-        return cls(ensemble_layers(seas), told)
+        assumptions = tuple(dict.fromkeys(text for sea in seas for text in sea.assumptions))
+        return cls(ensemble_layers([sea.layers for sea in seas]), assumptions)
 
     @classmethod
     def from_functions(
         cls,
-        functions: Mapping[str, formulas.FieldFunction],
+        functions: Mapping[str, FieldFunction],
         *,
         time_step: float | None = None,
         area: tuple[float, float, float, float] | None = None,
@@ -149,22 +168,22 @@ class Sea(FreezableSea):
         ----------
         functions : mapping of str to callable
             ``f(time_s, lat, lon) -> array``: seconds since 1970-01-01T00:00Z and degrees, as
-            float64 arrays of one shape; the answer has that shape or is one number, in SI units,
+            float64 arrays of one shape; the result has that shape or is one number, in SI units,
             NaN where unknown. Names are CF standard names: components
             (``eastward_sea_water_velocity``, ...), or speed and direction [deg]
             (``wind_speed`` + ``wind_from_direction``; ``sea_water_speed`` +
             ``sea_water_velocity_to_direction``), ``sea_surface_wave_from_direction`` or
             ``..._to_direction``, any ``sea_floor_depth_below_...`` and
             ``sea_surface_height_above_...``. The depth below the *moving* surface
-            (``sea_floor_depth_below_sea_surface``) is turned into depth below datum by subtracting
-            the water level, if that is given too. Other names are kept as plain variables.
+            (``sea_floor_depth_below_sea_surface``) is converted to a depth below datum: the water
+            level is subtracted if it is given too. Other names are kept as plain variables.
         time_step : float, optional
-            Step [s] at which kernels get the formulas (linear between); 0 for fields that never
-            change. By default ``min(600 s, window / 200)``, at most 2000 steps.
+            Step [s] at which kernels receive the formulas (linear in between); 0 for fields that
+            never change. By default ``min(600 s, window / 200)``, at most 2000 steps.
         area : tuple of float, optional
-            (south, north, west, east) [deg] outside which nothing is known.
+            (south, north, west, east) [deg]; values are unknown outside.
         period : tuple of time, optional
-            (start, end) outside which nothing is known.
+            (start, end); values are unknown outside.
 
         Returns
         -------
@@ -174,9 +193,9 @@ class Sea(FreezableSea):
         ------
         InputError
             If one half of a vector is missing, a variable is given twice, or (when sampled) a
-            function returns something of another shape.
+            function returns an array of another shape.
         """
-        layer = formulas.layer_of_functions(
+        layer = layer_of_functions(
             dict(functions),
             area=parse_area(area),
             period=parse_period(period),
@@ -186,15 +205,13 @@ class Sea(FreezableSea):
 
     @classmethod
     def calm(cls) -> Sea:
-        """Return a sea without wind, waves and currents, everywhere and always.
+        """Return a sea without wind, waves and currents, everywhere and at all times.
 
         Waves of height zero travel north with a placeholder peak period of 8 s, so that models
-        which look at angle and period can be asked; it knows no water level and no depth.
+        that use direction and period can be evaluated. Water level and depth are unknown.
         """
-        return cls(
-            (formulas.constant_layer(CALM_VALUES, "calm"),),
-            ("no wind, waves and currents anywhere",),
-        )
+        layer = constant_layer(CALM_VALUES, "calm")
+        return cls((layer,), ("no wind, waves and currents anywhere",))
 
     @classmethod
     def storm(
@@ -208,25 +225,29 @@ class Sea(FreezableSea):
         """Return wind and waves of a real cyclone, **modelled** from its best track.
 
         The track (6-hourly positions, winds and pressures of Hurricane Danielle, 24 August to
-        8 September 1998, which ran along the lane between New York and the English Channel) is
+        8 September 1998, which followed the route between New York and the English Channel) is
         observed; the fields are not: Holland (1980) gradient wind with radius of maximum wind by
-        Willoughby et al. (2006), brought to a 10-min mean at 10 m, turned by Bretschneider's
+        Willoughby et al. (2006), reduced to a 10-min mean at 10 m, rotated by Bretschneider's
         inflow angle, asymmetric by Lin and Chavas (2012); waves by the equivalent fetch of Young
-        and Vinoth (2013), scaled with the local wind and travelling with it. Beyond 1200 km lies a
-        uniform ambient sea. There are no currents and no land: for demonstrations and tests, not
-        for navigation.
+        and Vinoth (2013), scaled with the local wind and travelling with it. Beyond 1200 km the
+        ambient sea is uniform. There are no currents and no land: for demonstrations and tests,
+        not for navigation.
 
         Parameters
         ----------
         name : str
             Name of an embedded storm.
         start : time, optional
-            When the track shall begin; its true dates by default. Outside the life of the track
-            nothing is known.
-        ambient : Ambient, optional
-            The sea around; by default 5.2 m/s of wind and 1.5 m of waves from the west.
+            First time of the track; its true date by default. Outside the period of the track
+            values are unknown.
+        ambient : AmbientSea, optional
+            The surrounding sea; by default 5.2 m/s of wind and 1.5 m of waves from the west.
         time_step : float, optional
-            Step [s] at which kernels get the storm, 1 or more; one hour by default.
+            Step [s] at which kernels receive the storm, 1 or more; one hour by default.
+
+        Returns
+        -------
+        Sea
         """
         layer = cyclone_layer.storm_layer(name, start=start, ambient=ambient, time_step=time_step)
         return cls((layer,))
@@ -247,40 +268,44 @@ class Sea(FreezableSea):
         Parameters
         ----------
         source : Sea, Constituents or TideAnalysis
-            A sea opened from a model run, analysed at every node (what never changes, such as the
-            depth, is kept); or constants at three nodes or more, or at one that holds for ``area``.
+            A sea opened from a model run, which is analysed at every node (fields without time,
+            such as the depth, are kept); or constants at three nodes or more; or constants at one
+            node that apply to ``area``.
         constituents : sequence of str, optional
-            Names to analyse (by default all that the length of the run can tell apart), or to
-            take of the constants given (by default all).
+            Names to analyse (by default all that the length of the run can separate), or to
+            select from the constants given (by default all).
         area : tuple of float, optional
             (south, north, west, east) [deg] for a single station.
         rayleigh : float
-            How many cycles two constituents must part over the run.
+            Rayleigh criterion: the least difference of two constituents [cycles] over the run.
         progress : callable, optional
-            Called with nodes done and nodes in all.
+            Called with the number of nodes done and in total.
         cache : bool
-            Whether the analysis is kept on disk and taken from there.
+            Whether the analysis is stored on disk and read from there.
+
+        Returns
+        -------
+        Sea
 
         Raises
         ------
         InputError
-            If the run is too short for the constituents (it says which need how long), or has no
-            currents and levels over time; or if an area is given for more than one station.
+            If the run is too short for the constituents (the message gives the lengths needed),
+            or has no currents and levels over time; or if an area is given for several stations.
         """
-        from thalweg.sea.tides.tidal_layer import tidal_sea
-
-        return tidal_sea(
-            source,
+        layers = tidal_layers(
+            source.layers if isinstance(source, Sea) else source,
             constituents=constituents,
             area=None if area is None else parse_area(area),
             rayleigh=rayleigh,
             progress=progress,
             cache=cache,
         )
+        return cls(layers, source.assumptions if isinstance(source, Sea) else ())
 
     @classmethod
     def layered(cls, *seas: Sea) -> Sea:
-        """Return one sea from several, the first one first."""
+        """Return one sea from several, in order of priority."""
         layers = tuple(layer for sea in seas for layer in sea.layers)
         return cls(layers, tuple(dict.fromkeys(a for sea in seas for a in sea.assumptions)))
 
@@ -288,7 +313,7 @@ class Sea(FreezableSea):
         return Sea.layered(self, other) if isinstance(other, Sea) else NotImplemented
 
     def filled(self, **policies: float | tuple[float, float] | str) -> Sea:
-        """Return a sea in which what is unknown takes a named value, on the user's word.
+        """Return a sea in which unknown values take a value that the user names.
 
         Parameters
         ----------
@@ -296,49 +321,204 @@ class Sea(FreezableSea):
             ``currents`` and ``wind``: 0.0 or (east, north) [m/s]; ``waves``: significant height
             [m] (0.0, or a height with direction north and period 8 s), or ``"wind"`` for the waves
             that the known wind raises (`thalweg.sea.models.wind_sea.carter_1982`); ``water_level``
-            [m]; ``ice`` [fraction]. The value holds wherever and whenever no layer knows better.
+            [m]; ``ice`` [fraction]. The value holds wherever and whenever no layer knows one.
 
         Returns
         -------
         Sea
-            With one more layer of lowest priority; each policy is told in ``assumptions``.
-        """
-        values: dict[str, float] = {}
-        told: list[str] = []
-        by_wind = policies.get("waves") == "wind"
-        for policy, value in policies.items():
-            if not (by_wind and policy == "waves"):
-                values.update(fill_values(policy, value))  # type: ignore[arg-type]
-                told.append(f"where unknown, {policy.replace('_', ' ')} = {value}")
-        for vector in (nm.WIND, nm.CURRENT):
-            if vector.east in values and {vector.east, vector.speed} & self.variables == {
-                vector.speed
-            }:
-                told.append(f"the data's {vector.speed}, without direction, is not used")
-        layers: list[Layer] = list(self.layers)
-        if values:
-            layers.append(formulas.constant_layer(values, "filled"))
-        if by_wind:
-            layers.append(Sea(tuple(layers))._wind_sea())
-            told.append(
-                "where unknown, waves are those that the wind raises (Carter 1982, 500 km of "
-                "fetch, 24 h)"
-            )
-        return Sea(tuple(layers), (*self.assumptions, *told))
+            With one more layer of lowest priority; ``assumptions`` states each policy.
 
-    def _wind_sea(self) -> WindSeaLayer:
-        """Return a layer of the waves of this sea's wind."""
-        if not set(nm.WIND.pair) <= self.variables:
-            raise InputError(
-                "Waves are to be taken from the wind, but the sea holds no wind.",
-                f"The sea holds: {', '.join(sorted(self.variables)) or 'nothing'}.",
-                "Add wind, or fill waves with a height.",
-            )
-        return WindSeaLayer(Sea(self.layers))
+        Raises
+        ------
+        InputError
+            If a policy is unknown or its value is impossible.
+        """
+        layers, assumptions = layers_filled(self.layers, policies)
+        return Sea(layers, (*self.assumptions, *assumptions))
+
+    @property
+    def members(self) -> int:
+        """Number of members of the sea as an ensemble; 0 for a single sea."""
+        return member_count(self.layers)
+
+    def member(self, index: int) -> Sea:
+        """Return one member of an ensemble, as a single sea.
+
+        Parameters
+        ----------
+        index : int
+            From 0 to ``members - 1``.
+
+        Raises
+        ------
+        InputError
+            If the sea is not an ensemble or has no such member.
+        """
+        return replace(self, layers=select_member(self.layers, index))
+
+    def check_single(self) -> None:
+        """Raise `InputError` if the sea is an ensemble, where a single sea is needed."""
+        check_not_ensemble(self.layers)
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Canonical names of all variables of the layers (vectors as components)."""
+        return layer_stack.stack_variables(self.layers)
+
+    def provides(self, name: str) -> bool:
+        """Return whether a layer holds the variable, or the variables it is derived from."""
+        return layer_stack.stack_provides(self.layers, name)
+
+    def coverage(self) -> list[Coverage]:
+        """Return where and when each variable of each layer is known."""
+        return [row for layer in self.layers for row in layer.coverage()]
+
+    def sample(
+        self, names: Sequence[str], time: ArrayLike, lat: ArrayLike, lon: ArrayLike
+    ) -> dict[str, FloatArray]:
+        """Return values at points, linear in time and space.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Canonical names, or CF names of a vector's speed and direction [deg].
+        time : array_like
+            Seconds since 1970-01-01T00:00Z.
+        lat, lon : array_like
+            Positions [deg]; all three are broadcast together.
+
+        Returns
+        -------
+        dict of str to float64 array
+            One array of the broadcast shape per name, in SI units; NaN where unknown (see
+            `why_missing`).
+
+        Raises
+        ------
+        InputError
+            If the sea is an ensemble (see `member`).
+        """
+        return layer_stack.sample_stack(self.layers, names, time, lat, lon)
+
+    def series(
+        self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
+    ) -> dict[str, FloatArray]:
+        """Return values (S, T) at stations (S,) for every time (T,); faster than `sample`."""
+        return layer_stack.series_of_stack(self.layers, names, times, lat, lon)
+
+    def why_missing(self, name: str, time: float, lat: float, lon: float) -> str:
+        """Return why a value is NaN: "variable", "area", "period" or "gap" (missing data)."""
+        return layer_stack.missing_reason(self.layers, name, time, lat, lon)
+
+    def period_of(self, names: Sequence[str]) -> tuple[float, float]:
+        """Return first and last time [s] at which a layer knows any name; infinite if always."""
+        return layer_stack.stack_period(self.layers, names)
+
+    def times(self, start: float, end: float, *, names: Sequence[str] | None = None) -> FloatArray:
+        """Return the native times of the data over a window.
+
+        Parameters
+        ----------
+        start, end : float
+            Window [s since epoch].
+        names : sequence of str, optional
+            Only layers that hold these; all by default.
+
+        Returns
+        -------
+        float64 array (T,)
+            Strictly increasing: the union over layers, with one native step beyond each side of
+            the window; formulas add their own uniform steps. Empty if no layer covers the window.
+        """
+        return layer_stack.stack_times(self.layers, start, end, names=names)
+
+    def mesh(self) -> Mesh | None:
+        """Return nodes and triangles of the first layer that has a mesh, if any."""
+        return next((m for layer in self.layers if (m := layer.mesh()) is not None), None)
+
+    def provenance(self) -> dict[str, Any]:
+        """Return plain facts about every layer and assumption, for JSON."""
+        return {
+            "layers": [dict(layer.provenance()) for layer in self.layers],
+            "assumptions": list(self.assumptions),
+            "fingerprint": self.fingerprint(),
+        }
+
+    def fingerprint(self) -> str:
+        """Return a hash that changes when a file, its variables or an assumption changes."""
+        facts = [dict(layer.provenance()) for layer in self.layers]
+        text = json.dumps([facts, self.assumptions], sort_keys=True, default=str)
+        return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+    def freeze_stations(
+        self,
+        lat: ArrayLike,
+        lon: ArrayLike,
+        start: float,
+        end: float,
+        channels: Sequence[int],
+        *,
+        extra: Mapping[int, DerivedChannel] | None = None,
+    ) -> StationFields:
+        """Return the sea at stations for kernels.
+
+        Parameters
+        ----------
+        lat, lon : array_like (S,)
+            Stations [deg].
+        start, end : float
+            Window [s since epoch]; frozen times reach one native step beyond it.
+        channels : sequence of int
+            Channels of `thalweg.kernels.codes`; those the sea lacks get index -1.
+        extra : mapping of int to callable, optional
+            Channels computed as ``f(sampled, time, lat, lon) -> array``, where ``sampled`` maps
+            any variable of the sea to its values and all arrays are (stations, times).
+
+        Raises
+        ------
+        OutsidePeriodError
+            If the data have no time in the window.
+        """
+        stations = np.asarray(lat, np.float64), np.asarray(lon, np.float64)
+        window = (float(start), float(end))
+        return freeze_station_fields(
+            self.layers, *stations, window=window, channels=channels, extra=extra or {}
+        )
+
+    def freeze_grid(
+        self,
+        south: float,
+        north: float,
+        west: float,
+        east: float,
+        start: float,
+        end: float,
+        channels: Sequence[int],
+        *,
+        spacing_deg: float,
+        extra: Mapping[int, DerivedChannel] | None = None,
+    ) -> GridFields:
+        """Return the sea on a regular grid for kernels; other arguments as in `freeze_stations`.
+
+        Parameters
+        ----------
+        south, north, west, east : float
+            Box [deg]; ``east < west`` spans the antimeridian.
+        spacing_deg : float
+            Largest spacing [deg]; it is reduced so that the grid ends on the box.
+        """
+        return freeze_grid_fields(
+            self.layers,
+            (float(south), float(north), float(west), float(east)),
+            window=(float(start), float(end)),
+            channels=channels,
+            spacing_deg=float(spacing_deg),
+            extra=extra or {},
+        )
 
     def describe(self) -> Inspection:
-        """Return what was recognised in the files, what not and why, coverage and gaps."""
-        return inspection.inspect_sea(self)
+        """Return the variables recognised and ignored in the files, coverage and gaps."""
+        return inspect_layers(self.layers)
 
     def draw(
         self,
@@ -355,15 +535,13 @@ class Sea(FreezableSea):
         path : path-like
             File to write.
         time : time, optional
-            When; by default when the waves (else the wind, the current) are largest.
+            By default the time when the waves (otherwise the wind, the current) are largest.
         area : tuple of float, optional
             (south, north, west, east) [deg]; by default that of the smallest layer of files.
         coastline : sequence of (lat, lon), optional
             Lines [deg] drawn on top.
         """
-        from thalweg.sea.sea_maps import draw_maps
-
         when = None if time is None else parse_time(time)
         box = None if area is None else parse_area(area)
         lines = [(np.asarray(a, np.float64), np.asarray(o, np.float64)) for a, o in coastline]
-        draw_maps(self, path, time=when, area=box, coastline=lines)
+        sea_maps.draw_maps(self.layers, path, time=when, area=box, coastline=lines)

@@ -1,4 +1,4 @@
-"""Maps of a sea, one panel for each main quantity."""
+"""Maps of the fields of a sea, one panel for each main quantity."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,14 +15,21 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
+from thalweg.sea.ensemble_layer import check_not_ensemble
 from thalweg.sea.grids.gridded_layer import GridLayer
-
-if TYPE_CHECKING:
-    from thalweg.sea.sea import Sea
+from thalweg.sea.layer import Layer
+from thalweg.sea.layer_stack import (
+    sample_stack,
+    series_of_stack,
+    stack_period,
+    stack_provides,
+    stack_times,
+    stack_variables,
+)
 
 RASTER_POINTS: Final = 320  #: raster points along the longer side of a panel
 ARROWS_ALONG_SIDE: Final = 20  #: arrows along the longer side
-TRIAL_TIMES: Final = 25  #: times looked at to find the most eventful one
+TRIAL_TIMES: Final = 25  #: times compared to find the largest values
 TEXT_COLOUR, BACKGROUND_COLOUR, UNKNOWN_COLOUR = "#1f2a37", "#ffffff", "#e3e6ea"
 
 CoastlinePart = tuple[FloatArray, FloatArray]
@@ -35,11 +42,11 @@ class MapPanel:
     Attributes
     ----------
     title, unit : str
-        Words.
+        Title of the panel and unit of the colour bar.
     values : str
-        Name of what is coloured.
+        Canonical name of the quantity that is coloured.
     arrows : tuple of str
-        Names of a vector drawn as arrows; empty for none.
+        Names of the components drawn as arrows; empty for none.
     colours : str
         Matplotlib colour map.
     around_zero : bool
@@ -67,28 +74,47 @@ MAP_PANELS: Final = (
 
 
 def draw_maps(
-    sea: Sea,
+    layers: Sequence[Layer],
     path: str | os.PathLike[str],
     *,
     time: float | None = None,
     area: BoundingBox | None = None,
     coastline: Sequence[CoastlinePart] = (),
 ) -> None:
-    """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`)."""
+    """Draw a map of each main quantity of a sea at one time to a PNG file (see `Sea.draw`).
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+    path : path-like
+        PNG file to write.
+    time : float, optional
+        Time [s since epoch]; by default that of the largest values.
+    area : BoundingBox, optional
+        By default the box of the smallest layer of files.
+    coastline : sequence of (lat, lon)
+        Lines [deg] drawn on top.
+
+    Raises
+    ------
+    InputError
+        If the sea is an ensemble, or holds no quantity that can be drawn.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    sea.check_single()
-    panels = [p for p in MAP_PANELS if sea.provides(p.values)]
+    check_not_ensemble(layers)
+    panels = [p for p in MAP_PANELS if stack_provides(layers, p.values)]
     if not panels:
         raise InputError(
-            "There is nothing to draw in this sea.",
-            f"It holds {', '.join(sorted(sea.variables)) or 'nothing'}.",
+            "The sea holds no quantity that can be drawn.",
+            f"It holds {', '.join(sorted(stack_variables(layers))) or 'nothing'}.",
             "Open a file with wind, waves, currents, level or depth.",
         )
-    area = area or _map_area(sea)
+    area = area or _map_area(layers)
     lat, lon = _raster_axes(area, RASTER_POINTS)
-    time = _time_of_largest_values(sea, panels, lat, lon) if time is None else time
+    time = _time_of_largest_values(layers, panels, lat, lon) if time is None else time
     columns = min(len(panels), 3 if len(panels) > 4 else 2)
     rows = math.ceil(len(panels) / columns)
     shape = _aspect_ratio(area)
@@ -100,12 +126,12 @@ def draw_maps(
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for axis, panel in zip(axes, panels):
-        _draw_panel(figure, axis, sea, panel, (time, lat, lon), area)
+        _draw_panel(figure, axis, layers, panel, (time, lat, lon), area)
         for line in coastline:
             _draw_coastline(axis, line, area)
     for axis in axes[len(panels) :]:
         axis.set_axis_off()
-    sources = ", ".join(dict.fromkeys(row.source for row in sea.coverage()))
+    sources = ", ".join(dict.fromkeys(row.source for layer in layers for row in layer.coverage()))
     title = (
         f"{format_time(time).replace('T', '  ').replace(':00Z', ' UTC')}     {_shortened(sources)}"
     )
@@ -117,15 +143,15 @@ def _shortened(text: str) -> str:
     return text if len(text) <= 90 else text[:87] + "..."
 
 
-def _map_area(sea: Sea) -> BoundingBox:
-    """Return the box of the smallest layer of files; the world if there are only formulas."""
-    boxes = [layer.area for layer in sea.layers if isinstance(layer, GridLayer)]
-    boxes = boxes or [layer.area for layer in sea.layers]
+def _map_area(layers: Sequence[Layer]) -> BoundingBox:
+    """Return the box of the smallest layer of files; of all layers if there are only formulas."""
+    boxes = [layer.area for layer in layers if isinstance(layer, GridLayer)]
+    boxes = boxes or [layer.area for layer in layers]
     return min(boxes, key=lambda a: (a.north - a.south) * (a.east - a.west))
 
 
 def _aspect_ratio(area: BoundingBox) -> float:
-    """Return height over width of the map, within what fits a page."""
+    """Return height over width of the map, limited to what fits on a page."""
     width = (area.east - area.west) * math.cos(math.radians(0.5 * (area.south + area.north)))
     return min(2.0, max(0.35, (area.north - area.south) / max(width, 1e-6)))
 
@@ -139,18 +165,20 @@ def _raster_axes(area: BoundingBox, count: int) -> tuple[FloatArray, FloatArray]
 
 
 def _time_of_largest_values(
-    sea: Sea, panels: Sequence[MapPanel], lat: FloatArray, lon: FloatArray
+    layers: Sequence[Layer], panels: Sequence[MapPanel], lat: FloatArray, lon: FloatArray
 ) -> float:
-    """Return the time at which the first quantity that changes is largest."""
+    """Return the time at which the first quantity that varies in time is largest."""
     for panel in panels:
-        start, end = sea.period_of([panel.values])
+        start, end = stack_period(layers, [panel.values])
         if not (np.isfinite(start) and np.isfinite(end)):
             continue
-        native = sea.times(start, end, names=[panel.values])
+        native = stack_times(layers, start, end, names=[panel.values])
         native = native[(native >= start) & (native <= end)]
         trials = native[np.unique(np.linspace(0, native.size - 1, TRIAL_TIMES).round().astype(int))]
         grid = np.meshgrid(lat[::8], lon[::8], indexing="ij")
-        values = sea.series([panel.values], trials, grid[0].ravel(), grid[1].ravel())[panel.values]
+        values = series_of_stack(layers, [panel.values], trials, grid[0].ravel(), grid[1].ravel())[
+            panel.values
+        ]
         if np.isfinite(values).any():
             return float(trials[np.argmax(np.fmax.reduce(values, axis=0))])
     return 0.0
@@ -159,14 +187,14 @@ def _time_of_largest_values(
 def _draw_panel(
     figure: Any,
     axis: Any,
-    sea: Sea,
+    layers: Sequence[Layer],
     panel: MapPanel,
     points: tuple[float, FloatArray, FloatArray],
     area: BoundingBox,
 ) -> None:
     """Draw one quantity: colours, arrows, a colour bar and a grid of positions."""
     time, lat, lon = points
-    values = sea.sample([panel.values], time, lat[:, None], lon[None, :])[panel.values]
+    values = sample_stack(layers, [panel.values], time, lat[:, None], lon[None, :])[panel.values]
     if panel.unit == "hPa":
         values = values / 100.0
     low, high = _colour_limits(values, panel)
@@ -181,12 +209,26 @@ def _draw_panel(
         rasterized=True,
     )
     axis.set_facecolor(UNKNOWN_COLOUR)
-    if panel.arrows and sea.provides(panel.arrows[0]):
-        _draw_arrows(axis, sea, panel, time, area)
+    if panel.arrows and stack_provides(layers, panel.arrows[0]):
+        _draw_arrows(axis, layers, panel, time, area)
     bar = figure.colorbar(colours, cax=axis.inset_axes([1.02, 0.0, 0.028, 1.0]))
     bar.outline.set_visible(False)
     bar.ax.tick_params(labelsize=8, colors=TEXT_COLOUR, length=2)
     bar.set_label(panel.unit, fontsize=8, color=TEXT_COLOUR)
+    _set_axes(axis, panel, area)
+    if not np.isfinite(values).any():
+        axis.text(
+            0.5,
+            0.5,
+            "no data at this time",
+            transform=axis.transAxes,
+            ha="center",
+            color=TEXT_COLOUR,
+        )
+
+
+def _set_axes(axis: Any, panel: MapPanel, area: BoundingBox) -> None:
+    """Set title, limits, position labels and grid lines of a panel."""
     axis.set_title(panel.title, fontsize=10, loc="left", color=TEXT_COLOUR)
     axis.set_xlim(area.west, area.east)
     axis.set_ylim(area.south, area.north)
@@ -199,15 +241,6 @@ def _draw_panel(
     for side in axis.spines.values():
         side.set_linewidth(0.5)
         side.set_color("#9aa3af")
-    if not np.isfinite(values).any():
-        axis.text(
-            0.5,
-            0.5,
-            "no data at this time",
-            transform=axis.transAxes,
-            ha="center",
-            color=TEXT_COLOUR,
-        )
 
 
 def _colour_limits(values: FloatArray, panel: MapPanel) -> tuple[float, float]:
@@ -224,10 +257,12 @@ def _colour_limits(values: FloatArray, panel: MapPanel) -> tuple[float, float]:
     return low, max(float(high), low + 1e-3)
 
 
-def _draw_arrows(axis: Any, sea: Sea, panel: MapPanel, time: float, area: BoundingBox) -> None:
+def _draw_arrows(
+    axis: Any, layers: Sequence[Layer], panel: MapPanel, time: float, area: BoundingBox
+) -> None:
     lat, lon = _raster_axes(area, ARROWS_ALONG_SIDE)
     lat, lon = 0.5 * (lat[1:] + lat[:-1]), 0.5 * (lon[1:] + lon[:-1])
-    got = sea.sample(list(panel.arrows), time, lat[:, None], lon[None, :])
+    got = sample_stack(layers, list(panel.arrows), time, lat[:, None], lon[None, :])
     u, v = (got[n] for n in panel.arrows)
     speed = np.hypot(u, v)
     known = speed > 1e-6

@@ -1,9 +1,8 @@
-"""The names variables of the sea are known by: CF standard names, and how they hang together.
+"""Canonical names of the variables of the sea (CF standard names), and their relations.
 
-Inside, every horizontal vector is kept as two components (east, north) pointing *towards* where it
-goes, and the direction of waves as a unit vector pointing to where they travel. Everything else
-(speeds, directions in degrees) is derived from those, so that no direction is ever interpolated as
-a number.
+Every horizontal vector is kept as two components (east, north) in the direction *towards* which it
+points, and the direction of waves as a unit vector towards which they travel. Speeds and directions
+in degrees are derived from these, so that a direction is never interpolated as a number.
 """
 
 from __future__ import annotations
@@ -31,14 +30,14 @@ ICE: Final = "sea_ice_area_fraction"
 
 @dataclass(frozen=True)
 class VectorNames:
-    """A horizontal vector and the names of its other spellings.
+    """Names of a horizontal vector: components, speed and directions.
 
     Attributes
     ----------
     east, north : str
         Canonical names of the components, pointing towards.
     speed : str
-        CF name of its length; empty for a unit vector.
+        CF name of its magnitude; empty for a unit vector.
     towards, origin : str
         CF names of its direction [deg] given as towards and as from; empty if CF has none.
     """
@@ -117,13 +116,22 @@ _BED_LEVELS = frozenset(
 
 
 def canonical_name(name: str) -> str:
-    """Return the name a variable is kept under: spellings of level and depth become one.
+    """Return the canonical name of a variable: all names of level, depth and pressure become one.
+
+    Parameters
+    ----------
+    name : str
+        CF standard name.
+
+    Returns
+    -------
+    str
 
     Examples
     --------
-    >>> canonical("sea_floor_depth_below_mean_sea_level")
+    >>> canonical_name("sea_floor_depth_below_mean_sea_level")
     'sea_floor_depth_below_geoid'
-    >>> canonical("tidal_sea_surface_height_above_lowest_astronomical_tide")
+    >>> canonical_name("tidal_sea_surface_height_above_lowest_astronomical_tide")
     'sea_surface_height_above_geopotential_datum'
     """
     if name == TOTAL_DEPTH:
@@ -138,18 +146,18 @@ def canonical_name(name: str) -> str:
 
 
 def is_bed_level(name: str) -> bool:
-    """Return whether the name is that of a height of the sea floor, positive up."""
+    """Return whether a name is that of a height of the sea floor, positive up."""
     return name in _BED_LEVELS
 
 
 def inseparable_variables(name: str) -> tuple[str, ...]:
-    """Return the variables that must come from one layer together with this one."""
+    """Return the variables that must come from the same layer: both components of a vector."""
     vector = VECTOR_OF.get(name)
     return vector.pair if vector else (name,)
 
 
 def vector_of_derived_name(name: str) -> tuple[VectorNames, str] | None:
-    """Return the vector and part ("speed", "towards", "origin") a derived name is made from."""
+    """Return the vector and part ("speed", "towards", "origin") of a derived name, or None."""
     for vector in VECTORS:
         for part in ("speed", "towards", "origin"):
             if name and name == getattr(vector, part):

@@ -216,7 +216,7 @@ def data_gap_text(world: ProjectEnvironment, period: tuple[float, float]) -> str
     told = [f" The data end {format_time(last)}."] if last < period[1] else []
     told += [
         f" They tell nothing from {format_time(gap.after)} to {format_time(gap.before)}."
-        for gap in data_gaps(sea)
+        for gap in data_gaps(sea.layers)
         if gap.before > period[0] and gap.after < period[1]
     ]
     return "".join(told)

@@ -58,7 +58,7 @@ def data_gap_warnings(context: PlanningContext, route: Route) -> list[str]:
     return [
         f"{gap.source} has a gap from {format_time(gap.after)} to {format_time(gap.before)}: legs "
         "in the gap that need its data are not sailed."
-        for gap in data_gaps(context.sea)
+        for gap in data_gaps(context.sea.layers)
         if gap.before > route.depart and gap.after < route.arrive
     ]
 

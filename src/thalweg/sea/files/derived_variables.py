@@ -1,4 +1,4 @@
-"""How canonical quantities are made from variables of files: signs, components, turns, means."""
+"""Derive canonical variables from file variables: signs, differences, components, rotation."""
 
 from __future__ import annotations
 
@@ -8,29 +8,32 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.sea.files.block_cache import GridWindow
 from thalweg.sea.files.grid_detection import GridPlacement
+from thalweg.sea.grids.source_variables import GridWindow
 
 Combine = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
 
 
 def identity(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
-    """Return what comes in."""
+    """Return the arrays unchanged."""
     return arrays
 
 
 def scale_by(sign: float) -> Combine:
-    """Return what multiplies an array."""
+    """Return a function that multiplies the first array by a sign."""
     return lambda arrays: [sign * arrays[0]]
 
 
 def subtract(sign: float) -> Combine:
-    """Return what takes the second array, of a sign, from the first."""
+    """Return a function that subtracts the second array, times a sign, from the first."""
     return lambda arrays: [arrays[0] - sign * arrays[1]]
 
 
 def polar_to_components(sign: float) -> Combine:
-    """Return what makes components of a speed and a direction [deg]; -1 where it tells from."""
+    """Return a function that converts speed and direction [deg] to east and north components.
+
+    ``sign`` is 1 for directions towards and -1 for directions from.
+    """
 
     def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
         length, angle = sign * arrays[0], np.radians(arrays[1])
@@ -40,7 +43,10 @@ def polar_to_components(sign: float) -> Combine:
 
 
 def direction_to_unit_vector(sign: float) -> Combine:
-    """Return what makes a unit vector of a direction [deg]; -1 where it tells from."""
+    """Return a function that converts a direction [deg] to a unit vector (east, north).
+
+    ``sign`` is 1 for directions towards and -1 for directions from.
+    """
 
     def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
         angle = np.radians(arrays[0])
@@ -50,7 +56,17 @@ def direction_to_unit_vector(sign: float) -> Combine:
 
 
 def make_conversion(combine: Combine, place: GridPlacement, turn: bool) -> Any:
-    """Return what turns arrays of a window, in SI, into canonical ones."""
+    """Return the function that converts the arrays of a window, in SI, to canonical variables.
+
+    Parameters
+    ----------
+    combine : callable
+        Makes the variables from the arrays.
+    place : GridPlacement
+        Their grid; on faces of a mesh, values are also averaged to its nodes.
+    turn : bool
+        Whether the variables are components along the grid, to be rotated to east and north.
+    """
     angle = place.angle if turn else None
 
     def make(raws: Sequence[FloatArray], window: GridWindow) -> Sequence[FloatArray]:
@@ -74,6 +90,6 @@ def _angle_in_window(angle: FloatArray, window: GridWindow, is_mesh: bool) -> Fl
 
 
 def _rotate(u: FloatArray, v: FloatArray, angle: FloatArray) -> list[FloatArray]:
-    """Turn components along the grid into true east and north."""
+    """Rotate components along the grid to true east and north."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return [u * cosine - v * sine, u * sine + v * cosine]

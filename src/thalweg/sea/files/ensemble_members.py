@@ -1,4 +1,4 @@
-"""Files that hold an ensemble: one dimension for the members, the rest as in any other file."""
+"""Files that hold an ensemble along one dimension."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Any, Final
 
 from thalweg.core.errors import DatasetError
 from thalweg.sea.ensemble_layer import combine_member_layers
-from thalweg.sea.files.conform import (
+from thalweg.sea.files.file_contents import layer_candidates
+from thalweg.sea.files.layer_candidate import (
     FileContents,
     LayerCandidate,
     OpenedFile,
     PlacementCache,
-    layer_candidates,
 )
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.layer import Layer
 
-#: names of the dimension, besides whatever has the standard name "realization"
+#: names of the dimension; one with the standard name "realization" is recognised too
 MEMBER_DIMENSIONS: Final = (
     "number", "member", "members", "ensemble", "ensemble_member", "realization", "realisation",
     "ens", "nens",
@@ -42,8 +42,8 @@ def ensemble_file(file: OpenedFile) -> EnsembleFile | None:
     if len(found) > 1:
         raise DatasetError(
             f"{file.source} holds an ensemble along {' and along '.join(found)}.",
-            "One dimension may hold the members.",
-            "Stack them into one dimension, or select along one of them.",
+            "The members must be along one dimension.",
+            "Stack them into one dimension, or select one index along one of them.",
             file=file.source,
         )
     return EnsembleFile(file, found[0], PlacementCache(), []) if found else None
@@ -55,7 +55,7 @@ def _is_member_dimension(dataset: Any, dim: str) -> bool:
 
 
 def _has_fields(dataset: Any, dim: Any) -> bool:
-    """Return whether some variable has other dimensions besides this one."""
+    """Return whether a variable has other dimensions than this one."""
     return any(dim in dataset[n].dims and dataset[n].ndim > 1 for n in dataset.data_vars)
 
 
@@ -66,13 +66,13 @@ class EnsembleFile:
     Attributes
     ----------
     file : OpenedFile
-        All of it.
+        The whole file.
     dim : str
         The dimension.
-    placement_cache : Memo
-        What is the same for every member: positions and meshes.
-    shared : list of Draft
-        The drafts of the first member, of which some hold for all.
+    placement_cache : PlacementCache
+        Positions and meshes, which are the same for every member.
+    shared : list of LayerCandidate
+        The candidates of the first member; those that do not vary are used for all.
     """
 
     file: OpenedFile
@@ -82,11 +82,11 @@ class EnsembleFile:
 
     @property
     def size(self) -> int:
-        """How many members it holds."""
+        """Number of members."""
         return int(self.file.dataset.sizes[self.dim])
 
     def candidates(self, index: int, mapping: Mapping[str, str]) -> FileContents:
-        """Return what one member holds; what no member has of its own is the same every time."""
+        """Return the contents for one member; fields without members are shared by all."""
         whole = self.file
         one = replace(
             whole,
@@ -96,37 +96,42 @@ class EnsembleFile:
         )
         candidates, ignored = layer_candidates(one, mapping, self.placement_cache)
         if not self.shared:
-            told = [replace(d, file=whole) for d in candidates]
-            self.shared.extend(told)
+            self.shared.extend(replace(d, file=whole) for d in candidates)
         kept = [d if self._varies(d) else s for d, s in zip(candidates, self.shared)]
         return kept, ignored
 
-    def _varies(self, draft: LayerCandidate) -> bool:
-        names = {v.name for quantity in draft.quantities for v in quantity.variables}
+    def _varies(self, candidate: LayerCandidate) -> bool:
+        names = {v.name for quantity in candidate.quantities for v in quantity.variables}
         return any(self.dim in self.file.dataset[name].dims for name in names)
 
 
 def check_member_counts(files: Sequence[EnsembleFile]) -> int:
-    """Return how many members the files hold.
+    """Return the number of members of each of the files.
 
     Raises
     ------
     DatasetError
-        If they do not hold as many.
+        If the numbers differ.
     """
     sizes = {one.size for one in files}
     if len(sizes) > 1:
-        told = ", ".join(f"{one.file.source} {one.size}" for one in files)
+        listed = ", ".join(f"{one.file.source} {one.size}" for one in files)
         raise DatasetError(
-            f"The files hold ensembles of different sizes: {told}.",
+            f"The files hold ensembles of different sizes: {listed}.",
             "Member i of each file belongs to member i of the others.",
-            "Open them one by one, or select as many members of each.",
+            "Open them separately, or select the same number of members of each.",
         )
     return sizes.pop()
 
 
 def combine_members(members: Sequence[Sequence[GridLayer]]) -> list[Layer]:
-    """Return the layers of an ensemble; what is the same for all members is one plain layer."""
+    """Return the layers of an ensemble; a layer that is the same for all members stays single.
+
+    Parameters
+    ----------
+    members : sequence of sequence of GridLayer
+        The layers of each member, in the same order.
+    """
     layers: list[Layer] = []
     for group in zip(*members):
         first = group[0].provenance()

@@ -1,4 +1,4 @@
-"""Opening files: what kind they are, whether they are whole, and lazily what they hold."""
+"""Open files: detect their format, check that they are complete, and make layers of them."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea.files import conform, grib, netcdf3_check, time_concatenation
-from thalweg.sea.files.block_cache import READ_ERRORS, GridWindow
-from thalweg.sea.files.conform import FileContents, OpenedFile
+from thalweg.sea.files import grib, netcdf3_check, time_concatenation
 from thalweg.sea.files.ensemble_members import check_member_counts, combine_members, ensemble_file
+from thalweg.sea.files.file_contents import NothingRecognised, layer_candidates
+from thalweg.sea.files.layer_candidate import FileContents, LayerCandidate, OpenedFile
 from thalweg.sea.files.variable_recognition import IgnoredVariable, check_mapping
 from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.source_variables import READ_ERRORS, GridWindow
 from thalweg.sea.layer import Layer
 
 HDF5_MAGIC: Final = b"\x89HDF\r\n\x1a\n"
@@ -32,23 +33,30 @@ COMPRESSED_FORMATS: Final = {
 WITHOUT_TIME_DECODING: Final[dict[str, Any]] = {"decode_times": False, "decode_timedelta": False}
 ZARR_METADATA_FILES: Final = (".zgroup", ".zmetadata", "zarr.json", ".zattrs")
 READABLE_FORMATS: Final = "NetCDF (classic and netCDF-4), GRIB 1 and 2, and Zarr can be read."
-FIRST_ROWS: Final = (
-    5  #: rows of a large grid that are read on opening, to see whether they make sense
-)
-SMALL_LEVEL: Final = 200_000  #: values of a level up to which all of it is read on opening
+FIRST_ROWS: Final = 5  #: rows of a large grid that are read on opening, to check their values
+SMALL_LEVEL: Final = 200_000  #: grids with up to this many points are read whole on opening
 
 
 def open_layers(
     sources: Sequence[Any], mapping: Mapping[str, str] | None, draught: float | None = None
 ) -> list[Layer]:
-    """Return the layers of files (see `Sea.open`), the first file's first.
+    """Return the layers of files, in order of priority (see `thalweg.sea.Sea.open`).
+
+    Parameters
+    ----------
+    sources : sequence of path-like or xarray.Dataset
+        Files in order of priority.
+    mapping : mapping of str to str or None
+        Canonical name to name in the file.
+    draught : float, optional
+        Draught [m] over which currents in layers are averaged.
 
     Raises
     ------
     InputError
-        If nothing is given, or the mapping names variables that are in none of the files.
+        If no file is given, or the mapping names variables that are in none of the files.
     DatasetError
-        If a file is missing, damaged, ambiguous, or holds nothing that can be used.
+        If a file is missing, damaged, ambiguous, or holds no usable variable.
     """
     if not sources:
         raise InputError(
@@ -62,9 +70,7 @@ def open_layers(
     ensembles = {k: found for k, f in enumerate(files) if (found := ensemble_file(f)) is not None}
     if not ensembles:
         return list(
-            _checked_layers(
-                _layers_of_files(files, lambda k: conform.layer_candidates(files[k], mapping))
-            )
+            _checked_layers(_layers_of_files(files, lambda k: layer_candidates(files[k], mapping)))
         )
     plain: dict[int, FileContents] = {}
 
@@ -72,7 +78,7 @@ def open_layers(
         if k in ensembles:
             return ensembles[k].candidates(index, mapping)
         if k not in plain:
-            plain[k] = conform.layer_candidates(files[k], mapping)
+            plain[k] = layer_candidates(files[k], mapping)
         return plain[k]
 
     count = check_member_counts(list(ensembles.values()))
@@ -89,9 +95,9 @@ def _checked_draught(draught: float) -> float:
     number = isinstance(draught, (int, float, np.number)) and not isinstance(draught, bool)
     if not (number and 0.0 < float(draught) < 100.0):
         raise InputError(
-            f"A draught of {draught!r} m cannot be averaged over.",
-            "It lies between 0 and 100 m.",
-            "Correct it, or leave it out to take the surface layer.",
+            f"Currents cannot be averaged over a draught of {draught!r} m.",
+            "The draught must be between 0 and 100 m.",
+            "Correct it, or omit it to use the surface layer.",
             field="draught_m",
         )
     return float(draught)
@@ -100,15 +106,15 @@ def _checked_draught(draught: float) -> float:
 def _layers_of_files(
     files: Sequence[OpenedFile], draft: Callable[[int], FileContents]
 ) -> list[GridLayer]:
-    """Return the layers of files; a part of a file may hold nothing if another part does."""
-    candidates: list[conform.LayerCandidate] = []
+    """Return the layers of files; a part of a file may be empty if another part is not."""
+    candidates: list[LayerCandidate] = []
     ignored: dict[str, list[IgnoredVariable]] = {}
     faults: dict[str, DatasetError] = {}
     useful: set[str] = set()
     for k, file in enumerate(files):
         try:
             found, left = draft(k)
-        except conform.NothingRecognised as fault:
+        except NothingRecognised as fault:
             faults.setdefault(file.source, fault)
             continue
         useful.add(file.source)
@@ -128,7 +134,7 @@ def _checked_layers(layers: list[GridLayer]) -> list[GridLayer]:
 
 
 def check_readable(layer: GridLayer) -> None:
-    """Read a little of the middle of each quantity, so that damage and wrong units show at once."""
+    """Read some rows of each quantity at the middle time, to detect damage and wrong units."""
     rows, columns = layer.grid.shape
     middle = layer.axis.times.size // 2
     count = rows if rows * columns <= SMALL_LEVEL else min(rows, FIRST_ROWS)
@@ -138,7 +144,24 @@ def check_readable(layer: GridLayer) -> None:
 
 
 def open_file(source: Any) -> list[OpenedFile]:
-    """Return the datasets in a file (one, except for GRIB with several kinds of levels)."""
+    """Return the datasets in a file (one, except for GRIB with several kinds of levels).
+
+    Parameters
+    ----------
+    source : path-like or xarray.Dataset
+        A file, a Zarr folder or a dataset.
+
+    Returns
+    -------
+    list of OpenedFile
+
+    Raises
+    ------
+    InputError
+        If the file does not exist or the source is of another type.
+    DatasetError
+        If the file is empty, damaged, compressed or in an unknown format.
+    """
     if hasattr(source, "data_vars"):
         return [
             OpenedFile(
@@ -150,7 +173,7 @@ def open_file(source: Any) -> list[OpenedFile]:
     if not isinstance(source, (str, os.PathLike)):
         raise InputError(
             f"A sea cannot be opened from {type(source).__name__!r}.",
-            "It takes paths of files or Zarr folders, or xarray datasets.",
+            "Paths of files or Zarr folders, and xarray datasets, can be opened.",
             "Give one of these.",
         )
     path = Path(source).expanduser()
@@ -174,8 +197,8 @@ def open_file(source: Any) -> list[OpenedFile]:
         (kind for mark, kind in COMPRESSED_FORMATS.items() if head.startswith(mark)), None
     )
     if packed is not None:
-        raise not_data_error(path, f"is packed ({packed})", "Unpack it first.")
-    raise not_data_error(path, "does not begin like any file of met-ocean data that is known")
+        raise not_data_error(path, f"is compressed ({packed})", "Decompress it first.")
+    raise not_data_error(path, "is not in a known format of met-ocean data")
 
 
 def _file_facts(path: Path) -> dict[str, Any]:
@@ -190,27 +213,27 @@ def _missing_file_error(path: Path) -> InputError:
     near = close_matches(path.name, [p.name for p in folder.iterdir()]) if folder.is_dir() else []
     return InputError(
         f"There is no file {str(path)!r}.",
-        f"Its folder {'exists' if folder.is_dir() else 'does not exist either'}.",
+        f"The folder {'exists' if folder.is_dir() else 'does not exist either'}.",
         f"Did you mean {' or '.join(near)}?" if near else "Check the path.",
         file=str(path),
     )
 
 
 def not_data_error(path: Path, fault: str, remedy: str = "Check the file.") -> DatasetError:
-    """Return the error for a file that is not data."""
+    """Return the error for a file that is not in a readable format."""
     return DatasetError(f"{path.name} {fault}.", READABLE_FORMATS, remedy, file=str(path))
 
 
 @contextmanager
 def _dataset_errors(path: Path) -> Iterator[None]:
-    """Turn system errors on reading a path into `DatasetError`."""
+    """Convert system errors on reading a path to `DatasetError`."""
     try:
         yield
     except OSError as error:
         raise DatasetError(
             f"{path.name} cannot be read ({error.strerror or error}).",
             READABLE_FORMATS,
-            "Check the rights to the file.",
+            "Check the permissions of the file.",
             file=str(path),
         ) from error
 
@@ -245,7 +268,7 @@ def _open_zarr(path: Path) -> OpenedFile:
 
 
 def _open_with_engine(path: Path, engines: Sequence[str], opener: Callable[[str], Any]) -> Any:
-    """Return what the first engine that is installed makes of a file."""
+    """Return the dataset from the first engine that is installed."""
     missing: list[str] = []
     for engine in engines:
         try:
@@ -259,7 +282,7 @@ def _open_with_engine(path: Path, engines: Sequence[str], opener: Callable[[str]
             raise DatasetError(
                 f"{path.name} is damaged or incomplete ({str(error).splitlines()[0][:200]}).",
                 READABLE_FORMATS,
-                "Fetch the file again.",
+                "Download the file again.",
                 file=str(path),
             ) from error
     raise DatasetError(

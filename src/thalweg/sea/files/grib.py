@@ -1,9 +1,9 @@
-"""GRIB files, decoded in a process of their own.
+"""Read GRIB files; they are decoded in a separate process.
 
-The decoder (eccodes) brings its own PROJ library, which can crash a process that also uses pyproj,
-and a corrupt message can crash it too. So a worker decodes the file into arrays in a temporary
-folder, which are mapped into memory here; if the worker dies, that is a `DatasetError`. Nothing is
-written beside the data.
+The decoder (eccodes) includes its own PROJ library, which can crash a process that also uses
+pyproj; a corrupt message can crash it too. So a worker process decodes the file into arrays in a
+temporary folder, which are memory-mapped here. If the worker crashes, a `DatasetError` is raised.
+No file is written in the folder of the data.
 """
 
 from __future__ import annotations
@@ -22,17 +22,27 @@ import numpy as np
 from thalweg.core.errors import DatasetError
 
 WORKER: Final = Path(__file__).with_name("grib_worker.py")
-_MIN_MESSAGE_LENGTH: Final = 12  #: [bytes] of a message that has its ends
-TIME_LIMIT: Final = 1800.0  #: [s] after which a worker is given up
+_MIN_MESSAGE_LENGTH: Final = 12  #: [bytes] shortest possible message
+TIME_LIMIT: Final = 1800.0  #: [s] after which a worker is stopped
 
 
 def open_grib(path: Path) -> list[Any]:
     """Return one xarray dataset for each kind of level in a GRIB file.
 
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    list of xarray.Dataset
+        Memory-mapped, not loaded.
+
     Raises
     ------
     DatasetError
-        If the file is cut, damaged, or cfgrib is not installed.
+        If the file is truncated, damaged, or cfgrib is not installed.
     """
     check_messages(path)
     folder = Path(tempfile.mkdtemp(prefix="thalweg-grib-"))
@@ -66,7 +76,7 @@ class _TemporaryFolder:
 
 
 def check_messages(path: Path) -> int:
-    """Return the number of messages, or raise `DatasetError` if one is cut or damaged."""
+    """Return the number of messages; raise `DatasetError` if one is truncated or damaged."""
     size, place, count = path.stat().st_size, 0, 0
     with path.open("rb") as stream:
         while place < size:
@@ -84,10 +94,10 @@ def check_messages(path: Path) -> int:
             whole = _MIN_MESSAGE_LENGTH <= length <= size - place
             stream.seek(place + length - 4 if whole else size)
             if stream.read(4) != b"7777":
-                raise _damaged_file_error(path, f"message {count + 1} is cut or damaged")
+                raise _damaged_file_error(path, f"message {count + 1} is truncated or damaged")
             place, count = place + length, count + 1
     if count == 0:
-        raise _damaged_file_error(path, "it holds no whole message")
+        raise _damaged_file_error(path, "it holds no complete message")
     return count
 
 
@@ -102,7 +112,7 @@ def _message_length(head: bytes) -> int | None:
 
 
 def _decode(path: Path, folder: Path) -> list[dict[str, Any]]:
-    # -P keeps this folder off the module path, where its names could hide other packages
+    # -P keeps this folder off the module path, where its modules could hide other packages
     command = [sys.executable, "-P", str(WORKER), str(path.resolve()), str(folder)]
     try:
         done = subprocess.run(
@@ -111,39 +121,39 @@ def _decode(path: Path, folder: Path) -> list[dict[str, Any]]:
     except (OSError, subprocess.TimeoutExpired) as error:
         raise _damaged_file_error(path, f"the decoder did not finish ({error})") from error
     answer = folder / "listing.json"
-    if answer.exists():  # written last; a crash while the worker exits does not matter
+    if answer.exists():  # written last; a crash during exit of the worker has no effect
         listing: list[dict[str, Any]] = json.loads(answer.read_text("utf-8"))
         return listing
-    told = (done.stderr.strip().splitlines() or ["no message"])[-1][:300]
-    if "No module named" in told:
+    message = (done.stderr.strip().splitlines() or ["no message"])[-1][:300]
+    if "No module named" in message:
         raise DatasetError(
             f"{path.name} is a GRIB file, and the GRIB decoder is not installed.",
             "NetCDF and Zarr can be read without it.",
             "pip install 'thalweg[grib]'",
             file=str(path),
         )
-    raise _damaged_file_error(path, f"the decoder failed (exit {done.returncode}: {told})")
+    raise _damaged_file_error(path, f"the decoder failed (exit {done.returncode}: {message})")
 
 
 def _damaged_file_error(path: Path, fault: str) -> DatasetError:
     return DatasetError(
         f"{path.name} cannot be decoded: {fault}.",
-        "Whole GRIB 1 and GRIB 2 files are read.",
-        "Fetch the file again.",
+        "Complete GRIB 1 and GRIB 2 files can be read.",
+        "Download the file again.",
         file=str(path),
     )
 
 
 def _dataset(folder: Path, part: dict[str, Any], keeper: _TemporaryFolder) -> Any:
-    """Build a dataset over the arrays the worker left, mapped and not read."""
+    """Return a dataset of the arrays that the worker wrote, memory-mapped."""
     import xarray as xr
 
-    def variable(told: dict[str, Any]) -> Any:
-        file = folder / told["file"]
-        data = keeper.load(file) if len(told["dims"]) > 1 else np.load(file)
-        if told["is_time"]:
+    def variable(entry: dict[str, Any]) -> Any:
+        file = folder / entry["file"]
+        data = keeper.load(file) if len(entry["dims"]) > 1 else np.load(file)
+        if entry["is_time"]:
             data = data.astype("datetime64[ns]")
-        return xr.Variable(told["dims"], data, told["attrs"])
+        return xr.Variable(entry["dims"], data, entry["attrs"])
 
     return xr.Dataset(
         {n: variable(v) for n, v in part["fields"].items()},

@@ -1,7 +1,7 @@
 """The process that decodes one GRIB file: ``python grib_worker.py FILE FOLDER``.
 
-It imports nothing of Thalweg and nothing that uses PROJ. It writes one array per variable into the
-folder, and last of all ``listing.json``.
+It imports no module of Thalweg and none that uses PROJ. It writes one array per variable into the
+folder, and ``listing.json`` last.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-#: kinds of levels that are not the sea's surface; their fields are not decoded
+#: kinds of levels above the sea surface; their fields are not decoded
 UPPER_AIR = {"isobaricInhPa", "isobaricInPa", "hybrid", "theta", "potentialVorticity", "sigma"}
 
 
@@ -32,7 +32,7 @@ def main(source: str, folder: Path) -> None:
 
 
 def write_arrays(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
-    """Write the arrays of a dataset and return what belongs to them."""
+    """Write the arrays of a dataset and return their names, dimensions and attributes."""
     dataset = with_valid_time(dataset)
     kept: dict[str, Any] = {"fields": {}, "coords": {}, "attrs": json_attributes(dataset.attrs)}
     for name, array in dataset.variables.items():
@@ -44,20 +44,20 @@ def write_arrays(dataset: Any, number: int, folder: Path) -> dict[str, Any]:
             values = values.astype("datetime64[ns]").astype(np.int64)
         file = f"{number}-{len(kept['fields']) + len(kept['coords'])}.npy"
         np.save(folder / file, values)
-        told = {
+        entry = {
             "file": file,
             "dims": [str(d) for d in array.dims],
             "attrs": json_attributes(array.attrs),
             "is_time": is_time,
         }
-        kept["coords" if name in dataset.coords else "fields"][str(name)] = told
+        kept["coords" if name in dataset.coords else "fields"][str(name)] = entry
     return kept
 
 
 def with_valid_time(dataset: Any) -> Any:
-    """Return a dataset whose time axis is the time its fields are valid at.
+    """Return a dataset whose time axis is the valid time of its fields.
 
-    A run of a forecast has one ``time`` and many ``step``: those become ``valid_time``.
+    A forecast run has one ``time`` and many ``step``: these become ``valid_time``.
     """
     if "step" in dataset.dims and "time" not in dataset.dims:
         return dataset.swap_dims({"step": "valid_time"}).drop_vars(

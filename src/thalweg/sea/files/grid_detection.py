@@ -1,4 +1,4 @@
-"""From the coordinates of a variable to the grid it lies on."""
+"""Detect the grid of a variable from its coordinates."""
 
 from __future__ import annotations
 
@@ -11,30 +11,34 @@ import numpy as np
 from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray
 from thalweg.sea.files import coordinates as co
+from thalweg.sea.files import projections
 from thalweg.sea.files.ugrid import MeshLayout
-from thalweg.sea.grids.point_location import Grid, RectilinearGrid, curvilinear_grid
+from thalweg.sea.grids.grid_protocol import Grid
+from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
+from thalweg.sea.grids.triangle_grid import curvilinear_grid
 
 NEMO_U_COORDINATES = ("glamu", "gphiu")
 
 
 @dataclass(frozen=True, eq=False)
 class GridPlacement:
-    """Where the values of a variable lie.
+    """The grid of a variable and the order of its dimensions.
 
     Attributes
     ----------
     key : tuple
-        The same for variables on the same grid.
+        Equal for variables on the same grid.
     grid : Grid
         The grid.
     dims : tuple of str
-        Dimensions of place, rows first.
+        Dimensions of position, rows first.
     angle : float64 array or None
-        Angle [rad] of grid columns from east, (rows, columns); None if they run east.
+        Angle [rad] from true east to the direction of increasing column number (rows, columns);
+        None if that is east.
     flipped : bool
         Whether columns must be reversed on reading.
     mesh : MeshLayout or None
-        For meshes, how values become places.
+        For meshes, how values belong to grid points.
     """
 
     key: tuple[str, ...]
@@ -48,12 +52,23 @@ class GridPlacement:
 def grid_placement(
     dataset: Any, array: Any, mapping: Mapping[str, str], source: str, meshes: list[MeshLayout]
 ) -> GridPlacement:
-    """Return where a variable lies.
+    """Return the grid of a variable.
+
+    Parameters
+    ----------
+    dataset, array : xarray.Dataset, xarray.DataArray
+        The file and one of its variables.
+    mapping : mapping of str to str
+        Given by the user; its key "crs" names the projection.
+    source : str
+        File name for messages.
+    meshes : list of MeshLayout
+        Meshes of the file.
 
     Raises
     ------
     DatasetError
-        If its positions are not those of a field, with the reason.
+        If its positions are not those of a grid or mesh; the message gives the reason.
     """
     for mesh in meshes:
         if mesh.dim in array.dims:
@@ -66,13 +81,11 @@ def grid_placement(
         return _curvilinear_placement(dataset, lat, lon)
     if lat.ndim == 1 and lon.ndim == 1 and lat.dims != lon.dims:
         return _rectilinear_grid(lat, lon, source)
-    raise _no_field_error(
-        array, source, "lies at single points, not on a grid, and no mesh joins them"
-    )
+    raise _no_field_error(array, source, "is given at single points, and no mesh connects them")
 
 
 def _find_coordinate(dataset: Any, array: Any, test: Any, order: tuple[str, ...]) -> Any:
-    """Return the latitude or longitude that fits a variable's dimensions, T points first."""
+    """Return the latitude or longitude with a variable's dimensions; T points have priority."""
     fitting = [
         dataset[n]
         for n in dataset.variables
@@ -97,7 +110,7 @@ def _rectilinear_grid(lat: Any, lon: Any, source: str) -> GridPlacement:
     x = x[::-1] if flipped else x
     for axis, name in ((np.sort(y) if _is_decreasing(y) else y, lat.name), (x, lon.name)):
         if (np.diff(axis) <= 0.0).any():
-            raise _axis_fault(source, str(name), "neither increases nor decreases all along")
+            raise _axis_fault(source, str(name), "neither increases nor decreases throughout")
     grid = RectilinearGrid(np.ascontiguousarray(y), np.ascontiguousarray(x))
     dims = (str(lat.dims[0]), str(lon.dims[0]))
     return GridPlacement((*dims, str(lat.name), str(lon.name)), grid, dims, flipped=bool(flipped))
@@ -119,8 +132,8 @@ def _read_axis(array: Any, source: str, what: str) -> FloatArray:
 def _axis_fault(source: str, name: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source}: the axis {name!r} {fault}.",
-        "Latitudes lie between -90 and 90 degrees and axes run one way.",
-        "Repair the axis.",
+        "Latitudes must be within -90 and 90 degrees, and axes must be monotonic.",
+        "Correct the axis in the file.",
         file=source,
         variable=name,
     )
@@ -137,14 +150,14 @@ def _curvilinear_placement(dataset: Any, lat: Any, lon: Any) -> GridPlacement:
     rising = is_plain and (np.diff(columns) > 0.0).all()
     if rising and ((np.diff(rows) > 0.0).all() or _is_decreasing(rows)):
         return GridPlacement(key, RectilinearGrid(rows.copy(), columns), dims)
-    angle = co.grid_angle(y, x)
+    angle = projections.grid_angle(y, x)
     if _runs_backwards(dataset, dims[1]):
         angle = angle + np.pi
     return GridPlacement(key, curvilinear_grid(y, x), dims, angle)
 
 
 def _runs_backwards(dataset: Any, dim: str) -> bool:
-    """Return whether the projected x coordinate falls along its dimension."""
+    """Return whether the projected x coordinate decreases along its dimension."""
     if dim not in dataset.variables or dataset[dim].size < 2:
         return False
     first = np.asarray(dataset[dim].values[:2], float)
@@ -154,7 +167,7 @@ def _runs_backwards(dataset: Any, dim: str) -> bool:
 def _projected_placement(
     dataset: Any, array: Any, mapping: Mapping[str, str], source: str
 ) -> GridPlacement:
-    """Place a variable that has only projected x and y axes, by its stated projection."""
+    """Return the grid of a variable that has only projected x and y axes."""
     axes = {}
     for name in dataset.variables:
         axis = dataset[name]
@@ -163,33 +176,25 @@ def _projected_placement(
             axes[standard[11]] = axis
     if len(axes) < 2:
         raise _no_field_error(array, source, "has no positions: no latitude and longitude along it")
-    crs = co.projection_of(dataset, array, mapping, source)
+    crs = projections.projection_of(dataset, array, mapping, source)
     if crs is None:
-        raise no_projection_error(source)
+        raise projections.no_projection_error(source)
     scale = [1000.0 if axes[k].attrs.get("units") == "km" else 1.0 for k in "xy"]
     x, y = np.meshgrid(
         np.asarray(axes["x"].values, float) * scale[0],
         np.asarray(axes["y"].values, float) * scale[1],
     )
-    lat, lon = co.to_degrees(crs, x, y)
+    lat, lon = projections.to_degrees(crs, x, y)
     dims = (str(axes["y"].dims[0]), str(axes["x"].dims[0]))
-    return GridPlacement(dims, curvilinear_grid(lat, lon), dims, co.meridian_angle(crs, x, y))
-
-
-def no_projection_error(source: str) -> DatasetError:
-    """Return the error for projected positions without a projection."""
-    return DatasetError(
-        f"{source}: positions are in metres of a projection that the file does not name.",
-        "Positions need latitude and longitude, or a projection.",
-        "Give it with mapping={'crs': 'EPSG:...'} (on the command line --map crs=EPSG:...).",
-        file=source,
+    return GridPlacement(
+        dims, curvilinear_grid(lat, lon), dims, projections.meridian_angle(crs, x, y)
     )
 
 
 def _no_field_error(array: Any, source: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source}: {array.name!r} {fault} (dimensions {', '.join(map(str, array.dims))}).",
-        "A sea needs fields on a grid or mesh; one cannot sail on series at buoys or lines.",
+        "A sea needs fields on a grid or mesh; series at buoys or along lines cannot be used.",
         "Give a gridded file, a mesh with its face_node_connectivity, or wrap the series in "
         "Sea.from_functions.",
         file=source,

@@ -1,8 +1,8 @@
-"""Whether a classic NetCDF file is whole.
+"""Check that a classic NetCDF file is complete.
 
-The NetCDF library reads the missing end of a truncated classic file as zeros: calm weather. So the
-header is read here (CDF-1, CDF-2 and CDF-5, as specified in the NetCDF User's Guide, "NetCDF
-Classic Format Specification") and the length it promises is compared with the file's.
+The NetCDF library reads the missing end of a truncated classic file as zeros, which would be calm
+weather. So the header is read here (CDF-1, CDF-2 and CDF-5, as specified in the NetCDF User's
+Guide, "NetCDF Classic Format Specification") and the length it gives is compared with the file's.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ STREAMING_COUNTS: Final = {4: 0xFFFFFFFF, 8: 0xFFFFFFFFFFFFFFFF}
 
 
 class _Header:
-    """Reads the fields of a classic header one after the other."""
+    """Reads the fields of a classic header in sequence."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self.stream = stream
@@ -51,12 +51,17 @@ class _Header:
 
 
 def expected_length(path: Path) -> int:
-    """Return the least length [bytes] a classic NetCDF file must have for all its data.
+    """Return the shortest length [bytes] of a classic NetCDF file with all its data.
+
+    Parameters
+    ----------
+    path : Path
+        A classic NetCDF file.
 
     Raises
     ------
     EOFError, KeyError
-        If the header itself is cut or damaged.
+        If the header itself is truncated or damaged.
     """
     with path.open("rb") as stream:
         header = _Header(stream)
@@ -72,14 +77,14 @@ def expected_length(path: Path) -> int:
 
 
 def _end_of_data(header: _Header, records: int, lengths: list[int]) -> int:
-    """Return where the last value of any variable ends."""
+    """Return the position after the last value of all variables [bytes]."""
     fixed, moving = [0], []
     for _ in range(header.list_length()):
         header.skip(header.count())
         dims = [header.count() for _ in range(header.count())]
         header.skip_attributes()
         kind = header.whole(4)
-        header.count()  # the size as written may overflow; it is computed instead
+        header.count()  # the size in the file may overflow; it is computed instead
         begin = header.whole(4 if header.version == 1 else 8)
         size = TYPE_SIZES[kind]
         is_record = bool(dims) and lengths[dims[0]] == 0
@@ -98,20 +103,22 @@ def _end_of_data(header: _Header, records: int, lengths: list[int]) -> int:
 
 
 def check_complete(path: Path) -> None:
-    """Raise `DatasetError` if a classic NetCDF file is shorter than its header promises."""
+    """Raise `DatasetError` if a classic NetCDF file is shorter than its header states."""
     size = path.stat().st_size
     try:
-        promised = expected_length(path)
+        expected = expected_length(path)
     except (EOFError, KeyError, IndexError) as error:
-        raise _truncated_file_error(path, f"its header is cut or damaged ({error})") from error
-    if size < promised:
-        raise _truncated_file_error(path, f"it has {size} of {promised} bytes")
+        raise _truncated_file_error(
+            path, f"its header is truncated or damaged ({error})"
+        ) from error
+    if size < expected:
+        raise _truncated_file_error(path, f"it has {size} of {expected} bytes")
 
 
 def _truncated_file_error(path: Path, fault: str) -> DatasetError:
     return DatasetError(
         f"{path.name} is incomplete: {fault}.",
-        "Only whole files are read; the missing part would look like a calm sea.",
-        "Fetch the file again.",
+        "Only complete files are read; the missing part would be read as a calm sea.",
+        "Download the file again.",
         file=str(path),
     )

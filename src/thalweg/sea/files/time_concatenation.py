@@ -1,4 +1,4 @@
-"""From drafts of single files to layers: files that follow each other in time become one."""
+"""Concatenate files in time: files with one layout that follow each other become one layer."""
 
 from __future__ import annotations
 
@@ -7,44 +7,59 @@ from dataclasses import replace
 
 import numpy as np
 
-from thalweg.sea.files.block_cache import BlockCache, Quantity
-from thalweg.sea.files.conform import LayerCandidate
 from thalweg.sea.files.grid_detection import GridPlacement
+from thalweg.sea.files.layer_candidate import LayerCandidate
 from thalweg.sea.files.variable_recognition import IgnoredVariable
-from thalweg.sea.grids.gridded_layer import GridLayer, RecognitionRecord, TimeAxis
+from thalweg.sea.grids.block_cache import BlockCache
+from thalweg.sea.grids.gridded_layer import GridLayer
+from thalweg.sea.grids.source_variables import Quantity
+from thalweg.sea.grids.time_axis import TimeAxis
+from thalweg.sea.recognition_record import RecognitionRecord
 
 
 def join_in_time(
     candidates: Sequence[LayerCandidate], ignored: Mapping[str, list[IgnoredVariable]]
 ) -> list[GridLayer]:
-    """Return layers, joining files of the same grid and variables that follow in time."""
+    """Return layers; files of the same grid and variables that follow in time become one.
+
+    Parameters
+    ----------
+    candidates : sequence of LayerCandidate
+        Candidates of all files, in order of priority.
+    ignored : mapping of str to list of IgnoredVariable
+        Variables that are not used, by file.
+
+    Returns
+    -------
+    list of GridLayer
+    """
     joined: list[list[LayerCandidate]] = []
-    for draft in candidates:
-        home = next((group for group in joined if _continues(group, draft)), None)
-        if home is None:
-            joined.append([draft])
+    for candidate in candidates:
+        group = next((g for g in joined if _continues(g, candidate)), None)
+        if group is None:
+            joined.append([candidate])
         else:
-            home.append(draft)
-    return [_joined_layer(sorted(group, key=_first_time), ignored) for group in joined]
+            group.append(candidate)
+    return [_joined_layer(sorted(g, key=_first_time), ignored) for g in joined]
 
 
-def _first_time(draft: LayerCandidate) -> float:
-    return float(draft.times[0]) if draft.times.size else 0.0
+def _first_time(candidate: LayerCandidate) -> float:
+    return float(candidate.times[0]) if candidate.times.size else 0.0
 
 
-def _continues(group: list[LayerCandidate], draft: LayerCandidate) -> bool:
-    """Return whether a draft has the same layout as a group and times apart from its times."""
+def _continues(group: list[LayerCandidate], candidate: LayerCandidate) -> bool:
+    """Return whether a candidate has the layout of a group and times outside those of the group."""
     first = group[0]
-    if draft.times.size == 0 or first.times.size == 0 or draft.file is first.file:
+    if candidate.times.size == 0 or first.times.size == 0 or candidate.file is first.file:
         return False
-    same = draft.place.key == first.place.key and _signature(draft) == _signature(first)
-    if not (same and _same_grid(draft.place, first.place)):
+    same = candidate.place.key == first.place.key and _signature(candidate) == _signature(first)
+    if not (same and _same_grid(candidate.place, first.place)):
         return False
-    return all(d.times[-1] < draft.times[0] or draft.times[-1] < d.times[0] for d in group)
+    return all(d.times[-1] < candidate.times[0] or candidate.times[-1] < d.times[0] for d in group)
 
 
-def _signature(draft: LayerCandidate) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
-    return sorted((q.names, tuple(v.name for v in q.variables)) for q in draft.quantities)
+def _signature(candidate: LayerCandidate) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    return sorted((q.names, tuple(v.name for v in q.variables)) for q in candidate.quantities)
 
 
 def _same_grid(a: GridPlacement, b: GridPlacement) -> bool:
@@ -78,12 +93,12 @@ def _joined_layer(
     )
 
 
-def _quantity_named(draft: LayerCandidate, made: tuple[str, ...]) -> Quantity:
-    return next(q for q in draft.quantities if q.names == made)
+def _quantity_named(candidate: LayerCandidate, made: tuple[str, ...]) -> Quantity:
+    return next(q for q in candidate.quantities if q.names == made)
 
 
 def _joined_quantity(a: Quantity, b: Quantity, source: str) -> Quantity:
-    """Return a quantity whose variables go on into a later file."""
+    """Return a quantity whose variables continue in a later file."""
     variables = tuple(
         replace(v, pieces=(*v.pieces, *w.pieces), source=source) if v.timed else v
         for v, w in zip(a.variables, b.variables)

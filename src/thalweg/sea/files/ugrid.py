@@ -1,10 +1,10 @@
-"""UGRID: unstructured meshes of triangles, or of polygons cut into triangles.
+"""UGRID: unstructured meshes of triangles, or of polygons divided into triangles.
 
-Values at nodes are linear in each triangle. Values of faces are kept at the centre of the face
-and averaged to its nodes (over the faces that are known at that moment, weighted by the inverse
-of the distance to their centres); each face is cut into triangles between its centre and its
-edges, and values are linear in those. So a field is continuous, has the file's value at every
-face centre, and is unknown throughout a face that is unknown (dry).
+Values at nodes are linear in each triangle. Values of faces are kept at the centre of the face and
+averaged to its nodes (over the faces that are known at that time, weighted by the inverse of the
+distance to their centres). Each face is divided into triangles between its centre and its edges,
+and values are linear in those. So a field is continuous, has the file's value at every face centre,
+and is unknown throughout a face that is unknown (dry).
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.files import coordinates as co
-from thalweg.sea.grids.point_location import TriangleGrid
+from thalweg.sea.files import projections
+from thalweg.sea.grids.triangle_grid import TriangleGrid
 from thalweg.sea.grids.triangle_mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)
 class FaceAveraging:
-    """How face values become node values: faces around each node, and their weights.
+    """Averaging of face values to nodes: the faces around each node and their weights.
 
     Attributes
     ----------
@@ -49,7 +50,7 @@ class FaceAveraging:
 
 @dataclass(frozen=True, eq=False)
 class MeshLayout:
-    """One dimension of a mesh that carries values.
+    """The values along one dimension of a mesh: nodes or faces.
 
     Attributes
     ----------
@@ -58,10 +59,10 @@ class MeshLayout:
     dim : str
         Dimension of nodes or of faces.
     grid : TriangleGrid
-        Places and triangles.
+        Grid points and triangles.
     angle : float64 array or None
         Angle [rad] of the projection's x axis from east at each value, (1, values).
-    averaging : Averaging or None
+    averaging : FaceAveraging or None
         For faces.
     """
 
@@ -74,7 +75,7 @@ class MeshLayout:
 
 @dataclass(frozen=True, eq=False)
 class MeshTopology:
-    """A mesh as the file tells it: node positions and the nodes of each face (-1 = no more)."""
+    """A mesh of a file: node positions and the nodes of each face (-1 after the last one)."""
 
     name: str
     lat: FloatArray
@@ -84,24 +85,24 @@ class MeshTopology:
     face_dim: str
 
 
-#: names of connectivity in files that tell no topology (ADCIRC, FVCOM)
+#: names of the connectivity in files without mesh topology (ADCIRC, FVCOM)
 _CONNECTIVITY_NAMES = ("element", "elements", "nv", "tri")
 
 
 def topologies(dataset: Any) -> dict[str, Mapping[str, Any]]:
-    """Return the two-dimensional meshes of a dataset: name and what it tells of each.
+    """Return the two-dimensional meshes of a dataset: name and attributes of each.
 
-    Where no topology is told, connectivity between nodes at positions makes one.
+    In a file without mesh topology, a connectivity table between nodes with positions gives one.
     """
-    told = {
+    stated = {
         str(n): dataset[n].attrs
         for n in dataset.variables
         if dataset[n].attrs.get("cf_role") == "mesh_topology"
     }
-    if told:
+    if stated:
         return {
             name: attributes
-            for name, attributes in told.items()
+            for name, attributes in stated.items()
             if int(attributes.get("topology_dimension", attributes.get("dimension", 2))) == 2
         }
     return _inferred_topology(dataset)
@@ -139,7 +140,22 @@ def _inferred_node_coordinates(dataset: Any, not_along: frozenset[str]) -> list[
 
 
 def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[MeshLayout]:
-    """Return the layouts for node and face data of every two-dimensional mesh of a dataset."""
+    """Return the layouts for node and face data of every two-dimensional mesh of a dataset.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The file.
+    mapping : mapping of str to str
+        Given by the user; its key "crs" names the projection.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If the topology is incomplete or positions are impossible.
+    """
     return [
         layout
         for name, attributes in topologies(dataset).items()
@@ -148,7 +164,7 @@ def mesh_layouts(dataset: Any, mapping: Mapping[str, str], source: str) -> list[
 
 
 def mesh_description_variables(dataset: Any) -> frozenset[str]:
-    """Return the variables that describe meshes and carry no field."""
+    """Return the variables that describe meshes and hold no field."""
     names: set[str] = set()
     for mesh, attributes in topologies(dataset).items():
         names.add(mesh)
@@ -159,7 +175,7 @@ def mesh_description_variables(dataset: Any) -> frozenset[str]:
 
 
 def mesh_dimensions(dataset: Any) -> frozenset[str]:
-    """Return the dimensions of nodes and of faces of every mesh, as far as they are told."""
+    """Return the dimensions of nodes and of faces of every mesh, as far as the file has them."""
     dims: set[str] = set()
     for attributes in topologies(dataset).values():
         for key in ("node_coordinates", "face_coordinates", "face_node_connectivity"):
@@ -178,7 +194,7 @@ def _mesh_layouts_of_topology(
     connectivity = _required_names(dataset, attributes, "face_node_connectivity", source)[0]
     axes = _required_names(dataset, attributes, "node_coordinates", source)
     x, y, crs = _node_positions(dataset, axes, mapping, source)
-    lat, lon = (y, x) if crs is None else co.to_degrees(crs, x, y)
+    lat, lon = (y, x) if crs is None else projections.to_degrees(crs, x, y)
     _check_positions(lat, lon, source)
     table = dataset[connectivity]
     face_dim = str(attributes.get("face_dimension", table.dims[0]))
@@ -186,7 +202,7 @@ def _mesh_layouts_of_topology(
     faces = read_faces(table.transpose(face_dim, ...), lat.size, source)
     node_dim = str(dataset[axes[0]].dims[0])
     topology = MeshTopology(name, lat, lon, faces, node_dim, face_dim)
-    angle = None if crs is None else co.meridian_angle(crs, x, y)
+    angle = None if crs is None else projections.meridian_angle(crs, x, y)
     return [_node_layout(topology, angle), _face_layout(topology, angle)]
 
 
@@ -197,9 +213,9 @@ def _required_names(
     if names and all(n in dataset.variables for n in names):
         return names
     raise DatasetError(
-        f"{source}: the mesh does not tell its {key}.",
+        f"{source}: the mesh has no {key}.",
         "UGRID meshes with node_coordinates and face_node_connectivity can be read.",
-        "Write the file with complete UGRID topology.",
+        "Write the file with a complete UGRID topology.",
         file=source,
     )
 
@@ -214,20 +230,18 @@ def _node_positions(
     x, y = np.asarray(first.values, np.float64), np.asarray(second.values, np.float64)
     if co.is_longitude(first, str(first.name)) and co.is_latitude(second, str(second.name)):
         return x, y, None
-    crs = co.projection_of(dataset, first, mapping, source)
+    crs = projections.projection_of(dataset, first, mapping, source)
     if crs is not None and crs.is_geographic:
         return x, y, None
     if crs is None:
-        from thalweg.sea.files.grid_detection import no_projection_error
-
-        raise no_projection_error(source)
+        raise projections.no_projection_error(source)
     return x, y, crs
 
 
 def _check_positions(lat: FloatArray, lon: FloatArray, source: str) -> None:
     if not (np.isfinite(lat).all() and np.isfinite(lon).all() and (np.abs(lat) <= 90.0).all()):
         raise DatasetError(
-            f"{source}: nodes of the mesh have positions that do not exist.",
+            f"{source}: nodes of the mesh have impossible positions.",
             "Every node needs a latitude and a longitude.",
             "Check the projection of the file.",
             file=source,
@@ -235,9 +249,27 @@ def _check_positions(lat: FloatArray, lon: FloatArray, source: str) -> None:
 
 
 def read_faces(table: Any, nodes: int, source: str) -> IntArray:
-    """Return the nodes of each face from 0, -1 where it has no more.
+    """Return the nodes of each face, counted from 0.
 
-    The table may be of floats with NaN, hold its fill value undecoded, and count from 0 or 1.
+    Parameters
+    ----------
+    table : xarray.DataArray
+        Connectivity (M, largest number of nodes); it may hold floats with NaN or an undecoded
+        fill value, and count from 0 or 1.
+    nodes : int
+        Number of nodes of the mesh.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    int64 array (M, largest number of nodes)
+        -1 after the last node of a face.
+
+    Raises
+    ------
+    DatasetError
+        If a face refers to a node that does not exist.
     """
     raw = np.asarray(table.values, np.float64)
     fill = table.attrs.get("_FillValue", table.encoding.get("_FillValue"))
@@ -251,8 +283,8 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
         if not (low >= 1.0 and high <= nodes):
             raise DatasetError(
                 f"{source}: faces of the mesh use nodes {low:g} to {high:g} of {nodes}.",
-                "Each face must be made of nodes of the mesh.",
-                "Repair face_node_connectivity and its start_index.",
+                "Each face must refer to nodes of the mesh.",
+                "Correct face_node_connectivity and its start_index.",
                 file=source,
             )
         start = 1
@@ -260,7 +292,7 @@ def read_faces(table: Any, nodes: int, source: str) -> IntArray:
 
 
 def triangulate_faces(faces: IntArray) -> IntArray:
-    """Return triangles of faces, each cut from its first node."""
+    """Return triangles (K, 3) of faces (M, N), each face divided from its first node."""
     pieces = []
     for k in range(1, faces.shape[1] - 1):
         whole = faces[:, k + 1] >= 0

@@ -1,4 +1,4 @@
-"""Units as files spell them, turned into SI at the door."""
+"""Convert the units of files to SI."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Final
 
 from thalweg.core.units import KNOT
 
-#: dimension to (spelling, factor to SI); spellings as `normalised_unit` writes them
+#: factor to SI by dimension and unit; units as `normalised_unit` returns them
 _SI_FACTORS: Final[dict[str, dict[str, float]]] = {
     "speed": {
         "m/s": 1.0, "ms-1": 1.0, "cm/s": 0.01, "cms-1": 0.01, "mm/s": 0.001, "mms-1": 0.001,
@@ -46,7 +46,13 @@ _TRUE_NORTH_SUFFIX: Final = re.compile(r"(_|\s)*(true|t|clockwise.*|from.*|north
 
 
 def normalised_unit(text: str) -> str:
-    """Return a unit in lower case without spaces, powers and long words."""
+    """Return a unit in lower case, without spaces, power signs and long words.
+
+    Examples
+    --------
+    >>> normalised_unit("metres per second")
+    'm/s'
+    """
     unit = text.strip().lower()
     for word, short in _WORD_PATTERNS:
         unit = re.sub(word, short, unit)
@@ -54,12 +60,12 @@ def normalised_unit(text: str) -> str:
 
 
 def si_factor(text: str, dimension: str) -> float | None:
-    """Return what values in a unit are multiplied with for SI (degrees for directions).
+    """Return the factor that converts values in a unit to SI (degrees for directions).
 
     Parameters
     ----------
     text : str
-        The unit as the file spells it.
+        The unit as spelled in the file.
     dimension : str
         "speed", "length", "time", "pressure", "fraction" or "direction".
 
@@ -70,9 +76,9 @@ def si_factor(text: str, dimension: str) -> float | None:
 
     Examples
     --------
-    >>> factor("m s**-1", "speed"), factor("cm s-1", "speed"), factor("K", "speed")
+    >>> si_factor("m s**-1", "speed"), si_factor("cm s-1", "speed"), si_factor("K", "speed")
     (1.0, 0.01, None)
-    >>> factor("Degree true", "direction")
+    >>> si_factor("Degree true", "direction")
     1.0
     """
     table = _SI_FACTORS[dimension]
@@ -82,5 +88,5 @@ def si_factor(text: str, dimension: str) -> float | None:
 
 
 def is_unspecified(text: str) -> bool:
-    """Return whether a unit says nothing."""
+    """Return whether a text states no unit."""
     return text.strip().lower() in UNSPECIFIED_UNITS

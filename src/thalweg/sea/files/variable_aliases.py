@@ -1,7 +1,7 @@
-"""Which variable of a file is which: CF standard names first, then spellings by source.
+"""Tables of variable names: CF standard names, and the names that models and services use.
 
-A *role* is a canonical name, or one of the other forms a quantity comes in: speed, direction,
-components along the grid, bed level, total depth.
+A *role* is a canonical name, or one of the other forms of a quantity: speed, direction, components
+along the grid, bed level, total depth.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ X_CURRENT: Final = "sea_water_x_velocity"
 Y_CURRENT: Final = "sea_water_y_velocity"
 BED_LEVEL: Final = "bed_level"
 
-#: CF standard names (and their old aliases) by role, besides each role's own name
+#: role of CF standard names (and their old aliases) other than the role's own name
 STANDARD_NAMES: Final[dict[str, str]] = {
     "grid_eastward_wind": X_WIND,
     "grid_northward_wind": Y_WIND,
@@ -39,7 +39,7 @@ STANDARD_NAMES: Final[dict[str, str]] = {
     "depth_below_geoid": nm.BED_DEPTH,
 }
 
-#: spellings by source; all in lower case, in order of preference within a role
+#: role of the names that a source uses; all in lower case, in order of preference within a role
 ALIASES: Final[dict[str, dict[str, str]]] = {
     "ECMWF": {
         "u10": nm.EASTWARD_WIND, "v10": nm.NORTHWARD_WIND, "10u": nm.EASTWARD_WIND,
@@ -100,7 +100,7 @@ ALIASES: Final[dict[str, dict[str, str]]] = {
     "GEBCO and ETOPO": {"elevation": BED_LEVEL, "topo": BED_LEVEL, "band1": BED_LEVEL},
 }  # fmt: skip
 
-#: standard names used only if no better candidate for the role is there
+#: standard names used only if there is no better candidate for the role
 SECOND_CHOICE_NAMES: Final[dict[str, str]] = {
     "barotropic_sea_water_x_velocity": X_CURRENT,
     "barotropic_sea_water_y_velocity": Y_CURRENT,
@@ -109,18 +109,18 @@ SECOND_CHOICE_NAMES: Final[dict[str, str]] = {
     "sea_surface_wave_from_direction_at_variance_spectral_density_maximum": nm.WAVES.origin,
 }
 
-#: names too common to insist on: with units that do not fit they are something else
+#: names that several quantities have: ignored if their units do not fit the role
 AMBIGUOUS_ALIASES: Final = frozenset(
     {"z", "band1", "topo", "elevation", "ff", "dd", "hs", "tp", "ci", "zeta"}
 )
 
-#: names of a depth that changes in time, and so is that of the water, not of the bed
+#: names of a depth that, if it varies in time, is the depth of the water and not of the bed
 TIME_VARYING_DEPTHS: Final = frozenset({"depth", "water_depth", "waterdepth", "h_water"})
 
-#: why known variables are not used
+#: reason why a known variable is not used
 UNUSED_VARIABLES: Final[dict[str, str]] = {
-    "p107": "MET Norway's local parameter 107 is a wave direction, but whether from or to is not "
-    "stated; if you know, map it: mapping={'sea_surface_wave_from_direction': 'p107'}",
+    "p107": "MET Norway's local parameter 107 is a wave direction, but from or to is not "
+    "stated; if you know it, map it: mapping={'sea_surface_wave_from_direction': 'p107'}",
 }
 
 ROLE_DIMENSIONS: Final[dict[str, str]] = {
@@ -151,7 +151,7 @@ def role_of_standard_name(name: str) -> tuple[str, int] | None:
 
 
 def role_of_alias(name: str) -> tuple[str, int, str] | None:
-    """Return the role of a file's own name, its place of preference and whose spelling it is."""
+    """Return the role of a file's variable name, its rank of preference and its source, or None."""
     place = 0
     for source, table in ALIASES.items():
         for spelling, role in table.items():

@@ -1,4 +1,7 @@
-"""Finding the variables of a dataset: by mapping, standard name, or spelling; never by guess."""
+"""Recognise the variables of a dataset: by mapping, CF standard name or known name.
+
+A variable that is ambiguous is an error; nothing is guessed.
+"""
 
 from __future__ import annotations
 
@@ -10,25 +13,26 @@ from typing import Any
 from thalweg.core.errors import DatasetError, InputError, close_matches
 from thalweg.sea import standard_names as nm
 from thalweg.sea.files import unit_conversion, variable_aliases
-from thalweg.sea.files.coordinates import time_coordinate, wind_height_fault
+from thalweg.sea.files.time_coordinates import time_coordinate
+from thalweg.sea.files.vertical_levels import wind_height_fault
 
 _BRACKETED_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
 
 
 @dataclass(frozen=True)
 class AssignedVariable:
-    """A variable of a file that plays a role.
+    """A variable of a file and the role it has.
 
     Attributes
     ----------
     role : str
-        What it is.
+        Its role (see `thalweg.sea.files.variable_aliases`).
     variable : str
         Its name in the file.
     factor : float
         To SI (degrees for directions).
     units : str
-        As the file spells them.
+        As spelled in the file.
     how : str
         How it was recognised.
     """
@@ -58,16 +62,16 @@ class IgnoredVariable:
 
 @dataclass(frozen=True)
 class RoleCandidate:
-    """A variable that may play a role.
+    """A variable that may have a role.
 
     Attributes
     ----------
     variable : str
         Its name.
     rank : int
-        0 by standard name, 1 by a second-choice standard name, 2 by spelling.
+        0 by standard name, 1 by a second-choice standard name, 2 by a known name.
     origin, place : str, int
-        Whose spelling it is, and its place of preference there.
+        The source that uses its name, and its rank of preference there.
     how : str
         How it was recognised.
     """
@@ -82,14 +86,14 @@ class RoleCandidate:
 def recognise_variables(
     dataset: Any, *, mapping: Mapping[str, str], source: str, skip: frozenset[str]
 ) -> tuple[dict[str, AssignedVariable], list[IgnoredVariable]]:
-    """Return what plays which role in a dataset, and what is not used and why.
+    """Return the variable for each role in a dataset, and the variables ignored with the reason.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The file.
     mapping : mapping of str to str
-        The user's word: canonical name (or role) to name in the file.
+        Given by the user: canonical name (or role) to name in the file.
     source : str
         File name for messages.
     skip : frozenset of str
@@ -98,7 +102,8 @@ def recognise_variables(
     Raises
     ------
     DatasetError
-        If two variables play the same role and no rule says which is meant, or a unit cannot be.
+        If two variables have the same role and no rule decides between them, or a unit does not
+        fit the role.
     """
     fields = [str(n) for n in dataset.data_vars if str(n) not in skip and dataset[n].ndim > 0]
     fields = [n for n in fields if dataset[n].dtype.kind in "fiu"]
@@ -136,7 +141,7 @@ def recognise_variables(
 
 
 def _mapped_roles(dataset: Any, mapping: Mapping[str, str]) -> dict[str, str]:
-    """Return role to file variable for what the user mapped and this file has."""
+    """Return role to file variable for the mapped variables that this file has."""
     return {_role_for(name): variable for name, variable in mapping.items() if variable in dataset}
 
 
@@ -149,12 +154,20 @@ def _role_for(name: str) -> str:
 
 
 def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
-    """Raise `InputError` if the mapping names a variable that is in none of the files."""
+    """Raise `InputError` if the mapping names a variable that is in none of the files.
+
+    Parameters
+    ----------
+    mapping : mapping of str to str
+        Canonical name to name in the file.
+    present : frozenset of str
+        Names of the variables in the files.
+    """
     for name, variable in mapping.items():
         if name != "crs" and variable not in present:
             near = close_matches(variable, present)
             raise InputError(
-                f"The mapping wants {name!r} from {variable!r}, which is in none of the files.",
+                f"The mapping takes {name!r} from {variable!r}, which is in none of the files.",
                 f"They hold: {', '.join(sorted(present))}.",
                 f"Did you mean {' or '.join(map(repr, near))}?" if near else "Check the name.",
                 field=name,
@@ -163,7 +176,7 @@ def check_mapping(mapping: Mapping[str, str], present: frozenset[str]) -> None:
 
 
 def _role_candidate(dataset: Any, name: str) -> tuple[str, RoleCandidate] | IgnoredVariable:
-    """Return the role a variable may play, or why none."""
+    """Return the role a variable may have, or the reason why it has none."""
     array = dataset[name]
     standard = "_".join(str(array.attrs.get("standard_name", "")).lower().split())
     spelled = variable_aliases.role_of_alias(name)
@@ -182,10 +195,10 @@ def _role_candidate(dataset: Any, name: str) -> tuple[str, RoleCandidate] | Igno
         and name.lower() in variable_aliases.TIME_VARYING_DEPTHS
         and _varies_in_time(dataset, array)
     ):
-        told = f"spelled {name}, and changes in time: depth below the moving surface"
-        return nm.TOTAL_DEPTH, RoleCandidate(name, 2, "", 0, told)
+        how = f"spelled {name}, and varies in time: depth below the moving surface"
+        return nm.TOTAL_DEPTH, RoleCandidate(name, 2, "", 0, how)
     if spelled is None:
-        return IgnoredVariable(name, "no standard_name, and no spelling that is known")
+        return IgnoredVariable(name, "no standard_name, and its name is not known")
     return spelled[0], RoleCandidate(name, 2, spelled[2], spelled[1], f"spelled as by {spelled[2]}")
 
 
@@ -197,10 +210,11 @@ def _varies_in_time(dataset: Any, array: Any) -> bool:
 def _best_candidate(
     several: list[RoleCandidate], role: str, dataset: Any, source: str
 ) -> RoleCandidate:
-    """Return the candidate of best rank; of equals, the first in its source's order.
+    """Return the candidate of best rank; of equal ranks, the first in its source's order.
 
-    Standard names go before spellings. Among equals there is a rule only if all are spellings of
-    one source (CMEMS's total before its partial currents, nodes before faces of a mesh).
+    Standard names have priority over known names. Among candidates of equal rank there is an order
+    only if all are names of one source (CMEMS's total currents before its partial ones, nodes of
+    a mesh before faces).
     """
     least = min(c.rank for c in several)
     tied = sorted((c for c in several if c.rank == least), key=lambda c: c.place)
@@ -208,7 +222,7 @@ def _best_candidate(
         return tied[0]
     raise DatasetError(
         f"{source}: {role} could be any of {', '.join(c.variable for c in tied)}.",
-        "Nothing in the file says which one is meant: "
+        "The file does not state which one to use: "
         + "; ".join(f"{c.variable}: {_long_name(dataset[c.variable])}" for c in tied)
         + ".",
         f"Choose one: Sea.open(..., mapping={{{role!r}: {tied[0].variable!r}}}).",
@@ -225,7 +239,7 @@ def _long_name(array: Any) -> str:
 def _assign_with_unit(
     dataset: Any, role: str, name: str, how: str, source: str
 ) -> AssignedVariable | IgnoredVariable:
-    """Return the variable with its factor to SI, or raise if the unit cannot be."""
+    """Return the variable with its factor to SI; raise if its unit does not fit the role."""
     attributes = dataset[name].attrs
     unit = str(attributes.get("units", "")).strip()
     if unit_conversion.is_unspecified(unit):
@@ -244,8 +258,8 @@ def _assign_with_unit(
     if name.lower() in variable_aliases.AMBIGUOUS_ALIASES and how.startswith("spelled"):
         return IgnoredVariable(name, f"units {unit!r} are not those of {role}")
     raise DatasetError(
-        f"{source}: {name!r} is taken for {role}, but its units are {unit!r}.",
-        f"A {dimension} is needed.",
+        f"{source}: {name!r} is recognised as {role}, but its units are {unit!r}.",
+        f"Units of {dimension} are needed.",
         "Correct the units in the file, or map another variable.",
         variable=role,
         units=unit,

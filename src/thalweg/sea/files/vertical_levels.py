@@ -1,15 +1,7 @@
-"""Layers over the water column in files, and their mean from the surface down to a draught.
-
-A ship feels the current over its draught, not that of the top layer. Sigma layers are shares of the
-water depth of the moment, z layers lie at fixed depths below datum; the top one reaches up to the
-moving surface. A layer counts with the part of it that lies within the draught, as far as it holds
-water; where the draught reaches below the bed, the mean is that of the whole column.
-"""
+"""Vertical axes of files: which level is the surface, and at which height the wind is given."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -18,118 +10,147 @@ from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray
 from thalweg.sea.files import unit_conversion
 
+VERTICAL_NAMES: Final = (
+    "depth", "lev", "level", "height", "sigma", "s_rho", "deptht", "depthu", "depthv", "altitude",
+    "isobaric", "pressure", "plev",
+)  # fmt: skip
+WIND_HEIGHT: Final = 10.0  #: [m] height above the sea of the wind that is used
+CLIMATOLOGY_NAMES: Final = ("month", "season", "dayofyear", "climatology")
 SIGMA_STANDARD_NAME: Final = "ocean_sigma_coordinate"
 HEIGHT_NAMES: Final = ("altitude", "height", "height_above_mean_sea_level", "height_above_geoid")
 DEPTH_NAMES: Final = ("depth", "depth_below_geoid", "depth_below_mean_sea_level")
 _ROUNDING_TOLERANCE: Final = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
-class VerticalLayers:
-    """The layers of a file along one dimension.
+def pick_surface(dataset: Any, array: Any, keep: frozenset[str], role: str, source: str) -> Any:
+    """Select one index along dimensions that are neither time nor position.
 
-    Attributes
-    ----------
-    dim : str
-        The dimension.
-    is_sigma : bool
-        Whether edges are shares of the water depth (0 surface, 1 bed); else depths below datum [m].
-    top, bottom : float64 array (L,)
-        Upper and lower edge of each layer.
-    """
-
-    dim: str
-    is_sigma: bool
-    top: FloatArray
-    bottom: FloatArray
-
-    @property
-    def surface(self) -> int:
-        """The layer next to the surface."""
-        return int(np.argmin(self.top))
-
-    def describe(self) -> str:
-        """Return their number and kind in words."""
-        return f"{self.top.size} {'sigma' if self.is_sigma else 'z'} layers"
-
-    def shares(self, draught: float, column: FloatArray) -> FloatArray:
-        """Return what each layer has of the water within a draught [m].
-
-        Parameters
-        ----------
-        draught : float
-            From the surface down [m].
-        column : float64 array (T, Y, X)
-            Water depth of the moment [m] for sigma layers, water level [m above datum] for others.
-
-        Returns
-        -------
-        float64 array (T, L, Y, X)
-            Thickness within the draught [m]; for water without depth all of it in the top layer.
-        """
-        high, low = (e[None, :, None, None] for e in (self.top, self.bottom))
-        wide = column[:, None]
-        if self.is_sigma:
-            upper, lower = high * wide, low * wide
-        else:
-            upper, lower = high + wide, low + wide
-            upper[:, self.surface] = 0.0
-        thick = np.clip(np.minimum(lower, draught) - np.maximum(upper, 0.0), 0.0, None)
-        if self.is_sigma:
-            first = (np.arange(self.top.size) == self.surface)[None, :, None, None]
-            thick = np.where(wide > 0.0, thick, np.where(first & ~np.isnan(wide), 1.0, 0.0))
-        return np.asarray(thick)
-
-
-def draught_averaging(
-    layers: VerticalLayers, draught: float, depth: Callable[[Sequence[FloatArray]], FloatArray]
-) -> Callable[[Sequence[FloatArray]], Sequence[FloatArray]]:
-    """Return what makes the mean over the draught of two components.
+    Of vertical levels the one nearest to the surface is used; of heights of wind the one nearest
+    to 10 m.
 
     Parameters
     ----------
-    layers : Layers
-    draught : float
-        [m].
-    depth : callable
-        Of all arrays, the two components (T, L, Y, X) first: what `VerticalLayers.shares` needs.
+    dataset, array : xarray.Dataset, xarray.DataArray
+        The file and one of its variables.
+    keep : frozenset of str
+        Its dimensions of time and position.
+    role : str
+        Role of the variable.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If a dimension is not a vertical axis, or wind is given at pressure levels.
     """
+    for dim in [d for d in array.dims if d not in keep]:
+        size = array.sizes[dim]
+        if size == 1:
+            array = array.isel({dim: 0})
+            continue
+        levels = level_coordinate(dataset, str(dim))
+        array = array.isel({dim: _select_level(dim, levels, role, str(array.name), source)})
+    return array
 
-    def combine(arrays: Sequence[FloatArray]) -> Sequence[FloatArray]:
-        shares = layers.shares(draught, depth(arrays))
-        return [_weighted_mean(values, shares) for values in arrays[:2]]
 
-    return combine
+def _select_level(dim: str, levels: Any, role: str, name: str, source: str) -> int:
+    lower = dim.lower()
+    if any(word in lower for word in CLIMATOLOGY_NAMES):
+        raise _layout_fault(
+            source, name, f"is a climatology along {dim!r}: a mean year has no dates",
+            "Make a file with real dates, one for each month of the voyage.",
+        )  # fmt: skip
+    attributes = levels.attrs if levels is not None else {}
+    is_vertical = (
+        any(lower.startswith(word) for word in VERTICAL_NAMES)
+        or attributes.get("axis") == "Z"
+        or "positive" in attributes
+        or (levels is not None and is_sigma(levels))
+    )
+    if levels is None or not is_vertical:
+        raise _layout_fault(
+            source, name, f"has a dimension {dim!r} that is neither time, position nor level",
+            "Write a file with one index along it.",
+        )  # fmt: skip
+    if "wind" not in role:
+        return surface_index(levels)
+    if _is_pressure(levels):
+        raise _layout_fault(
+            source, name, f"is wind at levels of pressure ({levels.name}), none of them at 10 m",
+            "Download the wind at 10 m (u10 and v10).",
+        )  # fmt: skip
+    return int(np.argmin(np.abs(np.asarray(levels.values, float) - WIND_HEIGHT)))
 
 
-def _weighted_mean(values: FloatArray, shares: FloatArray) -> FloatArray:
-    """Return the weighted mean over layers (axis 1) of what is known."""
-    weight = np.where(np.isnan(values), 0.0, np.broadcast_to(shares, values.shape))
-    total = weight.sum(axis=1)
-    summed = np.where(weight > 0.0, values * weight, 0.0).sum(axis=1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(total > 0.0, summed / total, np.nan)
+def wind_height_fault(dataset: Any, array: Any) -> str | None:
+    """Return why a wind cannot be used, if the file states that it is not at 10 m; else None.
+
+    The variable's own vertical axis decides; without one, a single height that the variable names
+    (or that GRIB gives).
+    """
+    named = array.encoding.get("coordinates", array.attrs.get("coordinates", ""))
+    stated = {"heightAboveGround", *str(named or "").split()}
+    axes = [dataset[n] for n in dataset.variables if _is_vertical(dataset[n], str(n))]
+    for axis in (a for a in axes if _is_pressure(a)):
+        if str(axis.name) in stated or (axis.ndim == 1 and axis.dims[0] in array.dims):
+            unit = axis.attrs.get("units", "")
+            levels = np.atleast_1d(axis.values).tolist()
+            return (
+                f"it holds wind at levels of pressure ({axis.name}: {levels} {unit}), not at 10 m"
+            )
+    along = [a for a in axes if a.ndim == 1 and a.dims[0] in array.dims and a.size > 1]
+    single = [a for a in axes if a.size == 1 and (str(a.name) in stated or a.name in array.dims)]
+    single = [a for a in single if str(a.name).lower().startswith("height")]
+    for axis in along or (single if len(single) == 1 else []):
+        values = np.atleast_1d(np.asarray(axis.values, float))
+        if np.abs(values - WIND_HEIGHT).min() > 1.0:
+            return f"it holds wind at {values.tolist()} ({axis.name}), not at 10 m"
+    return None
+
+
+def _is_pressure(axis: Any) -> bool:
+    """Return whether a vertical axis is in units of pressure."""
+    named = str(axis.name).lower().startswith(("isobaric", "pressure", "plev"))
+    return (
+        named or unit_conversion.si_factor(str(axis.attrs.get("units", "")), "pressure") is not None
+    )
+
+
+def _is_vertical(axis: Any, name: str) -> bool:
+    known = any(name.lower().startswith(word) for word in VERTICAL_NAMES)
+    return known and axis.ndim <= 1 and axis.dtype.kind in "fiu"
+
+
+def _layout_fault(source: str, name: str, fault: str, remedy: str) -> DatasetError:
+    return DatasetError(
+        f"{source}: {name!r} {fault}.",
+        "Fields on a grid or mesh, with dates, at the surface (wind at 10 m) can be read.",
+        remedy,
+        file=source,
+        variable=name,
+    )
 
 
 def level_coordinate(dataset: Any, dim: str) -> Any:
-    """Return the coordinate of levels along a dimension: its own, or one that is told as such."""
+    """Return the coordinate of levels along a dimension: its own, or another vertical one."""
     if dim in dataset.variables:
         return dataset[dim]
     along = [dataset[n] for n in dataset.variables if dataset[n].dims == (dim,)]
-    vertical = (a for a in along if is_sigma(a) or "positive" in a.attrs or _depth_sign(a))
+    vertical = (a for a in along if is_sigma(a) or "positive" in a.attrs or depth_sign(a))
     return next(vertical, None)
 
 
 def is_sigma(coordinate: Any) -> bool:
-    """Return whether a coordinate is a share of the water depth."""
+    """Return whether a coordinate is a fraction of the water depth."""
     standard = str(coordinate.attrs.get("standard_name", ""))
     if standard:
         return standard == SIGMA_STANDARD_NAME
     return "sigma" in str(coordinate.name).lower()
 
 
-def _depth_sign(coordinate: Any) -> float | None:
-    """Return the sign that makes a coordinate a depth below datum, or None if it is none."""
+def depth_sign(coordinate: Any) -> float | None:
+    """Return the sign that converts a coordinate to a depth below datum; None if it is not one."""
     standard = str(coordinate.attrs.get("standard_name", ""))
     positive = str(coordinate.attrs.get("positive", "")).lower()
     unit = str(coordinate.attrs.get("units", ""))
@@ -147,59 +168,8 @@ def _depth_sign(coordinate: Any) -> float | None:
     return 1.0 if standard in DEPTH_NAMES or (named and not standard) else None
 
 
-def find_vertical_layers(
-    dataset: Any, array: Any, keep: frozenset[str], source: str
-) -> VerticalLayers | None:
-    """Return the layers of a variable, None if it has none.
-
-    Parameters
-    ----------
-    dataset, array
-        The file and one of its variables.
-    keep : frozenset of str
-        Its dimensions of time and place.
-    source : str
-        File name for messages.
-
-    Raises
-    ------
-    DatasetError
-        If its layers lie neither at shares of the depth nor at depths.
-    """
-    dims = [str(d) for d in array.dims if d not in keep and array.sizes[d] > 1]
-    if len(dims) != 1:
-        return None
-    coordinate = level_coordinate(dataset, dims[0])
-    if coordinate is None:
-        raise _unknown_layers_error(array, dims[0], "have no coordinate", source)
-    values = np.asarray(coordinate.values, float)
-    if is_sigma(coordinate):
-        return _sigma_layers(dataset, coordinate, dims[0], values)
-    sign = _depth_sign(coordinate)
-    if sign is None:
-        what = coordinate.attrs.get("standard_name") or coordinate.name
-        raise _unknown_layers_error(array, dims[0], f"are those of {what!r}", source)
-    unit = str(coordinate.attrs.get("units", ""))
-    scale = (
-        1.0
-        if unit_conversion.is_unspecified(unit)
-        else unit_conversion.si_factor(unit, "length") or 1.0
-    )
-    top, bottom = _layer_edges(dataset, coordinate, sign * scale, sign * scale * values)
-    return VerticalLayers(dims[0], False, top, bottom)
-
-
-def _sigma_layers(dataset: Any, coordinate: Any, dim: str, values: FloatArray) -> VerticalLayers:
-    """Return layers at shares of the depth, told downwards or upwards, from 0 or from -1."""
-    sign, offset = _sigma_sign_and_offset(coordinate, values)
-    top, bottom = _layer_edges(
-        dataset, coordinate, sign, sign * values + offset, offset, (0.0, 1.0)
-    )
-    return VerticalLayers(dim, True, top, bottom)
-
-
-def _sigma_sign_and_offset(coordinate: Any, values: FloatArray) -> tuple[float, float]:
-    """Return the sign and offset that make sigma a share of the depth, 0 at the surface."""
+def sigma_sign_and_offset(coordinate: Any, values: FloatArray) -> tuple[float, float]:
+    """Return sign and offset that convert sigma to a fraction of the depth, 0 at the surface."""
     if values.min() < -_ROUNDING_TOLERANCE:  # the convention: 0 at the surface, -1 at the bed
         return -1.0, 0.0
     down = str(coordinate.attrs.get("positive", "up")).lower() == "down"
@@ -207,68 +177,9 @@ def _sigma_sign_and_offset(coordinate: Any, values: FloatArray) -> tuple[float, 
 
 
 def surface_index(coordinate: Any) -> int:
-    """Return the place of the level nearest to the surface."""
+    """Return the index of the level nearest to the surface."""
     values = np.asarray(coordinate.values, float)
     if is_sigma(coordinate):
-        sign, offset = _sigma_sign_and_offset(coordinate, values)
+        sign, offset = sigma_sign_and_offset(coordinate, values)
         return int(np.argmin(sign * values + offset))
     return int(np.argmin(np.abs(values)))
-
-
-def _layer_edges(
-    dataset: Any,
-    coordinate: Any,
-    sign: float,
-    middle: FloatArray,
-    offset: float = 0.0,
-    ends: tuple[float, float] | None = None,
-) -> tuple[FloatArray, FloatArray]:
-    """Return upper and lower edges: as told, else half-way between the layers' middles."""
-    told = _stated_edges(dataset, coordinate)
-    if told is not None:
-        edges = sign * told + offset
-        return edges.min(axis=1), edges.max(axis=1)
-    order = np.argsort(middle)
-    inner = 0.5 * (middle[order][1:] + middle[order][:-1])
-    first = 0.0 if ends is None else ends[0]
-    last = 2.0 * middle[order][-1] - inner[-1] if ends is None else ends[1]
-    rims = np.concatenate([[min(first, float(middle.min()))], inner, [last]])
-    top, bottom = np.empty_like(middle), np.empty_like(middle)
-    top[order], bottom[order] = rims[:-1], rims[1:]
-    return top, bottom
-
-
-def _stated_edges(dataset: Any, coordinate: Any) -> FloatArray | None:
-    """Return edges (L, 2) from bounds, or from the interfaces that belong to the layers."""
-    bounds = str(coordinate.attrs.get("bounds", ""))
-    if bounds in dataset.variables and dataset[bounds].shape == (coordinate.size, 2):
-        return np.asarray(dataset[bounds].values, float)
-    name = str(coordinate.name)
-    for twin in (name.replace("layer", "interface"), name.replace("siglay", "siglev")):
-        if twin != name and twin in dataset.variables:
-            rims = np.asarray(dataset[twin].values, float)
-            if rims.shape == (coordinate.size + 1,):
-                return np.stack([rims[:-1], rims[1:]], axis=1)
-    return None
-
-
-def _unknown_layers_error(array: Any, dim: str, fault: str, source: str) -> DatasetError:
-    return DatasetError(
-        f"{source}: the layers of {array.name!r} along {dim!r} {fault}; they cannot be averaged.",
-        "Sigma layers (ocean_sigma_coordinate, 0 at the surface to -1) and depths or heights with "
-        "units and a direction (positive up or down) can be.",
-        "Add the coordinate to the file, or leave out draught_m to take the surface layer.",
-        file=source,
-        variable=str(array.name),
-    )
-
-
-def missing_depth_error(names: Sequence[str], source: str) -> DatasetError:
-    """Return the error for sigma layers in water whose depth the file does not tell."""
-    return DatasetError(
-        f"{source}: {' and '.join(names)} lie in sigma layers, and no depth on the same grid tells "
-        "how thick they are.",
-        "It takes a bed level or bed depth (and a water level), or a total depth, where they lie.",
-        "Add it to the file, or leave out draught_m to take the surface layer.",
-        file=source,
-    )

@@ -1,16 +1,16 @@
-"""Currents over the water column: tides after Prandle (1982), density currents after Heaps (1972).
+r"""Vertical profiles of currents: tides (Prandle, 1982) and density currents (Heaps, 1972).
 
-Both assume an eddy viscosity that does not change with depth and linear bottom friction, with the
-errors of printed versions corrected:
+Both assume an eddy viscosity that is constant over the depth and linear bottom friction. Errors in
+printed versions are corrected:
 
 * Prandle, D. (1982). The vertical structure of tidal currents. *Geophysical & Astrophysical Fluid
-  Dynamics* 22, 29-49. The depth-mean phasors of a current that runs to and fro with amplitude U
-  are U/2 each, not U, and the profiles are complex: their angles turn the ellipse.
+  Dynamics* 22, 29-49. The depth-mean phasors of a rectilinear current with amplitude U are U/2
+  each, not U, and the profiles are complex: their angles rotate the ellipse.
 * Heaps, N.S. (1972). Estimation of density currents in the Liverpool Bay area of the Irish Sea.
   *Geophysical Journal of the Royal Astronomical Society* 30, 415-432. The scale is
   ``a = pi H / D_E`` with Ekman's depth ``D_E = pi sqrt(2 N / f)``, not ``pi H / D``.
 
-Schless (2023) set both side by side as a model of the current along the Dutch coast.
+Schless (2023) combines both as a model of the current along the Dutch coast.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError, ModelRangeError
 from thalweg.core.types import ComplexArray, FloatArray
 
-GRAVITY: Final = 9.81  #: [m/s2]
-MIN_ROTATION: Final = 1e-6  #: of the tide's frequency: how near f may come to it
+GRAVITY: Final = 9.81  #: [m/s2], as in Heaps (1972)
+MIN_ROTATION: Final = 1e-6  #: least difference of f from the tidal frequency, relative to it
 MAX_HEAPS_DEPTH_RATIO: Final = 300.0  #: largest ``a`` before the functions of Heaps overflow
 
 
 @dataclass(frozen=True)
 class WaterColumn:
-    """What both profiles depend on (defaults: Schless 2023, Tables 2.1 and 2.2, neap tide).
+    """The water column of both profiles (defaults: Schless 2023, Tables 2.1 and 2.2, neap tide).
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class WaterColumn:
                 raise InputError(
                     f"The water column's {name} is {value!r}.",
                     "It must be a positive number in SI units.",
-                    "Correct it.",
+                    "Correct the value.",
                     field=name,
                 )
         if not np.isfinite(self.coriolis):
@@ -76,12 +76,15 @@ class WaterColumn:
 
     @property
     def slip(self) -> float:
-        """Slope over value of the tide at the bed, ``8 k U / (3 pi E)`` [1/m]."""
+        r"""Gradient over value of the tide at the bed, :math:`8 k U / (3 \pi E)` [1/m]."""
         return 8.0 * self.friction * self.speed / (3.0 * np.pi * self.viscosity)
 
     @property
     def rotations(self) -> tuple[complex, complex]:
-        """``alpha`` [1/m] of the anticlockwise and the clockwise part, real parts positive."""
+        r"""The wave numbers :math:`\alpha_\pm` [1/m] of the anticlockwise and clockwise parts.
+
+        :math:`\alpha_\pm = \sqrt{i (f \pm \omega) / E}`, with positive real parts.
+        """
         least = MIN_ROTATION * self.frequency
         rates = [self.coriolis + s * self.frequency for s in (1.0, -1.0)]
         safe = [r if abs(r) > least else least for r in rates]
@@ -90,7 +93,18 @@ class WaterColumn:
 
 
 def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray, ComplexArray]:
-    """Return the profiles of the anticlockwise and the clockwise tide, over their depth means.
+    r"""Return the profiles of the anticlockwise and clockwise tide, relative to their depth means.
+
+    With height z above the bed, depth D and slip s, the profile of each part is [1]_
+
+    .. math::
+
+        P_\pm(z) \propto 1 + \frac{\alpha_\pm}{s} \tanh \alpha_\pm D
+            - \frac{\cosh \alpha_\pm (D - z)}{\cosh \alpha_\pm D},
+        \qquad \alpha_\pm = \sqrt{i (f \pm \omega) / E},
+        \qquad s = \frac{8 k U}{3 \pi E}
+
+    scaled to a depth mean of 1.
 
     Parameters
     ----------
@@ -103,7 +117,17 @@ def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray,
     -------
     plus, minus : complex128 array
         ``u + i v = W+ plus exp(i w t) + W- minus exp(-i w t)`` with the phasors W of the
-        depth-mean current (Prandle, 1982; Schless, 2023, eq. 2.26).
+        depth-mean current (Schless, 2023, eq. 2.26); of the shape of ``height``.
+
+    Raises
+    ------
+    InputError
+        If a height is outside the water column.
+
+    References
+    ----------
+    .. [1] Prandle, D. (1982). The vertical structure of tidal currents. *Geophysical &
+       Astrophysical Fluid Dynamics* 22, 29-49.
     """
     z = _checked_height(height, column.depth)
     plus, minus = (
@@ -113,7 +137,20 @@ def tidal_profile(height: ArrayLike, column: WaterColumn) -> tuple[ComplexArray,
 
 
 def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
-    """Return the mean of `tidal_profile` from the surface down to a draught [m], in closed form."""
+    """Return the mean of `tidal_profile` from the surface down to a draught, in closed form.
+
+    Parameters
+    ----------
+    draught : float
+        Draught [m], 0 to depth; 0 for the surface.
+    column : WaterColumn
+        The water column.
+
+    Returns
+    -------
+    plus, minus : complex
+        Means relative to the depth means.
+    """
     d = float(_checked_height(draught, column.depth))
     if d == 0.0:
         plus, minus = tidal_profile(column.depth, column)
@@ -121,7 +158,7 @@ def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
     means = []
     for alpha in column.rotations:
         upper = _cosh_ratio(alpha, 0.0, column.depth) * np.sinh(alpha * d) / (alpha * d)
-        if not np.isfinite(upper):  # so deep that the bed's share at the surface is nothing
+        if not np.isfinite(upper):  # cosh overflows; in water this deep the bed has no influence
             upper = np.exp(alpha * (d - column.depth)) / (alpha * d)
         base = 1.0 + alpha / column.slip * np.tanh(alpha * column.depth)
         means.append(complex((base - upper) / _unscaled_mean(alpha, column)))
@@ -129,7 +166,7 @@ def tidal_mean(draught: float, column: WaterColumn) -> tuple[complex, complex]:
 
 
 def _unscaled_profile(alpha: complex, z: FloatArray, column: WaterColumn) -> ComplexArray:
-    """Return the profile without its scale, over cosh(alpha D) so that nothing overflows."""
+    """Return the profile without its scale, divided by cosh(alpha D) to avoid overflow."""
     base = 1.0 + alpha / column.slip * np.tanh(alpha * column.depth)
     return np.asarray(base - _cosh_ratio(alpha, z - column.depth, column.depth))
 
@@ -155,14 +192,25 @@ def density_profile(
     density: float = 1000.0,
     rise: float = 0.2,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the steady density-driven current (Heaps, 1972; Schless, 2023, eqs. 2.28-2.29).
+    r"""Return the steady density-driven current.
+
+    With :math:`\eta` from 0 at the surface to 1 at the bed [1]_ (Schless, 2023, eqs. 2.28-2.29):
+
+    .. math::
+
+        u &= K (X Q - Y P), \qquad v = K (X P + Y Q + \Lambda + \eta) \\
+        K &= \frac{g H}{f \rho} \frac{\partial \rho}{\partial x},
+        \qquad a = H \sqrt{\frac{f}{2 N}}, \qquad b = \frac{k H}{N}
+
+    where X, Y, P, Q and :math:`\Lambda` are Heaps' functions of a, b and :math:`\eta`, H is depth
+    plus rise, N the eddy viscosity and k the linear friction.
 
     Parameters
     ----------
     eta : array_like
         Depth below the surface over water depth, 0 at the surface to 1 at the bed.
     column : WaterColumn
-        The water column; its frequency and speed do not matter here.
+        The water column; its frequency and speed are not used.
     density_gradient : float
         Change of density towards the coast [kg/m4], negative where the coast is fresher.
     density : float
@@ -174,27 +222,32 @@ def density_profile(
     -------
     u, v : float64 array
         Towards the coast and along it (90 degrees anticlockwise from u) [m/s]; u has no
-        depth mean. The discharge of the river itself is left out.
+        depth mean. The discharge of the river itself is not included.
 
     Raises
     ------
     ModelRangeError
-        Near the equator or in water so deep that the solution has no scale.
+        South of or at the equator, or in water deeper than `MAX_HEAPS_DEPTH_RATIO`.
+
+    References
+    ----------
+    .. [1] Heaps, N.S. (1972). Estimation of density currents in the Liverpool Bay area of the Irish
+       Sea. *Geophysical Journal of the Royal Astronomical Society* 30, 415-432.
     """
     share = _checked_height(eta, 1.0)
     height = column.depth + rise
     if not column.coriolis > 0.0:
         raise ModelRangeError(
             f"Heaps' density current has no solution for f = {column.coriolis:g} rad/s.",
-            "It holds north of the equator.",
-            "Leave the density current out (density_gradient=0).",
+            "The solution is valid north of the equator.",
+            "Omit the density current (density_gradient=0).",
         )
     a = height * np.sqrt(column.coriolis / (2.0 * column.viscosity))
     b = column.friction * height / column.viscosity
     if a > MAX_HEAPS_DEPTH_RATIO:
         raise ModelRangeError(
             f"The water is {a / np.pi:.0f} Ekman depths deep.",
-            f"Heaps' solution is used up to {MAX_HEAPS_DEPTH_RATIO / np.pi:.0f}.",
+            f"Heaps' solution can be evaluated up to {MAX_HEAPS_DEPTH_RATIO / np.pi:.0f}.",
             "Check viscosity and depth.",
         )
     scale = GRAVITY * height / column.coriolis * density_gradient / density
@@ -223,9 +276,23 @@ def _heaps_terms(
 
 
 def density_mean(draught: float, column: WaterColumn, **density: float) -> tuple[float, float]:
-    """Return the mean of `density_profile` from the surface down to a draught [m].
+    """Return the mean of `density_profile` from the surface down to a draught.
 
     Gauss-Legendre quadrature with 48 points, exact to rounding for the smooth profile.
+
+    Parameters
+    ----------
+    draught : float
+        Draught [m], 0 to depth.
+    column : WaterColumn
+        The water column.
+    **density
+        ``density_gradient`` [kg/m4], ``density`` [kg/m3] and ``rise`` [m], as `density_profile`.
+
+    Returns
+    -------
+    u, v : float
+        Towards the coast and along it [m/s].
     """
     height = column.depth + density.get("rise", 0.2)
     d = float(_checked_height(draught, column.depth))
@@ -238,8 +305,8 @@ def _checked_height(value: ArrayLike, largest: float) -> FloatArray:
     numbers = np.asarray(value, np.float64)
     if not ((numbers >= -1e-9 * largest) & (numbers <= largest * (1.0 + 1e-9))).all():
         raise InputError(
-            f"A height, depth or draught lies outside the water: {value!r}.",
-            f"It must lie between 0 and {largest:g}.",
-            "Correct it, or give deeper water.",
+            f"A height, depth or draught is outside the water column: {value!r}.",
+            f"It must be between 0 and {largest:g}.",
+            "Correct the value, or give a deeper water column.",
         )
     return np.clip(numbers, 0.0, largest)

@@ -1,7 +1,7 @@
-"""Published parametric models of cyclone wind and waves; each formula is one function.
+r"""Published parametric formulas for the wind and waves of cyclones.
 
 All are NumPy functions in SI units (m, s, Pa, rad unless the name says otherwise) and broadcast.
-They describe an idealised vortex: what they give is modelled, not observed.
+They describe an idealised vortex: their results are modelled, not observed.
 """
 
 from __future__ import annotations
@@ -17,30 +17,56 @@ from thalweg.core.units import GRAVITY
 AIR_DENSITY: Final = 1.15  #: [kg/m3], as in Holland (1980)
 AMBIENT_PRESSURE: Final = 101300.0  #: [Pa]
 EARTH_ROTATION: Final = 7.2921150e-5  #: [rad/s]
-SURFACE_FACTOR: Final = 0.9  #: 10 m wind over gradient wind, Powell et al. (2003): about 0.9
+SURFACE_FACTOR: Final = 0.9  #: wind at 10 m over gradient wind, Powell et al. (2003): about 0.9
 TEN_MINUTE_FACTOR: Final = (
     0.93  #: 10-min over 1-min mean wind at sea, Harper et al. (2010) tab. 1.1
 )
 TRANSLATION_FACTOR: Final = 0.55  #: Lin and Chavas (2012)
 TRANSLATION_TURN_DEG: Final = 20.0  #: counter-clockwise in the north, Lin and Chavas (2012)
 B_RANGE: Final = (1.0, 2.5)  #: Holland (1980), page 1215
-FETCH_WIND_RANGE: Final = (15.0, 60.0)  #: [m/s] range of maximum wind we use the fetch relation for
-FETCH_SPEED_RANGE: Final = (
-    0.0,
-    10.0,
-)  #: [m/s] range of forward speed we use the fetch relation for
+FETCH_WIND_RANGE: Final = (15.0, 60.0)  #: [m/s] maximum wind for which the fetch relation is used
+FETCH_SPEED_RANGE: Final = (0.0, 10.0)  #: [m/s] forward speed for which the fetch relation is used
 
 
 def coriolis_parameter(lat_deg: ArrayLike) -> FloatArray:
-    """Return the Coriolis parameter [1/s], ``2 omega sin(lat)``; negative in the south."""
+    r"""Return the Coriolis parameter, :math:`f = 2 \Omega \sin\varphi`.
+
+    Parameters
+    ----------
+    lat_deg : array_like
+        Latitude [deg].
+
+    Returns
+    -------
+    float64 array
+        f [rad/s]; negative in the southern hemisphere.
+    """
     return np.asarray(2.0 * EARTH_ROTATION * np.sin(np.radians(lat_deg)))
 
 
 def holland_b(maximum_gradient_wind: ArrayLike, pressure_deficit: ArrayLike) -> FloatArray:
-    """Return Holland's shape parameter B [-], kept within 1 and 2.5.
+    r"""Return Holland's shape parameter B, limited to 1 to 2.5.
 
-    Holland (1980), Mon. Wea. Rev. 108, 1212-1218, eq. 7 solved for B:
-    ``B = rho e Vm^2 / (pn - pc)`` (wind [m/s], deficit [Pa]).
+    .. math:: B = \rho e V_m^2 / (p_n - p_c)
+
+    which is eq. 7 of [1]_ solved for B.
+
+    Parameters
+    ----------
+    maximum_gradient_wind : array_like
+        Maximum gradient wind :math:`V_m` [m/s].
+    pressure_deficit : array_like
+        Ambient minus central pressure :math:`p_n - p_c` [Pa]; at least 100 Pa is used.
+
+    Returns
+    -------
+    float64 array
+        B [-].
+
+    References
+    ----------
+    .. [1] Holland, G.J. (1980). An analytic model of the wind and pressure profiles in hurricanes.
+       *Monthly Weather Review* 108, 1212-1218.
     """
     deficit = np.maximum(np.asarray(pressure_deficit, float), 100.0)
     b = AIR_DENSITY * np.e * np.square(maximum_gradient_wind) / deficit
@@ -55,10 +81,37 @@ def holland_gradient_wind(
     b: ArrayLike,
     coriolis: ArrayLike,
 ) -> FloatArray:
-    """Return the gradient wind speed [m/s] at a radius [m].
+    r"""Return the gradient wind speed at a radius.
 
-    Holland (1980), eq. 4: ``V = sqrt(B dp/rho (Rm/r)^B exp(-(Rm/r)^B) + (r f/2)^2) - r |f|/2``.
-    Valid for r > 0 (at the centre it is 0), B from 1 to 2.5.
+    .. math::
+
+        V = \sqrt{\frac{B \Delta p}{\rho} \left(\frac{R_m}{r}\right)^B e^{-(R_m/r)^B}
+            + \left(\frac{r f}{2}\right)^2} - \frac{r |f|}{2}
+
+    which is eq. 4 of [1]_; valid for r > 0 (at the centre the wind is 0) and B from 1 to 2.5.
+
+    Parameters
+    ----------
+    radius : array_like
+        Distance r from the centre [m].
+    radius_of_maximum : array_like
+        Radius of maximum wind :math:`R_m` [m].
+    pressure_deficit : array_like
+        Ambient minus central pressure :math:`\Delta p` [Pa].
+    b : array_like
+        Shape parameter B [-].
+    coriolis : array_like
+        Coriolis parameter f [rad/s].
+
+    Returns
+    -------
+    float64 array
+        Gradient wind speed [m/s].
+
+    References
+    ----------
+    .. [1] Holland, G.J. (1980). An analytic model of the wind and pressure profiles in hurricanes.
+       *Monthly Weather Review* 108, 1212-1218.
     """
     r = np.maximum(np.asarray(radius, float), 1.0)
     x = (np.asarray(radius_of_maximum, float) / r) ** b
@@ -70,20 +123,55 @@ def holland_gradient_wind(
 def radius_of_maximum_wind_willoughby2006(
     maximum_wind: ArrayLike, lat_deg: ArrayLike
 ) -> FloatArray:
-    """Return the radius of maximum wind [m] where the track does not tell it.
+    r"""Return the radius of maximum wind, for tracks that do not give it.
 
-    Willoughby, Darling and Rahn (2006), Mon. Wea. Rev. 134, 1102-1120, eq. 7a:
-    ``Rm = 46.4 exp(-0.0155 Vm + 0.0169 |lat|)`` km, from Atlantic and Pacific hurricanes.
+    .. math:: R_m = 46.4 \exp(-0.0155\, V_m + 0.0169\, |\varphi|) \text{ km}
+
+    which is eq. 7a of [1]_, from Atlantic and Pacific hurricanes.
+
+    Parameters
+    ----------
+    maximum_wind : array_like
+        Maximum wind :math:`V_m` [m/s].
+    lat_deg : array_like
+        Latitude [deg].
+
+    Returns
+    -------
+    float64 array
+        Radius [m].
+
+    References
+    ----------
+    .. [1] Willoughby, H.E., Darling, R.W.R., Rahn, M.E. (2006). Parametric representation of the
+       primary hurricane vortex. Part II. *Monthly Weather Review* 134, 1102-1120.
     """
     exponent = -0.0155 * np.asarray(maximum_wind, float) + 0.0169 * np.abs(lat_deg)
     return np.asarray(46.4e3 * np.exp(exponent))
 
 
 def inflow_angle(radius: ArrayLike, radius_of_maximum: ArrayLike) -> FloatArray:
-    """Return how far the surface wind is turned towards the centre [rad].
+    """Return the angle by which the surface wind turns towards the centre.
 
-    Bretschneider (1972) as used by Phadke et al. (2003), Ocean Eng. 30, 553-578:
-    10 deg at the centre rising to 20 deg at Rm, to 25 deg at 1.2 Rm, 25 deg beyond.
+    10 deg at the centre, rising linearly to 20 deg at the radius of maximum wind Rm and to 25 deg
+    at 1.2 Rm; 25 deg beyond (Bretschneider, 1972, as used in [1]_).
+
+    Parameters
+    ----------
+    radius : array_like
+        Distance from the centre [m].
+    radius_of_maximum : array_like
+        Radius of maximum wind [m].
+
+    Returns
+    -------
+    float64 array
+        Inflow angle [rad].
+
+    References
+    ----------
+    .. [1] Phadke, A.C. et al. (2003). Modeling of tropical cyclone winds and waves for emergency
+       management. *Ocean Engineering* 30, 553-578.
     """
     x = np.asarray(np.divide(radius, radius_of_maximum), np.float64)
     degrees = 10.0 + 10.0 * np.minimum(x, 1.0) + 25.0 * np.clip(x - 1.0, 0.0, 0.2)
@@ -93,10 +181,27 @@ def inflow_angle(radius: ArrayLike, radius_of_maximum: ArrayLike) -> FloatArray:
 def translation_wind(
     east: ArrayLike, north: ArrayLike, lat_deg: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the surface wind (east, north) [m/s] a moving vortex adds at its radius of maximum.
+    """Return the surface wind that the motion of a vortex adds at its radius of maximum wind.
 
-    Lin and Chavas (2012), J. Geophys. Res. 117, D09120: 0.55 of the forward velocity, turned
-    20 deg to the left in the northern and to the right in the southern hemisphere.
+    0.55 times the forward velocity, rotated by 20 deg, to the left in the northern and to the
+    right in the southern hemisphere [1]_.
+
+    Parameters
+    ----------
+    east, north : array_like
+        Forward velocity of the vortex [m/s].
+    lat_deg : array_like
+        Latitude [deg].
+
+    Returns
+    -------
+    east, north : float64 array
+        Wind added [m/s].
+
+    References
+    ----------
+    .. [1] Lin, N., Chavas, D. (2012). On hurricane parametric wind and applications in storm surge
+       modeling. *Journal of Geophysical Research* 117, D09120.
     """
     turn = np.radians(TRANSLATION_TURN_DEG) * np.where(np.asarray(lat_deg) >= 0.0, 1.0, -1.0)
     u, v = np.asarray(east, float), np.asarray(north, float)
@@ -109,12 +214,39 @@ def translation_wind(
 def equivalent_fetch_young2013(
     maximum_wind: ArrayLike, forward_speed: ArrayLike, radius_of_maximum: ArrayLike
 ) -> FloatArray:
-    """Return the equivalent fetch [m] of a moving cyclone.
+    r"""Return the equivalent fetch of a moving cyclone.
 
-    Young (1988), J. Waterway Port Coastal Ocean Eng. 114, 637-652, with the
-    coefficients of Young and Vinoth (2013), Ocean Eng. 70, 14-24; both reviewed in Young (2017),
-    Atmosphere 8, 194. Wind and speed [m/s] are kept within 15-60 and 0-10: beyond, the quadratic
-    turns over and would give no waves at all under a fast, wide storm.
+    .. math::
+
+        x &= \psi R' \\
+        \psi &= -2.175\cdot10^{-3} V^2 + 1.506\cdot10^{-2} V s - 0.1223\, s^2
+                + 8.76\cdot10^{-2} V + 1.516\, s + 1.756 \\
+        R' &= 22.5\cdot10^3 \log_{10} R_m - 70.8\cdot10^3
+
+    with the form of [1]_ and the coefficients of [2]_. V is limited to 15 to 60 m/s and s to 0 to
+    10 m/s: beyond, the quadratic decreases and gives no waves under a fast, wide storm.
+
+    Parameters
+    ----------
+    maximum_wind : array_like
+        Maximum wind V [m/s].
+    forward_speed : array_like
+        Forward speed s of the cyclone [m/s].
+    radius_of_maximum : array_like
+        Radius of maximum wind :math:`R_m` [m]; at least 15 km is used.
+
+    Returns
+    -------
+    float64 array
+        Fetch x [m], at least 0.
+
+    References
+    ----------
+    .. [1] Young, I.R. (1988). Parametric hurricane wave prediction model. *Journal of Waterway,
+       Port, Coastal, and Ocean Engineering* 114, 637-652.
+    .. [2] Young, I.R., Vinoth, J. (2013). An "extended fetch" model for the spatial distribution of
+       tropical cyclone wind-waves as observed by altimeter. *Ocean Engineering* 70, 14-24.
+       Reviewed in Young, I.R. (2017), *Atmosphere* 8, 194.
     """
     v = np.clip(maximum_wind, *FETCH_WIND_RANGE)
     s = np.clip(forward_speed, *FETCH_SPEED_RANGE)
@@ -124,19 +256,55 @@ def equivalent_fetch_young2013(
 
 
 def wave_height_jonswap(wind_speed: ArrayLike, fetch: ArrayLike) -> FloatArray:
-    """Return significant wave height [m] for a 10 m wind [m/s] over a fetch [m].
+    r"""Return the significant wave height for a wind over a fetch, in deep water.
 
-    Hasselmann et al. (1973), as in Young (1988): ``g H/U^2 = 0.0016 (g x/U^2)^0.5``, deep
-    water. At one fetch the height is proportional to the wind.
+    .. math:: g H_s / U^2 = 0.0016\, (g x / U^2)^{1/2}
+
+    from [1]_, as in Young (1988). At one fetch the height is proportional to the wind.
+
+    Parameters
+    ----------
+    wind_speed : array_like
+        Wind speed U at 10 m [m/s].
+    fetch : array_like
+        Fetch x [m].
+
+    Returns
+    -------
+    float64 array
+        Significant wave height [m].
+
+    References
+    ----------
+    .. [1] Hasselmann, K. et al. (1973). Measurements of wind-wave growth and swell decay during the
+       Joint North Sea Wave Project (JONSWAP). *Deutsche Hydrographische Zeitschrift*, A8(12).
     """
     return np.asarray(0.0016 * np.asarray(wind_speed) * np.sqrt(np.asarray(fetch) / GRAVITY))
 
 
 def peak_period_young2006(wave_height: ArrayLike, wind_speed: ArrayLike) -> FloatArray:
-    """Return the peak period [s] of cyclone waves of a height [m] under a 10 m wind [m/s].
+    r"""Return the peak period of cyclone waves.
 
-    Young (2006), J. Geophys. Res. 111, C08020: ``g^2 m0/U^4 = 6.365e-6 (fp U/g)^-3.3``
-    with ``m0 = (H/4)^2``.
+    .. math:: g^2 m_0 / U^4 = 6.365\cdot10^{-6} (f_p U / g)^{-3.3}, \quad m_0 = (H_s / 4)^2
+
+    from [1]_, solved for :math:`T_p = 1 / f_p`.
+
+    Parameters
+    ----------
+    wave_height : array_like
+        Significant wave height [m].
+    wind_speed : array_like
+        Wind speed U at 10 m [m/s]; at least 0.1 m/s is used.
+
+    Returns
+    -------
+    float64 array
+        Peak period [s].
+
+    References
+    ----------
+    .. [1] Young, I.R. (2006). Directional spectra of hurricane wind waves. *Journal of Geophysical
+       Research* 111, C08020.
     """
     u = np.maximum(np.asarray(wind_speed, float), 0.1)
     energy = np.maximum((GRAVITY * np.asarray(wave_height) / 4.0) ** 2 / u**4, 1e-12)

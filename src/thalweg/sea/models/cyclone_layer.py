@@ -1,46 +1,40 @@
-"""A sea around one real cyclone: its best track is observed, all fields are modelled from it."""
+"""A layer of wind and waves around one cyclone: fields modelled from its observed best track."""
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
-from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import TimeLike, format_time, parse_time
-from thalweg.core.types import FloatArray
-from thalweg.core.units import KNOT
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.argument_checks import parse_time_step
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples
-from thalweg.sea.models import cyclone_formulas as models
+from thalweg.sea.models import cyclone_formulas as formulas
+from thalweg.sea.models.cyclone_track import BestTrack, load_best_track
+from thalweg.sea.models.cyclone_vortex import (
+    OUTER_RADIUS,
+    VortexState,
+    local_axes,
+    vortex_state,
+    vortex_wind,
+)
 
-BEST_TRACK_FILES: Final = {"danielle-1998": "danielle_1998.csv"}
 DEFAULT_STORM: Final = "danielle-1998"
 TIME_STEP: Final = 3600.0  #: [s] step at which the moving storm is frozen
-FULL_RADIUS: Final = 600e3  #: [m] the vortex is whole to here ...
-OUTER_RADIUS: Final = 1200e3  #: [m] ... and faded smoothly into the ambient sea here
-MAX_WIND_RADIUS: Final = (
-    150e3  #: [m] largest radius of maximum wind of a storm turning extratropical
-)
-HALF_VELOCITY_INTERVAL: Final = (
-    3.0 * 3600.0
-)  #: [s] half the base over which forward velocity is taken
 STORM_VARIABLES: Final = frozenset({*nm.WIND.pair, *nm.WAVES.pair, nm.WAVE_HEIGHT, nm.WAVE_PERIOD})
 
 
 @dataclass(frozen=True, eq=False)
 class AmbientSea:
-    """The calm-ish sea a storm is set in, the same everywhere: an assumption, not data.
+    """The uniform sea around a storm: an assumption, not data.
 
     Attributes
     ----------
@@ -60,83 +54,16 @@ class AmbientSea:
     wave_period: float = 8.0
 
 
-class VortexState(NamedTuple):
-    """The vortex at some times; all arrays of one shape, SI."""
-
-    centre: FloatArray  # unit vectors, last axis 3
-    coriolis: FloatArray  # negative in the south
-    radius: FloatArray
-    deficit: FloatArray
-    b: FloatArray
-    maximum: FloatArray  # symmetric gradient wind
-    added: tuple[FloatArray, FloatArray]  # wind from translation
-    fetch: FloatArray
-
-    def at(self, pick: Any) -> VortexState:
-        """Return the state at some of the times."""
-        added = (self.added[0][pick], self.added[1][pick])
-        return VortexState(
-            self.centre[pick],
-            self.coriolis[pick],
-            self.radius[pick],
-            self.deficit[pick],
-            self.b[pick],
-            self.maximum[pick],
-            added,
-            self.fetch[pick],
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class BestTrack:
-    """A best track.
-
-    Attributes
-    ----------
-    name : str
-        Name of the storm.
-    time : float64 array
-        Times [s since epoch].
-    lat, lon : float64 array
-        Centre [deg], longitude unwrapped.
-    wind : float64 array
-        Largest 10-min mean wind at 10 m [m/s].
-    pressure : float64 array
-        Central pressure [Pa].
-    """
-
-    name: str
-    time: FloatArray
-    lat: FloatArray
-    lon: FloatArray
-    wind: FloatArray
-    pressure: FloatArray
-
-    def position(self, time: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the centre (lat, lon) [deg] at times, linear between fixes."""
-        return np.interp(time, self.time, self.lat), np.interp(time, self.time, self.lon)
-
-    def velocity(self, time: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the forward velocity (east, north) [m/s] over six hours around each time."""
-        before = np.maximum(time - HALF_VELOCITY_INTERVAL, self.time[0])
-        after = np.minimum(time + HALF_VELOCITY_INTERVAL, self.time[-1])
-        lat1, lon1 = self.position(before)
-        lat2, lon2 = self.position(after)
-        scale = np.radians(1.0) * MEAN_RADIUS / (after - before)
-        shrink = np.cos(np.radians(0.5 * (lat1 + lat2)))
-        return (lon2 - lon1) * shrink * scale, (lat2 - lat1) * scale
-
-
 @dataclass(frozen=True, eq=False)
 class StormLayer:
     """A cyclone moving along its track through an ambient sea.
 
     Attributes
     ----------
-    track : Track
-        Where and how strong.
-    ambient : Ambient
-        What lies around.
+    track : BestTrack
+        Positions, winds and pressures.
+    ambient : AmbientSea
+        The surrounding sea.
     time_step : float
         Step [s] at which it is frozen.
     """
@@ -152,19 +79,19 @@ class StormLayer:
 
     @property
     def area(self) -> BoundingBox:
-        """The whole world: beyond the storm lies the ambient sea."""
+        """The whole world; beyond the storm the ambient sea."""
         return WORLD
 
     @property
     def period(self) -> tuple[float, float]:
-        """The life of the track."""
+        """First and last time of the track [s since epoch]."""
         return float(self.track.time[0]), float(self.track.time[-1])
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
-        """Return values at points (N,); NaN outside the life of the track."""
-        here, east, north = _local_axes(lat, lon)
+        """Return values at points (N,); NaN outside the period of the track."""
+        here, east, north = local_axes(lat, lon)
         state = vortex_state(self.track, time)
         dot = np.einsum("ij,ij->i", here, state.centre)
         into_east = np.einsum("ij,ij->i", east, state.centre)
@@ -177,7 +104,7 @@ class StormLayer:
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values (S, T) at stations for all times."""
-        here, east, north = _local_axes(lat, lon)
+        here, east, north = local_axes(lat, lon)
         state = vortex_state(self.track, times)
         dot = here @ state.centre.T
         column = np.broadcast_to(np.arange(times.size), dot.shape)
@@ -189,15 +116,15 @@ class StormLayer:
         return {n: values[n] for n in names}
 
     def times(self, start: float, end: float) -> FloatArray:
-        """Return whole steps over the window, its ends included, within the track's life."""
+        """Return whole steps over the window, its ends included, within the period of the track."""
         start, end = max(start, self.period[0]), min(end, self.period[1])
         if end < start:
             return np.empty(0)
         first = np.ceil(start / self.time_step) * self.time_step
         return np.unique(np.concatenate([[start], np.arange(first, end, self.time_step), [end]]))
 
-    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie in the area."""
+    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return whether positions are in the area."""
         return self.area.covers(lat, lon)
 
     def coverage(self) -> list[Coverage]:
@@ -209,7 +136,7 @@ class StormLayer:
         ]
 
     def mesh(self) -> Mesh | None:
-        """Formulas have no mesh."""
+        """Return None: formulas have no mesh."""
         return None
 
     def provenance(self) -> Mapping[str, Any]:
@@ -227,10 +154,11 @@ class StormLayer:
     def _fields(
         self, dot: FloatArray, into: tuple[FloatArray, FloatArray], state: VortexState, column: Any
     ) -> Samples:
-        """Return all fields: the ambient sea, and the vortex where it reaches.
+        """Return all fields: the ambient sea, and the vortex within its outer radius.
 
-        Waves are those of the local wind over the equivalent fetch; within the radius of maximum
-        wind they keep the height they have at it, for seas do not fall in the eye as wind does.
+        Waves are those of the local wind over the equivalent fetch. Within the radius of maximum
+        wind they keep the height at that radius, because waves do not decay in the eye as the
+        wind does.
         """
         values = self._ambient_fields(dot.shape)
         reach = dot > np.cos(OUTER_RADIUS / MEAN_RADIUS)
@@ -250,8 +178,8 @@ class StormLayer:
         u = wind[0] + (1.0 - share) * background[0]
         v = wind[1] + (1.0 - share) * background[1]
         values[nm.EASTWARD_WIND][reach], values[nm.NORTHWARD_WIND][reach] = u, v
-        height = models.wave_height_jonswap(height_wind, local.fetch)
-        period = models.peak_period_young2006(height, np.maximum(height_wind, 1.0))
+        height = formulas.wave_height_jonswap(height_wind, local.fetch)
+        period = formulas.peak_period_young2006(height, np.maximum(height_wind, 1.0))
         self._add_waves(values, reach, height, period, wind)
         return values
 
@@ -295,111 +223,26 @@ def storm_layer(
     ambient: AmbientSea | None = None,
     time_step: float = TIME_STEP,
 ) -> StormLayer:
-    """Return the layer of an embedded storm (see `Sea.storm`)."""
-    step = parse_time_step(time_step, least=1.0) or TIME_STEP
-    track = load_best_track(name)
-    if start is not None:
-        moved = track.time - track.time[0] + parse_time(start)
-        track = BestTrack(track.name, moved, track.lat, track.lon, track.wind, track.pressure)
-    return StormLayer(track, ambient or AmbientSea(), step)
-
-
-def load_best_track(name: str) -> BestTrack:
-    """Return an embedded best track; winds become 10-min means (Harper et al. 2010)."""
-    if name not in BEST_TRACK_FILES:
-        raise unknown_name_error("storm", name, BEST_TRACK_FILES)
-    text = (resources.files("thalweg.sea") / "data" / BEST_TRACK_FILES[name]).read_text("utf-8")
-    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
-    column = {key: np.array([float(r[key]) for r in rows]) for key in rows[0] if key != "time"}
-    return BestTrack(
-        name,
-        np.array([parse_time(row["time"]) for row in rows]),
-        column["lat"],
-        np.unwrap(column["lon"], period=360.0),
-        column["wind_kn"] * KNOT * models.TEN_MINUTE_FACTOR,
-        column["pressure_hpa"] * 100.0,
-    )
-
-
-def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
-    """Return the parameters of the vortex at times.
-
-    Storms that turn extratropical have a deep centre and moderate wind: Holland's B would fall
-    below its range. They are wide: there the radius of maximum wind grows until gradient balance
-    holds between the track's pressure and wind at B = 1, but not beyond 150 km. In the end the
-    wind of the track is trusted over its pressure: the deficit of the profile is the one that
-    gives that wind at that radius (gradient balance, Holland 1980, eq. 4 at r = Rm).
-    """
-    lat, lon = track.position(time)
-    wind = np.interp(time, track.time, track.wind)
-    deficit = models.AMBIENT_PRESSURE - np.interp(time, track.time, track.pressure)
-    east, north = track.velocity(time)
-    added = models.translation_wind(east, north, lat)
-    symmetric = np.maximum(wind - np.hypot(*added), 0.5 * wind) / models.SURFACE_FACTOR
-    b = models.holland_b(symmetric, deficit)
-    radius = models.radius_of_maximum_wind_willoughby2006(wind, lat)
-    coriolis = models.coriolis_parameter(lat)
-    turning = np.abs(coriolis) * np.maximum(symmetric, 1.0)
-    surplus = b * deficit / (models.AIR_DENSITY * np.e) - symmetric**2
-    radius = np.clip(
-        surplus / np.maximum(turning, 1e-9), radius, np.maximum(radius, MAX_WIND_RADIUS)
-    )
-    fitted = models.AIR_DENSITY * np.e * (symmetric**2 + turning * radius) / b
-    fetch = models.equivalent_fetch_young2013(wind, np.hypot(east, north), radius)
-    centre = _local_axes(lat, lon)[0]
-    return VortexState(centre, coriolis, radius, fitted, b, symmetric, added, fetch)
-
-
-def vortex_wind(
-    radius: FloatArray, inward: tuple[FloatArray, FloatArray], state: VortexState
-) -> tuple[tuple[FloatArray, FloatArray], FloatArray]:
-    """Return the storm's part of the 10 m wind.
+    """Return the layer of an embedded storm (see `Sea.storm`).
 
     Parameters
     ----------
-    radius : float64 array
-        Distance from the centre [m].
-    inward : tuple of float64 array
-        Unit vector (east, north) towards the centre.
-    state : State
-        The vortex at each point's time.
+    name : str
+        Name of an embedded storm.
+    start : time, optional
+        First time of the track; its true date by default.
+    ambient : AmbientSea, optional
+        The surrounding sea.
+    time_step : float
+        Step of frozen times [s], 1 or more.
 
-    Returns
-    -------
-    wind : tuple of float64 array
-        (east, north) towards [m/s].
-    share : float64 array
-        Local over maximum symmetric wind, 0 to 1: where it is 1 no ambient wind is left.
+    Raises
+    ------
+    InputError
+        If there is no storm of that name, or the step is too small.
     """
-    gradient = models.holland_gradient_wind(
-        radius,
-        radius_of_maximum=state.radius,
-        pressure_deficit=state.deficit,
-        b=state.b,
-        coriolis=state.coriolis,
-    )
-    gradient = gradient * _taper(radius)
-    share = np.clip(gradient / np.maximum(state.maximum, 1e-6), 0.0, 1.0)
-    angle = models.inflow_angle(radius, state.radius)
-    spin = np.where(state.coriolis >= 0.0, 1.0, -1.0)  # counter-clockwise in the north
-    speed = gradient * models.SURFACE_FACTOR
-    across, along = speed * np.cos(angle) * spin, speed * np.sin(angle)
-    u = across * inward[1] + along * inward[0] + share * state.added[0]
-    v = -across * inward[0] + along * inward[1] + share * state.added[1]
-    return (u, v), share
-
-
-def _taper(radius: FloatArray) -> FloatArray:
-    """Return 1 within the full radius, falling smoothly to 0 at the outer radius."""
-    x = np.clip((radius - FULL_RADIUS) / (OUTER_RADIUS - FULL_RADIUS), 0.0, 1.0)
-    return 1.0 - x * x * (3.0 - 2.0 * x)
-
-
-def _local_axes(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return unit vectors (N, 3) up, east and north at positions [deg]."""
-    a, o = np.radians(lat), np.radians(lon)
-    zero = np.zeros_like(a)
-    up = np.stack([np.cos(a) * np.cos(o), np.cos(a) * np.sin(o), np.sin(a)], axis=-1)
-    east = np.stack([-np.sin(o), np.cos(o), zero], axis=-1)
-    north = np.stack([-np.sin(a) * np.cos(o), -np.sin(a) * np.sin(o), np.cos(a)], axis=-1)
-    return up, east, north
+    step = parse_time_step(time_step, least=1.0) or TIME_STEP
+    track = load_best_track(name)
+    if start is not None:
+        track = track.starting_at(parse_time(start))
+    return StormLayer(track, ambient or AmbientSea(), step)

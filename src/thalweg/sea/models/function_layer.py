@@ -1,4 +1,4 @@
-"""Layers given by formulas instead of files."""
+"""Layers given by functions instead of files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MAX_STEPS = 2000  #: automatic steps across a long window
 
 @dataclass(frozen=True, eq=False)
 class FormulaLayer:
-    """A layer whose values are computed when asked for.
+    """A layer whose values are computed when they are needed.
 
     Attributes
     ----------
@@ -36,14 +36,14 @@ class FormulaLayer:
     evaluate : callable
         ``evaluate(names, time, lat, lon) -> {name: array}`` on arrays of one shape.
     label : str
-        A word for where the values come from.
+        Origin of the values.
     area : BoundingBox
-        Outside it everything is unknown.
+        Values are unknown outside.
     period : tuple of float or None
-        First and last time [s]; outside it everything is unknown.
+        First and last time [s since epoch]; values are unknown outside.
     time_step : float or None
         Step [s] at which the formula is frozen; 0 for a field that never changes; None to
-        choose by the window asked for (see `automatic_times`).
+        choose it by the length of the window (see `automatic_times`).
     facts : mapping
         Further plain facts for the provenance.
     """
@@ -79,7 +79,7 @@ class FormulaLayer:
         return self.sample(names, time, wide[0], wide[1])
 
     def times(self, start: float, end: float) -> FloatArray:
-        """Return the times at which the formula is frozen over a window."""
+        """Return the times at which the formula is frozen over a window [s since epoch]."""
         if self.period is not None:
             start, end = max(start, self.period[0]), min(end, self.period[1])
         if end < start:
@@ -89,7 +89,7 @@ class FormulaLayer:
         return automatic_times(start, end, self.time_step)
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie in the area."""
+        """Return whether positions are in the area."""
         return self.area.covers(lat, lon)
 
     def coverage(self) -> list[Coverage]:
@@ -102,11 +102,11 @@ class FormulaLayer:
         ]
 
     def mesh(self) -> Mesh | None:
-        """Formulas have no mesh."""
+        """Return None: formulas have no mesh."""
         return None
 
     def provenance(self) -> Mapping[str, Any]:
-        """Return the names, area and period; formulas have no more identity than that."""
+        """Return the names, area and period, which are all that identifies a formula."""
         a = self.area
         return {
             "kind": "formula",
@@ -129,10 +129,20 @@ class FormulaLayer:
 
 
 def automatic_times(start: float, end: float, time_step: float | None = None) -> FloatArray:
-    """Return uniform times over [start, end] for freezing a formula.
+    """Return uniform times for freezing a formula.
 
-    With ``time_step`` None the step is ``min(600 s, window / 200)``, but never so short that
-    there are more than 2000 steps. A given step is kept (the last one is fitted to the end).
+    Parameters
+    ----------
+    start, end : float
+        Window [s since epoch].
+    time_step : float, optional
+        Step [s], reduced so that the last step ends on the window; by default
+        ``min(600 s, window / 200)``, increased where there would be more than 2000 steps.
+
+    Returns
+    -------
+    float64 array (T,)
+        Times [s since epoch], both ends included.
     """
     window = end - start
     if time_step is None:
@@ -142,7 +152,15 @@ def automatic_times(start: float, end: float, time_step: float | None = None) ->
 
 
 def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
-    """Return a layer with the same values everywhere and always."""
+    """Return a layer with the same values [SI] everywhere and at all times.
+
+    Parameters
+    ----------
+    values : mapping of str to float
+        Value [SI] by canonical name.
+    label : str
+        Origin of the values.
+    """
 
     def evaluate(
         names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
@@ -160,7 +178,24 @@ def layer_of_functions(
     period: tuple[float, float] | None = None,
     time_step: float | None = None,
 ) -> FormulaLayer:
-    """Return a layer for functions by name, with speeds and directions turned to components."""
+    """Return a layer of functions, with speeds and directions converted to components.
+
+    Parameters
+    ----------
+    functions : mapping of str to callable
+        As for `thalweg.sea.Sea.from_functions`.
+    area : BoundingBox
+        Values are unknown outside.
+    period : tuple of float, optional
+        First and last time [s since epoch].
+    time_step : float, optional
+        Step [s] of frozen times.
+
+    Raises
+    ------
+    InputError
+        If one half of a vector is missing, or a variable is given twice.
+    """
     makers = _variable_functions(functions)
 
     def evaluate(
@@ -179,7 +214,7 @@ VariableFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], Sam
 
 
 def _variable_functions(functions: Mapping[str, FieldFunction]) -> dict[str, VariableFunction]:
-    """Return, for each canonical variable, what computes it (and its partner)."""
+    """Return for each canonical variable the function that computes it (and its partner)."""
     given = {name: _checked(name, function) for name, function in functions.items()}
     makers: dict[str, VariableFunction] = {}
     for vector in nm.VECTORS:
@@ -196,7 +231,7 @@ def _variable_functions(functions: Mapping[str, FieldFunction]) -> dict[str, Var
 def _convert_vector(
     vector: nm.VectorNames, given: dict[str, FieldFunction], makers: dict[str, VariableFunction]
 ) -> None:
-    """Move what belongs to one vector from ``given`` to ``makers``."""
+    """Move the functions of one vector from ``given`` to ``makers``."""
     have = [name for name in vector.pair if name in given]
     directions = [d for d in (vector.towards, vector.origin) if d in given]
     if len(have) == 1:
@@ -204,7 +239,7 @@ def _convert_vector(
         raise InputError(
             f"The sea is given {have[0]!r} without {missing!r}.",
             "A vector needs both components, or a speed and a direction.",
-            f"Add a function for {missing!r}; one that returns 0.0 will do if it is zero.",
+            f"Add a function for {missing!r}; it can return 0.0.",
             missing=missing,
         )
     if len(have) == 2:
@@ -233,7 +268,7 @@ def _convert_vector(
 
 
 def _convert_bed(given: dict[str, FieldFunction], makers: dict[str, VariableFunction]) -> None:
-    """Turn bed levels (positive up) and depths below the moving surface into bed depths."""
+    """Convert bed levels (positive up) and depths below the moving surface to bed depths."""
     for name in [n for n in given if nm.is_bed_level(n)]:
         if nm.BED_DEPTH in makers:
             raise _given_twice_error(nm.BED_DEPTH, name)
@@ -285,7 +320,7 @@ def _constant_zero(time: FloatArray, lat: FloatArray, lon: FloatArray) -> FloatA
 
 
 def _checked(name: str, function: FieldFunction) -> FieldFunction:
-    """Wrap a user's function so that it always returns a float array of the asked shape."""
+    """Wrap a user's function so that it always returns a float array of the requested shape."""
     if not callable(function):
         raise InputError(
             f"The sea's {name!r} is a {type(function).__name__}, not a function.",
@@ -302,7 +337,7 @@ def _checked(name: str, function: FieldFunction) -> FieldFunction:
         except (TypeError, ValueError):
             raise InputError(
                 f"The function for {name!r} returned {_describe(result)} "
-                f"when asked at arrays of shape {time.shape}.",
+                f"for arrays of shape {time.shape}.",
                 "It must return real numbers of that shape, or one number.",
                 "Write it with NumPy operations on time, lat and lon.",
                 field=name,
@@ -318,7 +353,7 @@ def _describe(result: object) -> str:
 
 def _given_twice_error(name: str, other: str) -> InputError:
     return InputError(
-        f"The sea is given {name!r} twice: {other!r} is another spelling of it.",
+        f"The sea is given {name!r} twice: {other!r} is another name of it.",
         "Each variable can be given once.",
         "Remove one of the two functions.",
         field=name,

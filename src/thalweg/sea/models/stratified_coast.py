@@ -1,10 +1,10 @@
 """An analytic current along a stratified coast, such as that of Holland.
 
-A tide that turns as an ellipse and changes over the water column (Prandle, 1982), with the density
-current of fresh water from a river on top (Heaps, 1972), both fading away from the coast and
-averaged over the draught of the ship. From neap tide (stratified: the ellipse at the surface is
-wide and turns clockwise) to spring tide (mixed: the tide runs to and fro along the coast), after
-Schless (2023), *Going with the flow*, Table 4.9 and eqs. 3.73-3.74.
+A tidal ellipse that varies over the water column (Prandle, 1982), plus the density current of fresh
+water from a river (Heaps, 1972). Both decay away from the coast and are averaged over the ship's
+draught. The scenarios range from neap tide (stratified: the ellipse at the surface is wide and
+rotates clockwise) to spring tide (mixed: the tide is rectilinear along the coast), after Schless
+(2023), *Going with the flow*, Table 4.9 and eqs. 3.73-3.74.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
@@ -23,7 +24,6 @@ from thalweg.sea.models.current_profiles import WaterColumn, density_mean, tidal
 
 CurrentFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 
-EARTH_RADIUS: Final = 6371008.8  #: [m] mean radius
 M2_PERIOD: Final = 44700.0  #: [s] the period of Schless (2023), sec. 4.3.1
 DECAY_LENGTH: Final = 50e3  #: [m] offshore distance over which currents fall to 1/e (eq. 3.73)
 
@@ -35,7 +35,7 @@ class TidalEllipse:
     Attributes
     ----------
     alongshore, cross_shore : float
-        Amplitudes at the surface [m/s]; the ellipse is run through clockwise.
+        Amplitudes at the surface [m/s]; the current vector rotates clockwise.
     """
 
     alongshore: float
@@ -43,7 +43,7 @@ class TidalEllipse:
 
     @property
     def ellipticity(self) -> float:
-        """Short over long axis."""
+        """Minor over major axis [-]."""
         return self.cross_shore / self.alongshore
 
 
@@ -70,25 +70,25 @@ def stratified_coast_current(
 
     Parameters
     ----------
-    scenario : str or Scenario
+    scenario : str or TidalEllipse
         "neap", "neap-to-mean", "mean-to-spring", "spring" or an ellipse at the surface.
     coast : (float, float)
         A point (lat, lon) [deg] of the coast, which is straight.
     onshore_deg : float
-        Direction [deg] from the sea at right angles to the coast; the current along the coast
-        counts positive to the left of it (north, for a coast that faces west).
+        Direction [deg] from the sea at right angles to the coast; the current along the coast is
+        positive to the left of it (north, for a coast that faces west).
     flood : time
-        A time at which the surface tide runs strongest along the coast.
+        A time of maximum tidal current along the coast at the surface.
     draught : float
         Depth [m] over which the current is averaged; 0 for the surface.
     column : WaterColumn, optional
         The water column; by default 25 m at neap tide off the Rhine, with the M2 period of
         44,700 s. Its ``frequency`` is that of the tide.
     density_gradient : float
-        Of the density current [kg/m4]; 0 leaves it out.
+        Change of density towards the coast [kg/m4]; 0 omits the density current.
     decay : float
         Offshore distance [m] over which the currents fall to 1/e; infinite for none. On land
-        they keep their values at the coast.
+        they have their values at the coast.
 
     Returns
     -------
@@ -98,23 +98,24 @@ def stratified_coast_current(
     Raises
     ------
     InputError
-        If the draught is greater than the depth, or a number makes no sense.
+        If the draught is greater than the depth, or a value is outside its range.
 
     Examples
     --------
     >>> from thalweg.sea import Sea
-    >>> sea = Sea.from_functions(
-    ...     north_sea_current("neap", coast=(52.1, 4.26), onshore_deg=90.0, flood=0.0, draught=5.0)
+    >>> current = stratified_coast_current(
+    ...     "neap", coast=(52.1, 4.26), onshore_deg=90.0, flood=0.0, draught=5.0
     ... )
+    >>> sea = Sea.from_functions(current)
     >>> [round(float(v), 2) for v in sea.sample(list(nm.CURRENT.pair), 0.0, 52.1, 4.26).values()]
     [-0.05, 0.94]
     """
     water = column or WaterColumn(frequency=2.0 * np.pi / M2_PERIOD)
     if not (decay > 0.0 and np.isfinite(onshore_deg)):
         raise InputError(
-            f"A decay over {decay!r} m towards {onshore_deg!r} degrees cannot be.",
-            "The distance is positive (infinite for none), the direction in degrees.",
-            "Correct it.",
+            f"The decay length is {decay!r} m and the onshore direction {onshore_deg!r} degrees.",
+            "The length must be positive (infinite for no decay), the direction finite.",
+            "Correct them.",
         )
     plus, minus = ellipse_phasors(scenario, water, draught)
     steady = (
@@ -141,11 +142,25 @@ def stratified_coast_current(
 def ellipse_phasors(
     scenario: str | TidalEllipse, column: WaterColumn, draught: float = 0.0
 ) -> tuple[complex, complex]:
-    """Return the anticlockwise and clockwise phasors [m/s] of the tide over a draught.
+    """Return the anticlockwise and clockwise phasors of the tide, averaged over a draught.
 
-    The depth-mean phasors W are those for which the profiles reach the scenario's ellipse at the
+    The depth-mean phasors W are those for which the profiles give the scenario's ellipse at the
     surface: with the x axis onshore and y along the coast, ``i (M + m) / 2`` and ``i (M - m) / 2``
-    with M along the coast and m = - cross-shore amplitude (clockwise).
+    with the alongshore amplitude M and m = - cross-shore amplitude (clockwise).
+
+    Parameters
+    ----------
+    scenario : str or TidalEllipse
+        Name of a scenario, or an ellipse at the surface.
+    column : WaterColumn
+        The water column.
+    draught : float
+        Draught [m]; 0 for the surface.
+
+    Returns
+    -------
+    plus, minus : complex
+        Phasors [m/s].
     """
     ellipse = _tidal_ellipse(scenario)
     long, short = ellipse.alongshore, -ellipse.cross_shore
@@ -159,13 +174,13 @@ def ellipse_phasors(
 def _tidal_ellipse(scenario: str | TidalEllipse) -> TidalEllipse:
     if isinstance(scenario, str):
         if scenario not in TIDAL_ELLIPSES:
-            raise unknown_name_error("North Sea scenario", scenario, TIDAL_ELLIPSES)
+            raise unknown_name_error("tidal scenario", scenario, TIDAL_ELLIPSES)
         return TIDAL_ELLIPSES[scenario]
     if not (scenario.alongshore > 0.0 and 0.0 <= scenario.cross_shore <= scenario.alongshore):
         raise InputError(
-            f"{scenario} is no ellipse along the coast.",
-            "The current along the coast is positive and not less than that across.",
-            "Correct it.",
+            f"{scenario} is not an ellipse along the coast.",
+            "The alongshore amplitude must be positive and at least the cross-shore amplitude.",
+            "Correct the amplitudes.",
         )
     return scenario
 
@@ -176,4 +191,4 @@ def _distance_from_coast(
     """Return the distance [m] from the coast along the onshore axis; negative at sea."""
     north = np.radians(lat - coast[0])
     east = np.radians((lon - coast[1] + 180.0) % 360.0 - 180.0) * np.cos(np.radians(coast[0]))
-    return np.asarray(EARTH_RADIUS * (east * onshore.real + north * onshore.imag))
+    return np.asarray(MEAN_RADIUS * (east * onshore.real + north * onshore.imag))

@@ -1,48 +1,62 @@
-"""Waves raised by the wind, where no data tell waves."""
+"""Waves raised by the local wind, for seas whose data hold no waves."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
-from thalweg.core.types import FloatArray
+from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.triangle_mesh import Mesh
-from thalweg.sea.layer import Samples
+from thalweg.sea.layer import Layer, Samples
+from thalweg.sea.layer_stack import (
+    sample_stack,
+    series_of_stack,
+    stack_period,
+    stack_times,
+    stack_variables,
+)
 
-if TYPE_CHECKING:
-    from thalweg.sea.sea import Sea
-
-DEFAULT_FETCH = 500_000.0  #: [m] over which the wind is taken to have blown
-DEFAULT_DURATION = 24.0 * 3600.0  #: [s] for which it is taken to have blown
+DEFAULT_FETCH = 500_000.0  #: [m] assumed fetch of the wind
+DEFAULT_DURATION = 24.0 * 3600.0  #: [s] assumed duration of the wind
 _VARIABLES = frozenset({nm.WAVE_HEIGHT, *nm.WAVES.pair, nm.WAVE_PERIOD})
 
 
 def carter_1982(
     wind_speed: ArrayLike, *, fetch: float = DEFAULT_FETCH, duration: float = DEFAULT_DURATION
 ) -> tuple[FloatArray, FloatArray]:
-    """Return significant height [m] and peak period [s] of the waves that a steady wind raises.
+    r"""Return significant height and peak period of the waves that a steady wind raises.
+
+    The result is the smallest of the sea limited by fetch, the sea limited by duration and the
+    fully developed sea:
+
+    .. math::
+
+        H_s &= \min(0.0163\,X^{1/2} U,\; 0.0146\,D^{5/7} U^{9/7},\; 0.0248\,U^2) \\
+        T_p &= \min(0.566\,X^{0.3} U^{0.4},\; 0.540\,D^{3/7} U^{4/7},\; 0.729\,U)
+
+    with wind speed U [m/s], fetch X [km] and duration D [h].
 
     Parameters
     ----------
     wind_speed : array_like
-        At 10 m [m/s], at least 0.
+        Wind speed at 10 m [m/s], at least 0.
     fetch : float
-        Water over which it has blown [m].
+        Length of open water over which the wind has blown [m].
     duration : float
         Time for which it has blown [s].
 
     Returns
     -------
-    height, period : ndarray
-        The least of the sea limited by fetch, that limited by duration and the fully grown one.
+    height, period : float64 array
+        Significant wave height [m] and peak period [s], of the shape of ``wind_speed``.
 
     Raises
     ------
@@ -51,17 +65,19 @@ def carter_1982(
 
     Notes
     -----
-    Carter, D.J.T. (1982), "Prediction of wave height and period for a constant wind velocity using
-    the JONSWAP results", *Ocean Engineering* 9(1), 17-33; as given in WMO-No. 702, Guide to Wave
-    Analysis and Forecasting, with fetch X [km] and duration D [h]:
-    ``H = 0.0163 X^(1/2) U``, ``T = 0.566 X^0.3 U^0.4``; ``H = 0.0146 D^(5/7) U^(9/7)``,
-    ``T = 0.540 D^(3/7) U^(4/7)``; ``H = 0.0248 U^2``, ``T = 0.729 U``. The coefficients are quoted
-    from memory of the guide and were not compared with its print.
+    The coefficients are quoted from memory of WMO-No. 702 and were not compared with the printed
+    guide.
+
+    References
+    ----------
+    .. [1] Carter, D.J.T. (1982). Prediction of wave height and period for a constant wind velocity
+       using the JONSWAP results. *Ocean Engineering* 9(1), 17-33.
+    .. [2] World Meteorological Organization. *Guide to Wave Analysis and Forecasting*, WMO-No. 702.
     """
     if not (fetch > 0.0 and duration > 0.0):
         raise InputError(
             f"A fetch of {fetch:g} m and a duration of {duration:g} s raise no waves.",
-            "Both are above zero.",
+            "Both must be above zero.",
             "Correct them.",
         )
     wind = np.asarray(wind_speed, float)
@@ -73,15 +89,15 @@ def carter_1982(
 
 @dataclass(frozen=True, eq=False)
 class WindSeaLayer:
-    """Waves of the wind of a sea; they travel with it.
+    """Waves that the wind of other layers raises; they travel with the wind.
 
     Attributes
     ----------
-    sea : Sea
-        Holds the wind; where that is unknown the waves are.
+    layers : tuple of Layer
+        Layers that hold the wind, in order of priority; waves are unknown where the wind is.
     """
 
-    sea: Sea
+    layers: tuple[Layer, ...]
 
     @property
     def variables(self) -> frozenset[str]:
@@ -90,39 +106,41 @@ class WindSeaLayer:
 
     @property
     def area(self) -> BoundingBox:
-        """The world: the wind says where it is known."""
+        """The world; the wind limits where waves are known."""
         return WORLD
 
     @property
     def period(self) -> tuple[float, float] | None:
-        """That of the wind."""
-        start, end = self.sea.period_of(nm.WIND.pair)
+        """The period of the wind."""
+        start, end = stack_period(self.layers, nm.WIND.pair)
         return (start, end) if np.isfinite([start, end]).all() else None
 
     def sample(
         self, names: Sequence[str], time: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values at points; NaN where the wind is unknown."""
-        return _waves_from_wind(names, self.sea.sample(list(nm.WIND.pair), time, lat, lon))
+        wind = sample_stack(self.layers, list(nm.WIND.pair), time, lat, lon)
+        return _waves_from_wind(names, wind)
 
     def series(
         self, names: Sequence[str], times: FloatArray, lat: FloatArray, lon: FloatArray
     ) -> Samples:
         """Return values (S, T) at stations for all times."""
-        return _waves_from_wind(names, self.sea.series(list(nm.WIND.pair), times, lat, lon))
+        wind = series_of_stack(self.layers, list(nm.WIND.pair), times, lat, lon)
+        return _waves_from_wind(names, wind)
 
     def times(self, start: float, end: float) -> FloatArray:
         """Return the times of the wind."""
-        return self.sea.times(start, end, names=nm.WIND.pair)
+        return stack_times(self.layers, start, end, names=nm.WIND.pair)
 
-    def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie where the wind may be known."""
-        windy = [x for x in self.sea.layers if set(nm.WIND.pair) & x.variables]
+    def inside(self, lat: FloatArray, lon: FloatArray) -> BoolArray:
+        """Return whether the wind may be known at positions."""
+        windy = [x for x in self.layers if set(nm.WIND.pair) & x.variables]
         return np.any([x.inside(lat, lon) for x in windy], axis=0)
 
     def coverage(self) -> list[Coverage]:
         """Return the rows of the wind, for waves."""
-        rows = [row for row in self.sea.coverage() if row.variable == nm.EASTWARD_WIND]
+        rows = [r for x in self.layers for r in x.coverage() if r.variable == nm.EASTWARD_WIND]
         return [
             replace(row, variable=name, source=f"from the wind of {row.source}")
             for row in rows
@@ -130,24 +148,47 @@ class WindSeaLayer:
         ]
 
     def mesh(self) -> Mesh | None:
-        """No mesh of its own."""
+        """Return None: the layer has no mesh."""
         return None
 
     def provenance(self) -> Mapping[str, Any]:
-        """Return how the waves were made."""
+        """Return the method and its assumed fetch [m] and duration [s]."""
         return {"kind": "waves from wind", "method": "Carter (1982)", "fetch_m": DEFAULT_FETCH,
                 "duration_s": DEFAULT_DURATION}  # fmt: skip
+
+
+def wind_sea_layer(layers: Sequence[Layer]) -> WindSeaLayer:
+    """Return a layer of the waves that the wind of the layers raises.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers in order of priority.
+
+    Raises
+    ------
+    InputError
+        If the layers hold no wind components.
+    """
+    variables = stack_variables(layers)
+    if not set(nm.WIND.pair) <= variables:
+        raise InputError(
+            "Waves are to be derived from the wind, but the sea holds no wind.",
+            f"The sea holds: {', '.join(sorted(variables)) or 'nothing'}.",
+            "Add wind, or fill waves with a height.",
+        )
+    return WindSeaLayer(tuple(layers))
 
 
 def _waves_from_wind(names: Sequence[str], wind: Mapping[str, FloatArray]) -> Samples:
     east, north = (np.asarray(wind[name], float) for name in nm.WIND.pair)
     speed = np.hypot(east, north)
     height, period = carter_1982(speed)
-    still = np.where(speed > 0.0, speed, 1.0)
+    nonzero = np.where(speed > 0.0, speed, 1.0)
     made = {
         nm.WAVE_HEIGHT: height,
         nm.WAVE_PERIOD: np.maximum(period, 1.0),
-        nm.WAVE_TO_EAST: east / still,
-        nm.WAVE_TO_NORTH: np.where(speed == 0.0, 1.0, north / still),
+        nm.WAVE_TO_EAST: east / nonzero,
+        nm.WAVE_TO_NORTH: np.where(speed == 0.0, 1.0, north / nonzero),
     }
     return {name: made[name] for name in names if name in made}

@@ -1,4 +1,4 @@
-"""Mean longitudes of moon and sun, the clock of the tide.
+"""Mean longitudes of moon and sun, from which tidal arguments are computed.
 
 Polynomials of the Explanatory Supplement to the Astronomical Ephemeris (1961, pp. 98 and 107), as
 used by Foreman (1977), T_TIDE and UTide.
@@ -11,10 +11,9 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.types import FloatArray
+from thalweg.core.units import DAY
 
-DAY: Final = 86400.0
-HOUR: Final = 3600.0
-EPOCH: Final = -2209032000.0  #: [s since 1970] 1899-12-31T12:00Z, where the polynomials start
+EPOCH: Final = -2209032000.0  #: [s since 1970] 1899-12-31T12:00Z, origin of the polynomials
 
 # degrees; per day, per (10^4 day)^2, per (10^4 day)^3 from the epoch
 _LONGITUDE_POLYNOMIALS: Final = np.array(
@@ -29,7 +28,13 @@ _LONGITUDE_POLYNOMIALS: Final = np.array(
 
 
 def mean_longitudes(times: FloatArray) -> FloatArray:
-    """Return the hour angle of the mean sun and the mean longitudes.
+    r"""Return the hour angle of the mean sun and the mean longitudes.
+
+    Each longitude is a polynomial in the days d since 1899-12-31T12:00Z,
+
+    .. math:: c_0 + c_1 d + c_2 (d / 10^4)^2 + c_3 (d / 10^4)^3
+
+    with the coefficients of the Explanatory Supplement (1961) [1]_.
 
     Parameters
     ----------
@@ -41,6 +46,11 @@ def mean_longitudes(times: FloatArray) -> FloatArray:
     float64 array (6, T)
         In cycles: T (solar time, 0 at midnight), s (moon), h (sun), p (lunar perigee), N' (minus
         the longitude of the moon's ascending node) and p1 (perihelion).
+
+    References
+    ----------
+    .. [1] H.M. Nautical Almanac Office (1961). *Explanatory Supplement to the Astronomical
+       Ephemeris and the American Ephemeris and Nautical Almanac*, pp. 98 and 107.
     """
     day = (times - EPOCH) / DAY
     scaled = day / 1e4
@@ -50,7 +60,7 @@ def mean_longitudes(times: FloatArray) -> FloatArray:
 
 
 def argument_rates() -> FloatArray:
-    """Return the rates of the six arguments of `mean_longitudes` [cycles per hour] (about 2000)."""
+    """Return the rates (6,) of the arguments of `mean_longitudes` [cycles per hour], in 2000."""
     day = (946684800.0 - EPOCH) / DAY
     c = _LONGITUDE_POLYNOMIALS
     daily = c[:, 1] + 2e-4 * c[:, 2] * day / 1e4 + 3e-4 * c[:, 3] * (day / 1e4) ** 2

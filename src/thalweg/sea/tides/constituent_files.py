@@ -1,7 +1,7 @@
-"""Reading and writing tidal constituents.
+"""Read and write files of tidal constituents.
 
-* Component files of Rijkswaterstaat (hatyan): phases for clock times in MET (UTC+1), amplitudes in
-  the unit the file names, the mean above the datum.
+* Component files of Rijkswaterstaat (hatyan): phases for times in MET (UTC+1), amplitudes in the
+  unit that the file states, the mean above the datum.
 * JSON sets of stations as in the neaps tide database (NOAA, TICON-4, Kartverket), heights in metres
   or currents in knots along the direction of flood, Greenwich phases in UTC.
 * Thalweg's own JSON (what ``thalweg tides analyse --out`` writes).
@@ -28,25 +28,27 @@ from thalweg.sea.tides.constituents import Constituents
 from thalweg.sea.tides.noos_dia_series import LENGTH_UNITS, MET_OFFSET_HOURS
 
 FILE_FORMAT: Final = "thalweg-constituents-1"
-_SPEED_TOLERANCE = 1e-4  #: [deg/h] how far a printed speed may lie from that of its name
+_SPEED_TOLERANCE = (
+    1e-4  #: [deg/h] largest difference of a printed speed from that of the constituent
+)
 
 
 def read_constituents(path: str | Path, *, station: str | None = None) -> Constituents:
-    """Return the constituents of a file, of whatever kind.
+    """Return the constituents of a file in one of the formats of this module.
 
     Parameters
     ----------
     path : path
         A hatyan component file, a JSON set of stations or Thalweg's JSON; may be gzipped.
     station : str, optional
-        Id or name of a station, for files that hold many.
+        Id or name of a station, for files with several.
 
     Raises
     ------
     DatasetError
-        If the file is none of these.
+        If the file has none of these formats.
     InputError
-        If the station is not in the file, or none is named where there are many.
+        If the station is not in the file, or none is named in a file with several.
     """
     text = _read_text(Path(path))
     source = Path(path).name
@@ -55,33 +57,41 @@ def read_constituents(path: str | Path, *, station: str | None = None) -> Consti
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:
-        raise _constituent_file_error(source, f"is broken JSON ({error})") from error
+        raise _constituent_file_error(source, f"is not valid JSON ({error})") from error
     if isinstance(data, list):
         return select_station(data, station, source)
     return _check_station(from_dict(data, source), station, source)
 
 
 def _check_station(constants: Constituents, station: str | None, source: str) -> Constituents:
-    """Return constants of a file that is no set of stations, if they are those asked for."""
-    told = [str(constants.facts[k]) for k in ("station", "name") if constants.facts.get(k)]
-    if station is None or station in told:
+    """Return constants of a file with one station, if it is the requested one."""
+    names = [str(constants.facts[k]) for k in ("station", "name") if constants.facts.get(k)]
+    if station is None or station in names:
         return constants
     raise InputError(
-        f"{source} is no set of stations, and {station!r} is asked of it.",
-        f"It holds {' or '.join(told) or 'constants without a name'}.",
-        "Leave the station out.",
+        f"Station {station!r} was requested, but {source} is not a set of stations.",
+        f"It holds {' or '.join(names) or 'constants without a name'}.",
+        "Omit the station.",
         file=source,
     )
 
 
 def write_constituents(constituents: Constituents, path: str | Path) -> None:
-    """Write constituents as JSON; `read_constituents` gives them back."""
+    """Write constituents as JSON, which `read_constituents` reads.
+
+    Parameters
+    ----------
+    constituents : Constituents
+        Constants.
+    path : path
+        JSON file to write.
+    """
     text = json.dumps(as_dict(constituents), indent=1, allow_nan=False)
     Path(path).write_text(text, encoding="utf-8")
 
 
 def as_dict(constituents: Constituents) -> dict[str, Any]:
-    """Return constituents as plain data; what is unknown is null."""
+    """Return constituents as plain data for JSON; unknown values are None."""
     return {
         "format": FILE_FORMAT,
         "convention": constituents.convention,
@@ -101,7 +111,20 @@ def as_dict(constituents: Constituents) -> dict[str, Any]:
 
 
 def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constituents:
-    """Return constituents from the plain data of `as_dict`."""
+    """Return constituents from the plain data of `as_dict`.
+
+    Parameters
+    ----------
+    data : mapping
+        Plain data.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If the format is another, or a key or array is missing or invalid.
+    """
     if data.get("format") != FILE_FORMAT:
         raise _constituent_file_error(source, f"is not of the format {FILE_FORMAT}")
     try:
@@ -120,17 +143,36 @@ def from_dict(data: Mapping[str, Any], source: str = "constituents") -> Constitu
             dict(data.get("facts", {})),
         )
     except (KeyError, TypeError, AttributeError) as error:
-        raise _constituent_file_error(source, f"lacks a part ({error})") from error
+        raise _constituent_file_error(source, f"lacks a key ({error})") from error
     except ValueError as error:
         if isinstance(error, InputError):
             raise
-        raise _constituent_file_error(source, f"holds arrays that do not fit ({error})") from error
+        raise _constituent_file_error(
+            source, f"holds arrays of different shapes ({error})"
+        ) from error
 
 
 def select_station(
     stations: Sequence[Mapping[str, Any]], wanted: str | None, source: str = "stations"
 ) -> Constituents:
-    """Return the constituents of one station of a JSON set (see the module)."""
+    """Return the constituents of one station of a JSON set.
+
+    Parameters
+    ----------
+    stations : sequence of mapping
+        Stations as in the neaps tide database.
+    wanted : str or None
+        Id or name; None if there is one station only.
+    source : str
+        File name for messages.
+
+    Raises
+    ------
+    DatasetError
+        If the data are not those of stations.
+    InputError
+        If the station is not in the set, or none is named.
+    """
     try:
         names = {str(s["id"]): s for s in stations}
         for s in stations:
@@ -157,7 +199,7 @@ def select_station(
         raise
     except (KeyError, TypeError, AttributeError, ValueError) as error:
         raise _constituent_file_error(
-            source, f"holds a broken station {one['id']!r} ({error!r})"
+            source, f"holds an invalid station {one['id']!r} ({error!r})"
         ) from error
 
 
@@ -177,9 +219,9 @@ def _read_station(data: Mapping[str, Any], source: str) -> Constituents:
             source, f"holds no constituents for the station {data['id']!r}"
         )
     if left_out:
-        told = ", ".join(f"{n} ({a:g})" for n, a in left_out.items())
+        listed = ", ".join(f"{n} ({a:g})" for n, a in left_out.items())
         warnings.warn(
-            f"{source}: constituents without a known argument are left out: {told}.",
+            f"{source}: constituents without a known argument are omitted: {listed}.",
             ThalwegWarning,
             stacklevel=4,
         )
@@ -202,7 +244,7 @@ def _current_components(
     facts: Mapping[str, Any],
     place: tuple[float, float],
 ) -> Constituents:
-    """Turn a tidal current along the direction of flood [kn] into east and north [m/s]."""
+    """Convert a tidal current along the direction of flood [kn] to east and north [m/s]."""
     flood = math.radians(float(current["flood_direction"]))
     mean = float(current.get("mean_flow") or 0.0) * KNOT
     size = np.array([a for a, _ in table.values()])[:, None] * KNOT
@@ -221,7 +263,7 @@ def _current_components(
 
 
 def _read_hatyan(text: str, source: str) -> Constituents:
-    """Read a component file; only water levels are known in this form."""
+    """Read a component file; the format holds water levels only."""
     header = dict(re.findall(r"^(STAT|MIDD|NCOM)\s+(.*?)\s*$", text, re.M))
     rows = re.findall(r"^COMP\s+\d+\s+([\d.]+)\s+(\S+)\s+(\S+)\s+(\S+)\s*$", text, re.M)
     station = header.get("STAT", "").split()
@@ -235,10 +277,10 @@ def _read_hatyan(text: str, source: str) -> Constituents:
         numbers = [(name, float(v), float(size), float(lag)) for v, size, lag, name in rows]
     except ValueError as error:
         raise _constituent_file_error(
-            source, f"holds a constant that is no number ({error})"
+            source, f"holds a constant that is not a number ({error})"
         ) from error
     if len(rows) != count:
-        raise _constituent_file_error(source, f"tells of {count} components and has {len(rows)}")
+        raise _constituent_file_error(source, f"states {count} components and has {len(rows)}")
     table = {}
     for name, speed, size, lag in numbers:
         hourly = schureman.frequency(name) * 360.0

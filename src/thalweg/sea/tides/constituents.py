@@ -1,4 +1,4 @@
-"""Tidal constituents at one or many nodes, and what they predict for any time."""
+"""Harmonic constants of tidal constituents at one or more nodes, and prediction for any time."""
 
 from __future__ import annotations
 
@@ -11,20 +11,24 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import ComplexArray, FloatArray
+from thalweg.core.units import DAY
 from thalweg.sea.tides import foreman, schureman
-from thalweg.sea.tides.astronomy import DAY
 
 CONVENTIONS: Final = ("foreman", "schureman", "rws")
-TIMES_PER_CHUNK: Final = 1 << 14  #: times for which arguments are made at once
-NODAL_STEP: Final = DAY  #: [s] nodal corrections are made at this step and are linear between
+TIMES_PER_CHUNK: Final = 1 << 14  #: times for which arguments are computed at once
+NODAL_STEP: Final = DAY  #: [s] step of nodal corrections, which are linear in between
 
 
 @dataclass(frozen=True, eq=False)
 class Constituents:
-    """Harmonic constants of one or more variables at one or more nodes.
+    r"""Harmonic constants of one or more variables at one or more nodes.
 
-    The tide is ``mean + sum f A cos(V + u - g)`` with the argument V at Greenwich, so it holds at
-    any time without a time of reference.
+    The tide is
+
+    .. math:: \eta(t) = \bar{\eta} + \sum_c f_c A_c \cos(V_c(t) + u_c - g_c)
+
+    with the equilibrium argument V at Greenwich and the nodal corrections f and u, so it is valid
+    at any time without a reference time.
 
     Attributes
     ----------
@@ -39,8 +43,9 @@ class Constituents:
     lat, lon : float64 array (N,)
         Positions [deg]; NaN where unknown.
     convention : {"foreman", "schureman", "rws"}
-        Whose arguments and nodal corrections belong to the constants: UTide's (analysis), or
-        Schureman's (published tables), or the latter as Rijkswaterstaat uses them.
+        The arguments and nodal corrections that belong to the constants: those of UTide
+        (analysis), of Schureman (published tables), or of Schureman as Rijkswaterstaat applies
+        them.
     facts : mapping
         Plain facts about the source.
     """
@@ -63,8 +68,8 @@ class Constituents:
             if shapes != ((len(self.names), nodes),) * 2 + ((nodes,),):
                 raise InputError(
                     f"The constants of {name!r} have shapes {shapes}.",
-                    f"{len(self.names)} constituents at {nodes} nodes are named.",
-                    "Give one amplitude and phase per constituent and node, and a mean per node.",
+                    f"There are {len(self.names)} constituents and {nodes} nodes.",
+                    "Give one amplitude and phase per constituent and node, and one mean per node.",
                     field=name,
                 )
         for constituent in self.names:
@@ -82,7 +87,7 @@ class Constituents:
         convention: str = "schureman",
         facts: Mapping[str, Any] | None = None,
     ) -> Constituents:
-        """Return constants of one variable at one place.
+        """Return constants of one variable at one position.
 
         Parameters
         ----------
@@ -96,6 +101,11 @@ class Constituents:
             Position [deg].
         convention, facts
             As the attributes.
+
+        Raises
+        ------
+        InputError
+            If an amplitude is negative, or a constant is not finite.
         """
         pairs = np.array(list(table.values()), float).reshape(-1, 2)
         if not (np.isfinite(pairs).all() and (pairs[:, 0] >= 0.0).all()):
@@ -117,12 +127,12 @@ class Constituents:
 
     @property
     def variables(self) -> frozenset[str]:
-        """Canonical names of what is predicted."""
+        """Canonical names of the predicted variables."""
         return frozenset(self.amplitude)
 
     @property
     def latitude(self) -> float:
-        """The one latitude [deg] at which nodal corrections are made, in analysis as after it."""
+        """The latitude [deg] of the nodal corrections, in analysis and prediction: the mean."""
         known = self.lat[np.isfinite(self.lat)]
         return float(known.mean()) if known.size else 45.0
 
@@ -131,8 +141,8 @@ class Constituents:
         return np.array([self._frequency(n) for n in self.names])
 
     def _frequency(self, name: str) -> float:
-        foremanlike = self.convention == "foreman"
-        return foreman.frequency(name) if foremanlike else schureman.frequency(name)
+        module = foreman if self.convention == "foreman" else schureman
+        return module.frequency(name)
 
     def coefficients(self, variable: str) -> ComplexArray:
         """Return ``A exp(-i g)`` (C, N) of a variable."""
@@ -158,13 +168,18 @@ class Constituents:
         only : sequence of str, optional
             Constituents to use; all by default.
         nodal_time : float, optional
-            One time [s since epoch] whose nodal corrections hold for all, as in printed tables
-            (the middle of the year); by default they follow the times.
+            Time [s since epoch] of the nodal corrections for all times, as in printed tables (the
+            middle of the year); by default they vary with the times.
 
         Returns
         -------
         float64 array (N, T)
-            Mean included.
+            Tide including the mean, in the unit of the variable.
+
+        Raises
+        ------
+        InputError
+            If the variable or a constituent is unknown.
         """
         if variable not in self.amplitude:
             raise unknown_name_error("tidal variable", variable, self.amplitude)
@@ -181,7 +196,7 @@ class Constituents:
         return result
 
     def picked(self, only: Sequence[str]) -> Constituents:
-        """Return the constants of some constituents."""
+        """Return the constants of the constituents named."""
         missing = [n for n in only if n not in self.names]
         if missing:
             raise unknown_name_error("constituent here", missing[0], self.names)
@@ -206,7 +221,19 @@ class Constituents:
 
 
 def tidal_signal(coefficient: ComplexArray, wave: ComplexArray) -> FloatArray:
-    """Return the real part of a product of complex matrices (N, C) and (C, T), as one real one."""
+    """Return the real part of a product of complex matrices (N, C) and (C, T), as one real one.
+
+    Parameters
+    ----------
+    coefficient : complex128 array (N, C)
+        ``A exp(-i g)`` at nodes, in the unit of the variable.
+    wave : complex128 array (C, T)
+        Transposed unit phasors.
+
+    Returns
+    -------
+    float64 array (N, T)
+    """
     left = np.concatenate([coefficient.real, -coefficient.imag], axis=1)
     right = np.concatenate([wave.real, wave.imag], axis=0)
     return np.asarray(left @ right, np.float64)
@@ -219,10 +246,27 @@ def unit_phasors(
     convention: str,
     nodal_time: float | None = None,
 ) -> ComplexArray:
-    """Return ``f exp(i (V + u))`` (T, C): the tide of unit constants.
+    """Return ``f exp(i (V + u))``: the tide of unit amplitude and zero phase lag.
 
-    The argument V is exact; f and u, which move by less than a degree a day, are made once a day
-    and are linear between.
+    The argument V is exact. The nodal corrections f and u change by less than a degree per day;
+    they are computed once a day and are linear in between.
+
+    Parameters
+    ----------
+    names : tuple of str
+        C constituents.
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+    latitude : float
+        Latitude of the nodal corrections [deg].
+    convention : {"foreman", "schureman", "rws"}
+        As `Constituents`.
+    nodal_time : float, optional
+        One time of the nodal corrections [s since epoch].
+
+    Returns
+    -------
+    complex128 array (T, C)
     """
     if convention == "foreman":
         angle = foreman.equilibrium_arguments(names, times)
@@ -245,5 +289,5 @@ def _interpolated_nodal_corrections(
     else:
         factor = schureman.nodal_corrections(names, days * NODAL_STEP, rws=convention == "rws")
     before, after = factor[place[: times.size]], factor[place[times.size :]]
-    way = (times / NODAL_STEP - day)[:, None]
-    return np.asarray((1.0 - way) * before + way * after)
+    fraction = (times / NODAL_STEP - day)[:, None]
+    return np.asarray((1.0 - fraction) * before + fraction * after)

@@ -1,7 +1,14 @@
-"""Tidal constituents after Foreman, with the tables of UTide.
+"""Tidal arguments and nodal corrections after Foreman (1977), with the tables of UTide.
 
-Foreman (1977), *Manual for Tidal Heights Analysis and Prediction*; nodal ("satellite") corrections
-at exact times, as UTide (Codiga, 2011) makes them. Needs the optional package ``utide``.
+Nodal ("satellite") corrections are computed at exact times, as in UTide (Codiga, 2011). The
+optional package ``utide`` is needed.
+
+References
+----------
+.. [1] Foreman, M.G.G. (1977). *Manual for Tidal Heights Analysis and Prediction*. Pacific Marine
+   Science Report 77-10, Institute of Ocean Sciences, Victoria.
+.. [2] Codiga, D.L. (2011). *Unified Tidal Analysis and Prediction Using the UTide Matlab
+   Functions*. Technical Report 2011-01, University of Rhode Island.
 """
 
 from __future__ import annotations
@@ -19,7 +26,7 @@ from thalweg.sea.tides.astronomy import mean_longitudes
 
 @dataclass(frozen=True, eq=False)
 class ConstituentTable:
-    """What UTide knows of each constituent.
+    """UTide's tables of constituents.
 
     Attributes
     ----------
@@ -28,13 +35,13 @@ class ConstituentTable:
     frequency : float64 array (K,)
         Cycles per hour.
     separation : float64 array (K,)
-        Distance [cycles per hour] to the nearest constituent that goes before it.
+        Distance [cycles per hour] to the nearest constituent of higher priority.
     doodson : float64 array (K, 7)
         Multiples of (tau, s, h, p, N', p1) and phase [cycles]; NaN for compounds.
     satellites : tuple of arrays
         Constituent, multiples of (p, N', p1), phase, ratio, latitude rule of each satellite.
     compounds : dict of int to (int64 array, float64 array)
-        Constituents and multiples that make up the compound in a row.
+        Constituents and multiples of each compound, by row.
     """
 
     index: dict[str, int]
@@ -87,8 +94,8 @@ def _utide_constants() -> Any:
         from utide._ut_constants import ut_constants  # type: ignore[import-untyped]
     except ImportError:
         raise InputError(
-            "Analysing tides, and predicting from an analysis, needs the package utide, which is "
-            "not installed.",
+            "Tidal analysis, and prediction from an analysis, need the package utide, which is not "
+            "installed.",
             "Published constituents can be read and predicted without it.",
             "Install it with: pip install 'thalweg[tides]'.",
             package="utide",
@@ -111,7 +118,25 @@ def frequency(name: str) -> float:
 
 
 def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
-    """Return the equilibrium arguments V [cycles] (T, C) at times [s since epoch]."""
+    r"""Return the equilibrium arguments at Greenwich.
+
+    .. math:: V = i_1 \tau + i_2 s + i_3 h + i_4 p + i_5 N' + i_6 p_1 + \text{phase}
+
+    with the Doodson numbers i of the constituent and :math:`\tau = T + h - s` (Foreman, 1977). A
+    compound has the sum of the arguments of its constituents.
+
+    Parameters
+    ----------
+    names : tuple of str
+        C constituents, as UTide spells them.
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+
+    Returns
+    -------
+    float64 array (T, C)
+        V [cycles].
+    """
     table, longitude = constituent_table(), mean_longitudes(times)
     longitude[0] = longitude[0] + longitude[2] - longitude[1]
     columns = []
@@ -127,7 +152,29 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
 
 
 def nodal_corrections(names: tuple[str, ...], times: FloatArray, latitude: float) -> ComplexArray:
-    """Return the nodal corrections F exp(i U) (T, C) at a latitude [deg]."""
+    r"""Return the nodal corrections.
+
+    .. math:: f e^{i u} = 1 + \sum_k r_k e^{2 \pi i (\Delta_k \cdot (p, N', p_1) + \phi_k)}
+
+    over the satellites k of a constituent, with amplitude ratio r (corrected for latitude for
+    diurnal and semidiurnal satellites), differences of Doodson numbers :math:`\Delta` and phase
+    correction :math:`\phi` (Foreman, 1977). A compound has the product of its constituents'
+    corrections.
+
+    Parameters
+    ----------
+    names : tuple of str
+        C constituents, as UTide spells them.
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+    latitude : float
+        Latitude [deg]; within 5 deg of the equator that of 5 deg is used.
+
+    Returns
+    -------
+    complex128 array (T, C)
+        f exp(i u).
+    """
     table = constituent_table()
     columns = []
     for name in names:

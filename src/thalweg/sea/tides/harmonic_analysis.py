@@ -1,9 +1,10 @@
-"""Harmonic analysis: from a record, or a model run at every node, to tidal constituents.
+"""Harmonic analysis: tidal constituents of a record, or of a model run at every node.
 
-The tide of unit constants (`thalweg.sea.tides.constituents.unit_phasors`, with UTide's arguments
-and nodal corrections at exact times) is fitted to the record by least squares, together with a
-mean and without trend: what ``utide.solve(..., method="ols", trend=False)`` solves for one series,
-here for all nodes at once, because nodes that are known at the same times share their equations.
+Unit phasors (`thalweg.sea.tides.constituents.unit_phasors`, with UTide's arguments and nodal
+corrections at exact times) are fitted to the record by least squares, together with a mean and
+without trend. This is what ``utide.solve(..., method="ols", trend=False)`` solves for one series;
+here all nodes are solved at once, because nodes with values at the same times share their
+equations.
 """
 
 from __future__ import annotations
@@ -21,28 +22,28 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.units import HOUR
 from thalweg.sea.tides import foreman
-from thalweg.sea.tides.astronomy import HOUR
 from thalweg.sea.tides.constituents import Constituents, unit_phasors
 
 ProgressCallback = Callable[[int, int], None]
 
-RAYLEIGH: Final = 1.0  #: separation of two constituents [cycles over the record]
-MIN_KNOWN_FRACTION: Final = 0.5  #: share of the record that must be known at a node
+RAYLEIGH: Final = 1.0  #: least separation of two constituents [cycles over the record]
+MIN_KNOWN_FRACTION: Final = 0.5  #: fraction of the record that must be known at a node
 NODES_PER_BLOCK: Final = 1024  #: nodes whose series are in memory as float64 at a time
-MAX_CONDITION_NUMBER: Final = 1e5  #: of the equations, above which the constants mean nothing
+MAX_CONDITION_NUMBER: Final = 1e5  #: of the equations, above which the constants are not determined
 
 
 @dataclass(frozen=True, eq=False)
 class TideAnalysis:
-    """What a harmonic analysis found.
+    """The result of a harmonic analysis.
 
     Attributes
     ----------
     constituents : Constituents
         The constants.
     tidal_share : mapping of str to float64 array (N,)
-        Share of the variance of the record that the tide explains, by variable and node, 0 to 1.
+        Fraction of the variance of the record that the tide explains, by variable and node.
     variance : mapping of str to float64 array (N,)
         Variance of the record.
     start, end : float
@@ -56,7 +57,7 @@ class TideAnalysis:
     end: float
 
     def share(self, variable: str | None = None) -> float:
-        """Return the tidal share of variance over all nodes (and variables, by default)."""
+        """Return the tidal fraction of variance over all nodes (and variables, by default)."""
         names = [variable] if variable else list(self.variance)
         total = sum(float(np.nansum(self.variance[n])) for n in names)
         tidal = sum(float(np.nansum(self.variance[n] * self.tidal_share[n])) for n in names)
@@ -74,7 +75,11 @@ def analyse(
     least_known: float = MIN_KNOWN_FRACTION,
     progress: ProgressCallback | None = None,
 ) -> TideAnalysis:
-    """Return the tidal constituents of records.
+    r"""Return the tidal constituents of records.
+
+    Amplitudes A and Greenwich phase lags g are those that minimise the sum of squares of
+
+    .. math:: \eta(t) - \bar{\eta} - \sum_c f_c A_c \cos(V_c(t) + u_c - g_c)
 
     Parameters
     ----------
@@ -85,14 +90,14 @@ def analyse(
     lat, lon : array_like (N,)
         Positions [deg]; their mean latitude is used for nodal corrections.
     constituents : sequence of str, optional
-        Names as UTide spells them; by default all that the length and step of the record can tell
-        apart, those that matter first (Foreman, 1977).
+        Names as UTide spells them; by default all that the length and step of the record can
+        separate, in the order of priority of Foreman (1977).
     rayleigh : float
-        How many cycles two constituents must part over the record.
+        Rayleigh criterion: least difference of two constituents [cycles] over the record.
     least_known : float
-        Nodes that are known for a smaller share of the times get no tide (NaN).
+        Nodes with values at a smaller fraction of the times get no tide (NaN).
     progress : callable, optional
-        Called with nodes done and nodes in all.
+        Called with the number of nodes done and in total.
 
     Returns
     -------
@@ -101,8 +106,15 @@ def analyse(
     Raises
     ------
     InputError
-        If the record is too short or too coarse for the constituents named, telling which pairs
-        need how long; or if times do not increase.
+        If the record is too short or too coarse for the constituents named (the message gives
+        the pairs and the lengths needed), or if times do not increase.
+
+    References
+    ----------
+    .. [1] Foreman, M.G.G. (1977). *Manual for Tidal Heights Analysis and Prediction*. Pacific
+       Marine Science Report 77-10.
+    .. [2] Codiga, D.L. (2011). *Unified Tidal Analysis and Prediction Using the UTide Matlab
+       Functions*. Technical Report 2011-01, University of Rhode Island.
     """
     moments = np.asarray(times, np.float64).ravel()
     records = {n: np.atleast_2d(np.asarray(v)) for n, v in series.items()}
@@ -118,11 +130,11 @@ def analyse(
     found = {}
     for name, values in records.items():
 
-        def tell(count: int, before: int = done) -> None:
+        def report(count: int, before: int = done) -> None:
             if progress is not None:
                 progress(before + count, total)
 
-        found[name] = _fit(design, values, least_known, tell)
+        found[name] = _fit(design, values, least_known, report)
         done += nodes
     return _analysis(empty, found, moments)
 
@@ -153,7 +165,7 @@ def _analysis(
 
 
 def _fit(
-    design: FloatArray, values: FloatArray, least_known: float, tell: Callable[[int], None]
+    design: FloatArray, values: FloatArray, least_known: float, report: Callable[[int], None]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return solutions (columns of the design, N), tidal shares and variances (N,)."""
     nodes = values.shape[0]
@@ -172,12 +184,12 @@ def _fit(
             good = [(g, q) for g, q in zip(groups, squares) if q is not None]
             solved = _solve(design, block, known, good)
             solution[part], share[part], variance[part] = solved
-            tell(part.stop)
+            report(part.stop)
     return solution.T, share, variance
 
 
 def _rows_by_gaps(known: BoolArray, needed: float) -> Iterator[NDArray[np.int64]]:
-    """Return rows that are known at the same times, leaving out those known too little."""
+    """Return groups of rows with values at the same times, without rows with too few values."""
     enough = np.flatnonzero(known.sum(axis=1) >= needed)
     packed = np.packbits(known[enough], axis=1)
     _, group = np.unique(packed, axis=0, return_inverse=True)
@@ -189,7 +201,7 @@ def _rows_by_gaps(known: BoolArray, needed: float) -> Iterator[NDArray[np.int64]
 def _normal_matrix(
     design: FloatArray, whole: FloatArray, known: BoolArray, rows: NDArray[np.int64]
 ) -> FloatArray | None:
-    """Return the normal matrix of rows that share their gaps; None if it tells nothing."""
+    """Return the normal matrix of rows that share their gaps; None if it is ill-conditioned."""
     there = known[rows[0]]
     if there.all():
         return whole
@@ -211,7 +223,7 @@ def _solve(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return solutions (N, columns), shares and variances of a block of nodes.
 
-    Each solution is refined once, so that normal equations lose no digits that matter.
+    Each solution is refined once to recover the precision that normal equations lose.
     """
     count = np.maximum(known.sum(axis=1), 1)
     start = np.where(known, block, 0.0).sum(axis=1) / count
@@ -239,10 +251,25 @@ def _solve(
 def select_constituents(
     times: FloatArray, wanted: Sequence[str] | None, rayleigh: float = RAYLEIGH
 ) -> tuple[str, ...]:
-    """Return the constituents a record can tell apart, or check those that are wanted."""
+    """Return the constituents that a record can separate, or check those that are given.
+
+    Parameters
+    ----------
+    times : float64 array (T,)
+        Times of the record [s since epoch].
+    wanted : sequence of str or None
+        Constituents to check; None to select them.
+    rayleigh : float
+        Rayleigh criterion [cycles over the record].
+
+    Raises
+    ------
+    InputError
+        If the record is too short or too coarse.
+    """
     if times.size < 3:
         raise InputError(
-            f"A record of {times.size} time(s) tells no tides.",
+            f"{times.size} time(s) are too few for harmonic analysis.",
             "M2 alone needs 13 h, M2 and S2 need 355 h, the usual set 30 days.",
             "Give a longer record.",
         )
@@ -255,7 +282,7 @@ def select_constituents(
         names = tuple(n for n, k in table.index.items() if fits[k] and n != "Z0")
         if not names:
             raise InputError(
-                f"A record of {length:.1f} h tells no tidal constituents apart.",
+                f"A record of {length:.1f} h is too short to separate tidal constituents.",
                 "M2 alone needs 13 h, M2 and S2 need 355 h, the usual set 30 days.",
                 "Give a longer record.",
             )
@@ -263,29 +290,38 @@ def select_constituents(
     names = tuple(dict.fromkeys(n.strip().upper() for n in wanted))
     if not names or "Z0" in names:
         raise InputError(
-            "No constituent is named." if not names else "Z0 is the mean, which is always found.",
-            "Tidal constituents are named, such as M2 and S2.",
-            "Leave it out.",
+            "No constituent is named." if not names else "Z0 is the mean, which is always fitted.",
+            "Constituents such as M2 and S2 can be named.",
+            "Name constituents, or omit the option." if not names else "Omit Z0.",
         )
     check_rayleigh(names, length, rayleigh)
     coarse = [n for n in names if foreman.frequency(n) >= fastest]
     if coarse:
         raise InputError(
             f"Steps of {step:g} h are too coarse for {', '.join(coarse)}.",
-            f"They can tell tides of more than {2.0 * step:g} h.",
-            "Leave those out or give a record with shorter steps.",
+            f"Constituents with periods of more than {2.0 * step:g} h can be analysed.",
+            "Omit those constituents, or give a record with shorter steps.",
             constituents=coarse,
         )
     return names
 
 
 def check_rayleigh(names: Sequence[str], length_h: float, rayleigh: float = RAYLEIGH) -> None:
-    """Check that a record is long enough to tell constituents apart, from each other and the mean.
+    """Check that a record is long enough to separate constituents from each other and the mean.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Constituents.
+    length_h : float
+        Length of the record [h].
+    rayleigh : float
+        Least difference of two constituents [cycles over the record].
 
     Raises
     ------
     InputError
-        Naming the pairs that cannot be told apart and the length of record they need.
+        If it is not; the message gives the pairs and the length of record they need.
     """
     known = [(n, foreman.frequency(n)) for n in names]
     known = sorted([("the mean", 0.0), *known], key=lambda pair: pair[1])
@@ -297,10 +333,10 @@ def check_rayleigh(names: Sequence[str], length_h: float, rayleigh: float = RAYL
         return
     listed = "; ".join(f"{a} and {b} need {need / 24.0:.1f} days" for a, b, need in close)
     raise InputError(
-        f"A record of {length_h / 24.0:.1f} days is too short to tell apart: {listed} "
+        f"A record of {length_h / 24.0:.1f} days is too short to separate: {listed} "
         f"(Rayleigh criterion {rayleigh:g}).",
-        f"With all of them the record must be {max(c[2] for c in close) / 24.0:.1f} days long.",
-        "Leave out the smaller of each pair, or give a longer record.",
+        f"For all of them the record must be {max(c[2] for c in close) / 24.0:.1f} days long.",
+        "Omit the smaller of each pair, or give a longer record.",
         pairs=[[a, b] for a, b, _ in close],
         needed_h=max(c[2] for c in close),
     )
@@ -311,19 +347,22 @@ def _check_record(times: FloatArray, records: Mapping[str, NDArray[np.floating]]
         raise InputError(
             "The times of the record do not increase, or there are fewer than three.",
             "Each time must be later than the one before.",
-            "Sort the record and remove times that are given twice.",
+            "Sort the record and remove duplicate times.",
         )
     for name, values in records.items():
         if values.ndim != 2 or values.shape[1] != times.size:
             raise InputError(
                 f"The record of {name!r} has shape {values.shape} for {times.size} times.",
-                "It is (times,) or (nodes, times).",
+                "The shape must be (times,) or (nodes, times).",
                 "Transpose or cut it.",
                 field=name,
             )
         if not np.isfinite(values).any():
             raise InputError(
-                f"The record of {name!r} holds no number.", "", "Check the file.", field=name
+                f"The record of {name!r} holds no number.",
+                "At least half of its values must be numbers.",
+                "Check the file.",
+                field=name,
             )
 
 
@@ -331,8 +370,8 @@ def _check_condition(square: FloatArray) -> None:
     worst = float(np.sqrt(np.linalg.cond(square)))
     if not worst < MAX_CONDITION_NUMBER:
         raise InputError(
-            "The record cannot tell the constituents apart at its time steps "
-            f"(condition {worst:.1e}).",
-            "Steps of a whole number of half days hide the tide, for one.",
+            "The time steps of the record cannot separate the constituents "
+            f"(condition number {worst:.1e}).",
+            "For example, steps of a whole number of half days do not resolve the tide.",
             "Give a record with shorter or uneven steps, or fewer constituents.",
         )

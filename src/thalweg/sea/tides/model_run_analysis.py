@@ -1,4 +1,4 @@
-"""Tides of a model run: every node of a layer analysed, and kept on disk."""
+"""Tides of a model run: harmonic analysis at every node of a layer, cached on disk."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import warnings
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,15 +17,13 @@ from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
-from thalweg.sea.files.block_cache import GridWindow
+from thalweg.sea.ensemble_layer import check_not_ensemble
 from thalweg.sea.grids.gridded_layer import GridLayer
-from thalweg.sea.grids.point_location import RectilinearGrid
+from thalweg.sea.grids.rectilinear_grid import RectilinearGrid
+from thalweg.sea.grids.source_variables import GridWindow
 from thalweg.sea.layer import Layer
 from thalweg.sea.tides import harmonic_analysis
 from thalweg.sea.tides.constituents import Constituents
-
-if TYPE_CHECKING:
-    from thalweg.sea.sea import Sea
 
 TIDAL_VARIABLES: Final = (nm.EASTWARD_CURRENT, nm.NORTHWARD_CURRENT, nm.WATER_LEVEL)
 CACHE_VERSION: Final = 1  #: of the cached analyses
@@ -39,22 +37,27 @@ def has_tides(layer: Layer) -> bool:
 
 
 def tidal_analysis(
-    sea: Sea,
+    layers: Sequence[Layer],
     *,
     constituents: Sequence[str] | None = None,
     rayleigh: float = harmonic_analysis.RAYLEIGH,
     progress: harmonic_analysis.ProgressCallback | None = None,
     cache: bool = True,
 ) -> harmonic_analysis.TideAnalysis:
-    """Return the tides of the first layer of a sea that has any; as `analyse_layer`.
+    """Return the tides of the first layer that has any; other arguments as `analyse_layer`.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        The layers of a sea.
 
     Warns
     -----
     ThalwegWarning
-        If other layers hold currents or levels, too.
+        If other layers hold currents or levels too.
     """
-    sea.check_single()
-    tidal = [x for x in sea.layers if isinstance(x, GridLayer) and has_tides(x)]
+    check_not_ensemble(layers)
+    tidal = [x for x in layers if isinstance(x, GridLayer) and has_tides(x)]
     if not tidal:
         raise no_tides_error()
     layer = tidal[0]
@@ -62,7 +65,7 @@ def tidal_analysis(
     if left:
         warnings.warn(
             f"{', '.join(left)} on another grid or at other times is not analysed; Sea.from_tides "
-            "takes it along.",
+            "analyses all grids.",
             ThalwegWarning,
             stacklevel=2,
         )
@@ -72,7 +75,7 @@ def tidal_analysis(
 
 
 def no_tides_error() -> InputError:
-    """Return the error for a sea without anything to analyse."""
+    """Return the error for a sea without currents or levels to analyse."""
     return InputError(
         "The sea holds no currents or water levels on a grid or mesh over time.",
         "Tides are analysed at the nodes of files opened with Sea.open.",
@@ -88,7 +91,19 @@ def analyse_layer(
     progress: harmonic_analysis.ProgressCallback | None = None,
     cache: bool = True,
 ) -> harmonic_analysis.TideAnalysis:
-    """Return the tides of currents and water level at every place of a layer, kept on disk."""
+    """Return the tides of currents and water level at every grid point of a layer.
+
+    The result is cached on disk.
+
+    Parameters
+    ----------
+    layer : GridLayer
+        A layer with currents or water level over time.
+    constituents, rayleigh, progress
+        As for `thalweg.sea.tides.harmonic_analysis.analyse`.
+    cache : bool
+        Whether the result is read from and written to the cache folder.
+    """
     times = layer.axis.times
     names = harmonic_analysis.select_constituents(times, constituents, rayleigh)
     rows, columns = layer.grid.shape
@@ -112,7 +127,7 @@ def analyse_layer(
 
 
 def _grid_positions(grid: Any) -> tuple[FloatArray, FloatArray]:
-    """Return the position of every place, flat."""
+    """Return the position of every grid point, flat."""
     lat, lon = np.array(grid.lat, np.float64), np.array(grid.lon, np.float64)
     rows, columns = grid.shape
     if isinstance(grid, RectilinearGrid):
@@ -133,7 +148,10 @@ def _cache_path(layer: GridLayer, names: Sequence[str]) -> Path:
 
 
 def _sample_digest(layer: GridLayer) -> str:
-    """Return a digest of the middle time: files may share name, size and time of change."""
+    """Return a hash of the values at the middle time.
+
+    Two files may have the same name, size and modification time.
+    """
     rows, columns = layer.grid.shape
     middle = layer.axis.times.size // 2
     digest = hashlib.sha256(np.ascontiguousarray(layer.axis.times).tobytes())

@@ -1,9 +1,9 @@
 """Series of water level as their keepers write them: NOOS (Matroos) and DIA (Donar).
 
 * NOOS: a header of ``# Key : value`` lines, then ``YYYYMMDDhhmm value`` in metres.
-* DIA (Rijkswaterstaat): blocks of ``KEY;value`` lines; ``TYD`` tells start, end and step, ``[WRD]``
-  begins the values, each ``value/quality:``. The clock is that of MET (UTC+1) the year round, as in
-  hatyan's component files. Quality 99 marks a hole.
+* DIA (Rijkswaterstaat): blocks of ``KEY;value`` lines; ``TYD`` gives start, end and step; after
+  ``[WRD]`` follow the values, each ``value/quality:``. Times are in MET (UTC+1) throughout the
+  year, as in hatyan's component files. Quality 99 marks a missing value.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import numpy as np
 
 from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray
-from thalweg.sea.tides.astronomy import HOUR
+from thalweg.core.units import HOUR
+from thalweg.sea.files.projections import to_degrees
 
 LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
 MET_OFFSET_HOURS: Final = 1.0  #: [h] Middle European Time ahead of UTC
@@ -27,19 +28,31 @@ TIME_ZONES: Final = {
     "MET": MET_OFFSET_HOURS,
     "CET": MET_OFFSET_HOURS,
 }
-MISSING_VALUE_QUALITY: Final = 99  #: quality of a DIA value that is none
-#: coordinate systems of DIA files: EPSG code and what one unit is in it
+MISSING_VALUE_QUALITY: Final = 99  #: quality of a missing value in DIA files
+#: coordinate systems of DIA files: EPSG code and size of one unit
 COORDINATE_SYSTEMS: Final = {"RD": (28992, 0.01), "W84": (4326, 1e-6), "E50": (4230, 1e-6)}
 _NOOS_ROW: Final = re.compile(r"^\s*(\d{12}|\d{14})\s+(\S+)\s*$")
 
 
 class WaterLevelSeries(NamedTuple):
-    """Times [s since epoch], levels [m above datum], position (lat, lon) if told, and words."""
+    """A series of water level and its description.
+
+    Attributes
+    ----------
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+    level : float64 array (T,)
+        Water level [m above datum].
+    position : (float, float) or None
+        Latitude and longitude [deg], if the file gives them.
+    description : str
+        Format and location.
+    """
 
     times: FloatArray
     level: FloatArray
     position: tuple[float, float] | None
-    told: str
+    description: str
 
 
 def is_noos(text: str) -> bool:
@@ -56,10 +69,21 @@ def is_dia(text: str) -> bool:
 def read_noos(text: str, source: str) -> WaterLevelSeries:
     """Return the water level of a NOOS file.
 
+    Parameters
+    ----------
+    text : str
+        Contents of the file.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    WaterLevelSeries
+
     Raises
     ------
     DatasetError
-        If it holds something else or several series, keeps an unknown clock, or a row is broken.
+        If it holds another quantity, several series, an unknown time zone or an invalid row.
     """
     header: dict[str, str] = {}
     rows: list[tuple[str, str]] = []
@@ -75,20 +99,22 @@ def read_noos(text: str, source: str) -> WaterLevelSeries:
             found = _NOOS_ROW.match(line)
             if found is None:
                 raise _series_file_error(
-                    source, f"has a broken row in line {number}: {line.strip()[:40]!r}"
+                    source, f"has an invalid row in line {number}: {line.strip()[:40]!r}"
                 )
             rows.append((found[1], found[2]))
     unit, zone = header.get("unit", "waterlevel"), header.get("timezone", "GMT").upper()
     if not unit.lower().startswith("waterlevel"):
-        raise _series_file_error(source, f"holds  {unit!r}, not a water level")
+        raise _series_file_error(source, f"holds {unit!r}, not a water level")
     if zone not in TIME_ZONES:
         raise _series_file_error(
-            source, f"keeps the clock of {zone!r}; known are {', '.join(TIME_ZONES)}"
+            source, f"uses the time zone {zone!r}; known are {', '.join(TIME_ZONES)}"
         )
     times = _noos_times([stamp for stamp, _ in rows], source) - TIME_ZONES[zone] * HOUR
-    told = [header[k] for k in ("location", "source") if header.get(k)]
+    place = [header[k] for k in ("location", "source") if header.get(k)]
     level = _parse_levels([value for _, value in rows], source)
-    return WaterLevelSeries(times, level, _noos_position(header), ", ".join(["NOOS series", *told]))
+    return WaterLevelSeries(
+        times, level, _noos_position(header), ", ".join(["NOOS series", *place])
+    )
 
 
 def _noos_times(stamps: list[str], source: str) -> FloatArray:
@@ -96,7 +122,7 @@ def _noos_times(stamps: list[str], source: str) -> FloatArray:
     try:
         return np.array(iso, "datetime64[s]").astype(np.float64)
     except ValueError as error:
-        raise _series_file_error(source, f"holds  a date that is none ({error})") from error
+        raise _series_file_error(source, f"holds an invalid date ({error})") from error
 
 
 def _noos_position(header: dict[str, str]) -> tuple[float, float] | None:
@@ -112,25 +138,36 @@ def _parse_levels(words: list[str], source: str) -> FloatArray:
     try:
         return np.array(words, np.float64)
     except ValueError as error:
-        raise _series_file_error(source, f"holds  a level that is no number ({error})") from error
+        raise _series_file_error(source, f"holds a level that is not a number ({error})") from error
 
 
 def read_dia(text: str, source: str) -> WaterLevelSeries:
     """Return the water level of a DIA file with one series at equal steps.
 
+    Parameters
+    ----------
+    text : str
+        Contents of the file.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    WaterLevelSeries
+
     Raises
     ------
     DatasetError
-        If it holds another quantity, several series or uneven times, or is cut.
+        If it holds another quantity, several series or uneven times, or is truncated.
     """
     heads, *bodies = text.split("[WRD]")
     if len(bodies) != 1:
-        raise _series_file_error(source, f"holds  {len(bodies)} series; one can be read")
+        raise _series_file_error(source, f"holds {len(bodies)} series; one can be read")
     keys = {line.split(";")[0]: line.strip().split(";")[1:] for line in heads.splitlines()}
-    told = keys.get("PAR") or keys.get("GHD") or [""]
-    if not told[0].startswith("WATH"):
+    quantity = keys.get("PAR") or keys.get("GHD") or [""]
+    if not quantity[0].startswith("WATH"):
         raise _series_file_error(source, "holds "
-            f" {' '.join(told[:2]).strip() or 'no named quantity'!r}, "
+            f" {' '.join(quantity[:2]).strip() or 'no named quantity'!r}, "
                      "not a water level at equal steps")  # fmt: skip
     unit = keys.get("EHD", ["", ""])[1:2]
     if unit[:1] == [] or unit[0] not in LENGTH_UNITS:
@@ -138,9 +175,9 @@ def read_dia(text: str, source: str) -> WaterLevelSeries:
     times = _dia_times(keys.get("TYD", []), source)
     level = _dia_levels(bodies[0], source) * LENGTH_UNITS[unit[0]]
     if times.size != level.size:
-        raise _series_file_error(source, f"tells of {times.size} values and has {level.size}")
+        raise _series_file_error(source, f"states {times.size} values and has {level.size}")
     place = keys.get("LOC", [])
-    words = ["DIA series", *place[1:2], *told[1:2]]
+    words = ["DIA series", *place[1:2], *quantity[1:2]]
     return WaterLevelSeries(times, level, _dia_position(place), ", ".join(w for w in words if w))
 
 
@@ -155,17 +192,17 @@ def _dia_times(span: list[str], source: str) -> FloatArray:
     )
     step = 60.0 * int(span[4])
     if not (step > 0.0 and end >= start):
-        raise _series_file_error(source, f"has the times {';'.join(span)}, which are no series")
+        raise _series_file_error(source, f"has the times {';'.join(span)}, which are not a series")
     return np.asarray(np.arange(start, end + 0.5 * step, step), np.float64)
 
 
 def _dia_levels(body: str, source: str) -> FloatArray:
-    """Return values in the file's unit, NaN where the quality says that there is none."""
+    """Return values in the file's unit, NaN where the quality marks a missing value."""
     pairs = [x.split("/") for x in re.sub(r"\s", "", body).strip(":").split(":")]
     try:
         value, quality = np.array(pairs, np.float64).T
     except ValueError as error:
-        raise _series_file_error(source, f"holds  values that are no numbers ({error})") from error
+        raise _series_file_error(source, f"holds values that are not numbers ({error})") from error
     return np.where(quality == MISSING_VALUE_QUALITY, np.nan, value)
 
 
@@ -173,8 +210,6 @@ def _dia_position(place: list[str]) -> tuple[float, float] | None:
     """Return (lat, lon) of a location: code, name, kind, system, x, y."""
     if len(place) < 6 or place[3] not in COORDINATE_SYSTEMS:
         return None
-    from thalweg.sea.files.coordinates import to_degrees
-
     code, size = COORDINATE_SYSTEMS[place[3]]
     try:
         x, y = (np.array([float(v) * size]) for v in place[4:6])
@@ -188,6 +223,6 @@ def _series_file_error(source: str, fault: str) -> DatasetError:
     return DatasetError(
         f"{source} {fault}.",
         "One series of water level can be read from a NOOS or DIA file.",
-        "Take the series out into a file of its own, or write it as CSV with time and water_level.",
+        "Write the series to a separate file, or as CSV with time and water_level.",
         file=source,
     )

@@ -1,16 +1,16 @@
-"""Repeating a short model run, with the periods that bring the tide back and not its envelope.
+"""Repeat a short model run after a period at which the tide is nearly in phase again.
 
-Spring and neap come round after 354.367 h, where M2 and S2 have drifted apart by one turn; but
-neither is then where it was: both have gone through some half cycles more, and high water has
-become low water (169 degrees). After 360 h and after 707.974 h (57 M2) both are back to within six
-degrees and one. Predicting from constituents (`Sea.from_tides`) needs no repetition at all.
+The spring-neap cycle has a period of 354.367 h, in which M2 and S2 differ by one cycle. After it
+neither constituent is in phase: both are off by 169 degrees, and high water has become low water.
+After 360 h (30 S2) M2 is in phase within six degrees, and after 707.974 h (57 M2) S2 is within one
+degree. Prediction from constituents (`Sea.from_tides`) needs no repetition.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,22 +19,32 @@ from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
+from thalweg.core.units import HOUR
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
+from thalweg.sea.sea import Sea
 from thalweg.sea.tides import schureman
-from thalweg.sea.tides.astronomy import HOUR
-
-if TYPE_CHECKING:
-    from thalweg.sea.sea import Sea
 
 FORTNIGHT_H: Final = 360.0  #: 30 S2; M2 is 5.7 degrees early
 MONTH_H: Final = 707.974  #: 57 M2; S2 is 0.8 degrees early
-MAX_DRIFT: Final = 10.0  #: [deg] phase by which M2 or S2 may be off after one period
+MAX_DRIFT: Final = 10.0  #: [deg] largest phase difference of M2 and S2 after one period
 
 
 def drift_deg(period_h: float, name: str) -> float:
-    """Return by how much [deg, -180 to 180] a constituent is off after a period [h].
+    """Return the phase difference of a constituent after a period.
+
+    Parameters
+    ----------
+    period_h : float
+        Period [h].
+    name : str
+        Constituent.
+
+    Returns
+    -------
+    float
+        Phase difference [deg], -180 to 180.
 
     Examples
     --------
@@ -49,14 +59,14 @@ def drift_deg(period_h: float, name: str) -> float:
 
 @dataclass(frozen=True, eq=False)
 class RepeatedLayer:
-    """A layer whose values between ``start`` and ``start + length`` come again and again.
+    """A layer whose values between ``start`` and ``start + length`` are repeated at all times.
 
     Attributes
     ----------
     layer : Layer
-        What is repeated.
+        The layer that is repeated.
     start, length : float
-        First time and period [s].
+        First time [s since epoch] and period [s].
     """
 
     layer: Layer
@@ -65,7 +75,7 @@ class RepeatedLayer:
 
     @property
     def variables(self) -> frozenset[str]:
-        """Canonical names of what the layer holds."""
+        """Canonical names of the variables of the layer."""
         return self.layer.variables
 
     @property
@@ -75,7 +85,7 @@ class RepeatedLayer:
 
     @property
     def period(self) -> tuple[float, float] | None:
-        """It holds always."""
+        """None: the values are known at all times."""
         return None
 
     def _within(self, time: FloatArray) -> FloatArray:
@@ -96,20 +106,20 @@ class RepeatedLayer:
         return {name: value[:, place.ravel()] for name, value in found.items()}
 
     def times(self, start: float, end: float) -> FloatArray:
-        """Return native times of every round that touches the window, one beyond each side."""
+        """Return native times of every repetition in the window, one beyond each side."""
         native = self.layer.times(self.start, self.start + self.length)
         native = native[(native >= self.start) & (native < self.start + self.length)]
         first = int(np.floor((start - self.start) / self.length)) - 1
         last = int(np.floor((end - self.start) / self.length)) + 1
-        rounds = np.arange(first, last + 1) * self.length
+        shifts = np.arange(first, last + 1) * self.length
         seam = np.append(native, self.start + self.length - 1.0)
-        every = np.unique((seam[None, :] + rounds[:, None]).ravel())
+        every = np.unique((seam[None, :] + shifts[:, None]).ravel())
         low = max(0, int(np.searchsorted(every, start, side="right")) - 1)
         high = int(np.searchsorted(every, end, side="left")) + 1
         return np.asarray(every[low:high], np.float64)
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie where the layer may know values."""
+        """Return whether the layer may know values at positions."""
         return self.layer.inside(lat, lon)
 
     def coverage(self) -> list[Coverage]:
@@ -135,39 +145,36 @@ class RepeatedLayer:
 
 
 def repeat_in_time(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> Sea:
-    """Return a sea whose fields over one period come again for ever.
+    """Return a sea whose fields over one period are repeated at all times.
 
     Parameters
     ----------
     sea : Sea
         Its layers that change in time must cover ``start`` to ``start + period_h``.
     start : time
-        Where the repeated period begins.
+        Start of the repeated period.
     period_h : float
         360 h or 707.974 h; any other after which M2 and S2 are both within 10 degrees.
 
     Raises
     ------
     InputError
-        If the period does not bring the tide back, or the data do not cover it.
+        If M2 or S2 is out of phase after the period, or the data do not cover it.
     """
-    from thalweg.sea.sea import Sea as SeaClass
-
     sea.check_single()
-
     off = {n: drift_deg(period_h, n) for n in ("M2", "S2")}
     worst = max(abs(x) for x in off.values())
     if not (np.isfinite(period_h) and period_h > 24.0 and worst <= MAX_DRIFT):
         raise InputError(
-            f"After {period_h:g} h the tide is not back: M2 is {off['M2']:.0f} and S2 "
-            f"{off['S2']:.0f} degrees off.",
-            f"{FORTNIGHT_H:g} h and {MONTH_H:g} h bring both back; 354.4 h only the spring-neap "
-            "envelope.",
-            "Choose one of them, or predict from constituents with Sea.from_tides.",
+            f"After {period_h:g} h the tide is not in phase: M2 is off by {off['M2']:.0f} and S2 "
+            f"by {off['S2']:.0f} degrees.",
+            f"After {FORTNIGHT_H:g} h and {MONTH_H:g} h both are in phase; after 354.4 h only the "
+            "spring-neap envelope is.",
+            "Choose one of these periods, or predict from constituents with Sea.from_tides.",
             value=period_h,
         )
     begin, length = parse_time(start), period_h * HOUR
-    layers: list[Any] = []
+    layers: list[Layer] = []
     for layer in sea.layers:
         span = layer.period
         if span is None:
@@ -180,5 +187,5 @@ def repeat_in_time(sea: Sea, start: TimeLike, *, period_h: float = MONTH_H) -> S
                 "Choose an earlier start, a shorter period, or Sea.from_tides.",
             )
         layers.append(RepeatedLayer(layer, begin, length))
-    told = f"fields of {period_h:g} h from {format_time(begin)} repeated for ever"
-    return SeaClass(tuple(layers), (*sea.assumptions, told))
+    assumption = f"fields of {period_h:g} h from {format_time(begin)} repeated at all times"
+    return Sea(tuple(layers), (*sea.assumptions, assumption))

@@ -1,13 +1,13 @@
-"""Tidal constituents after Schureman: astronomical arguments, nodal factors, compound tides.
+"""Tidal arguments and nodal corrections after Schureman (1940), also of compound tides.
 
 Arguments and factors of the basic constituents are those of Schureman, *Manual of Harmonic
 Analysis and Prediction of Tides*, Special Publication 98 (US Coast and Geodetic Survey, 1940,
-corrected 1958); equation numbers refer to it. Compound (shallow-water) tides are made from their
-names: ``3MNS6`` is three times M2, plus N2, minus S2.
+corrected 1958); equation numbers refer to it. Compound (shallow-water) tides are derived from
+their names: ``3MNS6`` is three times M2, plus N2, minus S2.
 
-Rijkswaterstaat predicts the Dutch coast with the same arguments, but lets the nodal factor of some
-constituents act only in part (its empirical "x-factors"), because non-linear friction damps the
-18.6-year modulation there; that is the convention ``rws``.
+Rijkswaterstaat predicts the Dutch coast with the same arguments, but applies the nodal factor of
+some constituents only in part (its empirical "x-factors"), because non-linear friction damps the
+18.6-year modulation there. This is the convention ``rws``.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import ComplexArray, FloatArray
 from thalweg.sea.tides.astronomy import argument_rates, mean_longitudes
 
-#: Share of the nodal factor that acts, for stations in the Netherlands (Rijkswaterstaat). The
-#: factor is 1 + share * (f - 1); S2, which has none of its own, takes the one of M2.
+#: Fraction of the nodal factor that is applied, for stations in the Netherlands (Rijkswaterstaat).
+#: The factor is 1 + fraction * (f - 1); S2, which has no nodal factor, uses that of M2.
 RWS_NODAL_FRACTIONS: Final[dict[str, float]] = {
     "MU2": 0.0, "N2": 0.0, "NU2": 0.8, "M2": 0.53, "2MN2": 0.2, "S2": -0.82, "M4": 0.7,
     "MS4": 0.0, "M6": 0.75, "2MS6": 0.2, "M8": 0.7, "3MS8": 0.6,
@@ -110,7 +110,7 @@ _UNIT_PATTERN = re.compile(r"LABDA|NU|MU|[A-Z]")
 
 @dataclass(frozen=True)
 class ConstituentDefinition:
-    """One constituent: how its argument and its nodal factor are made.
+    """One constituent: the basic constituents that give its argument and nodal factor.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class ConstituentDefinition:
 
     @property
     def argument(self) -> FloatArray:
-        """Multiples of (T, s, h, p, N', p1) and of the whole turn (7,)."""
+        """Multiples (7,) of (T, s, h, p, N', p1) and of a full cycle."""
         total = np.zeros(7)
         for name, count in self.parts:
             t, s, h, p, p1, phase, _ = _BASIC_CONSTITUENTS[name]
@@ -137,10 +137,19 @@ class ConstituentDefinition:
 def constituent_definition(name: str) -> ConstituentDefinition:
     """Return the constituent of a name, in any usual spelling.
 
+    Parameters
+    ----------
+    name : str
+        Such as ``M2``, ``NU2`` or ``3MNS6``.
+
+    Returns
+    -------
+    ConstituentDefinition
+
     Raises
     ------
     InputError
-        If neither the tables nor the rule for compound names know it.
+        If the name is neither in the tables nor that of a compound tide.
     """
     plain = name.strip().upper().removesuffix("_KV")
     plain = _ALIASES.get(plain, plain)
@@ -157,7 +166,7 @@ def constituent_definition(name: str) -> ConstituentDefinition:
 
 
 def _compound_parts(name: str) -> tuple[tuple[str, int], ...] | None:
-    """Read the name of a compound tide; None if it is not one."""
+    """Return the constituents of the name of a compound tide; None if it is not one."""
     found = re.fullmatch(r"(.*?[A-Z)])(\d+)", name)
     if found is None:
         return None
@@ -182,8 +191,8 @@ def _compound_parts(name: str) -> tuple[tuple[str, int], ...] | None:
 def _signed_terms(terms: list[tuple[str, int]], cycles: int) -> tuple[tuple[str, int], ...] | None:
     """Return the terms with signs such that the cycles per day add up.
 
-    Semidiurnal meanings go before diurnal ones, few minus signs before many, and minus signs stand
-    last.
+    Semidiurnal constituents have priority over diurnal ones, few minus signs over many, and minus
+    signs at the end over others.
     """
     best: tuple[tuple[int, ...], tuple[tuple[str, int], ...]] | None = None
     meanings = itertools.product(*(_CONSTITUENTS_BY_LETTER[unit] for unit, _ in terms))
@@ -208,7 +217,24 @@ def frequency(name: str) -> float:
 
 
 def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArray:
-    """Return the equilibrium arguments V [cycles] (T, C) at times [s since epoch]."""
+    r"""Return the equilibrium arguments at Greenwich.
+
+    .. math:: V = i_1 T + i_2 s + i_3 h + i_4 p + i_6 p_1 + \text{phase}
+
+    with the multiples of Schureman (1958), Table 2, and T counted from midnight.
+
+    Parameters
+    ----------
+    names : tuple of str
+        C constituents.
+    times : float64 array (T,)
+        Seconds since 1970-01-01T00:00Z.
+
+    Returns
+    -------
+    float64 array (T, C)
+        V [cycles], 0 to 1.
+    """
     matrix = np.array([constituent_definition(n).argument for n in names]).reshape(-1, 7)
     return (mean_longitudes(times).T @ matrix[:, :6].T + matrix[:, 6]) % 1.0
 
@@ -216,16 +242,26 @@ def equilibrium_arguments(names: tuple[str, ...], times: FloatArray) -> FloatArr
 def nodal_corrections(
     names: tuple[str, ...], times: FloatArray, *, rws: bool = False
 ) -> ComplexArray:
-    """Return the nodal corrections f exp(i u) (T, C).
+    r"""Return the nodal corrections :math:`f e^{i u}`.
+
+    They depend on the inclination I of the moon's orbit to the equator, on :math:`\xi` and
+    :math:`\nu` (Schureman, 1958, eqs. 191 ff.); for M2, for example (eq. 78):
+
+    .. math:: f = \cos^4(I / 2) / 0.9154, \qquad u = 2 (\xi - \nu)
 
     Parameters
     ----------
     names : tuple of str
-        Constituents.
+        C constituents.
     times : float64 array (T,)
         Seconds since 1970-01-01T00:00Z.
     rws : bool
-        Whether the factors act only by the shares `RWS_NODAL_FRACTIONS`.
+        Whether the factors are applied only by the fractions `RWS_NODAL_FRACTIONS`.
+
+    Returns
+    -------
+    complex128 array (T, C)
+        f exp(i u).
     """
     family = _nodal_families(times)
     one = np.ones(times.size, np.complex128)

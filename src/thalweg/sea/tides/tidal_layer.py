@@ -1,4 +1,4 @@
-"""The sea from tidal constituents: currents and water level at any date."""
+"""A layer of tides: currents and water level at any date, predicted from constituents."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,19 +16,18 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import ComplexArray, FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.coverage import Coverage
+from thalweg.sea.ensemble_layer import check_not_ensemble
+from thalweg.sea.grids.grid_protocol import Grid, GridLocation
 from thalweg.sea.grids.gridded_layer import GridLayer
-from thalweg.sea.grids.point_location import Grid, GridLocation, TriangleGrid
+from thalweg.sea.grids.triangle_grid import TriangleGrid
 from thalweg.sea.grids.triangle_mesh import Mesh
-from thalweg.sea.layer import Samples, nan_pairs
+from thalweg.sea.layer import Layer, Samples, nan_pairs
 from thalweg.sea.models.function_layer import automatic_times
 from thalweg.sea.tides import harmonic_analysis
 from thalweg.sea.tides.constituents import Constituents, tidal_signal, unit_phasors
 from thalweg.sea.tides.model_run_analysis import analyse_layer, has_tides, no_tides_error
 
-if TYPE_CHECKING:
-    from thalweg.sea.sea import Sea
-
-TIME_STEP: Final = 600.0  #: [s] step at which kernels get the tide
+TIME_STEP: Final = 600.0  #: [s] step at which kernels receive the tide
 POINTS_PER_BLOCK: Final = 1 << 13  #: points predicted at once
 
 
@@ -39,15 +38,15 @@ class TidalLayer:
     Attributes
     ----------
     constituents : Constituents
-        Constants at the places of the grid.
+        Constants at the points of the grid.
     grid : Grid or None
-        Where the nodes lie; None for one node that holds for a whole area.
+        Positions of the nodes; None for one node that applies to a whole area.
     box : BoundingBox
         The area, if there is no grid.
     time_step : float
-        Step [s] at which kernels get the tide.
+        Step [s] at which kernels receive the tide.
     source : str
-        A word for where the constants come from.
+        Origin of the constants.
     facts : mapping
         Further plain facts for the provenance.
     """
@@ -71,7 +70,7 @@ class TidalLayer:
 
     @property
     def period(self) -> tuple[float, float] | None:
-        """The tide holds always."""
+        """None: the tide is known at all times."""
         return None
 
     @cached_property
@@ -116,11 +115,11 @@ class TidalLayer:
         return automatic_times(start, end, self.time_step) if end > start else np.array([start])
 
     def inside(self, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-        """Return whether positions lie in the grid or the area."""
+        """Return whether positions are in the grid or the area."""
         return np.asarray(self._locate(lat, lon).corner[:, 0] >= 0)
 
     def coverage(self) -> list[Coverage]:
-        """Return one row per variable; the tide is known always."""
+        """Return one row per variable; the tide is known at all times."""
         a = self.area
         spacing = self.grid.spacing if self.grid is not None else None
         return [
@@ -133,7 +132,7 @@ class TidalLayer:
         return None if self.grid is None else self.grid.mesh()
 
     def provenance(self) -> Mapping[str, Any]:
-        """Return the constituents, a hash of their values, and where they come from."""
+        """Return the constituents, a hash of their values, and their source."""
         constants = self.constituents
         digest = hashlib.sha256()
         for name in sorted(self.variables):
@@ -185,41 +184,54 @@ class TidalLayer:
 def _cached_phasors(
     names: tuple[str, ...], times: bytes, latitude: float, convention: str
 ) -> ComplexArray:
-    """Return phasors for times given as bytes, kept for the next stations with the same times."""
+    """Return phasors for times given as bytes; cached for other stations with the same times."""
     wave = unit_phasors(names, np.frombuffer(times), latitude, convention)
     wave.flags.writeable = False
     return wave
 
 
-def tidal_sea(
-    source: Sea | Constituents | harmonic_analysis.TideAnalysis,
+def tidal_layers(
+    source: Sequence[Layer] | Constituents | harmonic_analysis.TideAnalysis,
     *,
     constituents: Sequence[str] | None = None,
     area: BoundingBox | None = None,
     rayleigh: float = harmonic_analysis.RAYLEIGH,
     progress: harmonic_analysis.ProgressCallback | None = None,
     cache: bool = True,
-) -> Sea:
-    """Return a sea of tides; see `Sea.from_tides`."""
-    from thalweg.sea.sea import Sea as SeaClass
+) -> tuple[Layer, ...]:
+    """Return the layers of a sea of tides (see `thalweg.sea.Sea.from_tides`).
 
+    Parameters
+    ----------
+    source : sequence of Layer, Constituents or TideAnalysis
+        The layers of a model run, or constants.
+    constituents, rayleigh, progress, cache
+        As for `thalweg.sea.Sea.from_tides`.
+    area : BoundingBox, optional
+        Where a single station applies.
+
+    Raises
+    ------
+    InputError
+        If the source has no tides, or the area does not fit the source.
+    """
     if isinstance(source, harmonic_analysis.TideAnalysis):
         source = source.constituents
     if isinstance(source, Constituents):
         chosen = source if constituents is None else source.picked(constituents)
-        return SeaClass((_layer_from_constituents(chosen, area),))
+        return (_layer_from_constituents(chosen, area),)
     if area is not None:
         raise _area_not_allowed_error()
-    source.check_single()
-    layers: list[Any] = []
-    for layer in source.layers:
+    check_not_ensemble(source)
+    layers: list[Layer] = []
+    for layer in source:
         if isinstance(layer, GridLayer) and has_tides(layer):
             layers.append(_layer_from_model_run(layer, constituents, rayleigh, progress, cache))
         elif layer.period is None:
             layers.append(layer)
     if not any(isinstance(layer, TidalLayer) for layer in layers):
         raise no_tides_error()
-    return SeaClass(tuple(layers), source.assumptions)
+    return tuple(layers)
 
 
 def _layer_from_model_run(
@@ -250,14 +262,14 @@ def _layer_from_constituents(constants: Constituents, area: BoundingBox | None) 
     if len(constants.variables & set(pair)) == 1:
         raise InputError(
             "Constituents of one component of the current are given without the other.",
-            "A current needs east and north.",
+            "A current needs an east and a north component.",
             f"Give both {pair[0]} and {pair[1]}.",
         )
     if constants.lat.size == 1:
         if area is None:
             raise InputError(
-                "One station does not tell where its tide holds.",
-                "It can be taken for a whole area, on your word.",
+                "Constituents of a single station are given without an area.",
+                "The tide of one station can be applied to an area that you name.",
                 "Give area=(south, north, west, east) in degrees.",
             )
         return TidalLayer(constants, None, area, source=source, facts=facts)
@@ -269,8 +281,8 @@ def _layer_from_constituents(constants: Constituents, area: BoundingBox | None) 
 
 def _area_not_allowed_error() -> InputError:
     return InputError(
-        "An area is given for tides that have places of their own.",
-        "It tells where the tide of a single station holds.",
+        "An area is given for tides that have positions.",
+        "An area applies to the tide of a single station only.",
         "Leave the area out.",
     )
 
@@ -288,7 +300,7 @@ def _triangulated_grid(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
     except (QhullError, ValueError):
         raise InputError(
             f"{lat.size} nodes make no triangles: too few, in one line, or without positions.",
-            "Between three or more nodes the tide is linear.",
+            "The tide is interpolated linearly between three or more nodes.",
             "Give more nodes, or one station with an area.",
         ) from None
     triangles = np.ascontiguousarray(triangles, np.int64)

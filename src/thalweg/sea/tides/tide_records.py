@@ -1,7 +1,8 @@
 """Records of water level and current at one place, for harmonic analysis.
 
-What a file is shows in what it holds, not in its name: CSV with a header, NOOS series (Matroos),
-DIA files of Rijkswaterstaat (Donar), or two bare columns of days and levels. Any may be gzipped.
+The format of a file is recognised by its contents, not by its name: CSV with a header, NOOS series
+(Matroos), DIA files of Rijkswaterstaat (Donar), or two columns of days and levels without a header.
+Any may be gzipped.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ import numpy as np
 from thalweg.core.errors import DatasetError, InputError
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
+from thalweg.core.units import DAY
+from thalweg.sea import plausible_values
 from thalweg.sea import standard_names as nm
-from thalweg.sea.files import plausible_values
-from thalweg.sea.tides.astronomy import DAY
 from thalweg.sea.tides.noos_dia_series import (
     LENGTH_UNITS,
     WaterLevelSeries,
@@ -31,7 +32,7 @@ from thalweg.sea.tides.noos_dia_series import (
     read_noos,
 )
 
-#: Columns of a record, lower case, and what they are (metres above datum, m/s towards).
+#: Canonical names of the columns of a record, lower case (metres above datum, m/s towards).
 COLUMN_NAMES: Final[dict[str, str]] = {
     **dict.fromkeys(("water_level", "water_level_m", "level", "level_m"), nm.WATER_LEVEL),
     nm.WATER_LEVEL: nm.WATER_LEVEL,
@@ -42,16 +43,20 @@ COLUMN_NAMES: Final[dict[str, str]] = {
 }
 TIME_COLUMNS: Final = ("time", "time_utc", "datetime")
 GZIP_MAGIC: Final = b"\x1f\x8b"
-BINARY_MAGIC: Final = (b"CDF", b"\x89HDF", b"GRIB")  #: how files begin that are opened as a sea
+BINARY_MAGIC: Final = (
+    b"CDF",
+    b"\x89HDF",
+    b"GRIB",
+)  #: first bytes of files that are opened as a sea
 _CONSTITUENT_FILE_PATTERN: Final = re.compile(r"\A\s*[\[{]|^COMP\s+\d", re.M)
-#: first days that bare day numbers are counted from
+#: usual first days of columns of day numbers
 DAY_COUNT_EPOCHS: Final = ("1700-01-01", "1858-11-17", "1899-12-30", "1900-01-01", "1970-01-01")
-PLAUSIBLE_YEARS: Final = (1850, 2100)  #: years a record is likely to be of, for hints only
+PLAUSIBLE_YEARS: Final = (1850, 2100)  #: likely years of a record, for hints only
 
 
 @dataclass(frozen=True, eq=False)
 class TideRecord:
-    """A record at one place.
+    """A record at one position.
 
     Attributes
     ----------
@@ -60,15 +65,15 @@ class TideRecord:
     series : dict of str to float64 array (T,)
         Water level [m above datum] and current [m/s towards] by canonical name, NaN where unknown.
     position : (float, float) or None
-        Latitude and longitude [deg], if the file tells them.
-    told : str
-        What kind of file it is, and of which place, as far as it says.
+        Latitude and longitude [deg], if the file gives them.
+    description : str
+        Format of the file and location, as far as it is stated.
     """
 
     times: FloatArray
     series: dict[str, FloatArray]
     position: tuple[float, float] | None
-    told: str
+    description: str
 
 
 def is_text_record(path: str | Path) -> bool:
@@ -94,17 +99,17 @@ def read_record(
         * a DIA file with one series of water level at equal steps (clock UTC+1);
         * two columns of numbers without a header: days and water level.
     unit : {"m", "dm", "cm", "mm"}, optional
-        Of bare columns, which do not tell it.
+        Unit of columns without a header, which do not state it.
     days_since : time, optional
-        From when the days of bare columns count, which they do not tell either.
+        First day of columns without a header, which do not state it either.
 
     Raises
     ------
     InputError
-        If bare columns come without unit and first day, or these are given for another file.
+        If columns without a header have no unit and first day, or another format has them.
     DatasetError
-        If the file cannot be read, is of none of these kinds, lacks a column, holds a cell that is
-        no time or number, or levels that cannot be.
+        If the file cannot be read, has none of these formats, lacks a column, or holds an invalid
+        time, number or level.
     """
     path = Path(path)
     source = path.name
@@ -114,9 +119,9 @@ def read_record(
         record = _headerless_record(table, source, unit, days_since)
     elif unit is not None or days_since is not None:
         raise InputError(
-            f"{source} tells its own unit and times, and others are given.",
+            f"{source} states its own unit and times, but others are given.",
             "Unit and first day are for two columns of numbers without a header.",
-            "Leave them out.",
+            "Omit them.",
         )
     elif is_dia(text):
         record = _record_from_series(read_dia(text, source))
@@ -125,8 +130,8 @@ def read_record(
     elif _CONSTITUENT_FILE_PATTERN.search(text):
         raise DatasetError(
             f"{source} holds tidal constituents, not a record.",
-            "They are what an analysis finds.",
-            "Predict from them: thalweg tides predict.",
+            "An analysis needs a record; constituents are its result.",
+            "Predict from them with: thalweg tides predict.",
             file=source,
         )
     else:
@@ -137,12 +142,14 @@ def read_record(
 
 
 def readable_name(name: str) -> str:
-    """Return a canonical name in words."""
+    """Return the first part of a canonical name in words, for messages."""
     return name.split("_above_")[0].replace("_", " ")
 
 
 def _record_from_series(series: WaterLevelSeries) -> TideRecord:
-    return TideRecord(series.times, {nm.WATER_LEVEL: series.level}, series.position, series.told)
+    return TideRecord(
+        series.times, {nm.WATER_LEVEL: series.level}, series.position, series.description
+    )
 
 
 def _read_bytes(path: Path, most: int = -1) -> bytes:
@@ -162,7 +169,7 @@ def _read_bytes(path: Path, most: int = -1) -> bytes:
 
 
 def _headerless_columns(text: str) -> FloatArray | None:
-    """Return two columns of numbers (T, 2), NaN where one is not given; None for other text."""
+    """Return two columns of numbers (T, 2), NaN where missing; None for other text."""
     lines = [line for line in text.splitlines() if line.strip()]
     if len(lines) < 3:
         return None
@@ -173,7 +180,7 @@ def _headerless_columns(text: str) -> FloatArray | None:
         numbers = np.array(parts, np.float64)
     except ValueError:
         return None
-    return None if (numbers[:, 0] >= 1e11).all() else numbers  # those are dates: 201801010000
+    return None if (numbers[:, 0] >= 1e11).all() else numbers  # these are dates: 201801010000
 
 
 def _headerless_record(
@@ -189,12 +196,12 @@ def _headerless_record(
         )
     day = parse_time(days_since)
     times = day + np.round(table[:, 0] * DAY, 0)
-    told = f"two columns: days since {format_time(day)[:10]}, water level in {unit}"
-    return TideRecord(times, {nm.WATER_LEVEL: table[:, 1] * LENGTH_UNITS[unit]}, None, told)
+    description = f"two columns: days since {format_time(day)[:10]}, water level in {unit}"
+    return TideRecord(times, {nm.WATER_LEVEL: table[:, 1] * LENGTH_UNITS[unit]}, None, description)
 
 
 def _missing_unit_and_epoch_error(table: FloatArray, source: str) -> InputError:
-    """Return the error for bare columns, with the dates that the usual first days would give."""
+    """Return the error for columns without a header, with dates for the usual first days."""
     first = float(table[0, 0])
     near = []
     for day in DAY_COUNT_EPOCHS:
@@ -206,11 +213,11 @@ def _missing_unit_and_epoch_error(table: FloatArray, source: str) -> InputError:
         ):
             near.append(f"{format_time(start)[:10]} since {day}")
     return InputError(
-        f"{source} holds two columns of numbers and does not tell what they are.",
+        f"{source} holds two columns of numbers without their unit and first day.",
         f"Day {first:g} is {', or '.join(near)}; levels may be in {', '.join(LENGTH_UNITS)}."
         if near
-        else f"Days are counted from some date; levels may be in {', '.join(LENGTH_UNITS)}.",
-        "Say both, for example --days-since 1700-01-01 --unit mm, or write CSV with a header.",
+        else f"Days are counted from an unknown date; levels may be in {', '.join(LENGTH_UNITS)}.",
+        "Give both, for example --days-since 1700-01-01 --unit mm, or write CSV with a header.",
         file=source,
     )
 
@@ -234,7 +241,7 @@ def _read_csv(text: str, source: str) -> TideRecord:
         series = {n: table[c].to_numpy(np.float64, na_value=np.nan) for n, c in found.items()}
     except ValueError as error:
         raise _record_file_error(
-            source, f"holds a cell that is no time or number ({error})"
+            source, f"holds a cell that is not a time or number ({error})"
         ) from error
     moments = times.dt.tz_localize(None).to_numpy("datetime64[ns]")
     if np.isnat(moments).any():

@@ -14,13 +14,13 @@ def affine(a: float, b: float, c: float, d: float):
     return lambda t, lat, lon: a + b * t + c * lat + d * lon
 
 
-def test_scalar_answers_are_spread_over_the_points() -> None:
+def test_scalar_results_are_broadcast_to_the_points() -> None:
     sea = Sea.from_functions({"sea_surface_wave_significant_height": lambda t, lat, lon: 2.0})
     got = sea.sample(["sea_surface_wave_significant_height"], 0.0, [1.0, 2.0], [[3.0], [4.0]])
     assert got["sea_surface_wave_significant_height"].tolist() == [[2.0, 2.0], [2.0, 2.0]]
 
 
-def test_functions_get_seconds_and_degrees_in_the_callers_places() -> None:
+def test_functions_receive_seconds_and_degrees_at_the_sampled_points() -> None:
     sea = Sea.from_functions({"salinity": affine(1.0, 2.0, 30.0, 500.0)})
     got = sea.sample(["salinity"], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0])
     assert got["salinity"].tolist() == [1.0, 3.0, 31.0, 501.0]
@@ -56,14 +56,14 @@ def test_half_a_vector_is_refused() -> None:
         Sea.from_functions({"sea_water_velocity_to_direction": lambda t, y, x: 1.0})
 
 
-def test_the_same_thing_twice_is_refused() -> None:
+def test_the_same_variable_twice_is_refused() -> None:
     one = {"sea_floor_depth_below_geoid": lambda t, y, x: 1.0}
     with pytest.raises(InputError, match="twice"):
         Sea.from_functions({**one, "sea_floor_depth_below_mean_sea_level": lambda t, y, x: 1.0})
     wind = dict.fromkeys(
         ("eastward_wind", "northward_wind", "wind_speed"), lambda t, y, x: 0.0 * t + 9.0
     )
-    with pytest.raises(InputError, match="'wind_speed' is another spelling"):
+    with pytest.raises(InputError, match="'wind_speed' is another name"):
         Sea.from_functions(wind)
 
 
@@ -80,7 +80,7 @@ def test_the_same_thing_twice_is_refused() -> None:
         {"time_step": -1.0},
     ],
 )
-def test_areas_periods_and_steps_that_are_none(given) -> None:
+def test_invalid_areas_periods_and_steps_are_refused(given) -> None:
     with pytest.raises(InputError):
         Sea.from_functions({"eastness": lambda t, y, x: 1.0}, **given)
 
@@ -96,7 +96,9 @@ def test_every_spelling_of_bed_depth_is_one_channel(name: str) -> None:
     assert fields.values[0, 0, 0] == 7.0
 
 
-def test_bed_level_is_negated_and_depth_below_the_moving_surface_is_freed_of_the_level() -> None:
+def test_bed_level_is_negated_and_the_water_level_is_subtracted_from_depth_below_the_surface() -> (
+    None
+):
     bed = Sea.from_functions({"bed_level": lambda t, y, x: -12.0})
     assert bed.sample(["sea_floor_depth_below_geoid"], 0, 0, 0)["sea_floor_depth_below_geoid"] == 12
     moving = Sea.from_functions(
@@ -118,7 +120,7 @@ def test_wrong_shape_names_the_function() -> None:
         text.sample(["x"], 0.0, 0.0, 0.0)
 
 
-def test_nan_stays_and_says_why() -> None:
+def test_nan_is_kept_and_its_reason_reported() -> None:
     sea = Sea.from_functions(
         {"x": lambda t, y, x: np.where(y > 0.5, np.nan, 1.0)},
         area=(0.0, 1.0, 179.0, -179.0),
@@ -190,7 +192,7 @@ def test_frozen_grid_across_the_antimeridian_has_unwrap_longitude() -> None:
     assert grid.values[0, 0, :, 0] == pytest.approx(columns)
 
 
-def test_first_layer_that_knows_wins_and_vectors_stay_together() -> None:
+def test_the_first_layer_with_a_value_has_priority_and_vectors_stay_together() -> None:
     def hole(t, y, x):
         return np.where(y > 0.5, np.nan, 1.0)
 
@@ -213,7 +215,7 @@ def test_first_layer_that_knows_wins_and_vectors_stay_together() -> None:
     assert Sea.layered(world, coastal).sample(names, 0, 0, 0)["eastward_wind"] == 10.0
 
 
-def test_filling_happens_only_when_named_and_is_told() -> None:
+def test_values_are_filled_only_on_request_and_stated() -> None:
     sea = Sea.from_functions(
         {
             "eastward_sea_water_velocity": lambda t, y, x: 1.0,
@@ -242,10 +244,10 @@ def test_filling_happens_only_when_named_and_is_told() -> None:
             sea.filled(**wrong)
 
 
-def test_a_speed_without_direction_that_filling_sets_aside_is_told() -> None:
+def test_a_speed_without_direction_that_filling_replaces_is_stated() -> None:
     sea = Sea.from_functions({"wind_speed": lambda t, y, x: 26.0})
-    told = sea.filled(wind=0.0).assumptions
-    assert told == (
+    assumptions = sea.filled(wind=0.0).assumptions
+    assert assumptions == (
         "where unknown, wind = 0.0",
         "the data's wind_speed, without direction, is not used",
     )
@@ -253,7 +255,7 @@ def test_a_speed_without_direction_that_filling_sets_aside_is_told() -> None:
     assert len(Sea.calm().filled(wind=0.0).assumptions) == 2
 
 
-def test_freezing_outside_the_period_says_which_period_there_is() -> None:
+def test_freezing_outside_the_period_reports_the_period_of_the_data() -> None:
     sea = Sea.from_functions(
         {"sea_surface_wave_significant_height": lambda t, y, x: 1.0}, period=(0, 9)
     )
@@ -261,7 +263,7 @@ def test_freezing_outside_the_period_says_which_period_there_is() -> None:
         sea.freeze_stations([0.0], [0.0], 100.0, 200.0, [codes.WAVE_HEIGHT_CHANNEL])
 
 
-def test_calm_is_steady_and_says_so() -> None:
+def test_calm_is_steady_and_stated_as_an_assumption() -> None:
     calm = Sea.calm()
     assert calm.times(0.0, 1e6).tolist() == [0.0, 1e6]
     assert calm.assumptions

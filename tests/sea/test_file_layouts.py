@@ -1,4 +1,4 @@
-"""Files of every layout: values exact for an affine field, unknown where the data are."""
+"""Files of every layout: exact for an affine field, unknown where the data are unknown."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.sea.worlds import EAST, HS, NORTH, T0, affine, axis, clock, mesh, regular, value
+from tests.sea.small_datasets import EAST, HS, NORTH, T0, affine, axis, clock, mesh, regular, value
 from thalweg.kernels import codes
 from thalweg.sea import Sea
-from thalweg.sea.grids.point_location import TriangleGrid
+from thalweg.sea.grids.triangle_grid import TriangleGrid
 
 HOUR = 3600.0
 
@@ -101,7 +101,7 @@ def test_nan_corner_with_weight_makes_nan_and_without_weight_does_not() -> None:
     assert sea.why_missing(HS, T0, 11.0, 21.0) == "gap"
 
 
-def test_a_missing_level_is_unknown_only_between_its_neighbours() -> None:
+def test_a_missing_time_is_unknown_only_between_its_neighbours() -> None:
     dataset = regular(hours=[0.0, 1.0, 2.0, 3.0])
     dataset.swh[1] = np.nan
     sea = Sea.open(dataset)
@@ -219,7 +219,7 @@ def test_curvilinear_grid_is_exact_for_affine_and_unknown_outside() -> None:
 
 
 @pytest.mark.parametrize("angle", [0.0, 33.0, 120.0, -75.0])
-def test_components_along_a_turned_grid_become_east_and_north(angle) -> None:
+def test_components_along_a_rotated_grid_become_east_and_north(angle) -> None:
     def one(t, lat, lon):
         return np.ones_like(lat) + 0 * t
 
@@ -260,8 +260,8 @@ def _unit_along_x(name: str, **attributes) -> dict:
     }
 
 
-def test_components_along_an_x_axis_that_falls_point_the_other_way() -> None:
-    """Columns run against the projected x axis along which components are told."""
+def test_components_along_a_decreasing_x_axis_are_reversed() -> None:
+    """Columns run against the projected x axis along which components are given."""
     data = rotated_grid(30.0, _unit_along_x("x_wind"))
     x = np.arange(float(data.sizes["x"]))
     for sign in (1.0, -1.0):
@@ -271,7 +271,7 @@ def test_components_along_an_x_axis_that_falls_point_the_other_way() -> None:
         assert got["northward_wind"] == pytest.approx(sign * np.sin(np.radians(30.0)), abs=2e-5)
 
 
-def test_components_that_grib_tells_along_the_grid_are_turned() -> None:
+def test_components_that_grib_gives_along_the_grid_are_rotated() -> None:
     for flag, east, north in ((1, np.cos(np.radians(30.0)), 0.5), (0, 1.0, 0.0)):
         data = rotated_grid(30.0, _unit_along_x("eastward", GRIB_uvRelativeToGrid=flag))
         got = Sea.open(data).sample(["eastward_wind", "northward_wind"], T0, 0.0, 0.0)
@@ -280,10 +280,10 @@ def test_components_that_grib_tells_along_the_grid_are_turned() -> None:
 
 
 @pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:3413", "EPSG:28992"])
-def test_the_x_axis_of_a_projection_is_turned_by_its_convergence(crs) -> None:
+def test_the_x_axis_of_a_projection_is_rotated_by_its_convergence(crs) -> None:
     from pyproj import Geod, Transformer
 
-    from thalweg.sea.files.coordinates import meridian_angle
+    from thalweg.sea.files.projections import meridian_angle
 
     back = Transformer.from_crs(4326, crs, always_xy=True)
     lat, lon = np.array([52.5, 55.5, 53.0]), np.array([4.5, 9.0, 6.5])
@@ -303,7 +303,7 @@ def test_grid_over_the_pole_and_over_the_dateline() -> None:
         if positions is None:
             x, y = np.meshgrid(np.linspace(5e5, 9e5, 21), np.linspace(1e6, 1.2e6, 17))
             positions = [(9.9, 179.9), (9.9, -179.9), (9.9, 180.0)]
-        from thalweg.sea.files.coordinates import to_degrees
+        from thalweg.sea.files.projections import to_degrees
 
         lat, lon = to_degrees(crs, x, y)
         dataset = xr.Dataset(
@@ -342,7 +342,7 @@ def test_projected_axes_with_a_grid_mapping_only() -> None:
             "y": ("y", y, {"standard_name": "projection_y_coordinate", "units": "m"}),
         },
     )
-    from thalweg.sea.files.coordinates import to_degrees
+    from thalweg.sea.files.projections import to_degrees
 
     lat, lon = to_degrees("EPSG:32631", np.array([5.2e5]), np.array([5.81e6]))
     assert value(Sea.open(dataset), HS, T0, lat, lon) == pytest.approx(3.0, abs=1e-4)
@@ -383,7 +383,7 @@ def test_mesh_with_face_data_keeps_the_value_at_each_centre_and_dry_faces_unknow
     assert value(dry, HS, T0, lat[1], lon[1]) == pytest.approx(faces[1])
 
 
-def test_nodes_of_a_mesh_take_their_faces_by_the_inverse_distance_to_the_centres() -> None:
+def test_nodes_of_a_mesh_average_their_faces_by_inverse_distance() -> None:
     dataset = mesh(location="face")
     dataset.swh[:] = np.array([1.0, 3.0, 7.0])  # the quadrangle, triangles 1 2 5 and 1 5 4
     lat, lon = dataset.node_lat.values, dataset.node_lon.values
@@ -398,7 +398,7 @@ def test_nodes_of_a_mesh_take_their_faces_by_the_inverse_distance_to_the_centres
     assert abs(expected - 11.0 / 3.0) > 0.1
 
 
-def test_a_mesh_round_the_world_has_no_seam() -> None:
+def test_a_global_mesh_has_no_seam() -> None:
     """Two rings of nodes at 10 S and 10 N, on any turn of longitude."""
     lon = np.arange(0.0, 360.0, 30.0)
     n = lon.size
@@ -429,7 +429,7 @@ def test_mesh_across_the_dateline() -> None:
     assert value(sea, HS, T0, 50.2, [179.4, 180.3]) == pytest.approx(expected, rel=1e-9)
 
 
-def test_bed_level_total_depth_and_level_belong_together() -> None:
+def test_bed_level_total_depth_and_level_are_consistent() -> None:
     fields = {
         "bed": ({"standard_name": "altitude", "units": "m"}, -20.0),
         "level": (
@@ -457,7 +457,7 @@ def test_bed_level_total_depth_and_level_belong_together() -> None:
     assert [float(got[n]) for n in names] == pytest.approx([20.0, 1.5])
 
 
-def test_a_total_depth_without_its_level_is_left_out_with_the_reason() -> None:
+def test_a_total_depth_without_its_level_is_ignored_with_the_reason() -> None:
     data = regular(
         fields={"h": {"standard_name": "sea_floor_depth_below_sea_surface", "units": "m"}}
     )
@@ -474,10 +474,10 @@ def test_a_total_depth_without_its_level_is_left_out_with_the_reason() -> None:
     sea = Sea.open(data)
     assert "sea_floor_depth_below_geoid" not in sea.variables
     reasons = {name: reason for _, name, reason in sea.describe().ignored}
-    assert reasons["h"].startswith("no water level on its grid")
+    assert reasons["h"].startswith("the water level needed to convert it is not on its grid")
 
 
-def test_static_fields_hold_always_and_single_times_only_then() -> None:
+def test_static_fields_hold_at_all_times_and_single_times_at_that_time() -> None:
     dataset = regular(hours=[0.0])
     dataset["deptho"] = (("lat", "lon"), np.full((4, 3), 30.0), {"units": "m"})
     sea = Sea.open(dataset)
@@ -487,7 +487,7 @@ def test_static_fields_hold_always_and_single_times_only_then() -> None:
     assert sea.why_missing(HS, T0 + 1.0, 11.0, 21.0) == "period"
 
 
-def test_surface_level_and_ten_metres_are_picked() -> None:
+def test_surface_level_and_ten_metres_are_selected() -> None:
     base = regular(
         fields={"uo": {"units": "m/s"}, "vo": {"units": "m/s"}},
         field=lambda t, y, x: 1.0 + 0 * (t + y + x),
@@ -521,7 +521,7 @@ def test_files_on_other_positions_are_not_joined() -> None:
     assert np.isnan(value(sea, HS, T0 + 2.5 * HOUR, 11.5, 21.0))
 
 
-def test_the_share_of_places_without_a_value_is_told() -> None:
+def test_the_fraction_of_points_without_a_value_is_reported() -> None:
     data = regular()
     data.swh[:, :2, :1] = np.nan  # 2 of 12 places
     (share,) = Sea.open(data).describe().missing.values()
@@ -539,7 +539,7 @@ def test_files_of_one_layer_may_differ_in_units() -> None:
         assert value(sea, HS, time, 11.0, 21.0) == pytest.approx(affine(time, 11.0, 21.0))
 
 
-def test_holes_in_time_stay_unknown_in_samples_and_in_frozen_fields() -> None:
+def test_gaps_in_time_stay_unknown_in_samples_and_in_frozen_fields() -> None:
     sea = Sea.open(regular(hours=[0.0, 1.0, 2.0, 9.0, 10.0, 11.0]))
     time = T0 + np.array([1.5, 2.0, 5.0, 9.0, 9.5]) * HOUR
     assert np.isnan(value(sea, HS, time, 11.0, 21.0)).tolist() == [False, False, True, False, False]
@@ -647,7 +647,7 @@ def test_nemo_cell_sides_are_averaged_to_centres() -> None:
     assert np.isnan(Sea.open(dataset).sample([EAST], T0, 2.5, 0.2)[EAST])
 
 
-def test_masked_positions_of_a_curvilinear_grid_are_holes() -> None:
+def test_masked_positions_of_a_curvilinear_grid_are_unknown() -> None:
     dataset = rotated_grid(20.0, {"swh": (affine, {"units": "m"})})
     lat, lon = dataset.lat.values.copy(), dataset.lon.values.copy()
     lat[0, :2] = lon[0, :2] = np.nan
@@ -665,7 +665,7 @@ def test_masked_positions_of_a_curvilinear_grid_are_holes() -> None:
     assert 0.05 < sea.coverage()[0].spacing_deg < 0.15
 
 
-def test_fingerprint_follows_the_file(tmp_path) -> None:
+def test_fingerprint_changes_with_the_file(tmp_path) -> None:
     import os
 
     path = tmp_path / "a.nc"

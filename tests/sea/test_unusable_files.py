@@ -1,4 +1,4 @@
-"""Files that cannot be used get a clear answer in three parts, and nothing is invented."""
+"""Files that cannot be used give an error in three parts, and no value is invented."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.sea.worlds import HS, T0, clock, regular, value
+from tests.sea.small_datasets import HS, T0, clock, regular, value
 from thalweg.core.errors import DatasetError, InputError, ThalwegError
 from thalweg.sea import Sea
 
@@ -52,7 +52,7 @@ def test_corrupt_compressed_chunk(tmp_path) -> None:
 def test_not_data_empty_and_missing(tmp_path) -> None:
     text = tmp_path / "notes.nc"
     text.write_text("dear diary, " * 100)
-    refused("notes.nc does not begin", text)
+    refused("notes.nc is not in a known format", text)
     empty = tmp_path / "empty.nc"
     empty.touch()
     refused("is empty", empty)
@@ -66,7 +66,7 @@ def test_not_data_empty_and_missing(tmp_path) -> None:
 
 @pytest.mark.parametrize(
     ("hours", "match"),
-    [([0.0, 2.0, 1.0], "earlier"), ([0.0, 1.0, 1.0], "twice"), ([2.0, 1.0, 0.0], "earlier")],
+    [([0.0, 2.0, 1.0], "earlier"), ([0.0, 1.0, 1.0], "is repeated"), ([2.0, 1.0, 0.0], "earlier")],
 )
 def test_times_that_do_not_increase(hours, match) -> None:
     refused(match, regular(hours=hours))
@@ -98,7 +98,7 @@ def test_two_candidates_are_listed_and_can_be_chosen() -> None:
     refused("in none of the files", dataset, mapping={HS: "hs_model_c"})
 
 
-def test_spellings_of_two_sources_are_ambiguous_and_of_one_source_are_not() -> None:
+def test_names_of_two_sources_are_ambiguous_and_of_one_source_are_not() -> None:
     refused("could be any of", regular(fields={"swh": {"units": "m"}, "vhm0": {"units": "m"}}))
     cmems = regular(
         fields={n: {"units": "m/s"} for n in ("utotal", "vtotal")},
@@ -109,36 +109,36 @@ def test_spellings_of_two_sources_are_ambiguous_and_of_one_source_are_not() -> N
 
 def test_impossible_units_and_values() -> None:
     refused("units are 'K'", regular(fields={"swh": {"units": "K"}}))
-    refused("wrong units", regular(field=lambda t, y, x: 300.0 + 0 * (t + y + x)))
+    refused("units may be wrong", regular(field=lambda t, y, x: 300.0 + 0 * (t + y + x)))
     refused(
-        "wrong units",
+        "units may be wrong",
         regular(
             fields={"u10": {"units": "m/s"}, "v10": {"units": "m/s"}},
             field=lambda t, y, x: -9999.0 + 0 * (t + y + x),
         ),
     )
     refused(
-        "wrong units",
+        "units may be wrong",
         regular(fields={"msl": {"units": "Pa"}}, field=lambda t, y, x: 1013.0 + 0 * (t + y + x)),
     )
 
 
 @pytest.mark.parametrize("row", [0, 3])
-def test_of_a_small_level_every_row_is_looked_at_on_opening(row) -> None:
+def test_every_row_of_a_small_grid_is_checked_on_opening(row) -> None:
     data = regular()
     data.swh[1, row, 0] = 9999.0  # the middle time
     refused("9999", data)
 
 
-def test_implausible_values_away_from_the_first_look_show_when_read() -> None:
+def test_implausible_values_outside_the_first_check_are_detected_when_read() -> None:
     dataset = regular(hours=np.arange(6.0))
     dataset.swh[5] = 1e6
     sea = Sea.open(dataset)
-    with pytest.raises(DatasetError, match="wrong units"):
+    with pytest.raises(DatasetError, match="units may be wrong"):
         sea.sample([HS], T0 + 5 * 3600.0, 11.0, 21.0)
 
 
-def test_layouts_that_are_no_fields() -> None:
+def test_layouts_that_are_not_fields() -> None:
     series = xr.Dataset(
         {"Hm0": (("time",), np.ones(5), {"standard_name": HS, "units": "m"})},
         coords={"time": clock(np.arange(5.0)), "x": 4.0, "y": 52.0},
@@ -156,7 +156,7 @@ def test_layouts_that_are_no_fields() -> None:
     months = regular().rename(time="month").drop_vars("month").assign_coords(month=[1, 2, 3])
     refused("climatology", months)
     strange = regular().expand_dims(percentile=[10, 90])
-    refused("neither time, place nor level", strange)
+    refused("neither time, position nor level", strange)
     winds = regular(
         fields={"u10": {"units": "m/s"}, "v10": {"units": "m/s"}},
         field=lambda t, y, x: 1.0 + 0 * (t + y + x),
@@ -167,24 +167,24 @@ def test_layouts_that_are_no_fields() -> None:
     refused("not at 10 m", high)
 
 
-def test_nothing_recognised_tells_what_there_is() -> None:
+def test_a_file_without_known_variables_lists_its_variables() -> None:
     error = refused("no wind, waves", regular(fields={"chlorophyll": {"units": "mg m-3"}}))
     assert "chlorophyll" in error.possible
 
 
-def test_positions_that_cannot_be() -> None:
+def test_impossible_positions_are_refused() -> None:
     refused("reaches 95 degrees", regular(lat=[80.0, 85.0, 95.0]))
     refused("one way|neither", regular(lat=[10.0, 12.0, 11.0]))
 
 
-def test_data_folder_is_left_alone(tmp_path) -> None:
+def test_no_file_is_written_in_the_data_folder(tmp_path) -> None:
     regular().to_netcdf(tmp_path / "a.nc")
     before = sorted(p.name for p in tmp_path.iterdir())
     Sea.open(tmp_path / "a.nc").sample([HS], T0, 11.0, 21.0)
     assert sorted(p.name for p in tmp_path.iterdir()) == before
 
 
-def test_wind_at_another_height_gives_way_to_wind_at_ten_metres() -> None:
+def test_wind_at_ten_metres_has_priority_over_other_heights() -> None:
     winds = regular(
         fields={
             "u10": {"standard_name": "eastward_wind", "units": "m/s"},
@@ -202,7 +202,7 @@ def test_wind_at_another_height_gives_way_to_wind_at_ten_metres() -> None:
     assert any("not at 10 m" in reason for _, _, reason in sea.describe().ignored)
 
 
-def test_whole_classic_files_of_every_version_pass_the_length_check(tmp_path) -> None:
+def test_complete_classic_files_of_every_version_pass_the_length_check(tmp_path) -> None:
     from thalweg.sea.files.netcdf3_check import expected_length
 
     for format_ in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"):
@@ -227,7 +227,7 @@ def test_whole_classic_files_of_every_version_pass_the_length_check(tmp_path) ->
 
 
 def _levels(values, name, units) -> xr.Dataset:
-    """Return wind that tells the value of its level, on levels of any kind."""
+    """Return wind with the value of its level, on levels of any kind."""
     level = np.array(values, float)
     u = np.broadcast_to(level[None, :, None, None] / 20.0, (2, level.size, 3, 3)).copy()
     dims = ("time", name, "lat", "lon")
@@ -254,10 +254,10 @@ def _levels(values, name, units) -> xr.Dataset:
         ([85000.0, 1000.0], "plev", "Pa"),
     ],
 )
-def test_wind_of_the_upper_air_is_never_that_at_ten_metres(values, name, units) -> None:
+def test_upper_air_wind_is_never_used_as_wind_at_ten_metres(values, name, units) -> None:
     refused("levels of pressure", _levels(values, name, units))
     mapping = {"eastward_wind": "u", "northward_wind": "v"}
-    if len(values) > 1:  # the user's word for the variables is none for the level
+    if len(values) > 1:  # mapping the variables does not select a level
         refused("levels of pressure", _levels(values, name, units), mapping=mapping)
     height = Sea.open(_levels([100.0, 10.0], "height", "m"))
     assert value(height, "eastward_wind", T0, 1.0, 1.0) == pytest.approx(0.5)
@@ -266,12 +266,12 @@ def test_wind_of_the_upper_air_is_never_that_at_ten_metres(values, name, units) 
 @pytest.mark.parametrize(
     ("begin", "kind"), [(b"PK\x03\x04", "zip"), (b"\x1f\x8b\x08", "gzip"), (b"BZh9", "bzip2")]
 )
-def test_packed_files_are_called_packed(tmp_path, begin, kind) -> None:
+def test_compressed_files_are_reported_as_compressed(tmp_path, begin, kind) -> None:
     path = tmp_path / "era5.nc"
     path.write_bytes(begin + bytes(100))
-    assert "Unpack it first" in str(refused(f"is packed .{kind}.", path))
+    assert "Decompress it first" in str(refused(f"is compressed .{kind}.", path))
 
 
 @pytest.mark.parametrize("what", [5, None, 1.5])
-def test_what_cannot_be_opened(what) -> None:
+def test_objects_that_cannot_be_opened(what) -> None:
     refused("cannot be opened from", what)

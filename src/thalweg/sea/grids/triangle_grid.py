@@ -1,185 +1,40 @@
-"""Where a point lies in a grid: corners and weights, for every kind of grid alike.
-
-A grid has ``shape`` (rows, columns) of places that hold values (a mesh has one row), and
-``locate`` returns for points the flat places of the corners around them and the weights.
-"""
+"""Grids of triangles: unstructured meshes and curvilinear grids, linear in each triangle."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
+from thalweg.sea.grids.grid_protocol import GridLocation
 from thalweg.sea.grids.triangle_mesh import Mesh
 
-MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin above which bins are made smaller ...
-MAX_BINS, MAX_ITEMS_PER_TRIANGLE = (
-    1500,
-    20.0,
-)  #: ... up to so many a side, or entries for each triangle
-
-
-class GridLocation(NamedTuple):
-    """Corners around points: flat places (N, C), -1 first where outside; weights (N, C)."""
-
-    corner: IntArray
-    weight: FloatArray
-
-
-class Grid(Protocol):
-    """Anything that can say where points lie in it."""
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Rows and columns of places."""
-        ...
-
-    @property
-    def wraps(self) -> bool:
-        """Whether the last column is followed by the first."""
-        ...
-
-    @property
-    def area(self) -> BoundingBox:
-        """The box around the grid."""
-        ...
-
-    @property
-    def spacing(self) -> float:
-        """Typical spacing [deg]."""
-        ...
-
-    def locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
-        """Return corners and weights for points [deg]."""
-        ...
-
-    def mesh(self) -> Mesh | None:
-        """Return nodes and triangles, if the grid is a mesh."""
-        ...
-
-
-@dataclass(frozen=True, eq=False)
-class RectilinearGrid:
-    """Latitude and longitude axes; bilinear in a cell.
-
-    Attributes
-    ----------
-    lat : float64 array (Y,)
-        Strictly increasing or decreasing [deg].
-    lon : float64 array (X,)
-        Strictly increasing [deg], unwrapped (may pass 180 or 360).
-    """
-
-    lat: FloatArray
-    lon: FloatArray
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
-        return self.lat.size, self.lon.size
-
-    @cached_property
-    def wraps(self) -> bool:
-        """Whether the axis goes once around the world."""
-        if self.lon.size < 3:
-            return False
-        step = float(np.median(np.diff(self.lon)))
-        return bool(abs(self.lon[-1] + step - self.lon[0] - 360.0) < 0.5 * step)
-
-    @cached_property
-    def area(self) -> BoundingBox:
-        """The box from the first to the last row and column; the world around if it wraps."""
-        south, north = float(self.lat.min()), float(self.lat.max())
-        if self.wraps:
-            return BoundingBox(south, north, -180.0, 180.0)
-        return BoundingBox(south, north, float(self.lon[0]), float(self.lon[-1]))
-
-    @property
-    def spacing(self) -> float:
-        """Median spacing of latitudes [deg]."""
-        return float(np.median(np.abs(np.diff(self.lat)))) if self.lat.size > 1 else 0.0
-
-    def mesh(self) -> Mesh | None:
-        """A grid of axes is no mesh."""
-        return None
-
-    def locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
-        """Return the four corners of each point's cell and the bilinear weights."""
-        row, fy, inside_y = _locate_on_axis(self._rows, lat)
-        if self.lat.size > 1 and self.lat[1] < self.lat[0]:
-            row, step = self.lat.size - 1 - row, -1
-        else:
-            step = 1
-        column, fx, inside_x = _locate_on_axis(
-            self._columns, (lon - self._west) % 360.0 + self._west
-        )
-        below = np.clip(row + step, 0, self.lat.size - 1)
-        right = (
-            (column + 1) % self.lon.size
-            if self.wraps
-            else np.minimum(column + 1, self.lon.size - 1)
-        )
-        columns = self.lon.size
-        index = np.empty((lat.size, 4), np.int64)
-        index[:, 0] = row * columns + column
-        index[:, 1] = row * columns + right
-        index[:, 2] = below * columns + column
-        index[:, 3] = below * columns + right
-        weight = np.empty((lat.size, 4))
-        weight[:, 0] = (1.0 - fy) * (1.0 - fx)
-        weight[:, 1] = (1.0 - fy) * fx
-        weight[:, 2] = fy * (1.0 - fx)
-        weight[:, 3] = fy * fx
-        index[~(inside_y & inside_x), 0] = -1
-        return GridLocation(index, weight)
-
-    @cached_property
-    def _rows(self) -> FloatArray:
-        return np.sort(self.lat)
-
-    @cached_property
-    def _columns(self) -> FloatArray:
-        return np.append(self.lon, self.lon[0] + 360.0) if self.wraps else self.lon
-
-    @property
-    def _west(self) -> float:
-        return float(self.lon[0]) - EDGE_TOLERANCE
-
-
-def _locate_on_axis(
-    axis: FloatArray, value: FloatArray
-) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
-    """Return the place before each value on an increasing axis, the way to the next, and inside."""
-    inside = (value >= axis[0] - EDGE_TOLERANCE) & (value <= axis[-1] + EDGE_TOLERANCE)
-    if axis.size == 1:
-        return np.zeros(value.shape, np.int64), np.zeros(value.shape), inside
-    place = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
-    fraction = (value - axis[place]) / (axis[place + 1] - axis[place])
-    return place, np.where(inside, np.clip(fraction, 0.0, 1.0), 0.0), inside
+MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin; with more, bins are made smaller
+MAX_BINS = 1500  #: bins per side at most
+MAX_ITEMS_PER_TRIANGLE = 20.0  #: bin entries per triangle at most
 
 
 @dataclass(frozen=True, eq=False)
 class TriangleGrid:
-    """Places joined by triangles; linear (barycentric) in each, in the plane of lon and lat.
+    """Grid points connected by triangles; linear (barycentric) in each, in lon and lat.
 
-    Around a pole, where that plane has no meaning, a polar stereographic plane is used.
+    Around a pole, where longitude is singular, a polar stereographic plane is used.
 
     Attributes
     ----------
     lat, lon : float64 array (M,)
-        Places that hold values [deg].
+        Grid points that hold values [deg].
     triangles : int64 array (K, 3)
-        Flat places.
+        Flat indices of grid points.
     shape : tuple of int
-        Rows and columns of places (1 row for a mesh).
+        Rows and columns of grid points (1 row for a mesh).
     network : Mesh or None
-        Nodes and triangles for others to build on.
+        Nodes and triangles from which a network can be built.
     """
 
     lat: FloatArray
@@ -191,7 +46,7 @@ class TriangleGrid:
 
     @cached_property
     def area(self) -> BoundingBox:
-        """The box around all places."""
+        """The box around all grid points."""
         known = np.isfinite(self.lat) & np.isfinite(self.lon)
         south, north = float(self.lat[known].min()), float(self.lat[known].max())
         west, width = _narrowest_range(self.lon[known])
@@ -222,7 +77,7 @@ class TriangleGrid:
 
     @cached_property
     def _last(self) -> dict[str, tuple[FloatArray, FloatArray, GridLocation]]:
-        """What was asked last: several layers lie on one mesh and are asked for the same points."""
+        """The last result: several layers on one mesh are sampled at the same points."""
         return {}
 
     def _locate(self, lat: FloatArray, lon: FloatArray) -> GridLocation:
@@ -253,7 +108,7 @@ class TriangleGrid:
 
 
 class MapPlane(NamedTuple):
-    """A flat map: pole 0 is plain lon and lat from a west edge, +-1 polar stereographic."""
+    """A plane: pole 0 is lon and lat from a west edge, +-1 polar stereographic."""
 
     pole: int
     west: float
@@ -281,13 +136,13 @@ class TriangleBins(NamedTuple):
 def make_triangle_bins(
     plane: MapPlane, lat: FloatArray, lon: FloatArray, triangles: IntArray
 ) -> TriangleBins:
-    """Sort triangles into bins; those with unknown corners or around a pole are left out."""
+    """Sort triangles into bins; those with unknown corners or around a pole are omitted."""
     x, y = plane.of(lat[triangles], lon[triangles])
     if plane.pole == 0:
         x = x[:, :1] + _wrap(x - x[:, :1])
     whole = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
     whole &= (x.max(axis=1) - x.min(axis=1)) < 180.0
-    if not whole.any():  # nothing can be found in a single point
+    if not whole.any():  # a single degenerate triangle contains no point
         x, y, whole = np.zeros_like(x), np.zeros_like(y), np.arange(len(x)) == 0
     x, y, corners = x[whole], y[whole], triangles[whole]
     if plane.pole == 0:
@@ -301,10 +156,10 @@ def make_triangle_bins(
 
 
 def _refined_bins(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return bins, as many as triangles or more where these crowd in some, and their counts.
+    """Return bins and their counts: about as many bins as triangles, more for uneven meshes.
 
-    Coastal meshes have small triangles in a bay and large ones off it: what counts is how many
-    triangles a point in a small one has to be compared with.
+    Coastal meshes have small triangles in bays and large ones offshore. The measure is the number
+    of triangles that a point in a small triangle is compared with.
     """
     n = max(1, int(np.sqrt(len(x))))
     low, high = (x.min(), y.min()), (x.max(), y.max())
@@ -327,9 +182,11 @@ def _refined_bins(x: FloatArray, y: FloatArray) -> tuple[FloatArray, IntArray]:
 def _repeat_across_seam(
     plane: MapPlane, x: FloatArray, y: FloatArray, corners: IntArray
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Repeat triangles that stick out over either edge of the map on its other side."""
+    """Repeat triangles that extend over one edge of the plane at its other edge."""
     right = x.max(axis=1) > plane.west + 360.0 - 2.0 * EDGE_TOLERANCE
-    left = x.min(axis=1) < plane.west - EDGE_TOLERANCE + 1e-9  # points begin a rim before the edge
+    left = (
+        x.min(axis=1) < plane.west - EDGE_TOLERANCE + 1e-9
+    )  # points start slightly before the edge
     return (
         np.concatenate([x, x[right] - 360.0, x[left] + 360.0]),
         np.concatenate([y, y[right], y[left]]),
@@ -342,7 +199,7 @@ def _wrap(lon: FloatArray) -> FloatArray:
 
 
 def _narrowest_range(lon: FloatArray) -> tuple[float, float]:
-    """Return west edge in [-180, 180) and width of the narrowest range that holds longitudes."""
+    """Return west edge in [-180, 180) and width [deg] of the narrowest range of longitudes."""
     ordered = np.unique(lon % 360.0)
     gaps = np.diff(np.append(ordered, ordered[0] + 360.0))
     k = int(np.argmax(gaps))
@@ -351,7 +208,7 @@ def _narrowest_range(lon: FloatArray) -> tuple[float, float]:
 
 
 def curvilinear_grid(lat: FloatArray, lon: FloatArray) -> TriangleGrid:
-    """Return the grid of 2-D coordinates: each cell is cut into two triangles."""
+    """Return the grid of 2-D coordinates (Y, X) [deg]; each cell is divided into two triangles."""
     rows, columns = lat.shape
     place = np.arange(rows * columns, dtype=np.int64).reshape(rows, columns)
     a, b = place[:-1, :-1].ravel(), place[:-1, 1:].ravel()

@@ -1,4 +1,4 @@
-"""The embedded storm: limits of its formulas, and a vortex where the track says."""
+"""The embedded storm: limits of its formulas, and a vortex at the position of its track."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from thalweg.core.units import KNOT
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea.models import cyclone_formulas as models
-from thalweg.sea.models.cyclone_layer import AmbientSea, load_best_track, vortex_state
+from thalweg.sea.models.cyclone_layer import AmbientSea
+from thalweg.sea.models.cyclone_track import load_best_track
+from thalweg.sea.models.cyclone_vortex import vortex_state
 
 HS = "sea_surface_wave_significant_height"
 STILL = AmbientSea(wind=(0.0, 0.0), wave_height=0.0)
@@ -24,14 +26,14 @@ def holland(radius, *, f=0.0, b=1.5, deficit=6000.0, rm=40e3):
     )
 
 
-def test_holland_maximum_lies_at_its_radius_and_has_its_closed_form() -> None:
+def test_holland_maximum_is_at_its_radius_and_has_its_closed_form() -> None:
     radius = np.arange(5e3, 300e3, 100.0)
     wind = holland(radius)
     assert radius[np.argmax(wind)] == pytest.approx(40e3, abs=150.0)
     assert wind.max() == pytest.approx(np.sqrt(1.5 * 6000.0 / (1.15 * np.e)), rel=1e-6)
 
 
-def test_holland_is_still_at_the_centre_and_far_away_and_weaker_on_a_turning_earth() -> None:
+def test_holland_wind_is_zero_at_the_centre_and_far_away_and_weaker_with_rotation() -> None:
     assert holland(0.0) == pytest.approx(0.0, abs=1e-9)
     assert holland(5e6, f=1e-4) < 0.1
     assert holland(40e3, f=1e-4) < holland(40e3)
@@ -57,14 +59,14 @@ def test_inflow_angles_of_bretschneider() -> None:
     assert got == pytest.approx([10.0, 20.0, 22.5, 25.0, 25.0])
 
 
-def test_translation_wind_is_turned_left_in_the_north_and_right_in_the_south() -> None:
+def test_translation_wind_is_rotated_left_in_the_north_and_right_in_the_south() -> None:
     east, north = models.translation_wind(10.0, 0.0, 40.0)
     assert np.hypot(east, north) == pytest.approx(5.5)
     assert np.degrees(np.arctan2(north, east)) == pytest.approx(20.0)
     assert models.translation_wind(10.0, 0.0, -40.0)[1] == pytest.approx(-north)
 
 
-def test_equivalent_fetch_by_hand() -> None:
+def test_equivalent_fetch_of_a_worked_example() -> None:
     # V = 40, s = 5, R = 50 km: shape = -3.48 + 3.012 - 3.0575 + 3.504 + 7.58 + 1.756 = 9.3145
     spatial = 22.5e3 * np.log10(50e3) - 70.8e3
     assert models.equivalent_fetch_young2013(40.0, 5.0, 50e3) == pytest.approx(
@@ -124,7 +126,7 @@ def test_symmetric_maximum_is_kept_by_the_fitted_deficit() -> None:
     assert (state.radius <= 150e3).all()
 
 
-def test_far_away_lies_the_ambient_sea_and_outside_the_life_nothing() -> None:
+def test_ambient_sea_far_away_and_unknown_outside_the_period_of_the_track() -> None:
     sea = Sea.storm()
     time = parse_time("1998-09-03T06:00Z")
     got = sea.sample(["eastward_wind", HS, "sea_surface_wave_from_direction"], time, -40.0, 100.0)
@@ -136,7 +138,7 @@ def test_far_away_lies_the_ambient_sea_and_outside_the_life_nothing() -> None:
     assert sea.why_missing(HS, early, 0.0, 0.0) == "period"
 
 
-def test_series_agree_with_samples_and_fade_is_continuous() -> None:
+def test_series_equal_samples_and_the_taper_is_continuous() -> None:
     sea = Sea.storm()
     start = parse_time("1998-09-04T00:00Z")
     fields = sea.freeze_stations(
@@ -172,6 +174,6 @@ def test_a_storm_needs_a_step(step) -> None:
         Sea.storm(time_step=step)
 
 
-def test_unknown_storm_names_the_known() -> None:
+def test_an_unknown_storm_lists_the_known_ones() -> None:
     with pytest.raises(InputError, match="danielle-1998"):
         Sea.storm("daniele")

@@ -1,4 +1,4 @@
-"""What values make sense: a last check that catches wrong units before a ship sails on them."""
+"""Plausible ranges of values: a final check against wrong units and unmarked fill values."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import DatasetError
 from thalweg.sea import standard_names as nm
 
-#: least and largest value that is believed, SI; generous, to catch units and fill values only
+#: smallest and largest plausible value, SI; wide, to detect wrong units and fill values only
 PLAUSIBLE_RANGES: Final[dict[str, tuple[float, float]]] = {
     nm.EASTWARD_WIND: (-120.0, 120.0),
     nm.NORTHWARD_WIND: (-120.0, 120.0),
@@ -25,11 +25,23 @@ PLAUSIBLE_RANGES: Final[dict[str, tuple[float, float]]] = {
     nm.PRESSURE: (80000.0, 112000.0),
     nm.ICE: (0.0, 1.01),
 }
-RANGE_TOLERANCE: Final = 0.01  #: share of the range by which packing may overshoot
+RANGE_TOLERANCE: Final = 0.01  #: fraction of the range by which packed values may exceed it
 
 
 def check_plausible(name: str, value: NDArray[Any], variables: list[str], source: str) -> None:
-    """Raise `DatasetError` if values lie outside what can be believed of a variable."""
+    """Raise `DatasetError` if values are outside the plausible range of a variable.
+
+    Parameters
+    ----------
+    name : str
+        Canonical name.
+    value : array
+        Values [SI], NaN where unknown.
+    variables : list of str
+        Names in the file, for messages.
+    source : str
+        File name for messages.
+    """
     if name not in PLAUSIBLE_RANGES or value.size == 0:
         return
     low, high = PLAUSIBLE_RANGES[name]
@@ -43,8 +55,8 @@ def check_plausible(name: str, value: NDArray[Any], variables: list[str], source
     unit = nm.CANONICAL_UNITS.get(name, "")
     raise DatasetError(
         f"{source}: {', '.join(variables)} read as {name} reaches {worst:g} {unit}.",
-        f"Values between {low:g} and {high:g} {unit} are believed: wrong units, or missing values "
-        "that are not marked?",
+        f"Values between {low:g} and {high:g} {unit} are plausible; the units may be wrong, or "
+        "missing values not marked.",
         "Correct the file's units or _FillValue, or map another variable.",
         variable=name,
         value=worst,

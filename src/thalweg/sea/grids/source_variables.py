@@ -1,15 +1,13 @@
-"""Reading no more of a file than is asked for, and keeping what was read.
+"""Variables of files, read for a window of times, rows and columns.
 
-A `Quantity` is one canonical variable (or both components of a vector) and how it is made from
-variables of files. `BlockCache` reads it for a window of time, rows and columns, and keeps one
-block per quantity; a question outside the block reads a block that holds both, with a margin that
-grows so that many small questions do not become many small reads.
+A `Quantity` is one canonical variable (or both components of a vector), with the file variables it
+is made from and the conversion to SI units and true components.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -17,16 +15,15 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import DatasetError
 from thalweg.core.types import FloatArray
-from thalweg.sea.files import plausible_values
+from thalweg.sea import plausible_values
 
 RawArray: TypeAlias = NDArray[Any]
 READ_ERRORS = (OSError, RuntimeError, ValueError, IndexError, KeyError, EOFError, OverflowError)
-MAX_LAYERED_VALUES = 4_000_000  #: values in layers that are read at once
-MAX_UNION_VALUES = 30_000_000  #: values of a block above which old and new are not read together
+MAX_LAYERED_VALUES = 4_000_000  #: values in vertical layers that are read at once
 
 
 class GridWindow(NamedTuple):
-    """A part of a grid: levels [t0, t1), rows [y0, y1), ``width`` columns from ``x0`` on, round."""
+    """A part of a grid: times [t0, t1), rows [y0, y1), ``width`` columns from ``x0``, wrapping."""
 
     t0: int
     t1: int
@@ -36,7 +33,7 @@ class GridWindow(NamedTuple):
     width: int
 
     def contains(self, other: GridWindow, columns: int) -> bool:
-        """Return whether another window lies within this one."""
+        """Return whether this window contains another."""
         offset = (other.x0 - self.x0) % columns
         return (
             self.t0 <= other.t0
@@ -48,7 +45,7 @@ class GridWindow(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many values it holds."""
+        """Number of values."""
         return (self.t1 - self.t0) * (self.y1 - self.y0) * self.width
 
 
@@ -59,13 +56,13 @@ class VariableInFile:
     Attributes
     ----------
     array : xarray.DataArray
-        Dimensions (time, row, column), (row, column), (time, place) or (place,); not loaded.
+        Dimensions (time, row, column), (row, column), (time, node) or (node,); not loaded.
     levels : int
         Number of times.
     has_time : bool
-        Whether time is its first dimension; else all its values belong to one time, or to all.
+        Whether time is its first dimension; else its values belong to one time, or to all.
     factor : float
-        What its values are multiplied with for SI; files of one layer may differ in units.
+        Conversion of its values to SI; files of one layer may differ in units.
     """
 
     array: Any
@@ -82,17 +79,17 @@ class SourceVariable:
     ----------
     name : str
         Its name in the files.
-    pieces : tuple of Piece
+    pieces : tuple of VariableInFile
         One per file.
     timed : bool
-        Whether it has times at all; if not, there is one piece that holds always.
+        Whether it has times; if not, there is one piece, which holds at all times.
     is_mesh : bool
-        Whether places are in one dimension (always read whole) instead of rows and columns.
+        Whether positions are along one dimension (always read whole) instead of rows and columns.
     source : str
         File names, for messages.
     shift : tuple of int
-        (rows, columns) by which a staggered variable is behind its cell: (0, 1) for velocities on
-        the east side of cells, (1, 0) on the north side; it is averaged to the centre of the cell.
+        Offset (rows, columns) of a staggered variable: (0, 1) for velocities on the east side of
+        cells, (1, 0) on the north side; it is averaged to the centre of the cell.
     """
 
     name: str
@@ -104,13 +101,13 @@ class SourceVariable:
 
     @property
     def is_double(self) -> bool:
-        """Whether the file keeps more digits than single precision."""
+        """Whether the file stores double precision."""
         array = self.pieces[0].array
         stored = array.encoding.get("dtype", array.dtype)
         return "scale_factor" not in array.encoding and np.dtype(stored) == np.float64
 
     def read(self, window: GridWindow, columns: int) -> RawArray:
-        """Return values (levels, rows, columns); a variable without time has one level."""
+        """Return values (times, rows, columns); a variable without time has one time."""
         try:
             if any(self.shift):
                 return self._averaged_to_centres(window, columns)
@@ -119,7 +116,7 @@ class SourceVariable:
             raise DatasetError(
                 f"{self.source}: {self.name!r} cannot be read ({error}).",
                 "The file opens, but its data are damaged or incomplete.",
-                "Fetch the file again.",
+                "Download the file again.",
                 file=self.source,
                 variable=self.name,
             ) from error
@@ -140,7 +137,7 @@ class SourceVariable:
     def _read_rows_and_columns(
         self, piece: VariableInFile, levels: slice, window: GridWindow, columns: int
     ) -> RawArray:
-        """Read rows and columns in SI, in two pieces where the window goes round."""
+        """Read rows and columns in SI, in two parts where the window wraps around the grid."""
         values = self._stored(piece.array[levels], window, columns)
         return values if piece.factor == 1.0 else np.asarray(values, np.float64) * piece.factor
 
@@ -155,7 +152,7 @@ class SourceVariable:
         return np.asarray(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
 
     def _averaged_to_centres(self, window: GridWindow, columns: int) -> RawArray:
-        """Average a staggered variable with its neighbour behind; the first has none."""
+        """Average a staggered variable with its value one row or column before; NaN without one."""
         dy, dx = self.shift
         y0, x0 = max(0, window.y0 - dy), max(0, window.x0 - dx)
         wide = window._replace(y0=y0, x0=x0, width=window.width + window.x0 - x0)
@@ -179,15 +176,15 @@ class Quantity:
     Attributes
     ----------
     names : tuple of str
-        Canonical names made.
-    variables : tuple of Variable
-        What they are made from.
+        Canonical names.
+    variables : tuple of SourceVariable
+        The file variables they are made from.
     make : callable
-        ``make(arrays, window) -> arrays``: unit conversion, components, rotation.
+        ``make(arrays, window) -> arrays``: components, rotation, averaging.
     source : str
         File names.
     layers : int
-        Values that are read over the depth for each one that is made.
+        Number of vertical layers that are read for each value.
     """
 
     names: tuple[str, ...]
@@ -197,7 +194,7 @@ class Quantity:
     layers: int = 1
 
     def read(self, window: GridWindow, columns: int) -> dict[str, RawArray]:
-        """Return arrays (levels, places) by canonical name, checked for sense."""
+        """Return arrays (times, points) by canonical name, checked for plausible values."""
         at_once = max(
             1, MAX_LAYERED_VALUES // max(1, self.layers * window.size // _level_count(window))
         )
@@ -223,94 +220,3 @@ class Quantity:
 
 def _level_count(window: GridWindow) -> int:
     return max(1, window.t1 - window.t0)
-
-
-class CachedBlock(NamedTuple):
-    """What was read: values (levels, places) by name, for a window."""
-
-    window: GridWindow
-    values: dict[str, RawArray]
-
-
-@dataclass
-class BlockCache:
-    """The last block read of each quantity.
-
-    Attributes
-    ----------
-    shape : tuple of int
-        Levels, rows and columns of the whole.
-    wraps : bool
-        Whether columns go round.
-    """
-
-    shape: tuple[int, int, int]
-    wraps: bool
-    blocks: dict[tuple[str, ...], CachedBlock] = field(default_factory=dict)
-    misses: dict[tuple[str, ...], int] = field(default_factory=dict)
-
-    def block(self, quantity: Quantity, wanted: GridWindow) -> CachedBlock:
-        """Return a block that holds the wanted window, reading it if need be."""
-        key = quantity.names
-        kept = self.blocks.get(key)
-        columns = self.shape[2]
-        if kept is not None and kept.window.contains(wanted, columns):
-            return kept
-        misses = self.misses[key] = self.misses.get(key, -1) + 1
-        window = self._window_with_margin(wanted, misses)
-        if kept is not None:
-            both = self._union(window, kept.window)
-            window = both if both.size <= MAX_UNION_VALUES else window
-        found = CachedBlock(window, quantity.read(window, columns))
-        self.blocks[key] = found
-        return found
-
-    def _window_with_margin(self, window: GridWindow, misses: int) -> GridWindow:
-        """Return the window with a margin: none at first, a quarter of its size per later read."""
-        if misses == 0:
-            return window
-        nt, ny, nx = self.shape
-        dt = 1 + (window.t1 - window.t0) // 4
-        dy = 2 + (window.y1 - window.y0) // 4
-        dx = 2 + window.width // 4
-        x0, width = _columns_in_grid(window.x0 - dx, window.width + 2 * dx, nx, self.wraps)
-        return GridWindow(
-            max(0, window.t0 - dt),
-            min(nt, window.t1 + dt),
-            max(0, window.y0 - dy),
-            min(ny, window.y1 + dy),
-            x0,
-            width,
-        )
-
-    def _union(self, a: GridWindow, b: GridWindow) -> GridWindow:
-        """Return the least window that holds both."""
-        nx = self.shape[2]
-        x0, width = _column_union((a.x0, a.width), (b.x0, b.width), nx, self.wraps)
-        return GridWindow(
-            min(a.t0, b.t0), max(a.t1, b.t1), min(a.y0, b.y0), max(a.y1, b.y1), x0, width
-        )
-
-
-def _columns_in_grid(x0: int, width: int, columns: int, wraps: bool) -> tuple[int, int]:
-    """Return a range of columns brought into the grid."""
-    if wraps:
-        return (0, columns) if width >= columns else (x0 % columns, width)
-    end = min(columns, x0 + width)
-    return max(0, x0), end - max(0, x0)
-
-
-def _column_union(
-    a: tuple[int, int], b: tuple[int, int], columns: int, wraps: bool
-) -> tuple[int, int]:
-    """Return the shortest range of columns that holds two ranges."""
-    if not wraps:
-        x0 = min(a[0], b[0])
-        return x0, max(a[0] + a[1], b[0] + b[1]) - x0
-    best = (0, columns)
-    for first, second in ((a, b), (b, a)):
-        offset = (second[0] - first[0]) % columns
-        width = max(first[1], offset + second[1])
-        if width < best[1]:
-            best = (first[0], width)
-    return best

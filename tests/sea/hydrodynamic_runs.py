@@ -154,7 +154,7 @@ def delft3d_fm(*, layers: str = "") -> xr.Dataset:
 def _layered(
     data: xr.Dataset, kind: str, depth: np.ndarray, surface: np.ndarray
 ) -> tuple[np.ndarray, xr.Dataset]:
-    """Return the share of the depth at which the middle of each layer lies, and its coordinate."""
+    """Return the fraction of the depth at the centre of each layer, and its coordinate."""
     if kind == "sigma":
         rims = np.linspace(-1.0, 0.0, 11)
         middle = 0.5 * (rims[1:] + rims[:-1])
@@ -221,13 +221,13 @@ def adcirc(*, topology: bool = True) -> xr.Dataset:
         },
     )  # fmt: skip
     if topology:
-        told = {
+        topology = {
             "cf_role": "mesh_topology",
             "topology_dimension": 2,
             "node_coordinates": "x y",
             "face_node_connectivity": "element",
         }
-        data["adcirc_mesh"] = ((), 0, told)
+        data["adcirc_mesh"] = ((), 0, topology)
     else:
         del data["element"].attrs["cf_role"]
     return data

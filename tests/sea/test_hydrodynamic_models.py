@@ -1,4 +1,4 @@
-"""Hydrodynamic models in the layouts they are written in: read exactly, dry places never sailed."""
+"""Hydrodynamic models in their own layouts: read exactly, dry places never navigable."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.sea import hydro
+from tests.sea import hydrodynamic_runs as hydro
 from thalweg import Sea
 from thalweg.core.errors import DatasetError, InputError
-from thalweg.sea.files.vertical_levels import VerticalLayers
-from thalweg.sea.grids.point_location import TriangleGrid
+from thalweg.sea.files.draught_averaging import VerticalLayers
+from thalweg.sea.grids.triangle_grid import TriangleGrid
 
 EAST, NORTH = "eastward_sea_water_velocity", "northward_sea_water_velocity"
 LEVEL = "sea_surface_height_above_geopotential_datum"
@@ -48,7 +48,7 @@ def run(request, tmp_path):
     return data, Sea.open(tmp_path / "run.nc")
 
 
-def test_values_are_those_of_the_model(run) -> None:
+def test_values_equal_those_of_the_model(run) -> None:
     data, sea = run
     lat, lon = deep_places(data)
     for hour in (0.0, 3.0, 7.5):
@@ -77,7 +77,7 @@ def test_the_bank_is_never_navigable_while_dry(run) -> None:
     assert (high_water[LEVEL] + high_water[DEPTH] > 0.06).any()
 
 
-def test_meshes_are_offered_as_networks(run) -> None:
+def test_meshes_can_be_used_as_networks(run) -> None:
     data, sea = run
     if "lat" in data.coords:
         assert sea.mesh() is None
@@ -107,9 +107,9 @@ def test_layers_are_averaged_over_the_draught(tmp_path, kind, draught) -> None:
     assert got[EAST] - east == pytest.approx(exact, abs=0.02)
     assert got[EAST] - east == pytest.approx(_by_hand(kind, draught, hour, x), abs=1e-6)
     assert got[NORTH] - north == pytest.approx(got[EAST] - east, abs=1e-6)
-    told = next(r.how for r in sea.describe().recognised if r.variable == EAST)
+    how = next(r.how for r in sea.describe().recognised if r.variable == EAST)
     count = 10 if kind == "sigma" else 12
-    assert f"mean over the upper {draught:g} m of {count} {kind} layers" in told
+    assert f"mean over the upper {draught:g} m of {count} {kind} layers" in how
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,7 @@ def _by_hand(kind: str, draught: float, hour: float, x: float) -> float:
     return total / weight
 
 
-def test_without_a_draught_the_surface_layer_is_taken(tmp_path) -> None:
+def test_without_a_draught_the_surface_layer_is_used(tmp_path) -> None:
     data = hydro.delft3d_fm(layers="sigma")
     data.to_netcdf(tmp_path / "run.nc")
     sea = Sea.open(tmp_path / "run.nc")
@@ -190,7 +190,7 @@ def test_the_surface_layer_is_the_one_next_to_the_surface(sigma, positive, at_su
     assert shallow == pytest.approx(surface)
 
 
-def test_layers_told_downwards_or_from_zero_to_one_mean_the_same(tmp_path) -> None:
+def test_layers_given_downwards_or_from_zero_to_one_are_equal(tmp_path) -> None:
     plain = hydro.delft3d_fm(layers="sigma")
     lat, lon = hydro.nodes()
     y, x = lat[hydro.quads()].mean(axis=1)[:5], lon[hydro.quads()].mean(axis=1)[:5]
@@ -220,7 +220,7 @@ def test_many_times_are_averaged_in_parts(monkeypatch) -> None:
     y, x = lat[hydro.quads()].mean(axis=1), lon[hydro.quads()].mean(axis=1)
     times = hydro.T0 + 3600.0 * hydro.HOURS
     whole = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
-    monkeypatch.setattr("thalweg.sea.files.block_cache.MAX_LAYERED_VALUES", 1000)
+    monkeypatch.setattr("thalweg.sea.grids.source_variables.MAX_LAYERED_VALUES", 1000)
     parts = Sea.open(data, draught_m=4.0).series([EAST], times, y, x)[EAST]
     assert np.array_equal(whole, parts, equal_nan=True)
 
@@ -235,7 +235,7 @@ def refused(word, make, kind=DatasetError):
 def test_layers_that_cannot_be_averaged() -> None:
     data = hydro.delft3d_fm(layers="sigma")
     lone = data.drop_vars(["mesh2d_waterdepth", "mesh2d_flowelem_bl"])
-    refused("how thick they are", lambda: Sea.open(lone, draught_m=4.0))
+    refused("gives their thickness", lambda: Sea.open(lone, draught_m=4.0))
     Sea.open(lone)  # the surface layer needs no depth
     nameless = data.drop_vars(["mesh2d_layer_sigma", "mesh2d_interface_sigma"])
     refused("have no coordinate", lambda: Sea.open(nameless, draught_m=4.0))
@@ -246,18 +246,18 @@ def test_layers_that_cannot_be_averaged() -> None:
         refused("averaged over", lambda d=draught: Sea.open(data, draught_m=d), InputError)
 
 
-def test_meshes_that_are_not_whole() -> None:
+def test_incomplete_meshes_are_refused() -> None:
     data = hydro.delft3d_fm()
     refused("face_node_connectivity", lambda: Sea.open(data.drop_vars("mesh2d_face_nodes")))
     refused("node_coordinates", lambda: Sea.open(data.drop_vars("mesh2d_node_x")))
     lone = hydro.adcirc(topology=False).drop_vars("element")
-    refused("no mesh joins them", lambda: Sea.open(lone))
+    refused("no mesh connects them", lambda: Sea.open(lone))
     torn = hydro.adcirc()
     torn["element"][3, 1] = 4000
     refused("4000 of 60", lambda: Sea.open(torn))
 
 
-def test_a_gap_in_time_is_told_and_stays_unknown() -> None:
+def test_a_gap_in_time_is_reported_and_stays_unknown() -> None:
     data = hydro.dhi().isel(time=[0, 1, 2, 3, 9, 10, 11])
     sea = Sea.open(data)
     (gap,) = sea.describe().gaps
@@ -282,8 +282,8 @@ def test_a_moving_depth_needs_no_standard_name(tmp_path) -> None:
     got = sea.sample([LEVEL, DEPTH], hydro.T0, lat[:4], lon[:4])
     assert got[DEPTH] == pytest.approx(-hydro.bed(lon[:4]), abs=1e-5)
     assert got[LEVEL] == pytest.approx(hydro.level(0.0), abs=1e-5)
-    told = next(r.how for r in sea.describe().recognised if r.variable == LEVEL)
-    assert "total depth minus bed depth" in told
+    how = next(r.how for r in sea.describe().recognised if r.variable == LEVEL)
+    assert "total depth minus bed depth" in how
 
 
 @pytest.mark.parametrize("west", [-117.3, -117.123456789, 3.0, 359.9, 179.95])
@@ -296,7 +296,7 @@ def test_a_small_mesh_is_searched_in_small_bins(west) -> None:
     assert np.diff(bins.start).max() < 30
 
 
-def test_crowded_triangles_get_more_bins() -> None:
+def test_meshes_with_small_triangles_get_more_bins() -> None:
     lat, lon = hydro.nodes()
     dense = np.concatenate([lat, lat * 1e-3 + 60.0]), np.concatenate([lon, lon * 1e-3 + 20.0])
     triangles = np.concatenate([hydro.triangles(), hydro.triangles() + lat.size])

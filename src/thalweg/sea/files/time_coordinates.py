@@ -1,0 +1,112 @@
+"""Recognise and read time axes of files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from thalweg.core.errors import DatasetError
+from thalweg.core.types import FloatArray
+
+
+def is_time(array: Any) -> bool:
+    """Return whether a one-dimensional variable holds times, decoded or not."""
+    if array.ndim != 1:
+        return False
+    if array.dtype.kind == "M":
+        return True
+    return " since " in str(array.attrs.get("units", ""))
+
+
+def read_times(array: Any, source: str) -> FloatArray:
+    """Return the times of a time axis.
+
+    Parameters
+    ----------
+    array : xarray.DataArray
+        The time axis, decoded or not.
+    source : str
+        File name for messages.
+
+    Returns
+    -------
+    float64 array (T,)
+        Seconds since 1970-01-01T00:00Z, strictly increasing.
+
+    Raises
+    ------
+    DatasetError
+        If the calendar has no real dates, a time is missing, or times do not increase.
+    """
+    import xarray as xr
+
+    name = str(array.name)
+    if array.dtype.kind != "M":
+        bare = xr.Dataset({name: ((name,), np.asarray(array.values), dict(array.attrs))})
+        try:
+            array = xr.decode_cf(bare, decode_times=True)[name]
+        except (ValueError, OverflowError, TypeError) as error:
+            raise _time_fault(source, name, f"cannot be decoded ({error})") from error
+    if array.dtype.kind != "M":
+        calendar = array.attrs.get("calendar", array.encoding.get("calendar", "unknown"))
+        raise _time_fault(source, name, f"uses the calendar {calendar!r}, which has no real dates")
+    stamps = np.asarray(array.values).astype("datetime64[ns]")
+    if np.isnat(stamps).any():
+        raise _time_fault(source, name, "has missing values")
+    times: FloatArray = np.round(stamps.astype(np.int64) / 1e9, 3).astype(np.float64)
+    step = np.diff(times)
+    if (step <= 0.0).any():
+        where = int(np.flatnonzero(step <= 0.0)[0])
+        fault = "is repeated" if step[where] == 0.0 else "is followed by an earlier one"
+        raise _time_fault(
+            source, name, f"does not increase: step {where} ({stamps[where]}) {fault}"
+        )
+    return times
+
+
+def _time_fault(source: str, name: str, fault: str) -> DatasetError:
+    return DatasetError(
+        f"{source}: the time axis {name!r} {fault}.",
+        "Times must be UTC dates that strictly increase.",
+        "Sort the file and remove duplicates (for example with xarray: ds.sortby('time')."
+        "drop_duplicates('time')), or download it again.",
+        file=source,
+    )
+
+
+def time_coordinate(dataset: Any, array: Any) -> Any:
+    """Return the time coordinate of a variable: along one of its dimensions, or scalar, or None.
+
+    Parameters
+    ----------
+    dataset, array : xarray.Dataset, xarray.DataArray
+        The file and one of its variables.
+
+    Returns
+    -------
+    xarray.DataArray or None
+        One-dimensional; a scalar time has the dimension ``one_time``.
+    """
+    along = [
+        dataset[n]
+        for n in dataset.variables
+        if dataset[n].ndim == 1 and dataset[n].dims[0] in array.dims and is_time(dataset[n])
+    ]
+    if along:
+        return min(along, key=lambda t: _time_rank(t))
+    for name in ("valid_time", "time"):
+        if name in dataset.variables and dataset[name].ndim == 0:
+            scalar = dataset[name].expand_dims("one_time")
+            if is_time(scalar):
+                return scalar
+    return None
+
+
+def _time_rank(array: Any) -> tuple[bool, bool, bool]:
+    name = str(array.name)
+    return (
+        name != "valid_time",
+        array.attrs.get("standard_name") not in ("time", None),
+        name != str(array.dims[0]),
+    )
