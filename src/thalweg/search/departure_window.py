@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.objective import SingleSettingObjective
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.search.earliest_arrival import Method, Objective, check_request, solve_earliest_arrival
+from thalweg.search.earliest_arrival import Method, check_request, solve_earliest_arrival
 from thalweg.search.limited_waiting import (
     earliest_arrival_with_restricted_waiting,
     waiting_is_restricted,
@@ -40,7 +41,7 @@ def best_departure(
     setting: int,
     limits: ArrayLike,
     top_speed: float,
-    objective: Objective = "time",
+    objective: SingleSettingObjective = "time",
     wait: bool = True,
     arrive_by: float | None = None,
     method: Method = "astar",

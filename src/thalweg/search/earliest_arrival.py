@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.objective import SingleSettingObjective
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.label_setting import (
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     from thalweg.sea.frozen_fields import StationFields
     from thalweg.ship.tables.performance_table import PerformanceTable
 
-Objective = Literal["time", "distance"]
 Method = Literal["astar", "dijkstra"]
 
 
@@ -55,7 +55,7 @@ def earliest_arrival(
     setting: int,
     limits: ArrayLike,
     top_speed: float,
-    objective: Objective = "time",
+    objective: SingleSettingObjective = "time",
     wait: bool = True,
     arrive_by: float | None = None,
     method: Method = "astar",
@@ -153,7 +153,7 @@ def solve_earliest_arrival(
     start: int,
     goal: int | None,
     depart: float,
-    objective: Objective = "time",
+    objective: SingleSettingObjective = "time",
     wait: bool = True,
     arrive_by: float | None = None,
     method: Method = "astar",

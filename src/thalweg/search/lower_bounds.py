@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.geodesy import distance
+from thalweg.core.objective import SingleSettingObjective
 from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, LIMIT_WAVE_HEIGHT, LIMIT_WIND_SPEED
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.search.earliest_arrival import Objective, solve_earliest_arrival
+from thalweg.search.earliest_arrival import solve_earliest_arrival
 from thalweg.search.search_problem import (
     ROUNDING_FACTOR,
     SearchProblem,
@@ -136,7 +137,7 @@ def lower_bound(
     setting: int,
     limits: ArrayLike,
     top_speed: float,
-    objective: Objective = "time",
+    objective: SingleSettingObjective = "time",
     known: float | None = None,
     any_departure: bool = False,
 ) -> LowerBound:
@@ -170,7 +171,12 @@ def lower_bound(
 
 
 def free_space_bound(
-    network: Network, given: SearchProblem, *, start: int, goal: int, objective: Objective = "time"
+    network: Network,
+    given: SearchProblem,
+    *,
+    start: int,
+    goal: int,
+    objective: SingleSettingObjective = "time",
 ) -> LowerBound:
     """Bound by the geodesic at the largest speed over ground that the data allow anywhere.
 
@@ -191,7 +197,7 @@ def network_bound(
     start: int,
     goal: int,
     depart: float,
-    objective: Objective = "time",
+    objective: SingleSettingObjective = "time",
 ) -> LowerBound:
     """Bound by the same search with every length shortened by `direction_factor`.
 

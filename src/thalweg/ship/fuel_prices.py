@@ -27,7 +27,10 @@ _SHARE_NOISE: Final = 1e-9  #: of shares that are quotients of lengths
 
 @dataclass(frozen=True)
 class FuelTerms:
-    """Fuels and prices of a ship.
+    """Fuels of a ship with their prices and carbon factors by area, and its price of time.
+
+    Data of the ship, not an objective: `thalweg.ship.consumption.leg_prices` combines them with a
+    `thalweg.core.objective.Objective`.
 
     Attributes
     ----------

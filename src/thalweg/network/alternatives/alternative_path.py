@@ -29,7 +29,10 @@ _BORDER_TOLERANCE = 25.0  # [m] to which edges are cut at borders of control are
 
 @dataclass(frozen=True)
 class EdgeWeights:
-    """What a way costs.
+    """Weights of a static shortest-path search, without time or weather.
+
+    The objective of a voyage is another thing (`thalweg.core.objective.Objective`); `priced`
+    approximates it by lengths, with factors for zones and emission control areas.
 
     Attributes
     ----------
