@@ -52,8 +52,8 @@ def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithM
 
 
 def _source_stamps() -> list[tuple[str, int, int]]:
-    """Size and time of every source file of package `ship`, so that changed code builds anew."""
-    files = sorted(PACKAGE.rglob("*.py"))
+    """Size and time of the sources and data of package `ship`: changed ones make new tables."""
+    files = sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.csv")])
     return [(str(f), f.stat().st_size, f.stat().st_mtime_ns) for f in files]
 
 

@@ -16,12 +16,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
-from thalweg.ship.methods.propulsion.b_series_coefficients import (
-    THRUST_REYNOLDS_TERMS,
-    THRUST_TERMS,
-    TORQUE_REYNOLDS_TERMS,
-    TORQUE_TERMS,
-)
+from thalweg.ship.methods.propulsion.b_series_coefficients import polynomial_terms
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 
@@ -91,7 +86,11 @@ def _advance_polynomial(
 def b_series_polynomials(
     propeller: Propeller, *, reynolds: float | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Return K_T and K_Q of one propeller as cubics in J, constant term first.
+    r"""Return K_T and K_Q of one propeller as cubics in J, constant term first.
+
+    .. math::
+
+        K_T, K_Q = \sum_n C_n J^{s_n} (P/D)^{t_n} (A_E/A_0)^{u_n} Z^{v_n}
 
     Parameters
     ----------
@@ -105,15 +104,17 @@ def b_series_polynomials(
     -------
     thrust, torque : ndarray
         Four coefficients each.
+
+    References
+    ----------
+    M.W.C. Oosterveld, P. van Oossanen, International Shipbuilding Progress 22 (1975) 251-262.
     """
-    thrust, torque = (
-        _advance_polynomial(THRUST_TERMS, propeller),
-        _advance_polynomial(TORQUE_TERMS, propeller),
-    )
+    thrust = _advance_polynomial(polynomial_terms("thrust"), propeller)
+    torque = _advance_polynomial(polynomial_terms("torque"), propeller)
     if reynolds is not None:
         log = float(np.log10(reynolds)) - 0.301
-        thrust = thrust + _advance_polynomial(THRUST_REYNOLDS_TERMS, propeller, log)
-        torque = torque + _advance_polynomial(TORQUE_REYNOLDS_TERMS, propeller, log)
+        thrust += _advance_polynomial(polynomial_terms("thrust_reynolds"), propeller, log)
+        torque += _advance_polynomial(polynomial_terms("torque_reynolds"), propeller, log)
     return thrust, torque
 
 
