@@ -1,4 +1,4 @@
-"""What can be asked of a ship in given conditions: speed, power, fuel, resistance, validity."""
+"""Queries of a ship in given conditions: speed, power, fuel, resistance, validity."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thalweg.ship.models.resistance_protocol import ResistanceBased
 
 
 class ShipQueries:
-    """The part of `thalweg.ship.Ship` that answers for conditions."""
+    """The part of `thalweg.ship.Ship` that evaluates conditions."""
 
     name: str
     model: ShipModel
@@ -26,7 +26,7 @@ class ShipQueries:
         Parameters
         ----------
         conditions : Conditions
-            What the ship meets, arrays that broadcast; see `reads`.
+            Conditions at the ship, arrays that broadcast; see `reads`.
         setting : array_like of int
             Index into `speeds`.
 
@@ -53,13 +53,13 @@ class ShipQueries:
     def power_and_fuel(
         self, conditions: Conditions, setting: ArrayLike = 0
     ) -> tuple[FloatArray, FloatArray]:
-        """Brake power [W] and fuel rate [kg/s] at once, for models that find them together."""
+        """Brake power [W] and fuel rate [kg/s] at once, in one computation where the model can."""
         if isinstance(self.model, JointPowerAndFuelModel):
             return self.model.power_and_fuel(self._loaded(conditions), setting)
         return self.power(conditions, setting), self.fuel_rate(conditions, setting)
 
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
-        """Brake power [W] that holds speeds through water [m/s], whatever the engines can give.
+        """Brake power [W] that holds speeds through water [m/s], also above that of the engines.
 
         Raises
         ------
@@ -107,7 +107,7 @@ class ShipQueries:
     def notes(
         self, conditions: Conditions, setting: ArrayLike = 0, *, strict: bool = False
     ) -> list[RangeNote]:
-        """Say which methods are used outside their range in these conditions.
+        """Return which methods are used outside their range in these conditions.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""`Ship`: a name, a model, a loading and limits; what other packages see of a ship."""
+"""`Ship`: name, model, loading, limits and ship file."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Ship(ShipQueries):
     file : ShipFile
         The contents of its ship file; empty for a ship without one.
     estimated : tuple of Estimate
-        Particulars that were not given.
+        Estimated particulars.
 
     Examples
     --------
@@ -308,7 +308,7 @@ class Ship(ShipQueries):
         return fuel_terms(self.file)
 
     def with_load_factor(self, load_factor: float) -> Ship:
-        """Return the ship loaded differently, 0 empty to 1 full."""
+        """Return the ship at another load factor, 0 empty to 1 full."""
         return replace(self, loading=self.loading.at(load_factor))
 
     def with_limits(self, limits: ShipLimits) -> Ship:
@@ -332,7 +332,7 @@ class Ship(ShipQueries):
         return replace(self, model=self.model.with_speeds(wanted, self.loading.load_factor))
 
     def top_speed(self, setting: int = 0) -> float | None:
-        """Upper bound of the speed through water [m/s]; None for a field that nothing bounds.
+        """Upper bound of the speed through water [m/s]; None for an unbounded field.
 
         It covers the model and its table, rounded to single precision, alike.
         """

@@ -1,4 +1,4 @@
-"""Put a ship together from the parts that its file names."""
+"""Build the model of a ship with a resistance from the methods that its file names."""
 
 from __future__ import annotations
 
@@ -80,14 +80,14 @@ def _assemble_resistance_model(
         raise InputError(
             f"speed_loss: {models.speed_loss} is chosen together with "
             f"{' and '.join(f'models.{name}' for name in twice)}.",
-            "Kwon's loss holds what wind and waves take; both would count the weather twice.",
-            "Leave out the one or the other.",
+            "Kwon's loss includes wind and waves; with both the weather would count twice.",
+            "Leave out one of them.",
             key="models.speed_loss",
         )
     if build_squat_model(file, hull, loading) is not None:
         raise InputError(
             f"squat: {models.squat} is for ships with known calm-water speeds.",
-            "Ships with a resistance feel the bed by models.shallow_water.",
+            "For ships with a resistance the bed acts through models.shallow_water.",
             "Leave squat out; the sinkage is shown for every ship whose particulars are known.",
             key="models.squat",
         )
@@ -130,7 +130,7 @@ def _assemble_resistance_model(
 
 
 def _check_draught(loading: Loading) -> None:
-    """Refuse a hull that lies on the water.
+    """Refuse a hull without draught.
 
     Raises
     ------
@@ -139,14 +139,14 @@ def _check_draught(loading: Loading) -> None:
     if loading.draught_empty <= 0.0:
         raise InputError(
             "The draught is 0 m.",
-            "A resistance needs a hull that lies in the water, full and empty.",
+            "A resistance needs a hull with a draught, full and empty.",
             "Correct hull.draught_m, or loading.draught_empty_m.",
             key="hull.draught_m" if loading.draught_full <= 0.0 else "loading.draught_empty_m",
         )
 
 
 def _moderate_speed(balance: ForceBalance) -> NDArray[np.float64]:
-    """A speed [m/s] that every method has a number for: a Froude number of 0.18."""
+    """A speed [m/s] within the range of every method: a Froude number of 0.18."""
     length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
     return np.array([0.18 * np.sqrt(GRAVITY * length)])
 
@@ -154,7 +154,7 @@ def _moderate_speed(balance: ForceBalance) -> NDArray[np.float64]:
 def _check_calm_water_power(
     balance: ForceBalance, speeds: NDArray[np.float64], load_factor: float
 ) -> None:
-    """Refuse a hull for which the chosen methods have no number in calm water.
+    """Refuse a hull for which the chosen methods give no power in calm water.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def _check_calm_water_power(
     loaded = "" if load_factor == 1.0 else f" at load factor {load_factor:g}"
     raise InputError(
         f"{balance.calm.method} has no resistance for this hull{loaded}.",
-        "; ".join(outside) or "Its particulars lie beyond what the method was made for.",
+        "; ".join(outside) or "Its particulars are outside the range of the method.",
         "Check the particulars, or choose another calm_water method.",
     )
 
@@ -207,7 +207,7 @@ def _build_force_balance(file: ShipFile, hull: Hull) -> ForceBalance:
 def _build_engine_orders(
     file: ShipFile, balance: ForceBalance, plant: EnginePlant
 ) -> tuple[EngineOrders, tuple[Estimate, ...]]:
-    """Powers or speeds that can be ordered, and whether they were our guess."""
+    """Return the powers or speeds that can be ordered, and estimates if none are given."""
     powers, speeds = file.powers_kw, file.speeds_kn
     if powers is not None and speeds is not None:
         raise InputError(

@@ -60,7 +60,7 @@ DeepWaterComponents = Callable[[FloatArray, FloatArray, "FloatArray | None"], di
 
 @dataclass(frozen=True, eq=False)
 class CalmWaterResistance:
-    """Calm-water resistance with a hull bound.
+    """Calm-water resistance for one hull.
 
     Attributes
     ----------
@@ -197,7 +197,7 @@ def stern_shape(hull: Hull) -> float:
 
 
 def _with_estimated_shape(hull: Hull, form: HullForm) -> Hull:
-    """The hull with what Holtrop takes for shapes that a ship file does not tell."""
+    """The hull with Holtrop's values for shapes that the ship file does not give."""
     angle = float(half_angle_of_entrance(form))
     taken = [Estimate("half_entrance_angle_deg", angle, "Holtrop and Mennen (1982)")]
     if "stern_shape" not in hull.values:

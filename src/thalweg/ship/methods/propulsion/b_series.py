@@ -199,8 +199,8 @@ def solve_advance(
     """Advance coefficient at which a propeller gives a thrust at a speed of advance.
 
     The root of K_T(J) rho V_A^2 D^2 = T J^2 is unique between J = 0 (at the bollard) and the J of
-    no thrust. Newton's method finds it from a point near by; where it strays, its steps are kept
-    inside the bracket.
+    no thrust. Newton's method finds it from a near point; where it does not converge, its steps are
+    kept inside the bracket.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def _newton_step(
 def _bracketed_advance(
     share: FloatArray, stream: FloatArray, polynomial: FloatArray, largest: float
 ) -> FloatArray:
-    """The same root, slower and for certain: Newton steps that are kept inside the bracket."""
+    """The same root by Newton steps kept inside a bracket: slower, but always converges."""
     low, high = np.zeros_like(share), np.full_like(share, largest)
     ratio = 0.5 * (low + high)
     for _ in range(60):
@@ -333,7 +333,7 @@ def operating_point(
 
 
 def b_series_validity(propeller: Propeller) -> list[RangeNote]:
-    """Say what lies outside the series: Z 2 to 7, A_E/A_0 0.30 to 1.05, P/D 0.5 to 1.4."""
+    """Return what is outside the series: Z 2 to 7, A_E/A_0 0.30 to 1.05, P/D 0.5 to 1.4."""
     ranges: dict[str, tuple[ArrayLike, float, float]] = {
         "number of blades": (propeller.blades, 2.0, 7.0),
         "blade area ratio": (propeller.area_ratio, 0.30, 1.05),

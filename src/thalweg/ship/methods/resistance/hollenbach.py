@@ -202,7 +202,7 @@ def hollenbach_1998(
     propeller_diameter : array_like
         D_P [m].
     rudders, brackets, bosses, thrusters : array_like
-        Counts; felt by the twin-screw mean curve only.
+        Counts; they act on the twin-screw mean curve only.
     variant : str
         Key of `RESISTANCE_COEFFICIENTS`; the ``*_minimum`` keys give the minimum line.
     correlation_allowance : array_like
@@ -293,7 +293,7 @@ def hollenbach_wetted_surface(
     block_coefficient : array_like
         C_B.
     rudders, brackets, bosses : array_like
-        Counts, felt by the twin-screw variants only.
+        Counts; they act on the twin-screw variants only.
     variant : str
         Key of `SURFACE_COEFFICIENTS`.
 
@@ -345,7 +345,7 @@ def hollenbach_validity(
     variant: ResistanceVariant = "single_design",
     gravity: float = GRAVITY,
 ) -> list[RangeNote]:
-    """Say which speeds lie outside the Froude range of the data.
+    """Return which speeds are outside the Froude range of the data.
 
     Some limits are unverified, see `thalweg.ship.methods.resistance.hollenbach_coefficients`.
 
