@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from thalweg.ship.file.part_builders import (
     lightship_estimate,
     resistance_methods,
 )
-from thalweg.ship.file.ship_schema import ShipFile
+from thalweg.ship.file.ship_schema import ModelsSection, ShipFile
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_particulars, hull_at_load_factor
@@ -24,6 +25,7 @@ from thalweg.ship.models.added_resistance_model import build_wave_resistance, bu
 from thalweg.ship.models.calm_water_model import CALM_WATER_METHODS, build_calm_water
 from thalweg.ship.models.engine_plant import EngineOrders, EnginePlant, build_engine_plant
 from thalweg.ship.models.force_balance import ForceBalance
+from thalweg.ship.models.known_speed_model import KwonSpeedLoss
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import build_propulsion
 from thalweg.ship.models.resistance_model import ResistanceModel
@@ -69,13 +71,37 @@ def build_resistance_model(
 def _assemble_resistance_model(
     file: ShipFile, hull: Hull, loading: Loading
 ) -> ResistanceModel | KwonResistanceModel:
-    models = file.models
+    """Return the model of a ship file whose methods go together."""
     loss = build_speed_loss(file, hull, loading)
-    twice = [
-        name
-        for name, method in (("waves", models.waves), ("wind", models.wind))
-        if method != "none"
-    ]
+    _check_speed_loss(file.models, loss)
+    _check_squat_and_rudder(file, hull, loading)
+    _check_draught(loading)
+    full = _full_hull(hull, loading)
+    balance_at = _force_balance_by_loading(file, full, loading)
+    plant = build_engine_plant(file)
+    orders, guessed = _build_engine_orders(file, balance_at(1.0), plant)
+    light = hull_at_load_factor(full, loading, 0.0).number("displacement_m3")
+    guessed = (*guessed, *lightship_estimate(file.loading, light or np.nan))
+    plant = replace(plant, estimated=(*plant.estimated, *guessed))
+    facts = file.model_dump(include=_MODEL_SECTIONS, exclude_unset=True)
+    model = ResistanceModel(balance_at, plant, orders, facts, build_limits(file))
+    with np.errstate(all="ignore"):
+        speeds = model.speeds(1.0)
+    _check_calm_water_power(model.balance(1.0), speeds, 1.0)
+    if orders.kind == "speed":
+        model.with_speeds(model.speeds(1.0), 1.0)  # refuses speeds beyond the engines
+    return model if loss is None else KwonResistanceModel(model, loss)
+
+
+def _check_speed_loss(models: ModelsSection, loss: KwonSpeedLoss | None) -> None:
+    """Refuse Kwon's speed loss together with a method for waves or wind.
+
+    Raises
+    ------
+    InputError
+    """
+    weather = {"waves": models.waves, "wind": models.wind}
+    twice = [name for name, method in weather.items() if method != "none"]
     if loss is not None and twice:
         raise InputError(
             f"speed_loss: {models.speed_loss} is chosen together with "
@@ -84,6 +110,16 @@ def _assemble_resistance_model(
             "Leave out one of them.",
             key="models.speed_loss",
         )
+
+
+def _check_squat_and_rudder(file: ShipFile, hull: Hull, loading: Loading) -> None:
+    """Refuse a squat that limits the speed, and unknown rudder methods.
+
+    Raises
+    ------
+    InputError
+    """
+    models = file.models
     if build_squat_model(file, hull, loading) is not None:
         raise InputError(
             f"squat: {models.squat} is for ships with known calm-water speeds.",
@@ -93,13 +129,22 @@ def _assemble_resistance_model(
         )
     if models.rudder not in RUDDER_METHODS:
         raise unknown_name_error("rudder method", models.rudder, RUDDER_METHODS)
-    _check_draught(loading)
+
+
+def _full_hull(hull: Hull, loading: Loading) -> Hull:
+    """The hull at full draught, with estimated lengths and displacement."""
     full = estimate_particulars(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
     if full.number("draught_m") is None:
         deep = loading.draught_full
         ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
         full = Hull({**full.values, **ends}, full.estimated)
-    full = _with_loading_displacement(full, loading)
+    return _with_loading_displacement(full, loading)
+
+
+def _force_balance_by_loading(
+    file: ShipFile, full: Hull, loading: Loading
+) -> Callable[[float], ForceBalance]:
+    """Return the function that makes the force balance at a load factor."""
     draughts = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
 
     def balance_at(load_factor: float) -> ForceBalance:
@@ -114,19 +159,7 @@ def _assemble_resistance_model(
         _check_calm_water_power(balance, _moderate_speed(balance), load_factor)
         return balance
 
-    plant = build_engine_plant(file)
-    orders, guessed = _build_engine_orders(file, balance_at(1.0), plant)
-    light = hull_at_load_factor(full, loading, 0.0).number("displacement_m3")
-    guessed = (*guessed, *lightship_estimate(file.loading, light or np.nan))
-    plant = replace(plant, estimated=(*plant.estimated, *guessed))
-    facts = file.model_dump(include=_MODEL_SECTIONS, exclude_unset=True)
-    model = ResistanceModel(balance_at, plant, orders, facts, build_limits(file))
-    with np.errstate(all="ignore"):
-        speeds = model.speeds(1.0)
-    _check_calm_water_power(model.balance(1.0), speeds, 1.0)
-    if orders.kind == "speed":
-        model.with_speeds(model.speeds(1.0), 1.0)  # refuses speeds beyond the engines
-    return model if loss is None else KwonResistanceModel(model, loss)
+    return balance_at
 
 
 def _check_draught(loading: Loading) -> None:
