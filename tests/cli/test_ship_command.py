@@ -156,9 +156,9 @@ def test_weather_that_is_half_told_is_completed_and_said(capsys, ship_file):
     assert json.loads(_run(capsys, ship_file, "--speed", 12, *whole, "--json"))["assumed"] == []
     alone = ("--wave-from", 20, "--wind-from", 0, "--tp", 9)
     assert json.loads(_run(capsys, ship_file, "--speed", 12, *alone, "--json"))["assumed"] == [
-        "no waves, since only a direction is told",
-        "no wind, since only a direction is told",
-        "no waves, since only a period is told",
+        "no waves, since only a direction is given",
+        "no wind, since only a direction is given",
+        "no waves, since only a period is given",
     ]
     assert "Assumed: waves from ahead" in _run(capsys, ship_file, "--speed", 12, "--hs", 2)
 

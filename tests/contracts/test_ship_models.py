@@ -116,7 +116,7 @@ def test_a_third_party_model_without_faults_passes():
         ("shape", "has shape"),
         ("power", "power falls"),
         ("bound", "above its bound"),
-        ("table", "the table strays"),
+        ("table", "the table differs"),
     ],
 )
 def test_each_fault_is_found_and_named(fault, message):

@@ -9,7 +9,10 @@ its input file is a digit swap; the particulars of its Table 2 belong to another
 import numpy as np
 import pytest
 
+from thalweg.ship.methods.resistance.friction_lines import Water
 from thalweg.ship.methods.resistance.hollenbach import (
+    AppendageCounts,
+    HollenbachHull,
     correlation_allowance,
     critical_froude_number,
     froude_factor,
@@ -32,12 +35,16 @@ YU_HULL = {
     "draught_fore": 10.0,
     "draught_aft": 10.0,
     "block_coefficient": 0.728,
-    "wetted_surface": 8267.52,
     "propeller_diameter": 4.0,
-    "density": 1025.0,
-    "viscosity": 1.1395e-6,
-    "gravity": 9.81,
 }
+YU_WATER = Water(density=1025.0, viscosity=1.1395e-6, gravity=9.81)
+
+
+def yu(speed, hull=YU_HULL, **options):
+    """Resistance with the wetted surface and the water of Yu's program."""
+    return hollenbach_1998(
+        speed, HollenbachHull(**hull), wetted_surface=8267.52, water=YU_WATER, **options
+    )
 
 
 def test_yu_printed_column():
@@ -46,14 +53,14 @@ def test_yu_printed_column():
         *(377.726, 411.223, 447.720, 487.569, 531.146, 578.854),
         *(631.118, 688.390, 751.146, 819.887, 895.140),
     ]
-    got = hollenbach_1998(speeds * YU_KNOT, **YU_HULL).total / 1000.0
+    got = yu(speeds * YU_KNOT).total / 1000.0
     np.testing.assert_allclose(got, printed, rtol=5e-4)
     assert np.max(np.abs(got / printed - 1.0)) > 1e-4  # the last digits of S or L are not printed
 
 
 def test_yu_table_2_hull_is_another_ship():
     hull = YU_HULL | {"length_between_perpendiculars": 169.0, "block_coefficient": 0.785}
-    got = hollenbach_1998(np.array([12.0, 14.0, 15.0, 17.0]) * YU_KNOT, **hull).total / 1000.0
+    got = yu(np.array([12.0, 14.0, 15.0, 17.0]) * YU_KNOT, hull).total / 1000.0
     np.testing.assert_allclose(got, [413.0, 603.0, 731.0, 1135.0], atol=0.6)
     excess = got / np.array([377.726, 531.146, 631.118, 895.140]) - 1.0
     assert excess.min() == pytest.approx(0.09, abs=0.01)
@@ -87,34 +94,36 @@ def test_yu_table_2_hull_is_another_ship():
 )
 def test_every_variant(variant, expected):
     speeds = np.arange(12.0, 18.0) * YU_KNOT
-    got = hollenbach_1998(speeds, variant=variant, rudders=1, **YU_HULL).total / 1000.0
+    got = yu(speeds, variant=variant, appendages=AppendageCounts(rudders=1)).total / 1000.0
     np.testing.assert_allclose(got, expected, rtol=1e-9)
 
 
 def test_wetted_surface_regressions():
     single = hollenbach_wetted_surface(
-        length_between_perpendiculars=169.0,
-        length_waterline=172.42,
-        length_over_surface=172.42,
-        breadth=32.0,
-        draught_fore=10.0,
-        draught_aft=10.0,
-        block_coefficient=0.785,
-        propeller_diameter=6.0,
+        HollenbachHull(
+            length_between_perpendiculars=169.0,
+            length_waterline=172.42,
+            length_over_surface=172.42,
+            breadth=32.0,
+            draught_fore=10.0,
+            draught_aft=10.0,
+            block_coefficient=0.785,
+            propeller_diameter=6.0,
+        ),
     )
     assert single == pytest.approx(7373.8808715, rel=1e-9)
     twin = hollenbach_wetted_surface(
-        length_between_perpendiculars=150.0,
-        length_waterline=153.0,
-        length_over_surface=157.0,
-        breadth=25.0,
-        draught_fore=6.0,
-        draught_aft=6.0,
-        block_coefficient=0.6,
-        propeller_diameter=4.2,
-        rudders=2,
-        brackets=2,
-        bosses=2,
+        HollenbachHull(
+            length_between_perpendiculars=150.0,
+            length_waterline=153.0,
+            length_over_surface=157.0,
+            breadth=25.0,
+            draught_fore=6.0,
+            draught_aft=6.0,
+            block_coefficient=0.6,
+            propeller_diameter=4.2,
+        ),
+        appendages=AppendageCounts(rudders=2, brackets=2, bosses=2),
         variant="twin_bulb",
     )
     assert twin == pytest.approx(4273.56971961, rel=1e-9)
@@ -133,13 +142,13 @@ def test_a_hull_worked_by_an_open_ship_library():
         "propeller_diameter": 4.9,
     }
     assert froude_length(145.0, length_over_surface=151.0) == pytest.approx(149.0)
-    assert hollenbach_wetted_surface(**hull) == pytest.approx(4448.453, abs=5e-4)
+    assert hollenbach_wetted_surface(HollenbachHull(**hull)) == pytest.approx(4448.453, abs=5e-4)
     assert correlation_allowance(145.0) == pytest.approx(0.06e-3)
     factors = 0.9778 * 1.4379 * 0.2335 * 0.8753 * 0.9364 * 0.9925  # k_L, k_BT, k_LB ... k_PR
     fn = 0.2
     standard = standard_residuary(fn, block_coefficient=hull["block_coefficient"])
     growth = froude_factor(fn, block_coefficient=hull["block_coefficient"])
-    found = residuary_coefficient(fn, **hull)
+    found = residuary_coefficient(fn, HollenbachHull(**hull))
     assert found == pytest.approx(0.1 * factors * standard * growth, rel=5e-4)
 
 
@@ -147,14 +156,16 @@ def test_wetted_surface_is_near_denny_mumford():
     length, breadth, draught, block = 169.0, 32.0, 10.0, 0.785
     denny = 1.7 * length * draught + block * length * breadth
     got = hollenbach_wetted_surface(
-        length_between_perpendiculars=length,
-        length_waterline=172.42,
-        length_over_surface=172.42,
-        breadth=breadth,
-        draught_fore=draught,
-        draught_aft=draught,
-        block_coefficient=block,
-        propeller_diameter=6.0,
+        HollenbachHull(
+            length_between_perpendiculars=length,
+            length_waterline=172.42,
+            length_over_surface=172.42,
+            breadth=breadth,
+            draught_fore=draught,
+            draught_aft=draught,
+            block_coefficient=block,
+            propeller_diameter=6.0,
+        ),
     )
     assert got == pytest.approx(denny, rel=0.05)
 
@@ -177,13 +188,9 @@ def test_froude_limits_and_notes():
     low, high = froude_limits(0.728)
     assert low == pytest.approx(0.17 + 0.2 * (0.6 - 0.728))
     assert high == pytest.approx(0.642 - 0.635 * 0.728 + 0.15 * 0.728**2)
-    hull = {
-        "length_between_perpendiculars": 162.45,
-        "length_over_surface": 172.42,
-        "block_coefficient": 0.728,
-    }
-    assert hollenbach_validity(np.array([12.0, 17.0]) * YU_KNOT, **hull) == []
-    (slow, fast) = hollenbach_validity([1.0, 15.0, np.nan], **hull)
+    hull = HollenbachHull(**YU_HULL)
+    assert hollenbach_validity(np.array([12.0, 17.0]) * YU_KNOT, hull) == []
+    (slow, fast) = hollenbach_validity([1.0, 15.0, np.nan], hull)
     assert slow.quantity == fast.quantity == "Froude number"
     assert slow.value < slow.low == pytest.approx(low)
     assert fast.value > fast.high == pytest.approx(high)
@@ -192,8 +199,8 @@ def test_froude_limits_and_notes():
 
 def test_correlation_option_adds_on_the_wetted_surface():
     np.testing.assert_allclose(correlation_allowance([100.0, 175.0, 300.0]), [1.5e-4, 0.0, 0.0])
-    plain = hollenbach_1998(7.0, **YU_HULL)
-    with_allowance = hollenbach_1998(7.0, correlation_allowance=1e-4, **YU_HULL)
+    plain = yu(7.0)
+    with_allowance = yu(7.0, correlation_allowance=1e-4)
     added = 0.5 * 1025.0 * 49.0 * 8267.52 * 1e-4
     assert with_allowance.total - plain.total == pytest.approx(added)
     assert with_allowance.correlation == pytest.approx(added)

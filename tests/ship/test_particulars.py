@@ -180,7 +180,7 @@ def test_the_efficiency_of_all_goes_before_its_parts(others):
     power = float(ship.power_at_speed(Conditions(CALM), 6.0))
     assert power == pytest.approx(_drag(ship) * 6.0 / (0.7 * 0.98 * 0.96))
     told = performance_sheet(ship)["assumed"]
-    assert told == [f"propulsion.{key} is left aside" for key in sorted(others, key=told_order)]
+    assert told == [f"propulsion.{key} is not used" for key in sorted(others, key=told_order)]
 
 
 def told_order(key):
@@ -190,7 +190,7 @@ def told_order(key):
 
 def test_wake_alone_is_no_hull_efficiency_and_is_said():
     assert performance_sheet(_ship(propulsion={"wake_fraction": 0.3}))["assumed"] == [
-        "propulsion.wake_fraction is left aside"
+        "propulsion.wake_fraction is not used"
     ]
     both = {"wake_fraction": 0.3, "thrust_deduction": 0.2}
     ship = _ship(propulsion=both)
@@ -282,7 +282,9 @@ def test_a_ballast_line_that_is_not_there_is_told():
 
 def test_a_load_factor_that_changes_nothing_is_said():
     empty = performance_sheet(_ship().with_load_factor(0.5))["assumed"]
-    assert empty == ["load factor 0.5 changes nothing: the ship file tells no empty ship"]
+    assert empty == [
+        "load factor 0.5 has no effect: the ship file does not describe the empty ship"
+    ]
     assert performance_sheet(_ship())["assumed"] == []
     told = _ship(loading={"draught_empty_m": 5.0})
     assert performance_sheet(told.with_load_factor(0.5))["assumed"] == []

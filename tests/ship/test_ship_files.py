@@ -396,10 +396,10 @@ def test_one_file_serves_every_calm_water_method(method):
     elif method == "cubic":
         assert power == pytest.approx([1000, 3375, 8000])
         assert sheet["conditions"][0]["fuel_kg_per_h"] == pytest.approx(36000 / 24 / 8)
-        assert sheet["assumed"] == ["calm_water: cubic leaves the table aside"]
+        assert sheet["assumed"] == ["calm_water: cubic does not use the table"]
     else:
         assert (np.diff(power) > 0).all()
-        assert sheet["assumed"] == [f"calm_water: {method} leaves the table aside"]
+        assert sheet["assumed"] == [f"calm_water: {method} does not use the table"]
 
 
 def test_powers_are_settings_of_a_table_and_of_the_cubic_law():

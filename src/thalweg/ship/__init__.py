@@ -1,4 +1,4 @@
-"""Ship physics and performance: how fast a ship goes, and what it burns, in given conditions.
+"""Ship physics and performance: speed, power and fuel of a ship in given conditions.
 
 In: ship files (YAML), functions, conditions as arrays in SI. Out: speeds, powers, fuel rates, and a
 `PerformanceTable` with a measured error for the kernels. Knows no maps, no weather files, no clock.

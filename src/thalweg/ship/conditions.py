@@ -1,4 +1,4 @@
-"""`Conditions`: what a ship meets, as arrays in SI."""
+"""`Conditions`: wind, waves, current and depth at a ship, as arrays in SI."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Conditions(Mapping[str, FloatArray]):
     Parameters
     ----------
     values : mapping of str to array_like, optional
-        Conditions by name; for names that are no Python words.
+        Conditions by name; for names that are not Python identifiers.
     **more : array_like
         Conditions by name.
 

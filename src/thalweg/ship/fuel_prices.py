@@ -62,7 +62,7 @@ class FuelTerms:
 
     @property
     def by_speed(self) -> bool:
-        """Whether sailing costs by its cubed speed, since fuel has no price."""
+        """Whether the cost of sailing follows the cubed speed, since fuel has no price."""
         return math.isnan(self.price_outside) and not math.isnan(self.cubed_speed_price)
 
     @property

@@ -43,14 +43,14 @@ class Loading:
         if not 0.0 <= self.load_factor <= 1.0:
             raise InputError(
                 f"The load factor is {self.load_factor:g}.",
-                "It lies between 0 (empty) and 1 (full).",
+                "It is between 0 (empty) and 1 (full).",
                 "Give it as a fraction.",
                 value=f"{self.load_factor:g}",
             )
         if not 0.0 <= self.draught_empty <= self.draught_full < math.inf:
             raise InputError(
                 f"The draught is {self.draught_empty:g} m empty and {self.draught_full:g} m full.",
-                "Draughts are not negative, and a full ship lies at least as deep as an empty one.",
+                "Draughts are not negative, and a full ship is at least as deep as an empty one.",
                 "Correct draught_full_m and draught_empty_m.",
             )
         if self.displacement_empty > self.displacement_full:
@@ -81,5 +81,5 @@ class Loading:
         )
 
     def at(self, load_factor: float) -> Loading:
-        """Return the same ship loaded differently."""
+        """Return the same ship at another load factor."""
         return replace(self, load_factor=float(load_factor))

@@ -1,4 +1,4 @@
-"""The contract of ship models, as a check that plug-in authors can run too."""
+"""Check of ship models against their protocol; authors of plug-ins can run it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CONDITION_SPANS = {"wind_speed": 20.0, "wave_height": 4.0, "wave_period": 14.0,
 def check_ship_model(
     model: ShipModel | Ship, *, tolerance: float = 0.01, load_factor: float | None = None
 ) -> None:
-    """Check that a ship model keeps the contract of `thalweg.ship.model_protocol.ShipModel`.
+    """Check that a ship model follows the protocol `thalweg.ship.model_protocol.ShipModel`.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def check_ship_model(
         Listing every fault: a condition read without being declared, arrays that differ from
         numbers, unknown conditions that give known speeds, negative or not finite speeds, settings
         that do not ascend, power or fuel that is negative or falls with the setting in calm water,
-        a table that strays from the model by more than it says, a speed above the bound.
+        a table that differs from the model by more than its stated error, a speed above the bound.
 
     Examples
     --------
@@ -71,13 +71,13 @@ def check_ship_model(
         raise InputError(
             f"The ship model breaks its contract: {'; '.join(faults)}.",
             "The contract is that of thalweg.ship.model_protocol.ShipModel.",
-            "Mend the model.",
+            "Correct the model.",
             faults=faults,
         )
 
 
 def _conditions(model: ShipModel, load_factor: float) -> Conditions:
-    """Moderate random conditions with just what the model says it reads."""
+    """Moderate random conditions with only the names that the model declares."""
     draw = np.random.default_rng(17)
     values: dict[str, FloatArray | float] = {"load_factor": load_factor}
     for name in sorted(model.reads - {"load_factor"}):
@@ -140,7 +140,7 @@ def _nan_stays_nan(model: ShipModel, conditions: Conditions, load_factor: float)
 
 
 def _calm_power_rises(model: ShipModel, conditions: Conditions, load_factor: float) -> list[str]:
-    """More speed takes more power and fuel in calm, deep water."""
+    """Check that power and fuel rise with the setting in calm, deep water."""
     calm = Conditions(
         {
             **dict.fromkeys(AXIS_OF_CONDITION, 0.0),
@@ -170,7 +170,7 @@ def _top_speed_holds(model: ShipModel, conditions: Conditions, load_factor: floa
 
 
 def _table_error_holds(model: ShipModel, load_factor: float, tolerance: float) -> list[str]:
-    """The table's parts, summed, stray no further than the table says."""
+    """Check that the table differs from the model by no more than its stated error."""
     parts, error, curve = Tabulation(*model.tabulate(load_factor, tolerance))
     table = PerformanceTable(parts, model.speeds(load_factor), "", error, curve)
     undeclared = table.axes - model.reads
@@ -187,5 +187,5 @@ def _table_error_holds(model: ShipModel, load_factor: float, tolerance: float) -
     scale = np.maximum(truth, 0.25 * np.nanmax(truth))
     strays = float(np.nanquantile(np.abs(found - truth) / scale, 0.98))
     if strays > max(2.0 * error.p99, tolerance):
-        return [f"the table strays from the model by {strays:.2%}, but says {error.p99:.2%}"]
+        return [f"the table differs from the model by {strays:.2%}, but states {error.p99:.2%}"]
     return []

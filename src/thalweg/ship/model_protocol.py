@@ -1,4 +1,4 @@
-"""The protocol of ship models: what every model offers, and what a model may offer besides.
+"""The protocol of ship models: required methods and optional capabilities.
 
 `ShipModel` is required of built-in and third-party models alike. The other protocols are optional
 capabilities: `Ship` uses them where a model offers them, by ``isinstance``. The capability of

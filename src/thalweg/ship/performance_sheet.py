@@ -1,4 +1,4 @@
-"""The performance sheet of a ship: resistance, power, fuel and emissions, speed by speed."""
+"""The performance sheet of a ship: resistance, power, fuel and emissions at several speeds."""
 
 from __future__ import annotations
 
@@ -125,12 +125,12 @@ def _conditions(ship: Ship, weather: Mapping[str, float]) -> Conditions:
 
 
 def assumed_peak_period(height: float) -> float:
-    """Peak period [s] of waves whose period is not told: a fully developed sea's."""
+    """Peak period [s] of waves without a given period: that of a fully developed sea."""
     return float(pierson_moskowitz_period(height)) if height > 0.0 else _CALM_PERIOD
 
 
 def _weather_assumptions(weather: Mapping[str, float]) -> list[str]:
-    """Say what was taken for weather that was only half told."""
+    """Return what was assumed for weather that was given in part."""
     height, found = weather.get("wave_height", 0.0), []
     if height > 0.0 and "wave_period" not in weather:
         period = assumed_peak_period(height)
@@ -139,14 +139,14 @@ def _weather_assumptions(weather: Mapping[str, float]) -> list[str]:
         if weather.get(size, 0.0) > 0.0 and angle not in weather:
             found.append(f"{words} from ahead")
         if size not in weather and angle in weather:
-            found.append(f"no {words}, since only a direction is told")
+            found.append(f"no {words}, since only a direction is given")
     if "wave_height" not in weather and "wave_period" in weather:
-        found.append("no waves, since only a period is told")
+        found.append("no waves, since only a period is given")
     return found
 
 
 def _admissible_speeds(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list[str]]:
-    """The speeds a ship with known speeds can be ordered to, and a warning of the others.
+    """Return the speeds that a ship with known speeds can hold, and warnings of the others.
 
     Raises
     ------
@@ -171,7 +171,7 @@ def _admissible_speeds(ship: Ship, speeds: FloatArray) -> tuple[FloatArray, list
     return np.array(good), [f"{listed} kn left out.{why}"] if bad else []
 
 
-#: what the weather must be called, and the conditions a ship reads that feel it
+#: names of weather, and the conditions of a ship model that depend on it
 _WEATHER_EFFECTS = {
     "wave_height": ("waves are", {"wave_height"}),
     "wind_speed": ("the wind is", {"wind_speed"}),
@@ -180,7 +180,7 @@ _WEATHER_EFFECTS = {
 
 
 def _weather_without_model(ship: Ship, weather: Mapping[str, float]) -> list[str]:
-    """Warn of weather that is given and that the ship has no model of."""
+    """Warn of given weather for which the ship has no model."""
     return [
         f"{word} given, but this ship's models leave its speed and power as they are"
         for name, (word, read) in _WEATHER_EFFECTS.items()
@@ -189,7 +189,7 @@ def _weather_without_model(ship: Ship, weather: Mapping[str, float]) -> list[str
 
 
 def _weather_beyond_limits(ship: Ship, weather: Mapping[str, float]) -> list[str]:
-    """Warn of what no plan takes the ship into: weather beyond its limits, water too shallow."""
+    """Warn of weather beyond the limits of the ship, and of water that is too shallow."""
     limits = {
         "wave_height": ("waves of", "m", ship.limits.wave_height),
         "wind_speed": ("wind of", "m/s", ship.limits.wind_speed),
@@ -319,34 +319,37 @@ def _cii(ship: Ship, speed: float, co2: float) -> dict[str, Any] | None:
 
 
 def _unused_entries(ship: Ship) -> list[str]:
-    """Say what a ship file gives that its calm-water method does not look at."""
+    """Return the entries of a ship file that its calm-water method does not use."""
     file = ship.file
     method = file.models.calm_water or "none"
     if not ship.is_resistance_based:
         table = method in ("none", "cubic") and {"table", "speeds_kn"} <= file.model_fields_set
-        return [f"calm_water: {method} leaves the table aside"] if table else []
+        return [f"calm_water: {method} does not use the table"] if table else []
     given = {
         "table": file.table is not None,
         "speeds under loading": file.loading.speeds_full_kn is not None,
         "reference point": file.engine.reference_power_kw is not None
         or file.fuel.reference_t_per_day is not None,
     }
-    found = [f"calm_water: {method} leaves the {w} aside" for w, there in given.items() if there]
+    found = [f"calm_water: {method} does not use the {w}" for w, there in given.items() if there]
     idle = unused_efficiencies(file.propulsion, file.models.propulsion)
-    return [*found, *(f"propulsion.{key} is left aside" for key in idle)]
+    return [*found, *(f"propulsion.{key} is not used" for key in idle)]
 
 
 def _load_factor_without_effect(ship: Ship) -> list[str]:
-    """Say that a ship with one draught is the same at every load factor."""
+    """Report a load factor that has no effect, since the ship file gives one draught."""
     own, given = ship.loading, ship.file.loading
     differs = ("draught_empty_m", "speeds_empty_kn", "displacement_empty_m3", "weight_empty_t")
     if ship.file.is_empty or own.load_factor == 1.0 or given.gives(*differs):
         return []
-    return [f"load factor {own.load_factor:g} changes nothing: the ship file tells no empty ship"]
+    return [
+        f"load factor {own.load_factor:g} has no effect: "
+        "the ship file does not describe the empty ship"
+    ]
 
 
 def _missing_results(ship: Ship, rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Say what the sheet does not know, and which keys of the ship file would tell it."""
+    """Return the results that are unknown, with the keys of the ship file that would give them."""
 
     def known(name: str) -> bool:
         return any(row[name] is not None for row in rows)

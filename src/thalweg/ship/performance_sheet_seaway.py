@@ -1,4 +1,4 @@
-"""What a performance sheet says of squat, motions and stability at one speed."""
+"""Squat, motions and stability at one speed, for the performance sheet."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class ShipInSeaway:
 
     @classmethod
     def of(cls, ship: Ship, conditions: Conditions) -> ShipInSeaway:
-        """Take the hull's particulars as the ship's model has them, at the ship's draught."""
+        """Use the particulars of the hull as in the ship's model, at the draught of the ship."""
         if isinstance(ship.model, ResistanceBased):
             return cls(ship, ship.model.balance(ship.loading.load_factor).calm.hull, conditions)
         hull = complete_hull(ship.file.hull.plain())
@@ -114,7 +114,7 @@ class ShipInSeaway:
         return {k: _number(v) for k, v in found.items()}, [*notes, *self._dangers(speed, hull)]
 
     def _dangers(self, speed: float, hull: MotionHull) -> list[str]:
-        """What MSC.1/Circ.1228 warns of at a speed [m/s]."""
+        """The warnings of MSC.1/Circ.1228 at a speed [m/s]."""
         own = natural_roll_period(self.hull, hull)
         checks = dangerous_situations(
             speed=speed,

@@ -1,6 +1,9 @@
-"""What can be asked of a ship in given conditions: speed, power, fuel, resistance, validity."""
+"""Queries of a ship: speed, power, fuel and resistance in given conditions, and their tables."""
 
 from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
@@ -9,16 +12,28 @@ from thalweg.core.types import FloatArray
 from thalweg.ship.conditions import Conditions
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.validity import RangeNote
-from thalweg.ship.model_protocol import JointPowerAndFuelModel, ShipModel
+from thalweg.ship.model_protocol import JointPowerAndFuelModel, ShipModel, Tabulation
 from thalweg.ship.models.resistance_protocol import ResistanceBased
+from thalweg.ship.ship_limits import ShipLimits
+from thalweg.ship.tables.performance_table import PerformanceTable
 
 
 class ShipQueries:
-    """The part of `thalweg.ship.Ship` that answers for conditions."""
+    """The part of `thalweg.ship.Ship` that evaluates conditions and makes tables."""
 
     name: str
     model: ShipModel
     loading: Loading
+    limits: ShipLimits
+
+    @abstractmethod
+    def fingerprint(self) -> str:
+        """Return a text that is equal for two ships only if they have the same performance."""
+
+    @property
+    @abstractmethod
+    def hotel_power(self) -> float:
+        """Hotel load [W]."""
 
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike = 0) -> FloatArray:
         """Speed through water [m/s].
@@ -26,7 +41,7 @@ class ShipQueries:
         Parameters
         ----------
         conditions : Conditions
-            What the ship meets, arrays that broadcast; see `reads`.
+            Conditions at the ship, arrays that broadcast; see `reads`.
         setting : array_like of int
             Index into `speeds`.
 
@@ -53,13 +68,13 @@ class ShipQueries:
     def power_and_fuel(
         self, conditions: Conditions, setting: ArrayLike = 0
     ) -> tuple[FloatArray, FloatArray]:
-        """Brake power [W] and fuel rate [kg/s] at once, for models that find them together."""
+        """Brake power [W] and fuel rate [kg/s] at once, in one computation where the model can."""
         if isinstance(self.model, JointPowerAndFuelModel):
             return self.model.power_and_fuel(self._loaded(conditions), setting)
         return self.power(conditions, setting), self.fuel_rate(conditions, setting)
 
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
-        """Brake power [W] that holds speeds through water [m/s], whatever the engines can give.
+        """Brake power [W] that holds speeds through water [m/s], also above that of the engines.
 
         Raises
         ------
@@ -107,7 +122,7 @@ class ShipQueries:
     def notes(
         self, conditions: Conditions, setting: ArrayLike = 0, *, strict: bool = False
     ) -> list[RangeNote]:
-        """Say which methods are used outside their range in these conditions.
+        """Return which methods are used outside their range in these conditions.
 
         Raises
         ------
@@ -123,6 +138,70 @@ class ShipQueries:
                 notes=[str(note) for note in found],
             )
         return found
+
+    def tabulate(self, *, tolerance: float = 0.01) -> PerformanceTable:
+        """Tabulate the speed through water at the ship's load factor.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative error that 99 % of random conditions shall meet; the table says what it met.
+
+        Returns
+        -------
+        PerformanceTable
+        """
+        found = Tabulation(*self.model.tabulate(self.loading.load_factor, tolerance))
+        return PerformanceTable(
+            found.parts,
+            self.model.speeds(self.loading.load_factor),
+            self.fingerprint(),
+            found.error,
+            found.curve,
+            self.limits.safety,
+        )
+
+    def tabulate_fuel(self, *, tolerance: float = 0.01) -> PerformanceTable:
+        """Tabulate the fuel rate [kg/s] at the ship's load factor, hotel load included.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative error that 99 % of random conditions shall meet; the table says what it met.
+
+        Returns
+        -------
+        PerformanceTable
+            A constant per setting where a setting burns the same in all weather.
+
+        Raises
+        ------
+        InputError
+            If the ship's fuel is unknown, or its speed is a field, which has no settings.
+        """
+        from thalweg.ship.tables.tabulate_fuel import fuel_table
+
+        found = fuel_table(self.model, self.loading.load_factor, tolerance, ship=self.name)
+        return replace(found, fingerprint=self.fingerprint())
+
+    def tabulate_power(self, *, tolerance: float = 0.01) -> PerformanceTable:
+        """Tabulate the brake power with the hotel load [W]; parameters as in `tabulate_fuel`.
+
+        Raises
+        ------
+        InputError
+            If the ship's brake power is unknown, or its speed is a field.
+        """
+        from thalweg.ship.tables.tabulate_fuel import power_table
+
+        found = power_table(
+            self.model,
+            self.loading.load_factor,
+            tolerance,
+            hotel_power=self.hotel_power,
+            ship=self.name,
+        )
+        return replace(found, fingerprint=self.fingerprint())
 
     def _loaded(self, conditions: Conditions) -> Conditions:
         return conditions.with_default(load_factor=self.loading.load_factor)

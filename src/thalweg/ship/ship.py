@@ -1,4 +1,4 @@
-"""`Ship`: a name, a model, a loading and limits; what other packages see of a ship."""
+"""`Ship`: name, model, loading, limits and ship file."""
 
 from __future__ import annotations
 
@@ -34,14 +34,12 @@ from thalweg.ship.model_protocol import (
     DraughtModel,
     EstimatingModel,
     ShipModel,
-    Tabulation,
 )
 from thalweg.ship.models.fuel_from_power import hotel_load_fuel_rate, hotel_power
 from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.plugins import load_plugin
 from thalweg.ship.queries import ShipQueries
 from thalweg.ship.ship_limits import ShipLimits
-from thalweg.ship.tables.performance_table import PerformanceTable
 
 _SINGLE_PRECISION = 2.0**-23
 
@@ -64,7 +62,7 @@ class Ship(ShipQueries):
     file : ShipFile
         The contents of its ship file; empty for a ship without one.
     estimated : tuple of Estimate
-        Particulars that were not given.
+        Estimated particulars.
 
     Examples
     --------
@@ -308,7 +306,7 @@ class Ship(ShipQueries):
         return fuel_terms(self.file)
 
     def with_load_factor(self, load_factor: float) -> Ship:
-        """Return the ship loaded differently, 0 empty to 1 full."""
+        """Return the ship at another load factor, 0 empty to 1 full."""
         return replace(self, loading=self.loading.at(load_factor))
 
     def with_limits(self, limits: ShipLimits) -> Ship:
@@ -332,76 +330,12 @@ class Ship(ShipQueries):
         return replace(self, model=self.model.with_speeds(wanted, self.loading.load_factor))
 
     def top_speed(self, setting: int = 0) -> float | None:
-        """Upper bound of the speed through water [m/s]; None for a field that nothing bounds.
+        """Upper bound of the speed through water [m/s]; None for an unbounded field.
 
         It covers the model and its table, rounded to single precision, alike.
         """
         top = self.model.top_speed(setting, self.loading.load_factor)
         return None if top is None else top * (1.0 + _SINGLE_PRECISION)
-
-    def tabulate(self, *, tolerance: float = 0.01) -> PerformanceTable:
-        """Tabulate the speed through water at the ship's load factor.
-
-        Parameters
-        ----------
-        tolerance : float
-            Relative error that 99 % of random conditions shall meet; the table says what it met.
-
-        Returns
-        -------
-        PerformanceTable
-        """
-        found = Tabulation(*self.model.tabulate(self.loading.load_factor, tolerance))
-        return PerformanceTable(
-            found.parts,
-            self.speeds,
-            self.fingerprint(),
-            found.error,
-            found.curve,
-            self.limits.safety,
-        )
-
-    def tabulate_fuel(self, *, tolerance: float = 0.01) -> PerformanceTable:
-        """Tabulate the fuel rate [kg/s] at the ship's load factor, hotel load included.
-
-        Parameters
-        ----------
-        tolerance : float
-            Relative error that 99 % of random conditions shall meet; the table says what it met.
-
-        Returns
-        -------
-        PerformanceTable
-            A constant per setting where a setting burns the same in all weather.
-
-        Raises
-        ------
-        InputError
-            If the ship's fuel is unknown, or its speed is a field, which has no settings.
-        """
-        from thalweg.ship.tables.tabulate_fuel import fuel_table
-
-        found = fuel_table(self.model, self.loading.load_factor, tolerance, ship=self.name)
-        return replace(found, fingerprint=self.fingerprint())
-
-    def tabulate_power(self, *, tolerance: float = 0.01) -> PerformanceTable:
-        """Tabulate the brake power with the hotel load [W]; parameters as in `tabulate_fuel`.
-
-        Raises
-        ------
-        InputError
-            If the ship's brake power is unknown, or its speed is a field.
-        """
-        from thalweg.ship.tables.tabulate_fuel import power_table
-
-        found = power_table(
-            self.model,
-            self.loading.load_factor,
-            tolerance,
-            hotel_power=self.hotel_power,
-            ship=self.name,
-        )
-        return replace(found, fingerprint=self.fingerprint())
 
     @property
     def hotel_power(self) -> float:

@@ -1,4 +1,4 @@
-"""`ShipLimits`: weather a ship must not meet."""
+"""`ShipLimits`: the weather in which a ship does not sail."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ShipLimits:
     wind_speed : float
         Greatest wind speed at 10 m, relative to the moving water [m/s].
     safety : SafetyLimits, optional
-        What the ship must not do in waves.
+        Limits of safety and comfort in waves.
     """
 
     wave_height: float = math.inf
@@ -50,7 +50,7 @@ class ShipLimits:
 
     @property
     def needs(self) -> frozenset[str]:
-        """The sea variables that finite limits look at."""
+        """The sea variables that finite limits depend on."""
         waves = {WAVE_HEIGHT} if math.isfinite(self.wave_height) else set()
         wind = {EASTWARD_WIND, NORTHWARD_WIND} if math.isfinite(self.wind_speed) else set()
         if self.safety is not None:

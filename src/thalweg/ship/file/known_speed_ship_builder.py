@@ -67,7 +67,7 @@ def _check_sea_margin(file: ShipFile) -> None:
 
 
 def estimates_of_known_speeds(file: ShipFile, hull: Hull, loading: Loading) -> tuple[Estimate, ...]:
-    """What was estimated of a ship that gives its speeds."""
+    """Return the estimated particulars of a ship that gives its speeds."""
     if file.models.speed_loss != "none":
         hull = hull_for_kwon(hull, loading)
     light = lightship_estimate(file.loading, loading.displacement_empty)

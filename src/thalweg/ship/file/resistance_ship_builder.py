@@ -1,7 +1,8 @@
-"""Put a ship together from the parts that its file names."""
+"""Build the model of a ship with a resistance from the methods that its file names."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from thalweg.ship.file.part_builders import (
     lightship_estimate,
     resistance_methods,
 )
-from thalweg.ship.file.ship_schema import ShipFile
+from thalweg.ship.file.ship_schema import ModelsSection, ShipFile
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_particulars, hull_at_load_factor
@@ -24,6 +25,7 @@ from thalweg.ship.models.added_resistance_model import build_wave_resistance, bu
 from thalweg.ship.models.calm_water_model import CALM_WATER_METHODS, build_calm_water
 from thalweg.ship.models.engine_plant import EngineOrders, EnginePlant, build_engine_plant
 from thalweg.ship.models.force_balance import ForceBalance
+from thalweg.ship.models.known_speed_model import KwonSpeedLoss
 from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import build_propulsion
 from thalweg.ship.models.resistance_model import ResistanceModel
@@ -69,51 +71,13 @@ def build_resistance_model(
 def _assemble_resistance_model(
     file: ShipFile, hull: Hull, loading: Loading
 ) -> ResistanceModel | KwonResistanceModel:
-    models = file.models
+    """Return the model of a ship file whose methods go together."""
     loss = build_speed_loss(file, hull, loading)
-    twice = [
-        name
-        for name, method in (("waves", models.waves), ("wind", models.wind))
-        if method != "none"
-    ]
-    if loss is not None and twice:
-        raise InputError(
-            f"speed_loss: {models.speed_loss} is chosen together with "
-            f"{' and '.join(f'models.{name}' for name in twice)}.",
-            "Kwon's loss holds what wind and waves take; both would count the weather twice.",
-            "Leave out the one or the other.",
-            key="models.speed_loss",
-        )
-    if build_squat_model(file, hull, loading) is not None:
-        raise InputError(
-            f"squat: {models.squat} is for ships with known calm-water speeds.",
-            "Ships with a resistance feel the bed by models.shallow_water.",
-            "Leave squat out; the sinkage is shown for every ship whose particulars are known.",
-            key="models.squat",
-        )
-    if models.rudder not in RUDDER_METHODS:
-        raise unknown_name_error("rudder method", models.rudder, RUDDER_METHODS)
+    _check_speed_loss(file.models, loss)
+    _check_squat_and_rudder(file, hull, loading)
     _check_draught(loading)
-    full = estimate_particulars(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
-    if full.number("draught_m") is None:
-        deep = loading.draught_full
-        ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
-        full = Hull({**full.values, **ends}, full.estimated)
-    full = _with_loading_displacement(full, loading)
-    draughts = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
-
-    def balance_at(load_factor: float) -> ForceBalance:
-        floated = full
-        with np.errstate(all="ignore"):
-            if len(draughts) > 1:
-                wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
-                floated = hull_at_load_factor(
-                    estimate_particulars(full, wanted), loading, load_factor
-                )
-            balance = _build_force_balance(file, floated)
-        _check_calm_water_power(balance, _moderate_speed(balance), load_factor)
-        return balance
-
+    full = _full_hull(hull, loading)
+    balance_at = _force_balance_by_loading(file, full, loading)
     plant = build_engine_plant(file)
     orders, guessed = _build_engine_orders(file, balance_at(1.0), plant)
     light = hull_at_load_factor(full, loading, 0.0).number("displacement_m3")
@@ -129,8 +93,77 @@ def _assemble_resistance_model(
     return model if loss is None else KwonResistanceModel(model, loss)
 
 
+def _check_speed_loss(models: ModelsSection, loss: KwonSpeedLoss | None) -> None:
+    """Refuse Kwon's speed loss together with a method for waves or wind.
+
+    Raises
+    ------
+    InputError
+    """
+    weather = {"waves": models.waves, "wind": models.wind}
+    twice = [name for name, method in weather.items() if method != "none"]
+    if loss is not None and twice:
+        raise InputError(
+            f"speed_loss: {models.speed_loss} is chosen together with "
+            f"{' and '.join(f'models.{name}' for name in twice)}.",
+            "Kwon's loss includes wind and waves; with both the weather would count twice.",
+            "Leave out one of them.",
+            key="models.speed_loss",
+        )
+
+
+def _check_squat_and_rudder(file: ShipFile, hull: Hull, loading: Loading) -> None:
+    """Refuse a squat that limits the speed, and unknown rudder methods.
+
+    Raises
+    ------
+    InputError
+    """
+    models = file.models
+    if build_squat_model(file, hull, loading) is not None:
+        raise InputError(
+            f"squat: {models.squat} is for ships with known calm-water speeds.",
+            "For ships with a resistance the bed acts through models.shallow_water.",
+            "Leave squat out; the sinkage is shown for every ship whose particulars are known.",
+            key="models.squat",
+        )
+    if models.rudder not in RUDDER_METHODS:
+        raise unknown_name_error("rudder method", models.rudder, RUDDER_METHODS)
+
+
+def _full_hull(hull: Hull, loading: Loading) -> Hull:
+    """The hull at full draught, with estimated lengths and displacement."""
+    full = estimate_particulars(hull, ("length_waterline_m", "length_between_perpendiculars_m"))
+    if full.number("draught_m") is None:
+        deep = loading.draught_full
+        ends = {"draught_m": deep, "draught_fore_m": deep, "draught_aft_m": deep}
+        full = Hull({**full.values, **ends}, full.estimated)
+    return _with_loading_displacement(full, loading)
+
+
+def _force_balance_by_loading(
+    file: ShipFile, full: Hull, loading: Loading
+) -> Callable[[float], ForceBalance]:
+    """Return the function that makes the force balance at a load factor."""
+    draughts = {loading.draught_full, loading.draught_empty, float(full.values["draught_m"])}
+
+    def balance_at(load_factor: float) -> ForceBalance:
+        floated = full
+        with np.errstate(all="ignore"):
+            if len(draughts) > 1:
+                wanted = ("waterplane_coefficient", "displacement_m3", "midship_coefficient")
+                floated = hull_at_load_factor(
+                    estimate_particulars(full, wanted), loading, load_factor
+                )
+            balance = _build_force_balance(file, floated)
+        _check_calm_water_power(balance, _moderate_speed(balance), load_factor)
+        return balance
+
+    return balance_at
+
+
 def _check_draught(loading: Loading) -> None:
-    """Refuse a hull that lies on the water.
+    """Refuse a hull without draught.
 
     Raises
     ------
@@ -139,14 +172,14 @@ def _check_draught(loading: Loading) -> None:
     if loading.draught_empty <= 0.0:
         raise InputError(
             "The draught is 0 m.",
-            "A resistance needs a hull that lies in the water, full and empty.",
+            "A resistance needs a hull with a draught, full and empty.",
             "Correct hull.draught_m, or loading.draught_empty_m.",
             key="hull.draught_m" if loading.draught_full <= 0.0 else "loading.draught_empty_m",
         )
 
 
 def _moderate_speed(balance: ForceBalance) -> NDArray[np.float64]:
-    """A speed [m/s] that every method has a number for: a Froude number of 0.18."""
+    """A speed [m/s] within the range of every method: a Froude number of 0.18."""
     length = float(balance.calm.hull.values["length_between_perpendiculars_m"])
     return np.array([0.18 * np.sqrt(GRAVITY * length)])
 
@@ -154,7 +187,7 @@ def _moderate_speed(balance: ForceBalance) -> NDArray[np.float64]:
 def _check_calm_water_power(
     balance: ForceBalance, speeds: NDArray[np.float64], load_factor: float
 ) -> None:
-    """Refuse a hull for which the chosen methods have no number in calm water.
+    """Refuse a hull for which the chosen methods give no power in calm water.
 
     Raises
     ------
@@ -173,7 +206,7 @@ def _check_calm_water_power(
     loaded = "" if load_factor == 1.0 else f" at load factor {load_factor:g}"
     raise InputError(
         f"{balance.calm.method} has no resistance for this hull{loaded}.",
-        "; ".join(outside) or "Its particulars lie beyond what the method was made for.",
+        "; ".join(outside) or "Its particulars are outside the range of the method.",
         "Check the particulars, or choose another calm_water method.",
     )
 
@@ -207,7 +240,7 @@ def _build_force_balance(file: ShipFile, hull: Hull) -> ForceBalance:
 def _build_engine_orders(
     file: ShipFile, balance: ForceBalance, plant: EnginePlant
 ) -> tuple[EngineOrders, tuple[Estimate, ...]]:
-    """Powers or speeds that can be ordered, and whether they were our guess."""
+    """Return the powers or speeds that can be ordered, and estimates if none are given."""
     powers, speeds = file.powers_kw, file.speeds_kn
     if powers is not None and speeds is not None:
         raise InputError(

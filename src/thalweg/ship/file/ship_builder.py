@@ -1,4 +1,4 @@
-"""Build the model that a ship file asks for."""
+"""Build the model that a ship file chooses."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def simple_data(
 
 
 def build_model(file: ShipFile, hull: Hull, loading: Loading) -> ShipModel:
-    """Return the model a ship file asks for.
+    """Return the model that a ship file chooses.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""`ShipFile`: what a ship file may hold, as typed sections; every key with its kind and range."""
+"""`ShipFile`: the contents of a ship file as typed sections; every key with its kind and range."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Particulars of a hull: what follows from what is given, and what cannot be."""
+"""Particulars of a hull: completed by their definitions, and checked."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _check_block_coefficient(block: float) -> None:
     if not 0.0 < block <= 1.0:
         raise InputError(
             f"The displacement is {block:.3g} times the box around the hull.",
-            "A block coefficient lies between 0 and 1.",
+            "A block coefficient is between 0 and 1.",
             "Check length, breadth, draught and displacement_m3.",
             key="hull.displacement_m3",
         )
@@ -255,7 +255,7 @@ def required_particulars(
 
 
 def _available_regressions(missing: list[str]) -> str:
-    """Say which regressions could supply missing particulars, and from what."""
+    """Return in words which regressions could supply missing particulars, and their inputs."""
     from thalweg.ship.hull.particulars_regressions import ESTIMATORS  # many formulas, seldom needed
 
     ways = [

@@ -1,4 +1,4 @@
-"""Refuse hulls that cannot be: lengths that do not go together, ends and skin of no such body."""
+"""Validate hull particulars: inconsistent lengths, bulb and transom, wetted surface."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def check_depth(hull: _HullNumbers, draught: float | None, key: str) -> None:
 def check_prismatic(hull: _HullNumbers) -> None:
     """Refuse a prismatic coefficient that is not C_B / C_M within a few per cent.
 
-    It is often told on the length of the waterline, and the block coefficient on that between
-    perpendiculars: a tenth between them is no contradiction.
+    It often refers to the length of the waterline, and the block coefficient on that between
+    perpendiculars: a difference of a tenth is accepted.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def check_ends_and_surface(hull: _HullNumbers) -> None:
     centre, fore = hull.number("bulb_centre_height_m"), hull.number("draught_fore_m") or draught
     if centre is not None and hull.number("bulb_area_m2") and centre >= fore:
         raise InputError(
-            f"The bulb's centre lies {centre:g} m above the keel, and the water {fore:g} m there.",
+            f"The centre of the bulb is {centre:g} m above the keel, the draught there {fore:g} m.",
             "The section at the fore perpendicular is the part of the bulb below the water.",
             "Correct bulb_centre_height_m or draught_fore_m.",
             key="hull.bulb_centre_height_m",
@@ -126,7 +126,7 @@ def check_ends_and_surface(hull: _HullNumbers) -> None:
 
 
 def _check_wetted_surface(hull: _HullNumbers, breadth: float, draught: float) -> None:
-    """The skin of a body under water: more than a hemisphere's, less than a wrinkled box's."""
+    """Check that the wetted surface is between that of a hemisphere and that of a box."""
     surface, volume = hull.number("wetted_surface_m2"), hull.number("displacement_m3")
     lengths = (hull.number("length_waterline_m"), hull.number("length_between_perpendiculars_m"))
     length = max(known or 0.0 for known in lengths)

@@ -1,4 +1,4 @@
-"""Fill a hull's missing particulars by named regressions, and float it at another draught."""
+"""Estimate missing particulars of a hull by regressions; the hull at another draught."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def estimate_particulars(hull: Hull, keys: tuple[str, ...]) -> Hull:
     Returns
     -------
     Hull
-        Its ``estimated`` tells what was filled, by what.
+        Its ``estimated`` lists the estimates with their sources.
     """
     for key in keys:
         hull = _estimate_particular(hull, key, ())

@@ -1,4 +1,4 @@
-"""Hydrostatics: which regression can supply a particular that a ship file does not give."""
+"""The regressions that can supply particulars which a ship file does not give."""
 
 from __future__ import annotations
 

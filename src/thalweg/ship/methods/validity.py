@@ -1,4 +1,4 @@
-"""Say where a method is used outside the range it was fitted for."""
+"""Notes on methods that are used outside the range of their data."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 @dataclass(frozen=True)
 class RangeNote:
-    """One quantity that lies outside the range of a method.
+    """One quantity outside the range of a method.
 
     Attributes
     ----------

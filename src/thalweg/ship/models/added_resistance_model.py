@@ -48,7 +48,7 @@ SHORTEST_PERIOD, LONGEST_PERIOD = 2.0, 30.0  #: peak periods are taken as no sho
 
 @dataclass(frozen=True, eq=False)
 class AddedWaveResistance:
-    """Added resistance in waves with a hull bound.
+    """Added resistance in waves for one hull.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class AddedWaveResistance:
     validity_notes : callable
         Where the method is outside its range, from speeds, wave heights and angles off the bow.
     reads : frozenset of str
-        Conditions that matter.
+        The conditions that the forces depend on.
     """
 
     method: str
@@ -71,7 +71,7 @@ class AddedWaveResistance:
 
 @dataclass(frozen=True, eq=False)
 class WindResistance:
-    """Wind resistance with a ship bound.
+    """Wind resistance for one ship.
 
     Attributes
     ----------
@@ -235,7 +235,7 @@ _BLENDERMANN_TYPES: Final = {
 
 
 def _with_blendermann_type(hull: Hull) -> tuple[Hull, str]:
-    """Blendermann's type of ship from ``hull.type``, cargo ships when it tells none."""
+    """Blendermann's type of ship from ``hull.type``; a cargo ship when it is not given."""
     told = str(hull.values.get("type", "")).casefold().replace("_", " ")
     kind = next((kind for word, kind in _BLENDERMANN_TYPES.items() if word in told), "cargo_loaded")
     why = f"from hull.type {told!r}" if told else "no hull.type given"

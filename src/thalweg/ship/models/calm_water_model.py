@@ -16,8 +16,14 @@ from thalweg.ship.file.ship_schema import ShipFile, WaterSection
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
-from thalweg.ship.methods.resistance.friction_lines import SEA_WATER_VISCOSITY, reynolds_number
+from thalweg.ship.methods.resistance.friction_lines import (
+    SEA_WATER_VISCOSITY,
+    Water,
+    reynolds_number,
+)
 from thalweg.ship.methods.resistance.hollenbach import (
+    AppendageCounts,
+    HollenbachHull,
     hollenbach_1998,
     hollenbach_validity,
     hollenbach_wetted_surface,
@@ -60,7 +66,7 @@ DeepWaterComponents = Callable[[FloatArray, FloatArray, "FloatArray | None"], di
 
 @dataclass(frozen=True, eq=False)
 class CalmWaterResistance:
-    """Calm-water resistance with a hull bound.
+    """Calm-water resistance for one hull.
 
     Attributes
     ----------
@@ -197,7 +203,7 @@ def stern_shape(hull: Hull) -> float:
 
 
 def _with_estimated_shape(hull: Hull, form: HullForm) -> Hull:
-    """The hull with what Holtrop takes for shapes that a ship file does not tell."""
+    """The hull with Holtrop's values for shapes that the ship file does not give."""
     angle = float(half_angle_of_entrance(form))
     taken = [Estimate("half_entrance_angle_deg", angle, "Holtrop and Mennen (1982)")]
     if "stern_shape" not in hull.values:
@@ -261,6 +267,12 @@ _HOLLENBACH_KEYS = (
     *("length_between_perpendiculars_m", "length_waterline_m", "length_over_surface_m"),
     *("breadth_m", "draught_m", "block_coefficient", "propeller_diameter_m"),
 )
+#: in the order of `HollenbachHull`
+_HOLLENBACH_PARTICULARS = (
+    *("length_between_perpendiculars_m", "length_waterline_m", "length_over_surface_m"),
+    *("breadth_m", "draught_fore_m", "draught_aft_m", "block_coefficient"),
+    "propeller_diameter_m",
+)
 _APPENDAGE_COUNTS = ("rudders", "brackets", "bosses", "thrusters")
 
 
@@ -272,41 +284,39 @@ def _hollenbach(hull: Hull, file: ShipFile, line_of: str) -> CalmWaterResistance
     hull = estimate_or_raise(hull, _HOLLENBACH_KEYS, name, instead="another method")
     variant, surface_of = _hollenbach_variant(hull, file, line_of)
     if file.loading.condition == "ballast" and variant != "single_ballast":
-        why = "Hollenbach has a ballast line for the mean of single screws alone"
+        why = "Hollenbach has a ballast line for the mean of single screws only"
         hull = hull.with_estimates(Estimate("loading.condition", variant, why))
-    sizes = {
-        "length_between_perpendiculars": float(hull.values["length_between_perpendiculars_m"]),
-        "length_waterline": float(hull.values["length_waterline_m"]),
-        "length_over_surface": float(hull.values["length_over_surface_m"]),
-        "breadth": float(hull.values["breadth_m"]),
-        "draught_fore": float(hull.values["draught_fore_m"]),
-        "draught_aft": float(hull.values["draught_aft_m"]),
-        "block_coefficient": float(hull.values["block_coefficient"]),
-        "propeller_diameter": float(hull.values["propeller_diameter_m"]),
-    }
-    if propulsion.propellers >= 2:  # a single screw's lines do not ask for it
+    sizes = _hollenbach_hull(hull)
+    if propulsion.propellers >= 2:  # the lines of single screws do not depend on it
         hull = hull.with_estimates(Estimate("rudders", 1.0, "taken as one"))
-    counts = {key: hull.number(key) or 0.0 for key in _APPENDAGE_COUNTS}
+    counts = AppendageCounts(**{key: hull.number(key) or 0.0 for key in _APPENDAGE_COUNTS})
     if hull.number("wetted_surface_m2") is None:
-        few = {key: counts[key] for key in _APPENDAGE_COUNTS if key != "thrusters"}
-        area = float(hollenbach_wetted_surface(**sizes, **few, variant=surface_of))
-        hull = hull.with_estimates(Estimate("wetted_surface_m2", area, "Hollenbach (1998)"))
-    area, water = float(hull.values["wetted_surface_m2"]), _water_properties(file.water)
+        own = hollenbach_wetted_surface(sizes, appendages=counts, variant=surface_of)
+        hull = hull.with_estimates(Estimate("wetted_surface_m2", float(own), "Hollenbach (1998)"))
+    options: dict[str, Any] = {
+        "wetted_surface": float(hull.values["wetted_surface_m2"]),
+        "appendages": counts,
+        "variant": variant,
+        "water": Water(**_water_properties(file.water)),
+    }
 
     def deep(
         speed: FloatArray, waves: FloatArray, line: FloatArray | None
     ) -> dict[str, FloatArray]:
-        options: dict[str, Any] = {**sizes, **counts, **water, "variant": variant}
-        options["wetted_surface"] = area
-        found = hollenbach_1998(speed, **options, friction_coefficient=line)
-        making = found if waves is speed else hollenbach_1998(waves, **options)
+        found = hollenbach_1998(speed, sizes, **options, friction_coefficient=line)
+        making = found if waves is speed else hollenbach_1998(waves, sizes, **options)
         return _all_components(friction=found.friction, residuary=making.residuary)
 
     def notes(speed: FloatArray) -> list[RangeNote]:
-        keys = ("length_between_perpendiculars", "length_over_surface", "block_coefficient")
-        return hollenbach_validity(speed, **{key: sizes[key] for key in keys}, variant=variant)
+        return hollenbach_validity(speed, sizes, variant=variant)
 
     return CalmWaterResistance(name, hull, deep, notes)
+
+
+def _hollenbach_hull(hull: Hull) -> HollenbachHull:
+    """The hull as Hollenbach's regressions take it; all of its particulars must be known."""
+    numbers = {key: float(hull.values[key]) for key in _HOLLENBACH_PARTICULARS}
+    return HollenbachHull(*numbers.values())
 
 
 def _hollenbach_variant(hull: Hull, file: ShipFile, line_of: str) -> tuple[Any, Any]:

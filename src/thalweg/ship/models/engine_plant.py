@@ -1,4 +1,4 @@
-"""The engines of a ship: how much power there is, and what it burns."""
+"""The engines of a ship: available power and fuel consumption."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class EngineOrders:
 
 @dataclass(frozen=True)
 class EnginePlant:
-    """Engines: how much power there is, and what it burns.
+    """Engines: available power and fuel consumption.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class EnginePlant:
         )[0]
 
     def notes(self, power: FloatArray) -> list[RangeNote]:
-        """Loads above the largest, below the least, or where the consumption is not known."""
+        """Return loads above the largest, below the least, or without known consumption."""
         if np.isinf(self.rating):
             return []
         least, largest = self.loads

@@ -54,7 +54,7 @@ class ForceBalance:
 
     @property
     def reads(self) -> frozenset[str]:
-        """Conditions that matter."""
+        """The conditions that the forces depend on."""
         depth = {"depth"} if self.calm.reads_depth else set()
         blown = {"wind_speed", "wind_angle"} if self.wind else set()
         return frozenset(depth | blown) | (self.waves.reads if self.waves else frozenset())
@@ -119,7 +119,7 @@ class ForceBalance:
 
 
 def calm_conditions(count: int) -> dict[str, FloatArray]:
-    """Return calm, deep conditions, as many as counted."""
+    """Return calm, deep conditions, ``count`` of each."""
     return {name: np.full(count, value) for name, value in CALM_CONDITIONS.items()}
 
 

@@ -1,4 +1,4 @@
-"""Ships given as a function of conditions, for analytic worlds and for measured polars."""
+"""Ships given as a function of conditions, for analytic test seas and measured polars."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _PROBES = 32
 
 
 class RecordingConditions(Conditions):
-    """Conditions that hold plausible values for any name and remember what was read.
+    """Conditions with plausible values for any name that record what was read.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class FunctionModel:
     reads : frozenset of str
         What it was seen to read.
     top : float or None
-        Greatest speed [m/s], given or measured; None for a speed field that nothing bounds.
+        Greatest speed [m/s], given or measured; None for an unbounded speed field.
     table : tuple of (TablePart, TableError), or None
         None for a speed field.
     """
@@ -113,7 +113,7 @@ class FunctionModel:
 
     @property
     def identity(self) -> Mapping[str, object]:
-        """What tells this function from others: its answers to a set of probes."""
+        """Data that distinguish this function from others: its values at fixed probes."""
         values = _evaluate(self.function, RecordingConditions())
         return {
             "kind": "function",
@@ -149,7 +149,7 @@ class FunctionModel:
         return speed_field
 
     def speeds(self, load_factor: float) -> FloatArray:
-        """The one setting: the greatest speed [m/s]; NaN when nothing bounds it."""
+        """The one setting: the greatest speed [m/s]; NaN when it is unbounded."""
         return np.array([math.nan if self.top is None else self.top])
 
     def speed_through_water(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
@@ -197,12 +197,12 @@ class FunctionModel:
         return (part,), error
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
-        """A function tells no ranges."""
+        """Return nothing: a function has no known ranges."""
         return []
 
 
 def model_of_function(function: SpeedFunction, *, top_speed: float | None = None) -> FunctionModel:
-    """Find out what a speed function reads and make a model of it.
+    """Determine which conditions a speed function reads, and make a model of it.
 
     Parameters
     ----------
@@ -252,7 +252,7 @@ def model_of_function(function: SpeedFunction, *, top_speed: float | None = None
 def _elementwise(
     function: SpeedFunction, problem: Exception
 ) -> tuple[SpeedFunction, frozenset[str]]:
-    """Wrap a function that takes numbers only, so that it takes arrays; tell what it reads."""
+    """Wrap a function of numbers, so that it takes arrays; also return what it reads."""
     recorders = [RecordingConditions(row) for row in range(_PROBES)]
     try:
         for recorder in recorders:

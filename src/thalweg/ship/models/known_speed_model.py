@@ -25,7 +25,7 @@ from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, constant_part,
 
 @dataclass(frozen=True)
 class KwonSpeedLoss:
-    """Kwon's speed loss with a ship's particulars bound (see `kwon_speed_loss`).
+    """Kwon's speed loss for the particulars of a ship (see `kwon_speed_loss`).
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class KnownSpeedModel:
 
     @property
     def identity(self) -> Mapping[str, object]:
-        """What tells this model from others."""
+        """Data that distinguish this model from others."""
         return {
             "kind": "nominal",
             "speeds_full": self.speeds_full.tolist(),
@@ -154,17 +154,17 @@ class KnownSpeedModel:
         return np.array(np.broadcast_to(calm, _shape(conditions, index)))
 
     def power(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
-        """Brake power [W]; the setting's own, whatever the weather."""
+        """Brake power [W]; that of the setting in all weather."""
         index = setting_index(setting, len(self.speeds_full))
         return np.array(np.broadcast_to(self.powers[index], _shape(conditions, index)))
 
     def fuel_rate(self, conditions: Conditions, setting: ArrayLike) -> FloatArray:
-        """Fuel rate [kg/s]; the setting's own, whatever the weather."""
+        """Fuel rate [kg/s]; that of the setting in all weather."""
         index = setting_index(setting, len(self.speeds_full))
         return np.array(np.broadcast_to(self.fuel_rates[index], _shape(conditions, index)))
 
     def top_speed(self, setting: int, load_factor: float) -> float:
-        """Calm-water speed [m/s]: weather never adds to it."""
+        """Calm-water speed [m/s]: weather does not raise it."""
         return float(self.speeds(load_factor)[setting])
 
     def tabulate(
@@ -192,13 +192,13 @@ class KnownSpeedModel:
     def tabulate_fuel(
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
-        """One constant: the setting's own fuel rate, whatever the weather."""
+        """One constant: the fuel rate of the setting in all weather."""
         return (constant_part(self.fuel_rates),), TableError(0.0, 0.0, 0.0, 0)
 
     def tabulate_power(
         self, load_factor: float, tolerance: float
     ) -> tuple[tuple[TablePart, ...], TableError]:
-        """One constant: the setting's own power, whatever the weather."""
+        """One constant: the power of the setting in all weather."""
         return (constant_part(self.powers),), TableError(0.0, 0.0, 0.0, 0)
 
     def notes(self, conditions: Conditions, setting: ArrayLike) -> list[RangeNote]:
@@ -310,7 +310,7 @@ def wind_angle_axis(loss: KwonSpeedLoss) -> AxisRange:
 
 
 def _depth_axis(squat: SquatModel, load_factor: float, size: int) -> AxisRange:
-    """Depth from where the ship has no water for any speed, to twelve draughts."""
+    """Depth from the least at which the ship can sail, to twelve draughts."""
     draught = float(squat.loading.draught_at(load_factor))
     low = draught + squat.clearance
     return AxisRange(codes.AXIS_DEPTH, low, max(12.0 * draught, low + 60.0), size)

@@ -1,4 +1,4 @@
-"""Ships with a resistance in calm water that lose speed in weather as Kwon (2008) has it."""
+"""Ships with a resistance in calm water that lose speed in weather by Kwon (2008)."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from thalweg.ship.tables.table_parts import TableError, TablePart
 from thalweg.ship.tables.tabulate import DEFAULT_AXES, AxisRange, tabulate_dense
 from thalweg.ship.tables.tabulate_resistance import condition_axes
 
-_LARGEST_FROUDE_NUMBER: Final = 0.4  #: Froude number of the fastest calm speed looked at
+_LARGEST_FROUDE_NUMBER: Final = 0.4  #: Froude number of the fastest calm-water speed considered
 _WIND_CONDITIONS: Final = ("wind_speed", "wind_angle")
 
 
 @dataclass(frozen=True, eq=False)
 class KwonResistanceModel:
-    """Speed and power from the resistance in calm water; weather takes a share of the speed.
+    """Speed and power from the resistance in calm water; weather reduces the speed by a share.
 
     A setting keeps its power: that of its calm-water speed at the depth there is.
 
@@ -49,7 +49,7 @@ class KwonResistanceModel:
 
     @property
     def identity(self) -> Mapping[str, object]:
-        """What tells this model from others."""
+        """Data that distinguish this model from others."""
         return {**self.base.identity, "kind": "kwon on resistance", "loss": repr(self.loss)}
 
     @property
@@ -95,7 +95,7 @@ class KwonResistanceModel:
         return self.base.power_and_fuel(conditions, setting)
 
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
-        """Brake power [W] of speeds through water [m/s]: that of the calm speed they are left of.
+        """Brake power [W] of the calm-water speeds that weather reduces to given speeds [m/s].
 
         NaN where no calm speed up to a Froude number of 0.4 leaves as much.
         """
@@ -106,7 +106,7 @@ class KwonResistanceModel:
         return self.base.resistance(conditions, speed)
 
     def _calm_speed(self, conditions: Conditions, attained: ArrayLike) -> FloatArray:
-        """Calm-water speed [m/s] that weather leaves an attained speed of, by bisection."""
+        """Calm-water speed [m/s] that weather reduces to an attained speed, by bisection."""
         shape = np.broadcast_shapes(conditions.shape, np.shape(attained))
         wanted = np.broadcast_to(np.asarray(attained, float), shape)
         low = np.array(wanted)
@@ -119,7 +119,7 @@ class KwonResistanceModel:
         return np.where(reached, high, np.nan)
 
     def top_speed(self, setting: int, load_factor: float) -> float:
-        """Calm-water speed [m/s]: weather never adds to it."""
+        """Calm-water speed [m/s]: weather does not raise it."""
         return self.base.top_speed(setting, load_factor)
 
     def tabulate(
@@ -146,7 +146,7 @@ class KwonResistanceModel:
         return (part,), error
 
     def tabulate_fuel(self, load_factor: float, tolerance: float) -> TabulatedModel:
-        """As in calm water; where the engines are at full power the depth alone decides."""
+        """As in calm water; at full power it depends on the depth only."""
         return self.base.tabulate_fuel(load_factor, tolerance)
 
     def tabulate_power(self, load_factor: float, tolerance: float) -> TabulatedModel:

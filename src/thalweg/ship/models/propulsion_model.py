@@ -36,7 +36,7 @@ from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of, stern_
 
 @dataclass(frozen=True, eq=False)
 class PropulsionModel:
-    """What turns resistance into brake power.
+    """Brake power from resistance.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ _EFFICIENCY_KEYS: Final = (
 
 
 def unused_efficiencies(given: PropulsionSection, method: str = "efficiencies") -> tuple[str, ...]:
-    """Return the efficiencies under 'propulsion' that others make needless.
+    """Return the efficiencies under 'propulsion' that the others make redundant.
 
     All in one (``propulsive_efficiency``) goes before its parts, a hull efficiency before wake and
     thrust deduction, which make one only together; a propeller of the B-series makes its own.

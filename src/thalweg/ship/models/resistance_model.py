@@ -1,4 +1,4 @@
-"""Ships from their resistance: the settings they can be ordered to, and what follows in weather."""
+"""Ships with a resistance: their settings, and speed, power and fuel in weather."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class ResistanceModel:
 
     @property
     def identity(self) -> Mapping[str, object]:
-        """What tells this model from others."""
+        """Data that distinguish this model from others."""
         return {
             "kind": "resistance",
             "orders": repr(self.orders),
@@ -125,7 +125,7 @@ class ResistanceModel:
         return power, self.plant.fuel(power)
 
     def power_at_speed(self, conditions: Conditions, speed: ArrayLike) -> FloatArray:
-        """Brake power [W] at speeds through water [m/s], whatever the engine can."""
+        """Brake power [W] at speeds through water [m/s], also beyond the power of the engines."""
 
         def power(
             balance: ForceBalance, at: FlatConditions, speeds: FloatArray, lf: float
@@ -192,7 +192,7 @@ class ResistanceModel:
         tolerance: float,
         build: Callable[[ResistanceModel, float, float], TableWithMaxima],
     ) -> TableWithMaxima:
-        """A table from this object, from disk or built."""
+        """Return a table that this object holds, from disk, or built."""
         key = (what, float(load_factor), float(tolerance))
         if key not in self._kept:
             facts = [self.identity, repr(self.limits), key]

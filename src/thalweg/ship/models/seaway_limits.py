@@ -1,4 +1,4 @@
-"""Safety and comfort in waves as limits of a ship: what it must not do, for models and kernels."""
+"""Limits of safety and comfort in waves, for models and kernels."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ DANGEROUS_SITUATIONS: Final = (
 )
 #: mean over peak period of a JONSWAP spectrum with gamma 3.3 (DNV-RP-C205)
 MEAN_TO_PEAK_PERIOD_RATIO: Final = 0.834
-EXPOSURE_TIME: Final = 7200.0  #: of people aboard, unless the ship file tells [s]
+EXPOSURE_TIME: Final = 7200.0  #: of people on board, unless the ship file gives it [s]
 SHORTEST_PERIOD, LONGEST_PERIOD = 2.0, 30.0  #: peak periods are taken as no shorter or longer [s]
 _GRID_SHAPE: Final = (25, 37, 113)  # speeds, angles, periods
 _ITERATIONS: Final = 6
@@ -46,7 +46,7 @@ _BLOCK_SIZE: Final = 20_000
 
 @dataclass(frozen=True)
 class DangerousSituationLimits:
-    """The dangers of MSC.1/Circ.1228 a ship shall keep out of.
+    """The dangerous situations of MSC.1/Circ.1228 that a ship must avoid.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class DangerousSituationLimits:
     roll_tolerance : float
         Relative difference of periods that counts as resonance.
     harmless_wave_height : float
-        Waves up to this height are no danger [m].
+        Waves up to this height are not dangerous [m].
     """
 
     dangers: tuple[str, ...]
@@ -115,7 +115,7 @@ class AccelerationLimit:
 
 @dataclass(frozen=True)
 class SafetyLimits:
-    """What a ship must not do in waves.
+    """Limits of a ship in waves.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ class SafetyLimits:
         wave_height: ArrayLike,
         wave_period: ArrayLike,
     ) -> NDArray[np.bool_]:
-        """Return where a ship must not sail so.
+        """Return where these speeds and angles break a limit.
 
         Parameters
         ----------
@@ -283,7 +283,7 @@ def _dangerous_situation_limits(
     rolls = natural_roll_period(hull, size)
     if rolls is None and {"synchronous_roll", "parametric_roll"} & set(dangers):
         raise InputError(
-            "The ship file limits roll, but tells no natural roll period.",
+            "The ship file limits roll, but gives no natural roll period.",
             "It is hull.roll_period_s, or follows from hull.metacentric_height_m.",
             "Add one of them, or name the other dangers only.",
             missing=["hull.roll_period_s", "hull.metacentric_height_m"],
@@ -307,7 +307,7 @@ def natural_roll_period(hull: Hull, size: MotionHull) -> float | None:
 
 
 def _acceleration_limits(given: LimitsSection) -> tuple[AccelerationLimit, ...]:
-    """The limits of motions in a ship file; the bow is as far ahead as can be."""
+    """The limits of motions in a ship file; an infinite position stands for the bow."""
     found = []
     if given.max_vertical_acceleration_m_s2 is not None:
         place = math.inf if given.acceleration_at_m is None else given.acceleration_at_m

@@ -1,4 +1,4 @@
-"""Ships that give their calm-water speeds: which, and the law of power and fuel over them."""
+"""Known calm-water speeds, and the laws of power and fuel over them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _has_reference(file: ShipFile) -> bool:
 
 
 def calm_speeds(file: ShipFile, law: str) -> tuple[FloatArray, FloatArray]:
-    """Calm-water speeds full and empty [m/s], ascending, from the one place that gives them.
+    """Calm-water speeds full and empty [m/s], ascending, from the only key that gives them.
 
     The law of a table has those of the table, and ``speeds_kn`` are settings on it; for other laws
     it is the other way round.
@@ -150,7 +150,7 @@ def _reference_speed(file: ShipFile) -> float:
 
 
 def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
-    """Return the model with the settings a ship file asks for on its table or cubic law.
+    """Return the model with the ordered settings of a ship file, on its table or cubic law.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Squat of a ship: how far it sinks under way, and the speed that the water under it allows."""
+"""Squat of a ship: its sinkage under way, and the speed that the depth allows."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class SquatModel:
         return formula(speed, depth, **self._sizes(load_factor))
 
     def allowed(self, speed: ArrayLike, depth: ArrayLike, load_factor: ArrayLike) -> FloatArray:
-        """Speed [m/s] left of a speed in deep water; 0 where the ship would have no water."""
+        """Speed [m/s] of a ship with a given deep-water speed; 0 where it would ground."""
         deep, sizes = np.asarray(speed, float), self._sizes(load_factor)
         if self.method == "barrass_2004":
             room = np.asarray(depth, float) - sizes["draught"] - self.clearance
@@ -86,7 +86,7 @@ class SquatModel:
 
 
 def squat_model_of(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel | None:
-    """Return a ship's squat, or or None when its particulars are too few."""
+    """Return a ship's squat, or None when its particulars are too few."""
     length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
     breadth = hull.number("breadth_m")
     if not (length and breadth) or math.isnan(loading.displacement_full):

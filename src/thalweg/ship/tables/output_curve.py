@@ -1,4 +1,4 @@
-"""What follows the sum of a table: a curve, or the speed at which a curve crosses it."""
+"""Output function applied to the sum of a table's parts."""
 
 from __future__ import annotations
 

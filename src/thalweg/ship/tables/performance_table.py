@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class PerformanceTable:
-    """A ship tabulated: a sum over parts of multilinear look-ups, and what follows from the sum.
+    """A ship tabulated: a sum over parts of multilinear look-ups, with an optional output curve.
 
     Attributes
     ----------
@@ -60,12 +60,12 @@ class PerformanceTable:
 
     @property
     def axes(self) -> frozenset[str]:
-        """The conditions the table looks at."""
+        """The conditions on the axes of the table."""
         return frozenset(self.ranges)
 
     @property
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """From where to where each condition may go, SI; depth also beyond."""
+        """The range of each condition, SI; depths beyond the range are allowed."""
         found: dict[str, tuple[float, float]] = {}
         for part in self.parts:
             own = {CONDITION_OF_AXIS[a]: (g[0], g[-1]) for a, g in zip(part.axes, part.grids)}

@@ -1,4 +1,4 @@
-"""The most and the least that a performance table can say."""
+"""Bounds of the values of a performance table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of composed ships kept on disk between runs: seconds to build, milliseconds to read."""
+"""Cache on disk for tables of ships with a resistance: seconds to build, milliseconds to read."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithM
     Parameters
     ----------
     facts : plain data
-        All that the table depends on, besides the code of this package.
+        All that the table depends on, except the code of this package.
     build : callable
         Makes the table.
 
@@ -52,8 +52,8 @@ def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithM
 
 
 def _source_stamps() -> list[tuple[str, int, int]]:
-    """Size and time of every source file of package `ship`, so that changed code builds anew."""
-    files = sorted(PACKAGE.rglob("*.py"))
+    """Size and time of the sources and data of package `ship`: changed ones make new tables."""
+    files = sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.csv")])
     return [(str(f), f.stat().st_size, f.stat().st_mtime_ns) for f in files]
 
 
@@ -81,7 +81,7 @@ def _read(path: Path) -> TableWithMaxima | None:
 
 
 def _write(path: Path, kept: TableWithMaxima) -> None:
-    """Keep a table; a disk that is full or closed costs nothing but the time of the next run."""
+    """Write a table; if the disk is full or not writable, the next run builds it again."""
     table, top = kept
     parts, error, finish = table.parts, table.error, table.finish
     arrays: dict[str, Any] = {

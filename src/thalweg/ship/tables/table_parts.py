@@ -87,7 +87,7 @@ class TablePart:
                 raise invalid_part_error(f"has an uneven grid for {CONDITION_OF_AXIS[axis]}")
 
     def lookup(self, where: Mapping[str, ArrayLike], setting: ArrayLike = 0) -> FloatArray:
-        """Return the multilinear look-up; NaN outside an axis (only depth reaches on downwards)."""
+        """Return the multilinear look-up; NaN outside an axis, except for larger depths."""
         chosen = np.asarray(setting).astype(np.intp)
         total: FloatArray = np.zeros(())
         for weight, index in self._corners(where):

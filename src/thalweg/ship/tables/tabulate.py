@@ -124,14 +124,14 @@ def tabulate_dense(
 
 
 def constant_part(values: FloatArray) -> TablePart:
-    """Return the part that adds one number per setting, whatever the conditions."""
+    """Return the part that adds one number per setting, in all conditions."""
     return TablePart((), (), np.asarray(values, np.float32))
 
 
 def tabulate_cubed_speed(speeds: Sequence[float] | FloatArray) -> PerformanceTable:
-    """Return the cube of the ordered speed of every setting [m3/s3], whatever the conditions.
+    """Return the cube of the ordered speed of every setting [m3/s3], in all conditions.
 
-    It takes the place of the fuel rate where a ship's costs are told by it (van Halem 2019).
+    It replaces the fuel rate where the costs of a ship depend on it (van Halem 2019).
     """
     ordered = np.asarray(speeds, float)
     exact = TableError(0.0, 0.0, 0.0, 0)

@@ -1,4 +1,4 @@
-"""Tables of resistance-based ships: what wind, waves and depth ask for at each of many speeds.
+"""Tables of resistance-based ships: the resistance of wind, waves and depth at each of many speeds.
 
 At one speed the resistances of wind, waves and depth add up. So the table keeps each on its own
 axes, for a column of speeds, and finds the speed at which they leave the engines nothing to spare
@@ -40,7 +40,7 @@ _INITIAL_AXES: Final = {
 _SECTOR_ANGLES: Final = 1537  #: angles of methods that end at the edge of a sector
 _DEPTH_POINTS: Final = 129
 _SPEED_COLUMNS: Final = 25
-ERROR_SAMPLES: Final = 3000  #: random conditions at which errors are told
+ERROR_SAMPLES: Final = 3000  #: random conditions at which errors are measured
 _REFINEMENT_SAMPLES: Final = 1500  #: others, by which grids are refined
 _REFINEMENT_ROUNDS: Final = 6
 _BOUND_MARGIN: Final = 1.005
@@ -74,7 +74,7 @@ class ResistanceTerm:
     squared_height_limit: float = np.nan
 
     def part(self, speeds: FloatArray) -> TablePart:
-        """Tabulate the force [N] at speeds [m/s], over the wave height squared if that factors."""
+        """Tabulate the force [N] at speeds [m/s], per squared wave height if proportional."""
         mesh = np.meshgrid(*(axis.grid for axis in self.axes), indexing="ij", sparse=True)
         at = [values[..., None] for values in mesh]
         shape = (*(axis.size for axis in self.axes), len(speeds))
@@ -86,7 +86,7 @@ class ResistanceTerm:
         )
 
     def refined(self, part: TablePart, scale: FloatArray) -> ResistanceTerm:
-        """Return the term with steps of half the length on the axis that bends most."""
+        """Return the term with steps of half the length on the axis with the largest curvature."""
         weight = (
             1.0 if np.isnan(self.squared_height_limit) else (0.5 * self.squared_height_limit) ** 2
         )
@@ -160,7 +160,7 @@ def refined_table(
     tolerance: float,
     scale: FloatArray,
 ) -> PerformanceTable:
-    """Tabulate terms, the worst of them finer and finer until the error meets the tolerance.
+    """Tabulate terms, and refine the worst of them until the error meets the tolerance.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def refined_table(
     truth : callable
         The true values of all settings in conditions by name.
     tolerance : float
-        It stops at 0.8 of this for the conditions it is refined by; the error is told for others.
+        It stops at 0.8 of this at the conditions of the refinement; the error is that at others.
     scale : ndarray
         What counts as a large change of each column [N].
     """
@@ -210,7 +210,7 @@ def _worst_term(
     points: Mapping[str, FloatArray],
     scale: FloatArray,
 ) -> int:
-    """Return the index of the term that its table gets wrong most."""
+    """Return the index of the term with the largest table error."""
     errors = []
     for term, part in zip(terms, parts):
         at = [points[axis.name][:, None] for axis in term.axes]
@@ -223,7 +223,7 @@ def _worst_term(
 
 
 def _force_scale(finish: OutputCurve, speeds: FloatArray) -> FloatArray:
-    """Force [N] that takes the whole of a speed, for each column: speed times its slope."""
+    """Force scale [N] of each column: speed times the slope of the resistance."""
     curve = finish.points[:, ::CURVE_REFINEMENT]
     curve = np.where(np.isfinite(curve), curve, np.nan)
     slope = np.fmax.reduce(np.abs(np.gradient(curve[:, 1:], speeds[1:], axis=1)), axis=0, initial=0)
@@ -234,7 +234,7 @@ def _force_scale(finish: OutputCurve, speeds: FloatArray) -> FloatArray:
 def _resistance_reserve_curve(
     model: TabulatedResistance, load_factor: float, speeds: FloatArray
 ) -> OutputCurve:
-    """What settings have to spare in calm, deep water at and between the columns' speeds [N]."""
+    """Resistance reserve [N] of settings in calm, deep water at and between the columns' speeds."""
     balance, calm = model.balance(load_factor), model.speeds(load_factor)
     held = model.orders.kind == "speed"
     powers = np.array([model.plant.largest_power] if held else model.orders.values)
@@ -259,7 +259,7 @@ def calm_resistance(balance: ForceBalance, speeds: FloatArray) -> FloatArray:
 def resistance_at_power(
     balance: ForceBalance, speeds: FloatArray, powers: FloatArray
 ) -> FloatArray:
-    """Resistance [N] at which powers [W] are just used, at every speed; shape (speeds, powers)."""
+    """Resistance [N] that takes exactly the powers [W], at every speed; shape (speeds, powers)."""
     top = 200.0 * float(np.max(balance.calm.total(speeds[-1:], np.array([np.inf]))))
     v, p = (grid.ravel() for grid in np.meshgrid(speeds, powers, indexing="ij"))
     if np.isinf(p).any():
@@ -385,5 +385,5 @@ def _calm_conditions(speeds: FloatArray) -> dict[str, FloatArray]:
 
 
 def _calm_value(name: str) -> float:
-    """The condition that costs nothing."""
+    """The condition without resistance."""
     return {"wave_period": 10.0, "depth": np.inf}.get(name, 0.0)

@@ -1,4 +1,4 @@
-"""The SNNM formula for one hull and many conditions: its sums over the spectrum, done beforehand.
+"""The SNNM formula for one hull and many conditions, with precomputed sums over the spectrum.
 
 The sums of `thalweg.ship.methods.added_resistance.snnm.snnm` run over about a hundred frequencies.
 For one hull most of what stands under them depends on few numbers: the motion on the peak

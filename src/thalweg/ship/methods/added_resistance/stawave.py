@@ -46,7 +46,7 @@ def in_head_sector(wave_angle: ArrayLike) -> FloatArray:
 
 
 def head_sector_validity(wave_angle: ArrayLike, *, method: str) -> list[RangeNote]:
-    """Say which waves come from outside the sector, where the resistance is taken as zero."""
+    """Return which waves come from outside the sector, where the resistance is taken as zero."""
     degrees = np.degrees(np.abs(np.asarray(wave_angle, dtype=float)))
     outside = np.where(in_head_sector(wave_angle) == 1.0, 0.0, degrees)
     return range_notes(method, {"wave angle": (outside, 0.0, np.degrees(HEAD_SECTOR))})
@@ -284,7 +284,7 @@ def stawave2_validity(
     block_coefficient: ArrayLike,
     gravity: float = GRAVITY,
 ) -> list[RangeNote]:
-    """Say what lies outside the range of STAwave-2 (ITTC 7.5-04-01-01.2).
+    """Return what is outside the range of STAwave-2 (ITTC 7.5-04-01-01.2).
 
     75 < L_PP < 350 m, 4 < L_PP/B < 9, 2.2 < B/T < 9, 0.10 < Fr < 0.30, 0.39 < C_B < 0.90.
     """
@@ -302,6 +302,6 @@ def stawave2_validity(
 def stawave1_validity(
     wave_height: ArrayLike, *, length_between_perpendiculars: float
 ) -> list[RangeNote]:
-    """Say which wave heights are above 2.25 sqrt(L_PP / 100) (unverified: quoted from memory)."""
+    """Return which wave heights exceed 2.25 sqrt(L_PP / 100) (unverified: from memory)."""
     highest = 2.25 * float(np.sqrt(length_between_perpendiculars / 100.0))
     return range_notes("stawave1", {"wave height": (wave_height, 0.0, highest)})

@@ -1,7 +1,7 @@
-"""Wind: relative wind, its resistance, and published coefficient curves.
+"""Wind resistance and published coefficient curves.
 
 Angles of the relative wind are those between the bow and where the wind comes from, 0 for a head
-wind, pi for a following one; port and starboard are alike. Coefficients C_AA refer to the frontal
+wind, pi for a following one; port and starboard are equal. Coefficients C_AA refer to the frontal
 area above the water and are positive where the wind resists.
 """
 
@@ -84,7 +84,7 @@ def wind_resistance(
 
 
 def fold_angle_off_bow(angle: ArrayLike) -> FloatArray:
-    """Angle from the bow folded to 0 ... pi, so that port and starboard are alike [rad]."""
+    """Angle from the bow folded to 0 ... pi, so that port and starboard are equal [rad]."""
     return np.asarray(
         np.abs(np.remainder(np.asarray(angle, dtype=float) + np.pi, 2 * np.pi) - np.pi)
     )

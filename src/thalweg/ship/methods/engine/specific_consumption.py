@@ -108,7 +108,7 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
     kinds = {pair[1] for pair in BASE_SFOC if pair[0] == engine}
     if fuel_kind not in kinds:
         raise InputError(
-            f"There is no fuel consumption for a {engine} on fuel of the kind {fuel_kind!r}.",
+            f"No fuel consumption is known for a {engine} on fuel of the kind {fuel_kind!r}.",
             f"The study has one for {', '.join(sorted(kinds))} fuel.",
             "Give the engine's own sfoc_g_per_kwh, or another type of engine or fuel.",
             engine=engine,
@@ -120,7 +120,7 @@ def base_sfoc(engine: str, fuel_kind: str, *, built: int = 2010) -> tuple[float,
         value = record.from_1984 if built >= 1984 else record.before_1984
     if np.isnan(value):
         raise InputError(
-            f"There is no fuel consumption for a {engine} on {fuel_kind} built in {built}.",
+            f"No fuel consumption is known for a {engine} on {fuel_kind} built in {built}.",
             "The study gives one for younger engines.",
             "Give the engine's own sfoc_g_per_kwh.",
             engine=engine,
@@ -269,7 +269,7 @@ def hotel_fuel_rate(power: ArrayLike, *, sfoc_g_kwh: ArrayLike) -> FloatArray:
     Parameters
     ----------
     power : array_like
-        Electric and other power besides propulsion [W].
+        Electric and other power that is not propulsion [W].
     sfoc_g_kwh : array_like
         Specific consumption [g/kWh].
 

@@ -16,12 +16,7 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
-from thalweg.ship.methods.propulsion.b_series_coefficients import (
-    THRUST_REYNOLDS_TERMS,
-    THRUST_TERMS,
-    TORQUE_REYNOLDS_TERMS,
-    TORQUE_TERMS,
-)
+from thalweg.ship.methods.propulsion.b_series_coefficients import polynomial_terms
 from thalweg.ship.methods.validity import RangeNote, range_notes
 
 
@@ -91,7 +86,11 @@ def _advance_polynomial(
 def b_series_polynomials(
     propeller: Propeller, *, reynolds: float | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Return K_T and K_Q of one propeller as cubics in J, constant term first.
+    r"""Return K_T and K_Q of one propeller as cubics in J, constant term first.
+
+    .. math::
+
+        K_T, K_Q = \sum_n C_n J^{s_n} (P/D)^{t_n} (A_E/A_0)^{u_n} Z^{v_n}
 
     Parameters
     ----------
@@ -105,15 +104,17 @@ def b_series_polynomials(
     -------
     thrust, torque : ndarray
         Four coefficients each.
+
+    References
+    ----------
+    M.W.C. Oosterveld, P. van Oossanen, International Shipbuilding Progress 22 (1975) 251-262.
     """
-    thrust, torque = (
-        _advance_polynomial(THRUST_TERMS, propeller),
-        _advance_polynomial(TORQUE_TERMS, propeller),
-    )
+    thrust = _advance_polynomial(polynomial_terms("thrust"), propeller)
+    torque = _advance_polynomial(polynomial_terms("torque"), propeller)
     if reynolds is not None:
         log = float(np.log10(reynolds)) - 0.301
-        thrust = thrust + _advance_polynomial(THRUST_REYNOLDS_TERMS, propeller, log)
-        torque = torque + _advance_polynomial(TORQUE_REYNOLDS_TERMS, propeller, log)
+        thrust += _advance_polynomial(polynomial_terms("thrust_reynolds"), propeller, log)
+        torque += _advance_polynomial(polynomial_terms("torque_reynolds"), propeller, log)
     return thrust, torque
 
 
@@ -198,8 +199,8 @@ def solve_advance(
     """Advance coefficient at which a propeller gives a thrust at a speed of advance.
 
     The root of K_T(J) rho V_A^2 D^2 = T J^2 is unique between J = 0 (at the bollard) and the J of
-    no thrust. Newton's method finds it from a point near by; where it strays, its steps are kept
-    inside the bracket.
+    no thrust. Newton's method finds it from a near point; where it does not converge, its steps are
+    kept inside the bracket.
 
     Parameters
     ----------
@@ -253,7 +254,7 @@ def _newton_step(
 def _bracketed_advance(
     share: FloatArray, stream: FloatArray, polynomial: FloatArray, largest: float
 ) -> FloatArray:
-    """The same root, slower and for certain: Newton steps that are kept inside the bracket."""
+    """The same root by Newton steps kept inside a bracket: slower, but always converges."""
     low, high = np.zeros_like(share), np.full_like(share, largest)
     ratio = 0.5 * (low + high)
     for _ in range(60):
@@ -332,7 +333,7 @@ def operating_point(
 
 
 def b_series_validity(propeller: Propeller) -> list[RangeNote]:
-    """Say what lies outside the series: Z 2 to 7, A_E/A_0 0.30 to 1.05, P/D 0.5 to 1.4."""
+    """Return what is outside the series: Z 2 to 7, A_E/A_0 0.30 to 1.05, P/D 0.5 to 1.4."""
     ranges: dict[str, tuple[ArrayLike, float, float]] = {
         "number of blades": (propeller.blades, 2.0, 7.0),
         "blade area ratio": (propeller.area_ratio, 0.30, 1.05),

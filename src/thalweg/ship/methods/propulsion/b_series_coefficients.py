@@ -1,138 +1,43 @@
 """Coefficients of the Wageningen B-series, for `thalweg.ship.methods.propulsion.b_series`.
 
 Source: M.W.C. Oosterveld and P. van Oossanen, "Further computer-analyzed data of the Wageningen
-B-screw series", International Shipbuilding Progress 22 (1975) 251-262.
+B-screw series", International Shipbuilding Progress 22 (1975) 251-262; in the data file
+``b_series_coefficients.csv``.
 """
 
 from __future__ import annotations
 
-from typing import Final
+import csv
+from functools import cache
+from importlib import resources
+from typing import Literal
 
 import numpy as np
 
-# Coefficient and powers of J, P/D, A_E/A_0 and Z.
-THRUST_TERMS: Final = np.array(
-    [
-        [0.00880496, 0, 0, 0, 0],
-        [-0.204554, 1, 0, 0, 0],
-        [0.166351, 0, 1, 0, 0],
-        [0.158114, 0, 2, 0, 0],
-        [-0.147581, 2, 0, 1, 0],
-        [-0.481497, 1, 1, 1, 0],
-        [0.415437, 0, 2, 1, 0],
-        [0.0144043, 0, 0, 0, 1],
-        [-0.0530054, 2, 0, 0, 1],
-        [0.0143481, 0, 1, 0, 1],
-        [0.0606826, 1, 1, 0, 1],
-        [-0.0125894, 0, 0, 1, 1],
-        [0.0109689, 1, 0, 1, 1],
-        [-0.133698, 0, 3, 0, 0],
-        [0.00638407, 0, 6, 0, 0],
-        [-0.00132718, 2, 6, 0, 0],
-        [0.168496, 3, 0, 1, 0],
-        [-0.0507214, 0, 0, 2, 0],
-        [0.0854559, 2, 0, 2, 0],
-        [-0.0504475, 3, 0, 2, 0],
-        [0.010465, 1, 6, 2, 0],
-        [-0.00648272, 2, 6, 2, 0],
-        [-0.00841728, 0, 3, 0, 1],
-        [0.0168424, 1, 3, 0, 1],
-        [-0.00102296, 3, 3, 0, 1],
-        [-0.0317791, 0, 3, 1, 1],
-        [0.018604, 1, 0, 2, 1],
-        [-0.00410798, 0, 2, 2, 1],
-        [-0.000606848, 0, 0, 0, 2],
-        [-0.0049819, 1, 0, 0, 2],
-        [0.0025983, 2, 0, 0, 2],
-        [-0.000560528, 3, 0, 0, 2],
-        [-0.00163652, 1, 2, 0, 2],
-        [-0.000328787, 1, 6, 0, 2],
-        [0.000116502, 2, 6, 0, 2],
-        [0.000690904, 0, 0, 1, 2],
-        [0.00421749, 0, 3, 1, 2],
-        [0.0000565229, 3, 6, 1, 2],
-        [-0.00146564, 0, 3, 2, 2],
-    ]
-)
-TORQUE_TERMS: Final = np.array(
-    [
-        [0.00379368, 0, 0, 0, 0],
-        [0.00886523, 2, 0, 0, 0],
-        [-0.032241, 1, 1, 0, 0],
-        [0.00344778, 0, 2, 0, 0],
-        [-0.0408811, 0, 1, 1, 0],
-        [-0.108009, 1, 1, 1, 0],
-        [-0.0885381, 2, 1, 1, 0],
-        [0.188561, 0, 2, 1, 0],
-        [-0.00370871, 1, 0, 0, 1],
-        [0.00513696, 0, 1, 0, 1],
-        [0.0209449, 1, 1, 0, 1],
-        [0.00474319, 2, 1, 0, 1],
-        [-0.00723408, 2, 0, 1, 1],
-        [0.00438388, 1, 1, 1, 1],
-        [-0.0269403, 0, 2, 1, 1],
-        [0.0558082, 3, 0, 1, 0],
-        [0.0161886, 0, 3, 1, 0],
-        [0.00318086, 1, 3, 1, 0],
-        [0.015896, 0, 0, 2, 0],
-        [0.0471729, 1, 0, 2, 0],
-        [0.0196283, 3, 0, 2, 0],
-        [-0.0502782, 0, 1, 2, 0],
-        [-0.030055, 3, 1, 2, 0],
-        [0.0417122, 2, 2, 2, 0],
-        [-0.0397722, 0, 3, 2, 0],
-        [-0.00350024, 0, 6, 2, 0],
-        [-0.0106854, 3, 0, 0, 1],
-        [0.00110903, 3, 3, 0, 1],
-        [-0.000313912, 0, 6, 0, 1],
-        [0.0035985, 3, 0, 1, 1],
-        [-0.00142121, 0, 6, 1, 1],
-        [-0.00383637, 1, 0, 2, 1],
-        [0.0126803, 0, 2, 2, 1],
-        [-0.00318278, 2, 3, 2, 1],
-        [0.00334268, 0, 6, 2, 1],
-        [-0.00183491, 1, 1, 0, 2],
-        [0.000112451, 3, 2, 0, 2],
-        [-0.0000297228, 3, 6, 0, 2],
-        [0.000269551, 1, 0, 1, 2],
-        [0.00083265, 2, 0, 1, 2],
-        [0.00155334, 0, 2, 1, 2],
-        [0.000302683, 0, 6, 1, 2],
-        [-0.0001843, 0, 0, 2, 2],
-        [-0.000425399, 0, 3, 2, 2],
-        [0.0000869243, 3, 3, 2, 2],
-        [-0.0004659, 0, 6, 2, 2],
-        [0.0000554194, 1, 6, 2, 2],
-    ]
-)
-# The same for the Reynolds correction, with the power of log10(Rn) - 0.301 last.
-THRUST_REYNOLDS_TERMS: Final = np.array(
-    [
-        [0.000353485, 0, 0, 0, 0, 0],
-        [-0.00333758, 2, 0, 1, 0, 0],
-        [-0.00478125, 1, 1, 1, 0, 0],
-        [0.000257792, 2, 0, 1, 0, 2],
-        [0.0000643192, 2, 6, 0, 0, 1],
-        [-0.0000110636, 2, 6, 0, 0, 2],
-        [-0.0000276305, 2, 0, 1, 1, 2],
-        [0.0000954, 1, 1, 1, 1, 1],
-        [0.0000032049, 1, 3, 1, 2, 1],
-    ]
-)
-TORQUE_REYNOLDS_TERMS: Final = np.array(
-    [
-        [-0.000591412, 0, 0, 0, 0, 0],
-        [0.00696898, 0, 1, 0, 0, 0],
-        [-0.0000666654, 0, 6, 0, 1, 0],
-        [0.0160818, 0, 0, 2, 0, 0],
-        [-0.000938091, 0, 1, 0, 0, 1],
-        [-0.00059593, 0, 2, 0, 0, 1],
-        [0.0000782099, 0, 2, 0, 0, 2],
-        [0.0000052199, 2, 0, 1, 1, 1],
-        [-0.00000088528, 1, 1, 1, 1, 2],
-        [0.0000230171, 0, 6, 0, 1, 1],
-        [-0.00000184341, 0, 6, 0, 1, 2],
-        [-0.00400252, 0, 0, 2, 0, 1],
-        [0.000220915, 0, 0, 2, 0, 2],
-    ]
-)
+from thalweg.core.types import FloatArray
+
+SeriesQuantity = Literal["thrust", "torque", "thrust_reynolds", "torque_reynolds"]
+_COLUMNS = ("coefficient", "advance_ratio", "pitch_ratio", "area_ratio", "blades", "log_reynolds")
+
+
+@cache
+def polynomial_terms(quantity: SeriesQuantity) -> FloatArray:
+    """Return the terms of one polynomial of the B-series.
+
+    Parameters
+    ----------
+    quantity : {"thrust", "torque", "thrust_reynolds", "torque_reynolds"}
+        K_T or K_Q at Rn = 2e6, or the Reynolds correction of one of them.
+
+    Returns
+    -------
+    ndarray
+        Shape ``(terms, 6)``: the coefficient, and the powers of J, P/D, A_E/A_0, Z and
+        log10(Rn) - 0.301; read-only.
+    """
+    file = resources.files("thalweg.ship.methods").joinpath("data", "b_series_coefficients.csv")
+    lines = file.read_text(encoding="utf-8").splitlines()
+    rows = [row for row in csv.DictReader(lines) if row["quantity"] == quantity]
+    terms = np.array([[float(row[column]) for column in _COLUMNS] for row in rows])
+    terms.flags.writeable = False
+    return terms

@@ -44,7 +44,7 @@ class Efficiencies:
 
 @dataclass(frozen=True)
 class PropulsionState:
-    """What the propulsion does; arrays of one shape.
+    """State of the propulsion; arrays of one shape.
 
     Attributes
     ----------

@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
-from thalweg.core.units import GRAVITY
+from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
 
 SEA_WATER_VISCOSITY: Final = 1.1883e-6  #: kinematic viscosity at 15 degC, 3.5 % salt [m2/s]
 _LEAST_REYNOLDS: Final = 1.0e5
+
+
+@dataclass(frozen=True)
+class Water:
+    """Properties of the water; the defaults are those of the sea at 15 degC.
+
+    Attributes
+    ----------
+    density : float
+        [kg/m3].
+    viscosity : float
+        Kinematic viscosity [m2/s].
+    gravity : float
+        [m/s2].
+    """
+
+    density: float = SEA_WATER_DENSITY
+    viscosity: float = SEA_WATER_VISCOSITY
+    gravity: float = GRAVITY
 
 
 def ship_speed(speed: ArrayLike) -> FloatArray:

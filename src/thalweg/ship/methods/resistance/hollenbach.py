@@ -4,20 +4,21 @@ Source: U. Hollenbach, "Estimating resistance and propulsion for single-screw an
 ships", Schiffstechnik 45(2), 1998; reprinted in Schneekluth and Bertram, "Ship Design for
 Efficiency and Economy" (2nd ed., 1998) and Birk, "Fundamentals of Ship Hydrodynamics" (2019).
 
-How sure the coefficients are is said in `thalweg.ship.methods.resistance.hollenbach_coefficients`.
+`thalweg.ship.methods.resistance.hollenbach_coefficients` states how certain the coefficients are.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.types import FloatArray
-from thalweg.core.units import GRAVITY, SEA_WATER_DENSITY
+from thalweg.core.units import GRAVITY
 from thalweg.ship.methods.resistance.friction_lines import (
-    SEA_WATER_VISCOSITY,
+    Water,
     froude_number,
     ittc_1957,
     reynolds_number,
@@ -33,6 +34,54 @@ from thalweg.ship.methods.validity import RangeNote, range_notes
 
 
 @dataclass(frozen=True)
+class HollenbachHull:
+    """Particulars of a hull for Hollenbach's regressions; scalars or arrays that broadcast.
+
+    Attributes
+    ----------
+    length_between_perpendiculars, length_waterline : array_like
+        L and L_WL [m].
+    length_over_surface : array_like
+        L_OS [m], foremost to aftmost wetted point, bulb included.
+    breadth, draught_fore, draught_aft : array_like
+        B, T_F and T_A [m].
+    block_coefficient : array_like
+        C_B on L, B and the mean draught.
+    propeller_diameter : array_like
+        D_P [m].
+    """
+
+    length_between_perpendiculars: ArrayLike
+    length_waterline: ArrayLike
+    length_over_surface: ArrayLike
+    breadth: ArrayLike
+    draught_fore: ArrayLike
+    draught_aft: ArrayLike
+    block_coefficient: ArrayLike
+    propeller_diameter: ArrayLike
+
+
+@dataclass(frozen=True)
+class AppendageCounts:
+    """Numbers of appendages; they act on the twin-screw mean curves and surfaces only.
+
+    Attributes
+    ----------
+    rudders, brackets, bosses, thrusters : array_like
+        Counts; thrusters are side thrusters.
+    """
+
+    rudders: ArrayLike = 1
+    brackets: ArrayLike = 0
+    bosses: ArrayLike = 0
+    thrusters: ArrayLike = 0
+
+
+_ONE_RUDDER: Final = AppendageCounts()
+_SEA_WATER: Final = Water()
+
+
+@dataclass(frozen=True)
 class HollenbachResistance:
     """Resistance by component [N], arrays of one shape.
 
@@ -41,9 +90,9 @@ class HollenbachResistance:
     friction : ndarray
         ITTC 1957 friction on the wetted surface.
     residuary : ndarray
-        Everything else the regression knows (form, waves, appendages).
+        The remaining resistance: form, waves, appendages.
     correlation : ndarray
-        Correlation allowance; zero unless one is asked for.
+        Correlation allowance; zero unless one is given.
     total : ndarray
         Sum of the three.
     """
@@ -119,98 +168,85 @@ def froude_factor(
 
 def residuary_coefficient(
     froude: ArrayLike,
+    hull: HollenbachHull,
     *,
-    length_between_perpendiculars: ArrayLike,
-    length_waterline: ArrayLike,
-    length_over_surface: ArrayLike,
-    breadth: ArrayLike,
-    draught_fore: ArrayLike,
-    draught_aft: ArrayLike,
-    block_coefficient: ArrayLike,
-    propeller_diameter: ArrayLike,
-    rudders: ArrayLike = 1,
-    brackets: ArrayLike = 0,
-    bosses: ArrayLike = 0,
-    thrusters: ArrayLike = 0,
+    appendages: AppendageCounts = _ONE_RUDDER,
     variant: ResistanceVariant = "single_design",
 ) -> FloatArray:
     """Residuary coefficient C_R on the area B T (the printed one divided by ten).
 
-    The counts of rudders, brackets, bosses and side thrusters act on the twin-screw mean curve
-    only; elsewhere their exponents are zero.
+    C_R = 0.1 C_R,standard k_F k_L (T/B)^a1 (B/L)^a2 (L_OS/L_WL)^a3 (L_WL/L)^a4
+    (1 + (T_A - T_F)/L)^a5 (D_P/T_A)^a6 (1 + N_rudders)^a7 (1 + N_brackets)^a8 (1 + N_bosses)^a9
+    (1 + N_thrusters)^a10, with k_L = e1 L^e2.
+
+    Parameters
+    ----------
+    froude : array_like
+        Froude number on `froude_length`.
+    hull : HollenbachHull
+    appendages : AppendageCounts
+    variant : str
+        Key of `RESISTANCE_COEFFICIENTS`.
+
+    Returns
+    -------
+    ndarray
+        C_R [-].
     """
     coefficients = RESISTANCE_COEFFICIENTS[variant]
-    length = np.asarray(length_between_perpendiculars, dtype=float)
-    waterline = np.asarray(length_waterline, dtype=float)
-    wide = np.asarray(breadth, dtype=float)
-    fore, aft = np.asarray(draught_fore, dtype=float), np.asarray(draught_aft, dtype=float)
-    block = np.asarray(block_coefficient, dtype=float)
+    length = np.asarray(hull.length_between_perpendiculars, dtype=float)
+    waterline = np.asarray(hull.length_waterline, dtype=float)
+    breadth = np.asarray(hull.breadth, dtype=float)
+    fore, aft = np.asarray(hull.draught_fore, float), np.asarray(hull.draught_aft, float)
+    block = np.asarray(hull.block_coefficient, dtype=float)
+    n = appendages
+    counts = (n.rudders, n.brackets, n.bosses, n.thrusters)
     bases = (
-        0.5 * (fore + aft) / wide,
-        wide / length,
-        np.asarray(length_over_surface, dtype=float) / waterline,
+        0.5 * (fore + aft) / breadth,
+        breadth / length,
+        np.asarray(hull.length_over_surface, dtype=float) / waterline,
         waterline / length,
         1.0 + (aft - fore) / length,
-        np.asarray(propeller_diameter, dtype=float) / aft,
-        *(1.0 + np.asarray(count, dtype=float) for count in (rudders, brackets, bosses, thrusters)),
+        np.asarray(hull.propeller_diameter, dtype=float) / aft,
+        *(1.0 + np.asarray(count, dtype=float) for count in counts),
     )
-    hull = np.asarray(coefficients.length[0] * length ** coefficients.length[1])
+    factor = np.asarray(coefficients.length[0] * length ** coefficients.length[1])
     for base, exponent in zip(bases, coefficients.ratios, strict=True):
         if exponent != 0.0:
-            hull = hull * base**exponent
+            factor = factor * base**exponent
     standard = standard_residuary(froude, block_coefficient=block, variant=variant)
-    return 0.1 * standard * froude_factor(froude, block_coefficient=block, variant=variant) * hull
+    growth = froude_factor(froude, block_coefficient=block, variant=variant)
+    return 0.1 * standard * growth * factor
 
 
 def hollenbach_1998(
     speed: ArrayLike,
+    hull: HollenbachHull,
     *,
-    length_between_perpendiculars: ArrayLike,
-    length_waterline: ArrayLike,
-    length_over_surface: ArrayLike,
-    breadth: ArrayLike,
-    draught_fore: ArrayLike,
-    draught_aft: ArrayLike,
-    block_coefficient: ArrayLike,
     wetted_surface: ArrayLike,
-    propeller_diameter: ArrayLike,
-    rudders: ArrayLike = 1,
-    brackets: ArrayLike = 0,
-    bosses: ArrayLike = 0,
-    thrusters: ArrayLike = 0,
+    appendages: AppendageCounts = _ONE_RUDDER,
     variant: ResistanceVariant = "single_design",
     correlation_allowance: ArrayLike = 0.0,
     friction_coefficient: ArrayLike | None = None,
-    density: float = SEA_WATER_DENSITY,
-    viscosity: float = SEA_WATER_VISCOSITY,
-    gravity: float = GRAVITY,
+    water: Water = _SEA_WATER,
 ) -> HollenbachResistance:
     """Calm-water resistance, mean or minimum line, R = 0.5 rho V^2 (C_F S + C_R B T).
 
     Parameters
     ----------
     speed : array_like
-        Speed through the water [m/s]; negative gives NaN.
-    length_between_perpendiculars, length_waterline, length_over_surface : array_like
-        L, L_WL and L_OS [m]; L_OS counts the bulb.
-    breadth, draught_fore, draught_aft : array_like
-        [m].
-    block_coefficient : array_like
-        C_B on L, B and the mean draught.
+        Speed through the water V [m/s]; negative gives NaN.
+    hull : HollenbachHull
     wetted_surface : array_like
         S [m2], see `hollenbach_wetted_surface`.
-    propeller_diameter : array_like
-        D_P [m].
-    rudders, brackets, bosses, thrusters : array_like
-        Counts; felt by the twin-screw mean curve only.
+    appendages : AppendageCounts
     variant : str
         Key of `RESISTANCE_COEFFICIENTS`; the ``*_minimum`` keys give the minimum line.
     correlation_allowance : array_like
         C_A on the wetted surface; the method itself has none, see `correlation_allowance`.
     friction_coefficient : array_like, optional
         Replaces the ITTC 1957 line, for example by a shallow-water one.
-    density, viscosity, gravity : float
-        [kg/m3], [m2/s], [m/s2].
+    water : Water
 
     Returns
     -------
@@ -219,31 +255,17 @@ def hollenbach_1998(
         evaluated; the caller decides.
     """
     velocity = ship_speed(speed)
-    effective = froude_length(
-        length_between_perpendiculars, length_over_surface=length_over_surface
-    )
+    length = hull.length_between_perpendiculars
+    effective = froude_length(length, length_over_surface=hull.length_over_surface)
     if friction_coefficient is None:
         friction_coefficient = ittc_1957(
-            reynolds_number(velocity, length=length_between_perpendiculars, viscosity=viscosity)
+            reynolds_number(velocity, length=length, viscosity=water.viscosity)
         )
-    rest = residuary_coefficient(
-        froude_number(velocity, length=effective, gravity=gravity),
-        length_between_perpendiculars=length_between_perpendiculars,
-        length_waterline=length_waterline,
-        length_over_surface=length_over_surface,
-        breadth=breadth,
-        draught_fore=draught_fore,
-        draught_aft=draught_aft,
-        block_coefficient=block_coefficient,
-        propeller_diameter=propeller_diameter,
-        rudders=rudders,
-        brackets=brackets,
-        bosses=bosses,
-        thrusters=thrusters,
-        variant=variant,
-    )
-    section = np.asarray(breadth) * 0.5 * (np.asarray(draught_fore) + np.asarray(draught_aft))
-    pressure = 0.5 * density * velocity**2
+    froude = froude_number(velocity, length=effective, gravity=water.gravity)
+    rest = residuary_coefficient(froude, hull, appendages=appendages, variant=variant)
+    draughts = np.asarray(hull.draught_fore) + np.asarray(hull.draught_aft)
+    section = np.asarray(hull.breadth) * 0.5 * draughts
+    pressure = 0.5 * water.density * velocity**2
     friction, residuary, correlation = np.broadcast_arrays(
         pressure * np.asarray(wetted_surface) * friction_coefficient,
         pressure * section * rest,
@@ -268,32 +290,20 @@ def correlation_allowance(length_between_perpendiculars: ArrayLike) -> FloatArra
 
 
 def hollenbach_wetted_surface(
+    hull: HollenbachHull,
     *,
-    length_between_perpendiculars: ArrayLike,
-    length_waterline: ArrayLike,
-    length_over_surface: ArrayLike,
-    breadth: ArrayLike,
-    draught_fore: ArrayLike,
-    draught_aft: ArrayLike,
-    block_coefficient: ArrayLike,
-    propeller_diameter: ArrayLike,
-    rudders: ArrayLike = 1,
-    brackets: ArrayLike = 0,
-    bosses: ArrayLike = 0,
+    appendages: AppendageCounts = _ONE_RUDDER,
     variant: SurfaceVariant = "single_design",
 ) -> FloatArray:
     """Wetted surface S = k L (B + 2 T) with Hollenbach's regression for k.
 
+    k = s0 + s1 L_OS/L_WL + s2 L_WL/L + s3 C_B + s4 L/B + s5 B/T + s6 L/T + s7 (T_A - T_F)/L
+    + s8 D_P/T + s9 N_rudders + s10 N_brackets + s11 N_bosses.
+
     Parameters
     ----------
-    length_between_perpendiculars, length_waterline, length_over_surface : array_like
-        [m].
-    breadth, draught_fore, draught_aft, propeller_diameter : array_like
-        [m].
-    block_coefficient : array_like
-        C_B.
-    rudders, brackets, bosses : array_like
-        Counts, felt by the twin-screw variants only.
+    hull : HollenbachHull
+    appendages : AppendageCounts
     variant : str
         Key of `SURFACE_COEFFICIENTS`.
 
@@ -302,28 +312,29 @@ def hollenbach_wetted_surface(
     ndarray
         Wetted surface [m2].
     """
-    length = np.asarray(length_between_perpendiculars, dtype=float)
-    waterline = np.asarray(length_waterline, dtype=float)
-    wide = np.asarray(breadth, dtype=float)
-    fore, aft = np.asarray(draught_fore, dtype=float), np.asarray(draught_aft, dtype=float)
+    length = np.asarray(hull.length_between_perpendiculars, dtype=float)
+    waterline = np.asarray(hull.length_waterline, dtype=float)
+    breadth = np.asarray(hull.breadth, dtype=float)
+    fore, aft = np.asarray(hull.draught_fore, float), np.asarray(hull.draught_aft, float)
     draught = 0.5 * (fore + aft)
+    counts = (appendages.rudders, appendages.brackets, appendages.bosses)
     terms = (
         1.0,
-        np.asarray(length_over_surface, dtype=float) / waterline,
+        np.asarray(hull.length_over_surface, dtype=float) / waterline,
         waterline / length,
-        np.asarray(block_coefficient, dtype=float),
-        length / wide,
-        wide / draught,
+        np.asarray(hull.block_coefficient, dtype=float),
+        length / breadth,
+        breadth / draught,
         length / draught,
         (aft - fore) / length,
-        np.asarray(propeller_diameter, dtype=float) / draught,
-        *(np.asarray(count, dtype=float) for count in (rudders, brackets, bosses)),
+        np.asarray(hull.propeller_diameter, dtype=float) / draught,
+        *(np.asarray(count, dtype=float) for count in counts),
     )
     shape = sum(
         (s * term for s, term in zip(SURFACE_COEFFICIENTS[variant], terms, strict=True)),
         start=np.float64(0.0),
     )
-    return np.asarray(shape * length * (wide + 2.0 * draught))
+    return np.asarray(shape * length * (breadth + 2.0 * draught))
 
 
 def froude_limits(
@@ -338,14 +349,12 @@ def froude_limits(
 
 def hollenbach_validity(
     speed: ArrayLike,
+    hull: HollenbachHull,
     *,
-    length_between_perpendiculars: float,
-    length_over_surface: float,
-    block_coefficient: float,
     variant: ResistanceVariant = "single_design",
     gravity: float = GRAVITY,
 ) -> list[RangeNote]:
-    """Say which speeds lie outside the Froude range of the data.
+    """Return which speeds are outside the Froude range of the data.
 
     Some limits are unverified, see `thalweg.ship.methods.resistance.hollenbach_coefficients`.
 
@@ -353,10 +362,8 @@ def hollenbach_validity(
     ----------
     speed : array_like
         [m/s].
-    length_between_perpendiculars, length_over_surface : float
-        [m].
-    block_coefficient : float
-        C_B.
+    hull : HollenbachHull
+        Of scalars.
     variant : str
         Key of `RESISTANCE_COEFFICIENTS`.
     gravity : float
@@ -366,8 +373,10 @@ def hollenbach_validity(
     -------
     list of RangeNote
     """
-    length = froude_length(length_between_perpendiculars, length_over_surface=length_over_surface)
-    low, high = froude_limits(block_coefficient, variant=variant)
+    length = froude_length(
+        hull.length_between_perpendiculars, length_over_surface=hull.length_over_surface
+    )
+    low, high = froude_limits(hull.block_coefficient, variant=variant)
     froude = froude_number(speed, length=length, gravity=gravity)
     limits = {"Froude number": (froude, float(low), float(high))}
     return range_notes(f"hollenbach_1998 ({variant})", limits)

@@ -133,7 +133,7 @@ def correlation_coefficient(
 
 @dataclass(frozen=True)
 class BulbTransomAppendages:
-    """What hangs on the hull form: bulb, transom, appendages, shape of the stern.
+    """Bulb, transom, appendages and shape of the stern.
 
     Attributes
     ----------
@@ -294,7 +294,7 @@ def holtrop_validity(
     bulb_centre_height: ArrayLike = 0.0,
     gravity: float = GRAVITY,
 ) -> list[RangeNote]:
-    """Say which quantities lie outside the usual range of the method.
+    """Return which quantities are outside the usual range of the method.
 
     Ranges 0.55 < C_P < 0.85, 3.9 < L/B < 15, 2.1 < B/T < 4.0 and Fn < 0.45 (1982) or 1.0 (1984)
     are those quoted in handbooks (unverified: the papers only describe the data).

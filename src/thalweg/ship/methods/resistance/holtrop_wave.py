@@ -34,7 +34,7 @@ def bulb_wave_factor(
     bulb_area: ArrayLike,
     bulb_centre_height: ArrayLike,
 ) -> FloatArray:
-    """Factor c2 = exp(-1.89 sqrt(c3)): what a bulb saves in waves; 1 without a bulb."""
+    """Factor c2 = exp(-1.89 sqrt(c3)): reduction of wave making by a bulb; 1 without a bulb."""
     area = np.asarray(bulb_area, dtype=float)
     height = bulb_height(bulb_centre_height, draught_fore)
     depth = 0.31 * np.sqrt(area) + np.asarray(draught_fore) - height

@@ -30,7 +30,7 @@ _SLENDER: Final = (4.0, 10.0)
 
 @dataclass(frozen=True)
 class MotionHull:
-    """What the closed forms need to know of a hull.
+    """Particulars of a hull for the closed-form motions.
 
     Parameters
     ----------
@@ -325,7 +325,7 @@ def ship_response(
 def motions_validity(
     speed: ArrayLike, hull: MotionHull, *, gravity: float = GRAVITY
 ) -> list[RangeNote]:
-    """Say where `jensen_motions` is used outside the ships it was tried on.
+    """Return where `jensen_motions` is used outside the ships it was tried on.
 
     Parameters
     ----------
@@ -339,7 +339,7 @@ def motions_validity(
     Returns
     -------
     list of RangeNote
-        Empty when all lies inside. The ranges are our judgement of the ships in the paper.
+        Empty when all are inside. The ranges are our judgement of the ships in the paper.
     """
     froude = as_float_array(speed) / np.sqrt(gravity * hull.length)
     return range_notes(

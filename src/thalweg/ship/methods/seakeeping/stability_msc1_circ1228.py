@@ -21,7 +21,7 @@ _WAVELENGTH: Final = 1.56  # g / (2 pi), as the circular rounds it [m/s2]
 
 @dataclass(frozen=True)
 class DangerousSituationMargins:
-    """How far a ship is from each dangerous situation; negative inside it.
+    """Margin to each dangerous situation; negative inside it.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class DangerousSituationMargins:
 
 @dataclass(frozen=True)
 class DangerousSituations:
-    """What MSC.1/Circ.1228 warns of.
+    """Warnings of MSC.1/Circ.1228.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class DangerousSituations:
     margins : StabilityMargins
         Distances from the first and the last three.
     known : ndarray of bool
-        Whether all data were known. Where they were not every flag is False, which is no
+        Whether all data were known. Where they were not every flag is False, which is not an
         all-clear: use `safe`.
     """
 
@@ -208,7 +208,7 @@ def dangerous_situations(
     roll_tolerance: float = 0.1,
     harmless_wave_height: float = 0.0,
 ) -> DangerousSituations:
-    """Return what MSC.1/Circ.1228 warns of in given waves.
+    """Return the warnings of MSC.1/Circ.1228 in given waves.
 
     Parameters
     ----------

@@ -203,7 +203,7 @@ def karpov_speed(
 def karpov_validity(
     speed: ArrayLike, *, depth: ArrayLike, gravity: float = GRAVITY
 ) -> list[RangeNote]:
-    """Say which depth Froude numbers lie beyond 1.0, where the fit of the curves ends."""
+    """Return which depth Froude numbers exceed 1.0, where the fit of the curves ends."""
     froude = froude_number(speed, length=_positive(depth), gravity=gravity)
     return range_notes(
         "karpov", {"depth Froude number": (froude, 0.0, LARGEST_KARPOV_FROUDE_NUMBER)}
@@ -269,6 +269,6 @@ def lackenby_1963_validity(
     midship_area: ArrayLike,
     gravity: float = GRAVITY,
 ) -> list[RangeNote]:
-    """Say what is beyond a speed loss of 30 %, the end of Lackenby's chart (unverified)."""
+    """Return what exceeds a speed loss of 30 %, the end of Lackenby's chart (unverified)."""
     loss = lackenby_1963_speed_loss(speed, depth=depth, midship_area=midship_area, gravity=gravity)
     return range_notes("lackenby_1963", {"speed loss": (loss, 0.0, 0.30)})

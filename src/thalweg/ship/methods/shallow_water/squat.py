@@ -1,4 +1,4 @@
-"""Squat: how deep a ship sinks by its own speed and how fast the water lets it go."""
+"""Squat: sinkage of a ship by its own speed, and the speed that the depth allows."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LARGEST_BLOCKAGE_PARAMETER: Final = float(
     np.polynomial.Polynomial(_LANDWEBER).deriv().roots().max()
 )
 
-#: Published ranges of both of Barrass's forms; deeper water is no fault, squat fades there.
+#: Published ranges of both of Barrass's forms; deeper water is not reported: squat tends to zero.
 _BLOCK_COEFFICIENT_RANGE: Final = (0.5, 0.9)
 _LEAST_DEPTH_TO_DRAUGHT: Final = 1.1  # depth over draught
 
@@ -246,7 +246,7 @@ def shallow_water_speed(
     channel_width: ArrayLike | None = None,
     gravity: float = GRAVITY,
 ) -> FloatArray:
-    """Return the speed left in shallow water of one that the ship makes in deep water.
+    """Return the speed in shallow water at the power of a deep-water speed.
 
     V = V_max sqrt(tanh(g h / V_max^2)) (1.002 + 0.005 q - 0.1159 q^2 + 0.0191 q^3), with
     q = sqrt(A_s) / R_H, the root of the midship section over the hydraulic radius.
@@ -327,7 +327,7 @@ def shallow_water_speed_limit(
     Returns
     -------
     ndarray
-        Speed through the water [m/s]; 0 where there is no water for any squat.
+        Speed through the water [m/s]; 0 where the clearance leaves no room for squat.
 
     Notes
     -----
@@ -381,9 +381,9 @@ def dynamic_under_keel_clearance(
 def squat_validity(
     depth: ArrayLike, *, draught: ArrayLike, block_coefficient: ArrayLike
 ) -> list[RangeNote]:
-    """Say where `barrass_squat` or `barrass_2004_squat` is used outside its published range.
+    """Return where `barrass_squat` or `barrass_2004_squat` is used outside its published range.
 
-    Deep water is no fault: squat tends to zero there.
+    Deep water is not reported: squat tends to zero there.
 
     Parameters
     ----------
@@ -395,7 +395,7 @@ def squat_validity(
     Returns
     -------
     list of RangeNote
-        Empty when all lies inside.
+        Empty when all are inside.
     """
     ratio = as_float_array(depth) / as_float_array(draught)
     return range_notes(

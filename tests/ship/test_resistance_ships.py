@@ -273,7 +273,7 @@ def test_hulls_of_two_lengths_are_refused():
     [
         ({"bulb_area_m2": 400.0}, "bulb's section of 400 m2 is larger than the midship section"),
         ({"transom_area_m2": 400.0}, "immersed transom of 400 m2 is larger"),
-        ({"bulb_area_m2": 20.0, "bulb_centre_height_m": 11.0}, "bulb's centre lies 11 m above"),
+        ({"bulb_area_m2": 20.0, "bulb_centre_height_m": 11.0}, "centre of the bulb is 11 m above"),
         ({"wetted_surface_m2": 100.0}, "100 m2 is not that of a hull of"),
         ({"wetted_surface_m2": 50000.0}, "50000 m2 is not that of a hull of"),
         ({"length_over_surface_m": 50.0}, "surface under water is 50 m long"),

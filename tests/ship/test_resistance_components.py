@@ -6,7 +6,7 @@ import pytest
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
 from thalweg.ship.hull.hull import complete_hull
-from thalweg.ship.methods.resistance.hollenbach import hollenbach_wetted_surface
+from thalweg.ship.methods.resistance.hollenbach import HollenbachHull, hollenbach_wetted_surface
 from thalweg.ship.methods.shallow_water.shallow_water_resistance import lackenby_1963_deep_speed
 from thalweg.ship.performance_sheet import performance_sheet
 
@@ -40,14 +40,16 @@ def test_the_wetted_surface_of_twin_screws_knows_the_bulb(bulb, variant):
     hull = {"bulb_area_m2": bulb, "length_over_surface_m": 123.0}
     ship = _ship({"calm_water": "hollenbach_1998_mean"}, hull, propulsion=screws)
     wanted = hollenbach_wetted_surface(
-        length_between_perpendiculars=120.0,
-        length_waterline=122.0,
-        length_over_surface=123.0,
-        breadth=18.0,
-        draught_fore=7.0,
-        draught_aft=7.0,
-        block_coefficient=0.72,
-        propeller_diameter=4.0,
+        HollenbachHull(
+            length_between_perpendiculars=120.0,
+            length_waterline=122.0,
+            length_over_surface=123.0,
+            breadth=18.0,
+            draught_fore=7.0,
+            draught_aft=7.0,
+            block_coefficient=0.72,
+            propeller_diameter=4.0,
+        ),
         variant=variant,
     )
     assert _estimates(ship)["wetted_surface_m2"] == pytest.approx(float(wanted))
