@@ -55,7 +55,7 @@ def direction_to_unit_vector(sign: float) -> Combine:
     return combine
 
 
-def make_conversion(combine: Combine, place: GridPlacement, turn: bool) -> Any:
+def make_conversion(combine: Combine, place: GridPlacement, rotate: bool) -> Any:
     """Return the function that converts the arrays of a window, in SI, to canonical variables.
 
     Parameters
@@ -64,10 +64,10 @@ def make_conversion(combine: Combine, place: GridPlacement, turn: bool) -> Any:
         Makes the variables from the arrays.
     place : GridPlacement
         Their grid; on faces of a mesh, values are also averaged to its nodes.
-    turn : bool
+    rotate : bool
         Whether the variables are components along the grid, to be rotated to east and north.
     """
-    angle = place.angle if turn else None
+    angle = place.angle if rotate else None
 
     def make(raws: Sequence[FloatArray], window: GridWindow) -> Sequence[FloatArray]:
         made = combine(raws)

@@ -12,7 +12,11 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.files import coordinates as co
 from thalweg.sea.files import draught_averaging, time_coordinates, ugrid, vertical_levels
 from thalweg.sea.files import variable_aliases as sp
-from thalweg.sea.files.grid_detection import NEMO_U_COORDINATES, grid_placement
+from thalweg.sea.files.grid_detection import (
+    NEMO_U_COORDINATES,
+    GridPlacement,
+    grid_placement,
+)
 from thalweg.sea.files.layer_candidate import (
     FileContents,
     OpenedFile,
@@ -137,21 +141,24 @@ def _placed_variable(
     if clock is not None and not has_time and clock.dims[0] != "one_time":
         times = NO_TIMES
     piece = VariableInFile(array, max(1, times.size), has_time, chosen.factor)
-    is_c_grid = (
-        all(n in dataset.variables for n in NEMO_U_COORDINATES)
-        and place.dims
-        and "glamt" in place.key
-    )
-    shift = (
-        {sp.X_CURRENT: (0, 1), sp.Y_CURRENT: (1, 0)}.get(chosen.role, (0, 0))
-        if is_c_grid
-        else (0, 0)
-    )
     variable = SourceVariable(
-        chosen.variable, (piece,), times.size > 0, place.mesh is not None, source, shift
+        chosen.variable,
+        (piece,),
+        times.size > 0,
+        place.mesh is not None,
+        source,
+        _stagger(dataset, place, chosen.role),
     )
     rotated = int(array.attrs.get("GRIB_uvRelativeToGrid", 0)) == 1
     return PlacedVariable(chosen, variable, place, times, rotated, layers)
+
+
+def _stagger(dataset: Any, place: GridPlacement, role: str) -> tuple[int, int]:
+    """Return the offset (rows, columns) of a velocity on the sides of NEMO's cells; else (0, 0)."""
+    has_sides = all(n in dataset.variables for n in NEMO_U_COORDINATES)
+    if not (has_sides and place.dims and "glamt" in place.key):
+        return 0, 0
+    return {sp.X_CURRENT: (0, 1), sp.Y_CURRENT: (1, 0)}.get(role, (0, 0))
 
 
 def _refuse_undated(dataset: Any, array: Any, source: str) -> None:

@@ -49,8 +49,8 @@ class QuantityAssembler:
         """Make a vector from components (true or along the grid), or from speed and direction."""
         if self._both_present(vector.pair):
             pair = [self.remaining.pop(n) for n in vector.pair]
-            turn = pair[0].rotated and pair[0].place.angle is not None
-            self._add_vector(vector, pair, turn)
+            rotate = pair[0].rotated and pair[0].place.angle is not None
+            self._add_vector(vector, pair, rotate)
         elif self._both_present(along_grid):
             pair = [self.remaining.pop(n) for n in along_grid]
             self._add_vector(vector, pair, pair[0].place.angle is not None)
@@ -72,20 +72,20 @@ class QuantityAssembler:
         a, b = (self.remaining[role] for role in roles)
         return a.place.key == b.place.key and np.array_equal(a.times, b.times)
 
-    def _add_vector(self, vector: nm.VectorNames, pair: list[PlacedVariable], turn: bool) -> None:
+    def _add_vector(self, vector: nm.VectorNames, pair: list[PlacedVariable], rotate: bool) -> None:
         how = pair[0].chosen.how
         if any(pair[0].variable.shift) or any(pair[1].variable.shift):
             how += "; averaged from cell sides to centres"
-        if turn:
+        if rotate:
             how += "; rotated from grid to true east and north"
         if pair[0].layers is None:
-            self._add(vector.pair, pair, derived_variables.identity, how, turn=turn)
+            self._add(vector.pair, pair, derived_variables.identity, how, rotate=rotate)
             return
         draught = self.file.draught or 0.0
         column, depth = self._column(pair)
         how += f"; mean over the upper {draught:g} m of {pair[0].layers.describe()}"
         combine = draught_averaging.draught_averaging(pair[0].layers, draught, depth)
-        self._add(vector.pair, [*pair, *column], combine, how, turn=turn)
+        self._add(vector.pair, [*pair, *column], combine, how, rotate=rotate)
 
     def _column(
         self, pair: list[PlacedVariable]
@@ -186,12 +186,12 @@ class QuantityAssembler:
         combine: Combine,
         how: str,
         *,
-        turn: bool = False,
+        rotate: bool = False,
     ) -> None:
         """Add a quantity to the layer candidate of its grid and time axis."""
         place = parts[0].place
         times = next((p.times for p in parts if p.times.size), NO_TIMES)
-        make = derived_variables.make_conversion(combine, place, turn)
+        make = derived_variables.make_conversion(combine, place, rotate)
         layers = max(1 if p.layers is None else p.layers.top.size for p in parts)
         quantity = Quantity(made, tuple(p.variable for p in parts), make, self.file.source, layers)
         candidate = self._candidate_for(place, times)

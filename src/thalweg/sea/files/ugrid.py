@@ -304,8 +304,8 @@ def _node_layout(mesh: MeshTopology, angle: FloatArray | None) -> MeshLayout:
     triangles = triangulate_faces(mesh.faces)
     network = Mesh(mesh.lat, mesh.lon, triangles)
     grid = TriangleGrid(mesh.lat, mesh.lon, triangles, (1, mesh.lat.size), network)
-    turned = None if angle is None else angle[None, :]
-    return MeshLayout((mesh.name, mesh.node_dim), mesh.node_dim, grid, turned)
+    rotated = None if angle is None else angle[None, :]
+    return MeshLayout((mesh.name, mesh.node_dim), mesh.node_dim, grid, rotated)
 
 
 def _face_layout(mesh: MeshTopology, angle: FloatArray | None) -> MeshLayout:
@@ -327,12 +327,12 @@ def _face_layout(mesh: MeshTopology, angle: FloatArray | None) -> MeshLayout:
         (1, count + mesh.lat.size),
         network,
     )
-    turned = None
+    rotated = None
     if angle is not None:
-        turned = np.where(used, angle[np.maximum(mesh.faces, 0)], 0.0).sum(axis=1) / (last + 1)
-        turned = turned[None, :]
+        rotated = np.where(used, angle[np.maximum(mesh.faces, 0)], 0.0).sum(axis=1) / (last + 1)
+        rotated = rotated[None, :]
     averaging = _face_averaging(mesh, lat, lon)
-    return MeshLayout((mesh.name, mesh.face_dim), mesh.face_dim, grid, turned, averaging)
+    return MeshLayout((mesh.name, mesh.face_dim), mesh.face_dim, grid, rotated, averaging)
 
 
 def _face_centres(mesh: MeshTopology) -> tuple[FloatArray, FloatArray]:

@@ -92,8 +92,8 @@ class TidalLayer:
             located = self._locate(lat[part], lon[part])
             for name in names:
                 mean, coefficient = self._at(name, located)
-                turned = coefficient.real * wave.real - coefficient.imag * wave.imag
-                result[name][part] = mean + turned.sum(axis=1)
+                wave_part = coefficient.real * wave.real - coefficient.imag * wave.imag
+                result[name][part] = mean + wave_part.sum(axis=1)
         return nan_pairs(result, [v.pair for v in nm.VECTORS])
 
     def series(
