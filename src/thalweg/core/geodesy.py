@@ -54,6 +54,30 @@ def unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=-1)
 
 
+def local_axes(lat: ArrayLike, lon: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+    r"""Return the unit vectors up, east and north at positions on a sphere.
+
+    .. math::
+
+        e &= (-\sin\lambda, \cos\lambda, 0) \\
+        n &= (-\sin\phi \cos\lambda, -\sin\phi \sin\lambda, \cos\phi)
+
+    Parameters
+    ----------
+    lat, lon : array_like (...)
+        Positions [deg].
+
+    Returns
+    -------
+    up, east, north : float64 array (..., 3)
+        ``up`` is that of `unit_vectors`.
+    """
+    phi, lam = np.radians(np.asarray(lat, float)), np.radians(np.asarray(lon, float))
+    east = np.stack([-np.sin(lam), np.cos(lam), np.zeros_like(lam)], axis=-1)
+    north = np.stack([-np.sin(phi) * np.cos(lam), -np.sin(phi) * np.sin(lam), np.cos(phi)], axis=-1)
+    return unit_vectors(lat, lon), east, north
+
+
 def geocentric_unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
     """Return unit vectors (..., 3) from the centre of the ellipsoid to positions (...) [deg].
 

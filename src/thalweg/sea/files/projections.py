@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import DatasetError
+from thalweg.core.geodesy import local_axes
 from thalweg.core.types import FloatArray
 
 
@@ -140,15 +141,12 @@ def grid_angle(lat: FloatArray, lon: FloatArray) -> FloatArray:
     float64 array (Y, X)
         Angle [rad], counter-clockwise.
     """
-    a, o = np.radians(lat), np.radians(lon)
-    place = np.stack([np.cos(a) * np.cos(o), np.cos(a) * np.sin(o), np.sin(a)])
-    along = np.empty_like(place)
-    along[:, :, 1:-1] = place[:, :, 2:] - place[:, :, :-2]
-    along[:, :, 0] = place[:, :, 1] - place[:, :, 0]
-    along[:, :, -1] = place[:, :, -1] - place[:, :, -2]
-    east = np.stack([-np.sin(o), np.cos(o), np.zeros_like(a)])
-    north = np.stack([-np.sin(a) * np.cos(o), -np.sin(a) * np.sin(o), np.cos(a)])
-    return np.asarray(np.arctan2((along * north).sum(axis=0), (along * east).sum(axis=0)))
+    up, east, north = local_axes(lat, lon)
+    along = np.empty_like(up)
+    along[:, 1:-1] = up[:, 2:] - up[:, :-2]
+    along[:, 0] = up[:, 1] - up[:, 0]
+    along[:, -1] = up[:, -1] - up[:, -2]
+    return np.asarray(np.arctan2((along * north).sum(axis=-1), (along * east).sum(axis=-1)))
 
 
 def no_projection_error(source: str) -> DatasetError:

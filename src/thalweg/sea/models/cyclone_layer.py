@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
-from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.geodesy import MEAN_RADIUS, local_axes
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea import standard_names as nm
@@ -22,7 +22,6 @@ from thalweg.sea.models.cyclone_track import BestTrack, load_best_track
 from thalweg.sea.models.cyclone_vortex import (
     OUTER_RADIUS,
     VortexState,
-    local_axes,
     vortex_state,
     vortex_wind,
 )

@@ -6,6 +6,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from thalweg.core.geodesy import unit_vectors
 from thalweg.core.types import FloatArray
 from thalweg.sea.models import cyclone_formulas as formulas
 from thalweg.sea.models.cyclone_track import BestTrack
@@ -80,7 +81,7 @@ def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
     )
     fitted = formulas.AIR_DENSITY * np.e * (symmetric**2 + turning * radius) / b
     fetch = formulas.equivalent_fetch_young2013(wind, np.hypot(east, north), radius)
-    centre = local_axes(lat, lon)[0]
+    centre = unit_vectors(lat, lon)
     return VortexState(centre, coriolis, radius, fitted, b, symmetric, added, fetch)
 
 
@@ -127,23 +128,3 @@ def _taper(radius: FloatArray) -> FloatArray:
     """Return 1 within the full radius, decreasing smoothly to 0 at the outer radius."""
     x = np.clip((radius - FULL_RADIUS) / (OUTER_RADIUS - FULL_RADIUS), 0.0, 1.0)
     return 1.0 - x * x * (3.0 - 2.0 * x)
-
-
-def local_axes(lat: FloatArray, lon: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return unit vectors (N, 3) up, east and north at positions [deg].
-
-    Parameters
-    ----------
-    lat, lon : float64 array (N,)
-        Positions [deg].
-
-    Returns
-    -------
-    up, east, north : float64 array (N, 3)
-    """
-    a, o = np.radians(lat), np.radians(lon)
-    zero = np.zeros_like(a)
-    up = np.stack([np.cos(a) * np.cos(o), np.cos(a) * np.sin(o), np.sin(a)], axis=-1)
-    east = np.stack([-np.sin(o), np.cos(o), zero], axis=-1)
-    north = np.stack([-np.sin(a) * np.cos(o), -np.sin(a) * np.sin(o), np.cos(a)], axis=-1)
-    return up, east, north
