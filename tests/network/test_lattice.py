@@ -89,14 +89,18 @@ def test_exact_ends():
 
 def test_vias_leave_no_gap_longer_than_the_spacing():
     network = lattice(OPEN, (10, -40), (12, -30), directions=96, spacing=50e3)
-    tails = np.repeat(np.arange(network.n_edges), np.diff(network.via_ptr))
-    pieces = [np.zeros(network.n_edges), np.ones(network.n_edges), network.via_s.astype(float)]
+    tails = np.repeat(np.arange(network.n_edges), np.diff(network.samples.ptr))
+    pieces = [
+        np.zeros(network.n_edges),
+        np.ones(network.n_edges),
+        network.samples.fraction.astype(float),
+    ]
     edges = np.concatenate([np.arange(network.n_edges), np.arange(network.n_edges), tails])
     share = np.concatenate(pieces)
     order = np.lexsort((share, edges))
     step = np.diff(share[order])[np.diff(edges[order]) == 0]
     edge = edges[order][1:][np.diff(edges[order]) == 0]
-    assert (step * network.length[edge]).max() < 1.45 * network.meta.spacing_m
+    assert (step * network.edges.length[edge]).max() < 1.45 * network.meta.spacing_m
 
 
 def test_levels_are_finer_at_the_coast_and_joined():
@@ -109,11 +113,17 @@ def test_levels_are_finer_at_the_coast_and_joined():
     assert np.isfinite(distance).all()
     shore = chart.shore_distance(network.lat, network.lon)
     near = np.flatnonzero(shore < 8e3)
-    edge_length = [network.length[network.indptr[n] : network.indptr[n + 1]].min() for n in near]
+    edge_length = [
+        network.edges.length[network.graph.indptr[n] : network.graph.indptr[n + 1]].min()
+        for n in near
+    ]
     assert np.median(edge_length) < network.meta.spacing_m / 8 * 1.01
     far = np.flatnonzero(shore > 120e3)
     far = far[far < network.n_nodes - 2]
-    lengths = [network.length[network.indptr[n] : network.indptr[n + 1]].min() for n in far]
+    lengths = [
+        network.edges.length[network.graph.indptr[n] : network.graph.indptr[n + 1]].min()
+        for n in far
+    ]
     assert np.median(lengths) > 0.9 * network.meta.spacing_m
 
 
@@ -124,7 +134,7 @@ def test_no_edge_touches_an_island_and_the_way_goes_round_its_corner():
     tails = network.tails()
     blocked = chart.legs_blocked(
         network.lat[tails], network.lon[tails],
-        network.lat[network.target], network.lon[network.target],
+        network.lat[network.graph.target], network.lon[network.graph.target],
     )  # fmt: skip
     assert not blocked.any()
     assert network.meta.rejected["land"] > 0
@@ -274,11 +284,11 @@ def test_depth_and_factors_are_on_the_edges():
     chart = Chart.open_water(-3, 3, -3, 3).with_zones(zone)
     chart = chart.with_depth(lambda lat, lon: np.where(np.abs(lon) < 0.2, 4.0, 20.0))
     network = lattice(chart, (0, -2), (0, 2), directions=8, spacing=10e3)
-    assert set(np.unique(network.depth)) == {4.0, 20.0}
-    assert network.factor.min() == 1.0
-    assert network.factor.max() == pytest.approx(2.0)
+    assert set(np.unique(network.edges.depth)) == {4.0, 20.0}
+    assert network.edges.penalty_factor.min() == 1.0
+    assert network.edges.penalty_factor.max() == pytest.approx(2.0)
     lon = network.lon[network.tails()]
-    assert np.all(network.depth[np.abs(lon) < 0.1] == 4.0)
+    assert np.all(network.edges.depth[np.abs(lon) < 0.1] == 4.0)
 
 
 @settings(max_examples=15)

@@ -71,7 +71,7 @@ def test_stretch_bounds_the_ways(world):
 def test_prices_bring_out_the_other_way(world):
     chart, network = world
     tail = network.tails()
-    dear = np.where(network.lat[tail] > 0.05, 3.0, 1.0) * network.length
+    dear = np.where(network.lat[tail] > 0.05, 3.0, 1.0) * network.edges.length
     ways = alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(), EdgeWeights(dear)])
     assert [way.ratio for way in ways] == [1.0, 1.0]
     assert ways[1].lat.min() < -0.29
@@ -180,7 +180,7 @@ def test_a_way_by_two_canals_gives_the_runs_of_their_subsets():
     ways = paths_without_canals(network, chart, threshold=0.6)
     # no way without Suez lies within the threshold, so two of the four subsets are left
     assert [way.canals for way in ways] == [("corinth", "suez"), ("suez",)]
-    toll = network.length + 1e6 * (network.fee == chart.canals[3].fee)
+    toll = network.edges.length + 1e6 * (network.edges.fee == chart.canals[3].fee)
     first, *_ = paths_without_canals(network, chart, edge_weights=EdgeWeights(toll), threshold=0.6)
     assert first.canals == ("suez",)
     hours = EdgeWeights(network.times(7.0))

@@ -12,12 +12,11 @@ from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray
 from thalweg.network.assembly import (
     Pairs,
-    Stations,
     assemble,
     evenly_spaced_samples,
     measured_pairs,
 )
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta, Stations
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

@@ -14,9 +14,10 @@ from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network.alternatives.path_shortening import pull_taut
-from thalweg.network.network import shortest_path
+from thalweg.network.assembly import Pairs
 from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
 from thalweg.network.regional_lattice.lattice_builder import lattice
+from thalweg.network.shortest_paths import shortest_path
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -53,6 +54,23 @@ class ConnectedWaters:
     water: IntArray
     size: IntArray
     reach: float
+
+    @classmethod
+    def of_pairs(
+        cls, lat: FloatArray, lon: FloatArray, pairs: Pairs, usable: BoolArray, reach: float
+    ) -> ConnectedWaters:
+        """Return the connected waters of nodes joined by pairs; unusable nodes count for none."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        n = len(lat)
+        joined = coo_array(
+            (np.ones(len(pairs.first), bool), (pairs.first, pairs.second)), shape=(n, n)
+        )
+        water = connected_components(joined, directed=False)[1].astype(np.int64)
+        size = np.bincount(water)[water]
+        size[~usable] = 0
+        return cls(lat, lon, water, size, reach)
 
     @cached_property
     def largest(self) -> int:

@@ -9,14 +9,15 @@ import numpy as np
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.network.alternatives.homotopy import ring_areas
-from thalweg.network.assembly import Pairs, Stations, allowed_legs, measured_pairs
+from thalweg.network.assembly import Pairs, allowed_legs, measured_pairs
 from thalweg.network.endpoints import concatenate_pairs
+from thalweg.network.network import Stations
 from thalweg.network.regional_lattice.conformal_projection import (
     conformal_positions,
     conformal_unit_vectors,
 )
 
-Edges: TypeAlias = tuple[FloatArray, FloatArray]
+ShoreEdges: TypeAlias = tuple[FloatArray, FloatArray]
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -98,7 +99,9 @@ def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near:
     return pairs.where(allowed_legs(chart, lat, lon, pairs.first, pairs.second)[0])
 
 
-def _shores(ground: LatticeSpecification, island: float, apart: float) -> tuple[Edges, IntArray]:
+def _shores(
+    ground: LatticeSpecification, island: float, apart: float
+) -> tuple[ShoreEdges, IntArray]:
     """Return the shores of large land in the region, in short edges, and of which land."""
     none = np.empty((0, 3))
     rings = ground.chart.land.rings
@@ -112,7 +115,7 @@ def _shores(ground: LatticeSpecification, island: float, apart: float) -> tuple[
     return edges, land[first][edge]
 
 
-def _split_edges(edges: Edges, apart: float) -> tuple[Edges, IntArray]:
+def _split_edges(edges: ShoreEdges, apart: float) -> tuple[ShoreEdges, IntArray]:
     """Cut edges into parts at most ``apart`` [m] long; return also of which edge each part is."""
     a, b = edges
     parts = np.ceil(np.linalg.norm(b - a, axis=1) * MEAN_RADIUS / apart).astype(np.int64)
@@ -123,7 +126,7 @@ def _split_edges(edges: Edges, apart: float) -> tuple[Edges, IntArray]:
     return (a[edge] + number[:, None] * along, a[edge] + (number[:, None] + 1) * along), edge
 
 
-def _channel_midpoints(shores: Edges, land: IntArray, widest: float) -> FloatArray:
+def _channel_midpoints(shores: ShoreEdges, land: IntArray, widest: float) -> FloatArray:
     """Return the middles between facing shores, from wide channels to narrow ones.
 
     Shores are looked at ever closer where others are near, so that places along them stay closer

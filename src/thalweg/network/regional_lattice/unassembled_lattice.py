@@ -15,12 +15,9 @@ from thalweg.network.assembly import (
     DirectedEdges,
     Pairs,
     RejectionCounts,
-    Samples,
-    Stations,
     add_counts,
     allowed_legs,
     assemble,
-    concatenate_samples,
     directed_edges,
     evenly_spaced_samples,
     measured_pairs,
@@ -32,7 +29,7 @@ from thalweg.network.endpoints import (
     direct_pairs,
     links_to_nodes,
 )
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta, Samples, Stations
 from thalweg.network.regional_lattice.conformal_projection import (
     ConformalProjection,
     angle_to_point,
@@ -44,6 +41,7 @@ from thalweg.network.regional_lattice.refinement_levels import (
     Level,
     grow_levels,
 )
+from thalweg.network.shortest_paths import shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -96,13 +94,8 @@ class UnassembledLattice:
 
     def distances(self, node: int) -> FloatArray:
         """Return the static distance [m] of every node from one; inf where unreached."""
-        n = self.stations.n_nodes
-        distance, parent = np.empty(n), np.empty(n, np.int64)
         weight = self.pairs.length[self.edges.pair]
-        graph_building.static_dijkstra(
-            self.edges.indptr, self.edges.target, weight, node, -1, distance, parent
-        )
-        return distance
+        return shortest_path_tree(self.edges.graph, weight, node).distance
 
     def where(self, keep: BoolArray) -> UnassembledLattice:
         """Return the draft with only the nodes that are kept (start and goal always are)."""
@@ -134,8 +127,8 @@ class UnassembledLattice:
         stations, new = evenly_spaced_samples(stations, self.ends, spacing)
         samples.append(new)
         meta = replace(meta, start=self.start, goal=self.goal, rejected=self.rejected)
-        samples_of_all = concatenate_samples(samples)
-        return assemble(chart, stations, self.pairs, samples_of_all, meta=meta, edges=self.edges)
+        samples_of_all = Samples.concatenate(samples)
+        return assemble(chart, stations, self.pairs, samples_of_all, meta=meta, directed=self.edges)
 
 
 def grow_lattice(

@@ -162,7 +162,7 @@ def _prices(
     if not np.isnan(fixed).all():
         speeds, rates = still_water_values(ship.table, ship), still_water_values(ship.fuel, ship)
         for e in np.flatnonzero(~np.isnan(fixed)):
-            enough = np.flatnonzero(speeds >= network.length[origin[e]] / fixed[e])
+            enough = np.flatnonzero(speeds >= network.edges.length[origin[e]] / fixed[e])
             choice[e] = enough[0] if len(enough) else int(np.nanargmax(speeds))
             fuel[e] = rates[choice[e]] * fixed[e]
     return EdgePrices(
