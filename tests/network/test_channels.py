@@ -66,7 +66,9 @@ def test_a_line_has_nodes_along_its_way_and_at_borders():
     assert path == list(range(network.n_nodes))
     assert network.edges.length.max() <= 50_000.0 + 1e-6
     assert np.abs(network.lat - 62.0).min() < 1e-4  # the area ends at 62 N
-    share = chart.eca_fraction(network.lat[:-1], network.lon[:-1], network.lat[1:], network.lon[1:])
+    share = chart.zones.eca_fraction(
+        network.lat[:-1], network.lon[:-1], network.lat[1:], network.lon[1:]
+    )
     assert np.all((share < 1e-4) | (share > 1.0 - 1e-4))
 
 

@@ -111,7 +111,7 @@ def test_levels_are_finer_at_the_coast_and_joined():
     check_network(network, symmetric=True)
     distance, _ = shortest_path(network, network.meta.start)
     assert np.isfinite(distance).all()
-    shore = chart.shore_distance(network.lat, network.lon)
+    shore = chart.coastline.shore_distance(network.lat, network.lon)
     near = np.flatnonzero(shore < 8e3)
     edge_length = [
         network.edges.length[network.graph.indptr[n] : network.graph.indptr[n + 1]].min()

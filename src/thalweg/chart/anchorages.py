@@ -15,7 +15,7 @@ from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import FloatArray
 
 
-def may_wait(
+def waiting_allowed(
     anchorages: Sequence[Any], barred: Sequence[Any], lat: FloatArray, lon: FloatArray
 ) -> NDArray[np.bool_]:
     """Return at which positions a ship may wait.

@@ -213,8 +213,8 @@ def _pair_properties(chart: Chart, stations: Stations, pairs: Pairs) -> Edges:
         part = slice(begin, begin + _CHUNK_SIZE)
         ends = _ends(stations, pairs.first[part], pairs.second[part])
         if chart.has_depth:
-            depth[part] = chart.depth_along(*ends)
-        penalty[part], price[part] = chart.zone_factor(*ends)
+            depth[part] = chart.depths.along(*ends)
+        penalty[part], price[part] = chart.zones.factors(*ends)
     fixed_time, fee = np.full(count, np.nan), np.zeros(count)
     canals = np.flatnonzero(np.isnan(pairs.course))
     depth[canals], penalty[canals], price[canals] = np.inf, 1.0, 1.0

@@ -72,8 +72,8 @@ def fixed_route(chart: Chart, way: Sequence[Position], *, spacing: float) -> Net
 
 def _cuts_at_borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[FloatArray]:
     """Return where every leg is cut: at its beginning, and where it crosses a border once."""
-    share = np.asarray(chart.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    inside = np.asarray(chart.in_eca(lat[:-1], lon[:-1]))
+    share = np.asarray(chart.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    inside = np.asarray(chart.zones.in_eca(lat[:-1], lon[:-1]))
     crosses = (share > 1e-6) & (share < 1.0 - 1e-6)
     at = np.where(inside, share, 1.0 - share)
     return [np.array([0.0, x] if c else [0.0]) for c, x in zip(crosses, at)]

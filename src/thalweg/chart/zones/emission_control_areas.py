@@ -100,7 +100,7 @@ class EcaZone:
         """Return which positions [deg] lie inside; by counting edges east of them.
 
         Edges are straight in longitude and latitude. For many positions in many areas at once
-        the chart's index is quicker (`Chart.in_eca`).
+        the chart's index is quicker (`Zones.in_eca`).
         """
         a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
         y, x = a.ravel(), b.ravel()

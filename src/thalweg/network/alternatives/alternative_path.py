@@ -71,8 +71,8 @@ class EdgeWeights:
             )
 
         def leg_cost(*ends: FloatArray) -> FloatArray:
-            penalty, price = chart.zone_factor(*ends)
-            share = chart.eca_fraction(*ends, finest=_BORDER_TOLERANCE)
+            penalty, price = chart.zones.factors(*ends)
+            share = chart.zones.eca_fraction(*ends, finest=_BORDER_TOLERANCE)
             return np.asarray(leg_lengths(*ends) * penalty * price * (1.0 + (factor - 1.0) * share))
 
         weight = network.edges.length * network.edges.penalty_factor * network.edges.price_factor
@@ -125,7 +125,7 @@ def eca_fractions(network: Network, chart: Chart) -> FloatArray:
     keys, back = np.unique(key, return_inverse=True)
     a, b = keys // network.n_nodes, keys % network.n_nodes
     lat, lon = network.lat, network.lon
-    found = chart.eca_fraction(lat[a], lon[a], lat[b], lon[b], finest=_BORDER_TOLERANCE)
+    found = chart.zones.eca_fraction(lat[a], lon[a], lat[b], lon[b], finest=_BORDER_TOLERANCE)
     share[sailed] = np.asarray(found)[back]
     return share
 

@@ -92,7 +92,7 @@ def _meridian_crossing_counts(
 
 def _large_land(network: Network, chart: Chart, island: float) -> FloatArray:
     """Return a position on each piece of land that is large enough and near the network."""
-    rings = chart.land.rings
+    rings = chart.coastline.rings
     if not len(rings):
         return np.empty((0, 2))
     begin = rings.start[:-1]

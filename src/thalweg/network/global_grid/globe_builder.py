@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.canals import CANALS, Canal
+from thalweg.chart.coast.coastline import Coastline
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position
@@ -235,7 +236,7 @@ def _draw_and_attach(
 def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, BoolArray]:
     """Return the grid's legs within limits, area and zones, and which nodes are usable."""
     usable = (grid.lat >= options.south) & (grid.lat <= options.north)
-    no_land = replace(chart, land=type(chart).open_water().land)
+    no_land = replace(chart, coastline=Coastline.none())
     bounded = chart.zones.no_go or chart.area.array().tolist() != [-90.0, 90.0, -180.0, 360.0]
     if bounded:
         usable &= no_land.is_navigable(grid.lat, grid.lon)

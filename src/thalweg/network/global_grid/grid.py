@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.coast.coast_index_builder import build_index
-from thalweg.chart.zones.geojson_zones import rings_from_polygons
+from thalweg.chart.geojson_polygons import rings_from_polygons
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
@@ -98,7 +98,7 @@ def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
     zones = type(chart.zones)(
         penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca
     )
-    bare = type(chart)(chart.land, zones=zones)
+    bare = type(chart)(chart.coastline, zones=zones)
     facts = (FORMAT, bare.fingerprint(), fineness, FINEST_STRAIT_LEVEL, STRAITS)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
     path = cache_folder("globe") / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
@@ -164,7 +164,9 @@ def _geodesic_grid(chart: Chart, fineness: GridResolution) -> Icosphere:
     level, coast = fineness.level, fineness.coast_levels
     narrow = max(FINEST_STRAIT_LEVEL - level - coast, 0) if coast else 0
     rules = [
-        RefinementRule(_crossing_test(chart.land.index), coast, lambda m: strait_levels(m, narrow))
+        RefinementRule(
+            _crossing_test(chart.coastline.index), coast, lambda m: strait_levels(m, narrow)
+        )
     ]
     rules += [
         RefinementRule(_crossing_test(outlines), fineness.border_levels)

@@ -104,7 +104,7 @@ def _shores(
 ) -> tuple[ShoreEdges, IntArray]:
     """Return the shores of large land in the region, in short edges, and of which land."""
     none = np.empty((0, 3))
-    rings = ground.chart.land.rings
+    rings = ground.chart.coastline.rings
     if not len(rings):
         return (none, none), np.empty(0, np.int64)
     vectors = conformal_unit_vectors(rings.lat, rings.lon)

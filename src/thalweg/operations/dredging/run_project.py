@@ -183,7 +183,7 @@ def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, n
     times = times[(times >= start) & (times <= end)]
     depth = np.full(times.shape, np.inf)
     if world.chart.has_depth:
-        depth = np.minimum(depth, np.asarray(world.chart.depth_at(*place), float))
+        depth = np.minimum(depth, np.asarray(world.chart.depths.at(*place), float))
     channels = [n for n in (nm.BED_DEPTH, nm.WATER_LEVEL) if n in sea.variables]
     lat, lon = np.full(times.shape, place[0]), np.full(times.shape, place[1])
     got = sea.sample(channels, times, lat, lon) if channels else {}

@@ -319,7 +319,7 @@ def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> Fl
         return None
     ends = lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:]
     shape = ends[0].shape
-    return np.asarray(chart.zone_factor(*(x.ravel() for x in ends))[0]).reshape(shape)
+    return np.asarray(chart.zones.factors(*(x.ravel() for x in ends))[0]).reshape(shape)
 
 
 def unique_legs(ends: Sequence[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
