@@ -31,7 +31,7 @@ from thalweg.network.global_grid.icosphere import (
     icosphere,
     sorted_unique,
 )
-from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, STRAITS, strait_levels
+from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, narrow_straits, strait_levels
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -99,7 +99,8 @@ def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
         penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca
     )
     bare = type(chart)(chart.coastline, zones=zones)
-    facts = (FORMAT, bare.fingerprint(), fineness, FINEST_STRAIT_LEVEL, STRAITS)
+    straits = {name: tuple(strait) for name, strait in narrow_straits().items()}
+    facts = (FORMAT, bare.fingerprint(), fineness, FINEST_STRAIT_LEVEL, straits)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
     path = cache_folder("globe") / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
     return _load_or_make(_GridRequest(bare, fineness, path))
