@@ -212,7 +212,7 @@ def test_points_are_real_ways(seed):
     }
     found = search(network, fields, 7, 20_000.0, bin_s=20.0, lower=False, **priced)
     got, request = world_of(network, fields, 20_000.0, **priced)
-    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(got.tails, network.target))}
+    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(got.tails, network.graph.target))}
     for point in found.points:
         time, cost = 0.0, 0.0
         for i, setting in enumerate(point.setting):

@@ -85,8 +85,8 @@ def find_controlling_depth(network: Network, fields: StationFields) -> Controlli
 
 def _detour_measure(network: Network, tails: np.ndarray, heads: np.ndarray) -> FloatArray:
     """Return the sum of rough distances of legs to start and goal [deg]."""
-    lat = 0.5 * (network.station_lat[tails] + network.station_lat[heads])
-    lon = 0.5 * (network.station_lon[tails] + network.station_lon[heads])
+    lat = 0.5 * (network.stations.lat[tails] + network.stations.lat[heads])
+    lon = 0.5 * (network.stations.lon[tails] + network.stations.lon[heads])
     away = np.zeros(len(lat))
     for end in (network.meta.start, network.meta.goal):
         east = (lon - network.stations.lon[end] + 180.0) % 360.0 - 180.0

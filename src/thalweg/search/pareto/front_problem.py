@@ -156,7 +156,10 @@ def _with_states(given: SearchProblem, request: FrontRequest) -> tuple[SearchPro
 def _prices(
     network: Network, origin: IntArray, ship: MultiSettingShip, request: FrontRequest
 ) -> EdgePrices:
-    fixed_time, fee = np.asarray(network.fixed_time), request.prices.dues * np.asarray(network.fee)
+    fixed_time, fee = (
+        np.asarray(network.edges.fixed_time),
+        request.prices.dues * np.asarray(network.edges.fee),
+    )
     fuel, choice = np.zeros(len(origin)), np.zeros(len(origin), np.int64)
     fixed = fixed_time[origin]
     if not np.isnan(fixed).all():
