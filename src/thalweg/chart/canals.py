@@ -24,7 +24,7 @@ from thalweg.core.geodesy import Position, distance
 from thalweg.core.units import HOUR
 
 END_TOLERANCE: Final = 2.0  # a leg ends at a canal's end when it ends this near to it [m]
-_END_TOLERANCE_DEGREES: Final = 2e-5  # nearer than this in latitude is worth measuring
+_END_TOLERANCE_DEGREES: Final = 2e-5  # only ends nearer than this in latitude are measured
 
 
 @dataclass(frozen=True)

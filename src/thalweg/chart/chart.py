@@ -154,8 +154,8 @@ class Chart:
         Raises
         ------
         InputError
-            If it cannot be read, an outline crosses itself or may be meant either way round the
-            globe, or a kind or factor makes no sense.
+            If it cannot be read, an outline crosses itself or is ambiguous at the
+            antimeridian, or a kind or factor makes no sense.
         """
         return replace(self, zones=self.zones.joined(Zones.read(zones)))
 
@@ -176,7 +176,7 @@ class Chart:
         Raises
         ------
         InputError
-            If there is no such area, its limits are unknown, or it does not count at ``date``.
+            If the area is unknown, its limits are unknown, or it is not in force at ``date``.
 
         Warns
         -----
@@ -198,7 +198,7 @@ class Chart:
         Raises
         ------
         InputError
-            If there is no canal of that name; near matches are named.
+            If the name is unknown; the message lists similar names.
         """
         return replace(self, canals=canal_data.exclude_canals(self.canals, names))
 

@@ -1,4 +1,4 @@
-"""From pairs of nodes to a network: land tests, lengths, depths, zones and the CSR."""
+"""Assembly of a network from pairs of nodes: land tests, lengths, depths, zones and the graph."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CHUNK_SIZE = 1_000_000
 
 @dataclass(frozen=True)
 class Pairs:
-    """Pairs of nodes joined both ways: their nodes, length [m] and mid-edge course [rad].
+    """Pairs of nodes joined in both directions: nodes, length [m] and mid-edge course [rad].
 
     Canals have no course (NaN).
     """
@@ -49,7 +49,7 @@ def allowed_legs(
 ) -> tuple[BoolArray, RejectionCounts]:
     """Return which legs between positions the chart allows, and counts of refusals by reason.
 
-    Canals are no legs to sail: builders that know them add them as edges of their own.
+    Canals are not legs at sea; the builders add them as separate edges.
     """
     chart = chart.without_canals("all")
     free = np.empty(len(first), bool)
@@ -188,7 +188,7 @@ def assemble(
 
 
 def _waiting_places(chart: Chart, stations: Stations, meta: NetworkMeta) -> BoolArray:
-    """Return at which nodes a ship may wait: where the chart allows it, and at her berths."""
+    """Return at which nodes a ship may wait: where the chart allows it, and at start and goal."""
     n = stations.n_nodes
     allowed = np.array(chart.may_wait(stations.lat[:n], stations.lon[:n]))
     allowed[[end for end in (meta.start, meta.goal) if end >= 0]] = True

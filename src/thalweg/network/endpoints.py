@@ -1,4 +1,4 @@
-"""Start, goal and via points as nodes at their exact positions, linked to the nodes around them."""
+"""Start, goal and via points as nodes at their exact positions, linked to nearby nodes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _MAX_LINKS = 400
 
 
 def check_endpoints(chart: Chart, start: Position, goal: Position) -> tuple[Position, Position]:
-    """Return start and goal, checked: sound positions, not the same, on navigable water.
+    """Return start and goal after checks: valid, different, on navigable water.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def check_at_sea(chart: Chart, place: Position, what: str) -> None:
     if not bool(np.all(chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
         raise InputError(
             f"The {what} {geodesy.format_position(*place)} is not on navigable water.",
-            "It lies on land, in a no-go zone or outside the chart.",
+            "It is on land, in a no-go zone or outside the chart.",
             "Move it to open water, or let the plan move it to the nearest navigable water.",
             field=what,
             value=place,
@@ -121,7 +121,7 @@ def _pairs(lat: FloatArray, lon: FloatArray, point: int, nodes: Int32Array) -> P
 
 
 def _nearest_pairs_by_sector(pairs: Pairs) -> Pairs:
-    """Of very many links keep the nearest, and the nearest in every sector and ring."""
+    """Return the nearest links, and the nearest in every sector and ring."""
     if len(pairs.first) <= _MAX_LINKS:
         return pairs
     order = np.argsort(pairs.length, kind="stable")
@@ -146,14 +146,14 @@ def with_endpoints(
     chart : Chart
         Tests the links.
     start, goal : (lat, lon)
-        Positions [deg]. They become nodes N and N + 1 (N nodes before), as ``meta`` tells.
+        Positions [deg]. They become nodes N and N + 1 (N nodes before), as ``meta`` states.
     via : sequence of (lat, lon), optional
         Via points; they become nodes N + 2, N + 3, ...
 
     Returns
     -------
     Network
-        With the new nodes linked both ways, by exact tested legs, to the nodes around them.
+        With the new nodes linked in both directions to the nodes around them, by tested legs.
 
     Raises
     ------
@@ -238,7 +238,7 @@ def direct_pairs(chart: Chart, stations: Stations, first: int, *, reach: float) 
 def canal_pairs(canals: Sequence[Canal], first: int) -> Pairs:
     """Return the pairs of canals whose ends are nodes ``first``, ``first + 1`` and so on.
 
-    Their course is NaN, by which canals are known until the network is put together.
+    Their course is NaN, which marks canals until the network is assembled.
     """
     nodes = (first + 2 * np.arange(len(canals))).astype(np.int32)
     length = np.array([canal.length for canal in canals], float)

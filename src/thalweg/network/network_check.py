@@ -19,7 +19,7 @@ _SAMPLE_TOLERANCE = 0.03  # of the positions of samples, as a fraction of their 
 
 
 def check_network(network: Network, *, symmetric: bool = False, sample: int = 200_000) -> None:
-    """Check everything a network promises; every builder passes it.
+    """Check what every network guarantees; the networks of all builders pass.
 
     Parameters
     ----------
@@ -44,8 +44,8 @@ def check_network(network: Network, *, symmetric: bool = False, sample: int = 20
             faults += _symmetry_faults(network)
     if faults:
         raise InputError(
-            f"The network breaks {len(faults)} promise(s): " + "; ".join(faults) + ".",
-            "A network keeps the promises listed in the documentation of Network.",
+            f"The network has {len(faults)} fault(s): " + "; ".join(faults) + ".",
+            "A network fulfils what the documentation of its parts states.",
             "Correct the builder that made it.",
             faults=faults,
         )
@@ -111,7 +111,7 @@ def _edge_faults(net: Network) -> Iterator[str]:
     ):
         yield "a fixed time is neither positive nor NaN"
     if not np.all((net.edges.fee >= 0.0) & np.isfinite(net.edges.fee)):
-        yield "a fee is negative or no number"
+        yield "a fee is negative or not a number"
     for name in ("start", "goal"):
         if not -1 <= getattr(net.meta, name) < net.n_nodes:
             yield f"the {name} is not a node"
@@ -151,7 +151,7 @@ def _geometry_faults(net: Network, sample: int) -> Iterator[str]:
     half = geodesy.direct(lat[tail], lon[tail], first, 0.5 * length)
     middle = geodesy.inverse(*half, lat[head], lon[head])[1]
     wrong = np.abs(np.angle(np.exp(1j * (net.edges.course[edge] - middle))))
-    if np.any(wrong[np.abs(half[0]) < 89.9] > 1e-3):  # courses mean nothing at the poles
+    if np.any(wrong[np.abs(half[0]) < 89.9] > 1e-3):  # courses are undefined at the poles
         yield "a course is not that of the geodesic at mid-edge"
     yield from _position_faults(net, edge, tail, length, first)
 

@@ -1,4 +1,4 @@
-"""Networks one behind the other as one network: passages by way of given places, and canals."""
+"""Concatenation of networks at via points and canals."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from thalweg.network.network import Edges, Graph, Network, NetworkMeta, Samples,
 
 @dataclass(frozen=True)
 class CanalLink:
-    """What leads from the goal of one network to the start of the next: a canal.
+    """A canal from the goal of one network to the start of the next.
 
     Attributes
     ----------
     length : float
         [m].
     transit_time : float
-        Time from one end to the other, whatever the ship [s].
+        Time from one end to the other, the same for all ships [s].
     fee : float
         [USD].
     """
@@ -34,15 +34,15 @@ class CanalLink:
 
 
 def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink | None]) -> Network:
-    """Put networks one behind the other.
+    """Concatenate networks in their order.
 
     Parameters
     ----------
     networks : sequence of Network
         Each with its start and goal.
-    links : sequence of Link or None, one fewer
-        What leads from each network to the next; None where the goal of the one is the start of
-        the other.
+    links : sequence of CanalLink or None, one fewer
+        Canal from each network to the next; None where the goal of the one is the start of the
+        other.
 
     Returns
     -------
@@ -57,11 +57,15 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
     if not networks or len(links) != len(networks) - 1:
         raise InputError(
             f"{len(networks)} networks with {len(links)} links between them cannot be joined.",
-            "There is one link fewer than networks.",
-            "Give them so.",
+            "The number of links is one less than that of networks.",
+            "Give one link between every two networks.",
         )
     if any(min(network.meta.start, network.meta.goal) < 0 for network in networks):
-        raise InputError("A network to be joined lacks its start or goal.", "", "Attach them.")
+        raise InputError(
+            "A network to be joined has no start or no goal.",
+            "All networks need both.",
+            "Add them with thalweg.network.with_endpoints.",
+        )
     if len(networks) == 1:
         return networks[0]
     node_of, kept = _numbering(networks, links)
@@ -71,7 +75,7 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
 def _numbering(
     networks: Sequence[Network], links: Sequence[CanalLink | None]
 ) -> tuple[list[IntArray], list[BoolArray]]:
-    """Return the new number of every node, and which nodes are not one met before."""
+    """Return the new number of every node, and which nodes are not merged into earlier ones."""
     node_of: list[IntArray] = []
     kept: list[BoolArray] = []
     count = 0

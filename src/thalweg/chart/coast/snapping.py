@@ -1,4 +1,4 @@
-"""From a place on charted land to the nearest water that is joined to the open sea."""
+"""The nearest water joined to the open sea, for positions on charted land."""
 
 from __future__ import annotations
 
@@ -15,9 +15,7 @@ from thalweg.core.types import FloatArray
 PositionTest: TypeAlias = Callable[[FloatArray, FloatArray], NDArray[np.bool_]]
 #: Whether legs (lat1, lon1, lat2, lon2) [deg] are blocked.
 LegTest: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], NDArray[np.bool_]]
-OPEN_SEA_MARGIN: Final = (
-    40_000.0  # water that goes on this far beyond the search is the open sea [m]
-)
+OPEN_SEA_MARGIN: Final = 40_000.0  # water that extends this far beyond the search is open sea [m]
 HALF_GRID_POINTS: Final = 90  # half the points along a side of the search grid
 
 
@@ -31,11 +29,25 @@ def nearest_navigable(
 ) -> tuple[float, float, float] | None:
     """Return the nearest navigable place joined to the open sea, and the distance to it [m].
 
-    Grids of 180 x 180 steps are laid round the place, ever wider: for water within 5 km, 20 km
-    and ``largest``, going on three times as far or 40 km. Neighbouring points are joined by exact
-    legs. Water counts as open sea when it reaches the border of the grid; when none does on the
-    widest one, the largest connected water counts. The answer is a point of the grid: up to half
-    a step (0.1, 0.3 or 0.5 km) farther than the nearest water there is.
+    Grids of 180 x 180 steps are centred on the position, for water within 5 km, 20 km and
+    ``largest``. Each grid extends three times as far as its search radius, or 40 km farther.
+    Neighbouring points are joined by tested legs. Water that reaches the border of the grid is
+    open sea; where none does on the widest grid, the largest connected water is. The result is a
+    point of the grid: up to half a step (0.1, 0.3 or 0.5 km) farther than the nearest water.
+
+    Parameters
+    ----------
+    lat, lon : float
+        Position [deg].
+    largest : float
+        Largest search radius [m].
+    is_navigable, legs_blocked : callable
+        Tests of positions and of legs, as of `thalweg.chart.Chart`.
+
+    Returns
+    -------
+    tuple of float, or None
+        Latitude and longitude [deg] and distance [m]; None if there is no water within reach.
     """
     for radius in sorted({min(r, largest) for r in (5_000.0, 20_000.0, largest)}):
         lats, lons = _search_grid(lat, lon, radius + min(OPEN_SEA_MARGIN, 3.0 * radius))

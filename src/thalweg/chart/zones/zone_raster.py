@@ -1,4 +1,4 @@
-"""A raster of the zones that have prices, for kernels that look at very many legs."""
+"""A raster of zones with prices, for kernels that test very many legs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class ZoneRaster:
         next [deg]; a longitude is shifted by 360 to fit.
     cell : int8 array (Y, X)
         `OUTSIDE` (0), `INSIDE` (1), or `MIXED` (2) where an outline may run through the cell. A
-        leg that meets cells of one class only, 0 or 1, lies outside or inside altogether.
+        leg that meets only cells of class 0, or only cells of class 1, is wholly outside or inside.
     price : float32 array (Y, X)
         Price factor (of zones of the kind "price") at the middle of the cell, 1 without zones.
     """

@@ -1,9 +1,9 @@
-"""Zones: where a ship may not go, where a mile counts for more, where fuel has another price.
+"""Zones: where a ship may not sail, where a mile counts more, where fuel has another price.
 
 A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "eca") and, for
 penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
-zone without a factor is an emission control area: what fuel costs there is the ship's to say; with
-one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
+zone without a factor is an emission control area: the ship file states what fuel costs there;
+with one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
 only, and nowhere in zones of the kind "no-waiting".
 """
 
@@ -242,7 +242,7 @@ class Zones:
     ) -> tuple[FloatArray, FloatArray]:
         """Return the penalty and the price factor of legs [deg], weighted by length.
 
-        NaN where a position is no number.
+        NaN where a position is not a number.
         """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         shape = ends[0].shape

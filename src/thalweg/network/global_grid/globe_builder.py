@@ -106,8 +106,8 @@ def globe(
         Passages and leaves the North Cape open. Start and goal may lie beyond a limit, which then
         gives way as far as 1 degree past them.
     slack : float, optional
-        Nodes are kept when the shortest way start-node-goal is at most ``1 + slack`` times the
-        shortest way from start to goal; by default 1 under 100 nautical miles falling to 0.35 over
+        Nodes are kept when the shortest path start-node-goal is at most ``1 + slack`` times the
+        shortest path from start to goal; by default 1 under 100 nautical miles falling to 0.35 over
         1,000 and 0.15 over 5,000. ``math.inf`` keeps the whole sea.
     sample_spacing : float, optional
         Fields are sampled along edges at least this often [m].
@@ -173,8 +173,8 @@ def _checked(
         )  # fmt: skip
     if not -90.0 <= south < north <= 90.0:
         raise InputError(
-            f"There is no sea between the latitudes {south!r} and {north!r}.",
-            "The southern limit lies below the northern one, both within 90 degrees.",
+            f"The latitude limits {south!r} and {north!r} are not valid.",
+            "The southern limit is below the northern one, both within 90 degrees.",
             "Give degrees north, southern latitudes negative.",
         )
     if slack is not None and not slack >= 0.0:
@@ -338,10 +338,10 @@ def _no_route(
     missing = [canal for canal in CANALS if canal not in chart.canals]
     if missing and math.isfinite(_shortest_length(replace(chart, canals=CANALS), options, ends)):
         titles = " and the ".join(canal.title for canal in missing)
-        remedy = f"Allow the {titles}: with all canals there is a way."
+        remedy = f"Allow the {titles}: with all canals a route exists."
     return NoRouteError(
         f"There is no way by water from {names[0]} to {names[1]} on this chart.",
-        f"The way ends at {names[2]}, {away[best] / NAUTICAL_MILE:.1f} nm from the goal.",
+        f"The network reaches {names[2]}, {away[best] / NAUTICAL_MILE:.1f} nm from the goal.",
         remedy,
         reasons={"land": sheet.grid.rejected},
         nearest=nearest,
@@ -349,6 +349,6 @@ def _no_route(
 
 
 def _shortest_length(chart: Chart, options: _Options, ends: tuple[Position, Position]) -> float:
-    """Return the length of the shortest way between two ends [m]; inf where there is none."""
+    """Return the length of the shortest path between two ends [m]; inf where none exists."""
     sheet = _draw_and_attach(chart, options, *ends)
     return float(sheet.distances(sheet.start)[sheet.start + 1])

@@ -69,7 +69,7 @@ class GlobeGrid:
 
 @dataclass(frozen=True)
 class GridResolution:
-    """How fine a grid is.
+    """Resolution of a grid.
 
     Attributes
     ----------
@@ -92,8 +92,9 @@ def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
     Parameters
     ----------
     chart : Chart
-        Only its land and the borders of its zones with prices count.
-    fineness : Fineness
+        Its land and the borders of its zones with prices determine the grid.
+    fineness : GridResolution
+        Resolution of the grid.
     """
     zones = type(chart.zones)(
         penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca

@@ -1,4 +1,4 @@
-"""Channels between two pieces of land, too narrow for the points of a lattice: nodes amid them."""
+"""Nodes in the middle of channels that are too narrow for the points of a lattice."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from thalweg.network.regional_lattice.refinement_levels import LatticeSpecification
 
 _MAX_WIDTH: Final = 2.0  # spacings: wider channels hold points of the lattice itself
-_MIN_WIDTH: Final = 50.0  # [m] channels are told apart by their width down to this
+_MIN_WIDTH: Final = 50.0  # [m] narrower channels are not distinguished by width
 _MIN_LAND_SIZE: Final = 0.5  # open-sea spacings: smaller land is passed on its other side
 _MAX_NODES: Final = 2000
 _SHORE_SPACING: Final = 0.25  # widths: between places along a shore
 _THINNING_CELL: Final = 0.5  # widths: of which one place each is kept
-_NEAREST_SHORE_PLACES: Final = 16  # places looked at round each for one on another shore
+_NEAREST_SHORE_PLACES: Final = 16  # places searched around each for one on another shore
 _NEIGHBOURS: Final = 24
 _REACH: Final = 3.0  # spacings
 _MAX_PARTS: Final = 2000  # of one edge of a coastline
@@ -129,8 +129,8 @@ def _split_edges(edges: ShoreEdges, apart: float) -> tuple[ShoreEdges, IntArray]
 def _channel_midpoints(shores: ShoreEdges, land: IntArray, widest: float) -> FloatArray:
     """Return the middles between facing shores, from wide channels to narrow ones.
 
-    Shores are looked at ever closer where others are near, so that places along them stay closer
-    together than the channel is wide.
+    Shores are divided further where others are near, so that places along them are closer together
+    than the channel is wide.
     """
     found, width = [np.empty((0, 3))], widest
     while len(land):

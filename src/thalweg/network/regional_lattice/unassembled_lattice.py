@@ -1,4 +1,4 @@
-"""A lattice in the making: its points, tested pairs and static distances, before assembly."""
+"""A lattice before assembly: its points, tested pairs and static distances."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class UnassembledLattice:
         return shortest_path_tree(self.edges.graph, weight, node).distance
 
     def where(self, keep: BoolArray) -> UnassembledLattice:
-        """Return the draft with only the nodes that are kept (start and goal always are)."""
+        """Return the lattice with only the nodes that are kept (start and goal always are)."""
         keep = keep.copy()
         keep[-2:] = True
         if keep.all():
@@ -142,9 +142,9 @@ def grow_lattice(
         _join_level_points(ground.chart, level, lat, lon, di, dj, rejected) for level in levels
     ]
     canals = canals_in(ground)
-    amid = channel_nodes(ground) if ground.region.bounded else np.empty((2, 0))
+    middles = channel_nodes(ground) if ground.region.bounded else np.empty((2, 0))
     places = [*(end for canal in canals for end in canal.ends), start, goal]
-    lat, lon = np.append(lat, amid[0]), np.append(lon, amid[1])
+    lat, lon = np.append(lat, middles[0]), np.append(lon, middles[1])
     grid, n = n, len(lat)
     lat, lon = (np.append(old, new) for old, new in zip((lat, lon), np.array(places, float).T))
     stations = Stations(lat, lon, n + len(places))

@@ -71,7 +71,7 @@ def _triangles_around_nodes(triangles: np.ndarray, count: int) -> tuple[IntArray
 
 
 def least_along_edges(network: Network, values: FloatArray) -> FloatArray:
-    """Return the least of a field given at the nodes along every edge, as its samples tell it."""
+    """Return the least value along every edge of a field given at the nodes, at its samples."""
     least = np.minimum(values[network.tails()], values[network.graph.target])
     w = network.samples.weight.astype(float)
     inside = (1.0 - w) * values[network.samples.station_a] + w * values[network.samples.station_b]
