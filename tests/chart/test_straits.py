@@ -1,4 +1,4 @@
-"""What is open and what is closed on the world's coast."""
+"""Open and closed passages of the coast of the world."""
 
 from __future__ import annotations
 

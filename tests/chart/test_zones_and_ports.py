@@ -31,7 +31,7 @@ def test_a_no_go_zone_blocks_legs_and_positions():
     assert OPEN.is_navigable(1.5, 1.5)
 
 
-def test_land_is_told_before_a_zone(world):
+def test_land_is_reported_before_a_zone(world):
     chart = world.with_zones(zone(0, 40, 10, 60, kind="no go zone"))
     assert chart.leg_status(47.0, 2.0, 47.0, 3.0) == LAND
     assert chart.leg_status(54.0, 3.0, 54.0, 4.0) == NO_GO
@@ -191,7 +191,7 @@ def test_a_wide_zone_with_points_in_between_is_what_is_written():
 
 
 @pytest.mark.parametrize(("west", "east"), [(100, -100), (170, -170), (350, 10), (170, 190)])
-def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_way(west, east):
+def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_side(west, east):
     chart = OPEN.with_zones(zone(west, -10, east, 10, kind="no-go"))
     middle = west + 0.5 * ((east - west) % 360)
     outside = [west - 1, east + 1, middle + 180]
@@ -199,7 +199,7 @@ def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_way(west, e
     assert chart.is_navigable(0.0, outside).tolist() == [True] * 3
 
 
-def test_an_outline_that_is_an_area_only_across_the_antimeridian_is_one_whichever_way_it_runs():
+def test_an_outline_valid_only_across_the_antimeridian_is_accepted_in_both_directions():
     lens = [(179, 0), (179.5, -2), (-179.5, -2), (-179, 0), (-179.5, 2), (179.5, 2)]
     bulging = [
         (179.5, -1), (179.8, -3), (178, 0), (179.8, 3), (179.5, 1), (-179, 1), (-179, -1),

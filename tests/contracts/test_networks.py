@@ -1,4 +1,4 @@
-"""Every builder of networks keeps the promises of a network."""
+"""The networks of every builder pass the network check."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ BUILDERS = {
 
 
 @pytest.mark.parametrize("name", BUILDERS)
-def test_builder_keeps_the_promises(name):
+def test_builder_passes_the_check(name):
     network = BUILDERS[name]()
     check_network(network, symmetric=True)
     distance, path = shortest_path(network, network.meta.start, network.meta.goal)

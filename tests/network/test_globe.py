@@ -133,7 +133,7 @@ def test_no_go_zones_and_areas_are_kept_out(chart):
     assert network.lat.min() >= 30.0 and network.lon.max() <= 0.0
 
 
-def test_no_way_without_the_canals_says_which_would_do(chart):
+def test_no_route_without_canals_names_the_canals_needed(chart):
     wall = [[[6.0, 57.0], [12.6, 57.0], [12.6, 57.4], [6.0, 57.4], [6.0, 57.0]]]
     shut = {"type": "Feature", "properties": {"kind": "no-go"},
             "geometry": {"type": "Polygon", "coordinates": wall}}  # fmt: skip

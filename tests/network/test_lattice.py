@@ -127,7 +127,7 @@ def test_levels_are_finer_at_the_coast_and_joined():
     assert np.median(lengths) > 0.9 * network.meta.spacing_m
 
 
-def test_no_edge_touches_an_island_and_the_way_goes_round_its_corner():
+def test_no_edge_touches_an_island_and_the_path_passes_its_corner():
     box = (0.0, 2.0, -1.0, 1.0)
     chart = land_chart(box)
     network = lattice(chart, (0.5, -3), (0.5, 3), directions=32, spacing=20e3, slack=0.5)
@@ -176,7 +176,7 @@ def test_over_the_pole():
     assert ratio(network) == pytest.approx(1.0, abs=1e-4)
 
 
-def test_region_grows_until_a_long_way_round_fits():
+def test_region_grows_until_a_long_detour_fits():
     # a wall far longer than the first ellipse
     chart = land_chart((-12, 12, -0.1, 0.1))
     network = lattice(chart, (0, -2), (0, 2), directions=16, spacing=40e3, slack=0.1)
@@ -198,7 +198,7 @@ def test_half_the_globe_away_over_a_closed_globe():
     assert over_the_edge * 0.99 < distance[network.meta.goal] < around
 
 
-def test_slack_bounds_the_way_through_every_node():
+def test_slack_limits_the_path_through_every_node():
     network = lattice(OPEN, (10, -40), (12, -30), directions=16, spacing=30e3, slack=0.2)
     a, _ = shortest_path(network, network.meta.start)
     b, _ = shortest_path(network, network.meta.goal)
@@ -260,7 +260,7 @@ def test_ends_on_land_are_refused():
         lattice(chart, (1, 3), (1, 0))
 
 
-def test_enclosed_goal_tells_the_reasons_and_the_nearest_place():
+def test_enclosed_goal_states_the_reasons_and_the_nearest_position():
     chart = land_chart((-1, 3, -1, -0.9), (-1, 3, 2.9, 3), (-1, -0.9, -1, 3), (2.9, 3, -1, 3))
     with pytest.raises(NoRouteError) as refusal:
         lattice(chart, (1, -6), (1, 1), spacing=20e3, directions=16)
@@ -269,7 +269,7 @@ def test_enclosed_goal_tells_the_reasons_and_the_nearest_place():
     assert 100e3 < geodesy.distance(lat, lon, 1, 1) < 300e3
 
 
-def test_no_go_zones_close_the_way():
+def test_no_go_zones_block_the_route():
     zone = geojson((-0.5, 0.5, -0.5, 0.5))
     zone["features"][0]["properties"] = {"kind": "no-go"}
     chart = OPEN.with_zones(zone)
@@ -296,7 +296,7 @@ def test_depth_and_factors_are_on_the_edges():
     st.floats(-75, 75), st.floats(-180, 180), st.floats(0, 6.28), st.floats(5e3, 4e6),
     st.sampled_from([8, 16, 32]), st.sampled_from(["great_circle", "latlon"]),
 )  # fmt: skip
-def test_anywhere_the_way_is_within_the_direction_error(
+def test_the_path_is_within_the_direction_error_anywhere(
     lat, lon, course, length, directions, orientation
 ):
     goal = tuple(float(v) for v in geodesy.direct(lat, lon, course, length))

@@ -1,4 +1,4 @@
-"""The public check finds every kind of fault; end points; static shortest ways; kernels."""
+"""The network check finds every kind of fault; end points; shortest paths; kernels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Emission control areas: their limits and dates, and the share of a leg inside them."""
+"""Emission control areas: limits, dates, and the fraction of a leg inside them."""
 
 from __future__ import annotations
 

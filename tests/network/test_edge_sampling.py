@@ -1,4 +1,4 @@
-"""Samples on the sides of triangles: they lie on their edges and tell a linear field exactly."""
+"""Samples on the sides of triangles lie on their edges and are exact for linear fields."""
 
 import numpy as np
 import pytest

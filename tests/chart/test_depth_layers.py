@@ -1,4 +1,4 @@
-"""Charted depth: sign, priority, least depth on legs, and what is unknown."""
+"""Charted depth: sign, priority, least depth on legs, and unknown depth."""
 
 from __future__ import annotations
 

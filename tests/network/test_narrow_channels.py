@@ -1,4 +1,4 @@
-"""Nodes amid channels too narrow for a lattice, and networks of one way."""
+"""Nodes in narrow channels, and networks of fixed routes."""
 
 import numpy as np
 import pytest
@@ -54,7 +54,7 @@ def test_a_kyle_of_the_highlands_is_passed_on_a_coarse_lattice():
     assert north + south < 1.25 * reached[network.meta.goal]
 
 
-def test_a_line_has_nodes_along_its_way_and_at_borders():
+def test_a_fixed_route_has_nodes_along_it_and_at_borders():
     chart = Chart.gshhg("i").with_eca("north-sea")
     way = [(61.0, 2.0), (62.5, 2.0), (62.5, -3.0)]
     network = fixed_route(chart, way, spacing=50_000.0)
