@@ -204,7 +204,7 @@ class Evaluator:
         share = np.empty(len(ends[0]))
 
         def part(legs: slice) -> None:
-            share[legs] = chart.eca_fraction(
+            share[legs] = chart.zones.eca_fraction(
                 *(end[legs] for end in ends), finest=self.zone_resolution
             )
 

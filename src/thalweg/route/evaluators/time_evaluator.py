@@ -225,7 +225,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     depth = np.full(len(leg), math.inf)
     for side in (-0.5 * math.pi, 0.5 * math.pi):  # a corridor: the same however legs are cut
         ends = *direct(*a, direction + side, beside), *direct(*b, direction + side, beside)
-        depth = np.minimum(depth, np.asarray(chart.depth_along(*ends), dtype=np.float64))
+        depth = np.minimum(depth, np.asarray(chart.depths.along(*ends), dtype=np.float64))
     least: FloatArray = np.minimum.reduceat(depth, first)
     return least
 
