@@ -71,8 +71,8 @@ def ours(directions):
         slack=math.inf,
     )
     fields = rotating_sea().freeze_stations(
-        network.station_lat,
-        network.station_lon,
+        network.stations.lat,
+        network.stations.lon,
         T0,
         T0 + 15 * 3600.0,
         (codes.CURRENT_EAST, codes.CURRENT_NORTH),

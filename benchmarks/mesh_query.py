@@ -50,7 +50,7 @@ def tidal_mesh(nodes: int):
 def tidal_sea(network) -> StationFields:
     """Return a rotary tide over a bed with banks that dry at low water."""
     times = np.arange(0.0, 30.0 * 3600.0 + 1.0, 1800.0)
-    lat, lon = network.station_lat[:, None], network.station_lon[:, None]
+    lat, lon = network.stations.lat[:, None], network.stations.lon[:, None]
     phase = 2.0 * math.pi * (times / M2 - 0.3 * lon)
     bed = 9.0 + 6.0 * np.sin(25.0 * lat) * np.sin(17.0 * lon)
     values = np.empty((len(lat), len(times), len(CHANNELS)), np.float32)
@@ -85,7 +85,7 @@ def main() -> None:
     network = tidal_mesh(nodes)
     built = time.perf_counter() - began
     fields = tidal_sea(network)
-    stations, edges = len(network.station_lat), len(network.target)
+    stations, edges = len(network.stations.lat), len(network.graph.target)
     print(f"{network.n_nodes} nodes, {edges} edges, {stations} stations, built in {built:.1f} s")
     print(f"fields of {fields.values.nbytes / 1e6:.0f} MB, {len(fields.times)} times")
     limits = np.array([DRAUGHT + 1.0, np.inf, np.inf])

@@ -22,7 +22,7 @@ import numpy as np
 
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 from thalweg.sea.frozen_fields import StationFields
 from thalweg.search.earliest_arrival import solve_earliest_arrival
 from thalweg.search.search_problem import make_search_problem
@@ -66,21 +66,22 @@ def regular_network(side: int, offsets=OFFSETS) -> Network:
     indptr = np.concatenate(([0], np.cumsum(inside.sum(axis=1))))
     degree = SPACING / 111e3
     return Network(
-        station_lat=degree * (row - side / 2),
-        station_lon=degree * (column - side / 2),
-        n_nodes=side * side,
-        indptr=indptr.astype(np.int64),
-        target=target[inside],
-        length=each(length, np.float64),
-        course=each([np.arctan2(j, i) % (2 * np.pi) for i, j in offsets], np.float32),
-        depth=np.full(edges, 100.0, np.float32),
-        factor=np.ones(edges, np.float32),
-        price=np.ones(1, np.float32),
-        via_ptr=np.concatenate(([0], np.cumsum(long))).astype(np.int64),
-        via_a=middle[0][inside][long],
-        via_b=middle[1][inside][long],
-        via_w=np.full(samples, 0.5, np.float32),
-        via_s=np.full(samples, 0.5, np.float32),
+        Stations(degree * (row - side / 2), degree * (column - side / 2), side * side),
+        Graph(indptr.astype(np.int64), target[inside]),
+        Edges(
+            length=each(length, np.float64),
+            course=each([np.arctan2(j, i) % (2 * np.pi) for i, j in offsets], np.float32),
+            depth=np.full(edges, 100.0, np.float32),
+            penalty_factor=np.ones(edges, np.float32),
+            price_factor=np.ones(edges, np.float32),
+        ),
+        Samples(
+            ptr=np.concatenate(([0], np.cumsum(long))).astype(np.int64),
+            station_a=middle[0][inside][long],
+            station_b=middle[1][inside][long],
+            weight=np.full(samples, 0.5, np.float32),
+            fraction=np.full(samples, 0.5, np.float32),
+        ),
         can_wait=np.ones(side * side, bool),
         meta=NetworkMeta("regular", SPACING, len(offsets), np.arctan(0.5)),
     )
@@ -88,7 +89,7 @@ def regular_network(side: int, offsets=OFFSETS) -> Network:
 
 def moving_sea(network: Network, period: float, steps: int) -> StationFields:
     """Return eddies, travelling weather, waves with it, and a tide."""
-    x, y = network.station_lon / 9.0, network.station_lat / 9.0
+    x, y = network.stations.lon / 9.0, network.stations.lat / 9.0
     times = np.linspace(0.0, period, steps)
     values = np.empty((len(x), steps, len(CHANNELS)), np.float32)
     for k, t in enumerate(times):
@@ -132,7 +133,7 @@ def main() -> None:
         network, fields, speed_table(), setting=0, limits=TOP_LIMITS, top_speed=SPEED
     )
     solve_earliest_arrival(network, given, start=0, goal=1, depart=0.0)  # compile
-    print(f"{network.n_nodes:,} nodes, {network.n_edges:,} edges, {len(network.via_a):,} middles")
+    print(f"{network.n_nodes:,} nodes, {network.n_edges:,} edges, {len(network.samples):,} middles")
     starts = [0, side * side // 2 + side // 2, side * side - 1, side * side // 4 + 3]
     relaxed, sailed = [], []
     for run in range(options.runs):

@@ -109,7 +109,7 @@ RENAMED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
         "Weighing": ("thalweg.network.alternatives.alternative_path", "EdgeWeights"),
         "eca_shares": ("thalweg.network.alternatives.alternative_path", "eca_fractions"),
         "line": ("thalweg.network.fixed_route", "fixed_route"),
-        "shortest": ("thalweg.network.network", "shortest_path"),
+        "shortest": ("thalweg.network.shortest_paths", "shortest_path"),
         "ways_round": ("thalweg.network.alternatives.path_search", "alternative_paths"),
     },
     "thalweg.route": {

@@ -1,4 +1,4 @@
-"""Ship canals of a chart: their figures, their ends, and the legs that run through them."""
+"""Ship canals of a chart: their data, their ends, and the legs through them."""
 
 import dataclasses
 
@@ -32,7 +32,7 @@ def test_every_gshhg_chart_has_the_four_canals_and_others_none(chart):
 
 
 @pytest.mark.parametrize("canal", CANALS, ids=lambda c: c.name)
-def test_ends_lie_in_open_water_and_the_canal_is_the_only_way_through(chart, canal):
+def test_ends_are_in_open_water_and_only_the_canal_connects_them(chart, canal):
     lat1, lon1, lat2, lon2 = ends_of(canal)
     assert chart.is_navigable([lat1, lat2], [lon1, lon2]).all()
     assert not chart.legs_blocked(lat1, lon1, lat2, lon2)
@@ -84,7 +84,7 @@ def test_a_canal_that_is_none_is_refused_with_near_matches():
         chart.without_canals("suzes")
 
 
-def test_a_ship_that_is_too_large_is_told_why():
+def test_a_ship_that_is_too_large_gets_the_reason():
     kiel = CANALS[2]
     assert kiel.transit_restriction(draught=9.0, beam=30.0) == ""
     said = kiel.transit_restriction(draught=12.0, beam=40.0)

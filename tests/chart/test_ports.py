@@ -28,7 +28,7 @@ def test_ports_lie_where_they_are(text, locode, lat, lon):
     assert distance(port.lat, port.lon, lat, lon) < 10_000.0
 
 
-def test_no_locode_is_told_twice():
+def test_no_locode_occurs_twice():
     assert not {port.locode for port in PORTS.others} & {port.locode for port in PORTS.all}
     assert len({port.locode for port in PORTS.others}) == len(PORTS.others)
 

@@ -1,4 +1,4 @@
-"""What is open and what is closed on the world's coast."""
+"""Open and closed passages of the coast of the world."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from thalweg.chart import Chart
+from thalweg.chart.ports import PORTS
 
 HALVES = (
     (np.s_[:-1], np.s_[1:]),
@@ -82,7 +83,7 @@ def test_no_straight_leg_sails_through_suez_or_panama(world):
 
 
 def test_rotterdam_is_snapped_to_water_joined_to_the_sea(world):
-    port = world.port("NLRTM")
+    port = PORTS.lookup("NLRTM")
     assert not world.is_navigable(port.lat, port.lon)
     lat, lon, away = world.nearest_navigable(port.lat, port.lon)
     assert world.is_navigable(lat, lon)
@@ -120,19 +121,19 @@ def test_a_lake_is_no_land_in_drawings():
     land = [[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]]
     lake = [[0.5, 0.5], [0.5, 1.5], [1.5, 1.5], [1.5, 0.5], [0.5, 0.5]]
     chart = Chart.from_geojson({"type": "Polygon", "coordinates": [land, lake]})
-    drawn = chart.land_polygons(-1.0, 3.0, -1.0, 3.0)
+    drawn = chart.coastline.polygons(-1.0, 3.0, -1.0, 3.0)
     assert sum(polygon.area for polygon in drawn) == pytest.approx(4.0 - 1.0)
-    assert sum(p.area for p in chart.land_polygons(0.0, 1.0, 0.0, 1.0)) == pytest.approx(0.75)
+    assert sum(p.area for p in chart.coastline.polygons(0.0, 1.0, 0.0, 1.0)) == pytest.approx(0.75)
 
 
 def test_land_for_drawing_is_cut_to_the_box_and_crosses_the_antimeridian(world):
-    polygons = world.land_polygons(60.0, 70.0, 170.0, -170.0)
+    polygons = world.coastline.polygons(60.0, 70.0, 170.0, -170.0)
     boxes = np.array([p.bounds for p in polygons])
     assert boxes[:, 0].min() >= 170.0
     assert boxes[:, 2].max() <= 190.0
     assert boxes[:, 2].max() > 185.0
-    seam = [lon == 180.0 for _, lon in world.coastline_lines(64.0, 72.0, 175.0, -175.0)]
+    seam = [lon == 180.0 for _, lon in world.coastline.lines(64.0, 72.0, 175.0, -175.0)]
     assert not any((on[1:] & on[:-1]).any() for on in seam)
-    lines = world.coastline_lines(50.0, 52.0, 0.0, 2.0)
+    lines = world.coastline.lines(50.0, 52.0, 0.0, 2.0)
     assert lines
     assert all((lat >= 50.0).all() and (lon <= 2.0).all() for lat, lon in lines)

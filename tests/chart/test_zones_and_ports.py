@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
+from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.kernels.codes import LAND, NO_GO, OK
 
@@ -30,7 +31,7 @@ def test_a_no_go_zone_blocks_legs_and_positions():
     assert OPEN.is_navigable(1.5, 1.5)
 
 
-def test_land_is_told_before_a_zone(world):
+def test_land_is_reported_before_a_zone(world):
     chart = world.with_zones(zone(0, 40, 10, 60, kind="no go zone"))
     assert chart.leg_status(47.0, 2.0, 47.0, 3.0) == LAND
     assert chart.leg_status(54.0, 3.0, 54.0, 4.0) == NO_GO
@@ -38,14 +39,14 @@ def test_land_is_told_before_a_zone(world):
 
 def test_factors_are_weighted_by_length():
     chart = OPEN.with_zones([zone(1, -1, 2, 1, kind="penalty", factor=3.0)])
-    penalty, price = chart.zone_factor(0.0, [0.0, 1.2, 5.0], 0.0, [4.0, 1.8, 6.0])
+    penalty, price = chart.zones.factors(0.0, [0.0, 1.2, 5.0], 0.0, [4.0, 1.8, 6.0])
     assert penalty == pytest.approx([1.5, 3.0, 1.0], abs=1e-6)
     assert price.tolist() == [1.0, 1.0, 1.0]
 
 
 def test_factors_of_legs_from_nowhere_are_unknown():
     for chart in (OPEN, OPEN.with_zones([zone(1, -1, 2, 1, kind="penalty", factor=3.0)])):
-        penalty, price = chart.zone_factor([0.0, float("nan"), 0.0], 0.0, 0.0, 4.0)
+        penalty, price = chart.zones.factors([0.0, float("nan"), 0.0], 0.0, 0.0, 4.0)
         assert np.isnan(penalty).tolist() == np.isnan(price).tolist() == [False, True, False]
 
 
@@ -53,9 +54,9 @@ def test_overlapping_zones_count_the_largest_factor():
     chart = OPEN.with_zones(
         [zone(0, -1, 2, 1, kind="price", factor=1.5), zone(1, -1, 3, 1, kind="ECA", factor=2.0)]
     )
-    assert chart.zone_factor(0.0, 0.0, 0.0, 3.0)[1] == pytest.approx((1.5 + 2.0 + 2.0) / 3.0)
+    assert chart.zones.factors(0.0, 0.0, 0.0, 3.0)[1] == pytest.approx((1.5 + 2.0 + 2.0) / 3.0)
     more = chart.with_zones(zone(0, -1, 3, 1, kind="price", factor=4.0))
-    assert more.zone_factor(0.0, 0.0, 0.0, 3.0)[1] == pytest.approx(4.0)
+    assert more.zones.factors(0.0, 0.0, 0.0, 3.0)[1] == pytest.approx(4.0)
 
 
 def test_zones_cross_the_antimeridian():
@@ -64,8 +65,8 @@ def test_zones_cross_the_antimeridian():
         zone(179, 2, -179, 3, kind="nogo"),
     ]
     chart = OPEN.with_zones({"type": "FeatureCollection", "features": features})
-    assert chart.zone_factor(0.0, 178.0, 0.0, -178.0)[0] == pytest.approx(1.5)
-    assert chart.zone_factor(0.0, -178.0, 0.0, 178.0)[0] == pytest.approx(1.5)
+    assert chart.zones.factors(0.0, 178.0, 0.0, -178.0)[0] == pytest.approx(1.5)
+    assert chart.zones.factors(0.0, -178.0, 0.0, 178.0)[0] == pytest.approx(1.5)
     assert chart.legs_blocked(2.5, 178.0, 2.5, -178.0)
     assert not chart.is_navigable(2.5, -179.5)
 
@@ -92,7 +93,7 @@ def test_swapped_or_broken_coordinates_are_refused(tmp_path):
         OPEN.with_zones(zone(0, 120, 1, 121, kind="no-go"))
     with pytest.raises(InputError, match="four"):
         Chart.from_geojson({"type": "Polygon", "coordinates": [[[0, 0], [1, 1]]]})
-    with pytest.raises(InputError, match="no area"):
+    with pytest.raises(InputError, match="not an area"):
         OPEN.with_zones({"type": "Point", "coordinates": [0, 0]})
     path = tmp_path / "zones.geojson"
     path.write_text("{broken")
@@ -124,27 +125,27 @@ def test_a_self_crossing_land_polygon_is_repaired_with_a_warning():
     ],
 )
 def test_ports_are_found_by_name_or_locode(text, locode):
-    assert OPEN.port(text).locode == locode
+    assert PORTS.lookup(text).locode == locode
 
 
 def test_rotterdam_is_where_it_is():
-    port = OPEN.ports.lookup("Rotterdam")
+    port = PORTS.lookup("Rotterdam")
     assert (port.name, port.country_code) == ("Rotterdam", "NL")
     assert (port.lat, port.lon) == pytest.approx((51.9, 4.483), abs=0.01)
 
 
 def test_an_ambiguous_port_lists_the_candidates():
     with pytest.raises(InputError) as caught:
-        OPEN.port("Georgetown")
+        PORTS.lookup("Georgetown")
     assert "GYGEO" in str(caught.value)
     assert "USGGE" in caught.value.details["near"]
 
 
 def test_an_unknown_port_names_near_ones():
     with pytest.raises(InputError, match="Rotterdam"):
-        OPEN.port("Rotterdm")
+        PORTS.lookup("Rotterdm")
     with pytest.raises(InputError, match="no port"):
-        OPEN.port("")
+        PORTS.lookup("")
 
 
 @pytest.mark.parametrize(
@@ -190,7 +191,7 @@ def test_a_wide_zone_with_points_in_between_is_what_is_written():
 
 
 @pytest.mark.parametrize(("west", "east"), [(100, -100), (170, -170), (350, 10), (170, 190)])
-def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_way(west, east):
+def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_side(west, east):
     chart = OPEN.with_zones(zone(west, -10, east, 10, kind="no-go"))
     middle = west + 0.5 * ((east - west) % 360)
     outside = [west - 1, east + 1, middle + 180]
@@ -198,7 +199,7 @@ def test_a_zone_across_the_antimeridian_or_greenwich_takes_the_short_way(west, e
     assert chart.is_navigable(0.0, outside).tolist() == [True] * 3
 
 
-def test_an_outline_that_is_an_area_only_across_the_antimeridian_is_one_whichever_way_it_runs():
+def test_an_outline_valid_only_across_the_antimeridian_is_accepted_in_both_directions():
     lens = [(179, 0), (179.5, -2), (-179.5, -2), (-179, 0), (-179.5, 2), (179.5, 2)]
     bulging = [
         (179.5, -1), (179.8, -3), (178, 0), (179.8, 3), (179.5, 1), (-179, 1), (-179, -1),
@@ -225,7 +226,7 @@ def test_an_outline_that_is_an_area_only_across_the_antimeridian_is_one_whicheve
 def test_a_band_round_the_globe_and_a_ring_round_a_pole():
     band = OPEN.with_zones(zone(-180, 60, 180, 90, kind="no-go"))
     assert band.is_navigable([70.0, 70.0, 50.0], [0.0, 180.0, 0.0]).tolist() == [False, False, True]
-    with pytest.raises(InputError, match="round a pole"):
+    with pytest.raises(InputError, match="encloses a pole"):
         OPEN.with_zones(_ring_of((-120, -60), (0, -60), (120, -60)))
 
 

@@ -173,18 +173,21 @@ def test_canal_legs_take_their_time_and_fee_whatever_the_sea():
 
 
 def test_price_and_penalty_zones_and_control_areas():
-    class Zoned:
-        has_depth = False
-        zones = SimpleNamespace(penalty=(1,), price=(1,), eca=(1,))
-
-        def legs_blocked(self, lat1, lon1, lat2, lon2):
-            return np.zeros(len(lat1), bool)
+    class ZonesEverywhere:
+        penalty = price = eca = (1,)
 
         def eca_fraction(self, lat1, lon1, lat2, lon2, *, finest):
             return np.full(len(lat1), 0.25)
 
-        def zone_factor(self, lat1, lon1, lat2, lon2):
+        def factors(self, lat1, lon1, lat2, lon2):
             return np.full(len(lat1), 1.1), np.full(len(lat1), 3.0)
+
+    class Zoned:
+        has_depth = False
+        zones = ZonesEverywhere()
+
+        def legs_blocked(self, lat1, lon1, lat2, lon2):
+            return np.zeros(len(lat1), bool)
 
     genome = jet.straight(6)
     time, cost, _ = jet.evaluator()([genome])

@@ -92,10 +92,12 @@ def test_outside_the_period_there_is_no_sailing():
 @pytest.mark.parametrize("where", [0, 1, 2, 3])
 def test_one_blocked_sample_anywhere_blocks_the_edge(channels, bounds, status, where):
     network = line(2, 6000.0, depth=6.0, pieces=3)
-    place = where if where < 2 else network.via_a[where - 2]  # tail, head, two samples of edge 0
+    place = (
+        where if where < 2 else network.samples.station_a[where - 2]
+    )  # tail, head, two samples of edge 0
 
     def only_there(value):
-        field = np.full((len(network.station_lat), 2), 0.0)
+        field = np.full((len(network.stations.lat), 2), 0.0)
         field[place] = value
         return field
 

@@ -32,11 +32,11 @@ def sailed(network):
     distance, path = shortest_path(network, network.meta.start, network.meta.goal)
     through = []
     for a, b in itertools.pairwise(path):
-        edges = slice(network.indptr[a], network.indptr[a + 1])
-        edge = edges.start + int(np.flatnonzero(network.target[edges] == b)[0])
-        if np.isfinite(network.fixed_time[edge]):
-            named = [c.name for c in CANALS if c.transit_time == network.fixed_time[edge]]
-            assert network.fee[edge] > 0.0 and network.depth[edge] == np.inf
+        edges = slice(network.graph.indptr[a], network.graph.indptr[a + 1])
+        edge = edges.start + int(np.flatnonzero(network.graph.target[edges] == b)[0])
+        if np.isfinite(network.edges.fixed_time[edge]):
+            named = [c.name for c in CANALS if c.transit_time == network.edges.fixed_time[edge]]
+            assert network.edges.fee[edge] > 0.0 and network.edges.depth[edge] == np.inf
             through += named
     return distance[network.meta.goal] / 1852.0, through
 
@@ -86,13 +86,13 @@ def test_a_quay_up_a_fjord_gets_an_approach(chart):
 def test_edges_are_sampled_and_legs_are_free(chart):
     network = globe(chart, NEW_YORK, (49.7, -7.0))
     check_network(network, symmetric=True)
-    tail, head = network.tails(), network.target
-    sea = np.isnan(network.fixed_time)
+    tail, head = network.tails(), network.graph.target
+    sea = np.isnan(network.edges.fixed_time)
     ends = [network.lat[tail], network.lon[tail], network.lat[head], network.lon[head]]
     assert not chart.legs_blocked(*(x[sea] for x in ends)).any()
-    pieces = np.diff(network.via_ptr) + 1
-    assert (network.length / pieces)[sea].max() <= 60.0 * 1852.0 * (1 + 1e-9)
-    assert network.length.max() > 200.0 * 1852.0
+    pieces = np.diff(network.samples.ptr) + 1
+    assert (network.edges.length / pieces)[sea].max() <= 60.0 * 1852.0 * (1 + 1e-9)
+    assert network.edges.length.max() > 200.0 * 1852.0
     close = globe(chart, NEW_YORK, (49.7, -7.0), sample_spacing=20.0 * 1852.0)
     assert close.n_stations - close.n_nodes > 2 * (network.n_stations - network.n_nodes)
 
@@ -125,7 +125,7 @@ def test_no_go_zones_and_areas_are_kept_out(chart):
     free = globe(Chart.gshhg("c"), NEW_YORK, (45.0, -9.5), coast_levels=1)
     round_it = globe(closed, NEW_YORK, (45.0, -9.5), coast_levels=1)
     assert sailed(round_it)[0] > 1.1 * sailed(free)[0]
-    tail, head = round_it.tails(), round_it.target
+    tail, head = round_it.tails(), round_it.graph.target
     ends = round_it.lat[tail], round_it.lon[tail], round_it.lat[head], round_it.lon[head]
     assert not closed.legs_blocked(*ends).any()
     boxed = Chart.gshhg("c").within(30.0, 55.0, -80.0, 0.0)
@@ -133,7 +133,7 @@ def test_no_go_zones_and_areas_are_kept_out(chart):
     assert network.lat.min() >= 30.0 and network.lon.max() <= 0.0
 
 
-def test_no_way_without_the_canals_says_which_would_do(chart):
+def test_no_route_without_canals_names_the_canals_needed(chart):
     wall = [[[6.0, 57.0], [12.6, 57.0], [12.6, 57.4], [6.0, 57.4], [6.0, 57.0]]]
     shut = {"type": "Feature", "properties": {"kind": "no-go"},
             "geometry": {"type": "Polygon", "coordinates": wall}}  # fmt: skip
@@ -228,7 +228,7 @@ def test_canals_of_ones_own_are_edges_too():
     free = dataclasses.replace(CANALS[1], fee=0.0, transit_time=3600.0)
     own = dataclasses.replace(chart, canals=(free,))
     network = globe(own, NEW_YORK, SAN_FRANCISCO, coast_levels=3)
-    assert sorted(set(network.fixed_time[np.isfinite(network.fixed_time)])) == [3600.0]
+    assert sorted(set(network.edges.fixed_time[np.isfinite(network.edges.fixed_time)])) == [3600.0]
 
 
 def test_borders_of_priced_zones_are_finer():

@@ -106,6 +106,6 @@ def test_coasts_are_finer_and_every_leg_is_free():
     a, b = grid.pairs.first, grid.pairs.second
     assert not chart.legs_blocked(grid.lat[a], grid.lon[a], grid.lat[b], grid.lon[b]).any()
     assert grid.rejected + len(a) == len(sphere.pairs()[0])
-    near = chart.shore_distance(lat, lon, cap=150e3)
+    near = chart.coastline.shore_distance(lat, lon, cap=150e3)
     fine = np.arange(len(lat)) >= len(icosphere(3).vertices)
     assert np.median(near[fine]) < 0.5 * np.median(near[~fine & (near > 0)])

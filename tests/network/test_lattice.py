@@ -89,14 +89,18 @@ def test_exact_ends():
 
 def test_vias_leave_no_gap_longer_than_the_spacing():
     network = lattice(OPEN, (10, -40), (12, -30), directions=96, spacing=50e3)
-    tails = np.repeat(np.arange(network.n_edges), np.diff(network.via_ptr))
-    pieces = [np.zeros(network.n_edges), np.ones(network.n_edges), network.via_s.astype(float)]
+    tails = np.repeat(np.arange(network.n_edges), np.diff(network.samples.ptr))
+    pieces = [
+        np.zeros(network.n_edges),
+        np.ones(network.n_edges),
+        network.samples.fraction.astype(float),
+    ]
     edges = np.concatenate([np.arange(network.n_edges), np.arange(network.n_edges), tails])
     share = np.concatenate(pieces)
     order = np.lexsort((share, edges))
     step = np.diff(share[order])[np.diff(edges[order]) == 0]
     edge = edges[order][1:][np.diff(edges[order]) == 0]
-    assert (step * network.length[edge]).max() < 1.45 * network.meta.spacing_m
+    assert (step * network.edges.length[edge]).max() < 1.45 * network.meta.spacing_m
 
 
 def test_levels_are_finer_at_the_coast_and_joined():
@@ -107,24 +111,30 @@ def test_levels_are_finer_at_the_coast_and_joined():
     check_network(network, symmetric=True)
     distance, _ = shortest_path(network, network.meta.start)
     assert np.isfinite(distance).all()
-    shore = chart.shore_distance(network.lat, network.lon)
+    shore = chart.coastline.shore_distance(network.lat, network.lon)
     near = np.flatnonzero(shore < 8e3)
-    edge_length = [network.length[network.indptr[n] : network.indptr[n + 1]].min() for n in near]
+    edge_length = [
+        network.edges.length[network.graph.indptr[n] : network.graph.indptr[n + 1]].min()
+        for n in near
+    ]
     assert np.median(edge_length) < network.meta.spacing_m / 8 * 1.01
     far = np.flatnonzero(shore > 120e3)
     far = far[far < network.n_nodes - 2]
-    lengths = [network.length[network.indptr[n] : network.indptr[n + 1]].min() for n in far]
+    lengths = [
+        network.edges.length[network.graph.indptr[n] : network.graph.indptr[n + 1]].min()
+        for n in far
+    ]
     assert np.median(lengths) > 0.9 * network.meta.spacing_m
 
 
-def test_no_edge_touches_an_island_and_the_way_goes_round_its_corner():
+def test_no_edge_touches_an_island_and_the_path_passes_its_corner():
     box = (0.0, 2.0, -1.0, 1.0)
     chart = land_chart(box)
     network = lattice(chart, (0.5, -3), (0.5, 3), directions=32, spacing=20e3, slack=0.5)
     tails = network.tails()
     blocked = chart.legs_blocked(
         network.lat[tails], network.lon[tails],
-        network.lat[network.target], network.lon[network.target],
+        network.lat[network.graph.target], network.lon[network.graph.target],
     )  # fmt: skip
     assert not blocked.any()
     assert network.meta.rejected["land"] > 0
@@ -166,7 +176,7 @@ def test_over_the_pole():
     assert ratio(network) == pytest.approx(1.0, abs=1e-4)
 
 
-def test_region_grows_until_a_long_way_round_fits():
+def test_region_grows_until_a_long_detour_fits():
     # a wall far longer than the first ellipse
     chart = land_chart((-12, 12, -0.1, 0.1))
     network = lattice(chart, (0, -2), (0, 2), directions=16, spacing=40e3, slack=0.1)
@@ -188,7 +198,7 @@ def test_half_the_globe_away_over_a_closed_globe():
     assert over_the_edge * 0.99 < distance[network.meta.goal] < around
 
 
-def test_slack_bounds_the_way_through_every_node():
+def test_slack_limits_the_path_through_every_node():
     network = lattice(OPEN, (10, -40), (12, -30), directions=16, spacing=30e3, slack=0.2)
     a, _ = shortest_path(network, network.meta.start)
     b, _ = shortest_path(network, network.meta.goal)
@@ -250,7 +260,7 @@ def test_ends_on_land_are_refused():
         lattice(chart, (1, 3), (1, 0))
 
 
-def test_enclosed_goal_tells_the_reasons_and_the_nearest_place():
+def test_enclosed_goal_states_the_reasons_and_the_nearest_position():
     chart = land_chart((-1, 3, -1, -0.9), (-1, 3, 2.9, 3), (-1, -0.9, -1, 3), (2.9, 3, -1, 3))
     with pytest.raises(NoRouteError) as refusal:
         lattice(chart, (1, -6), (1, 1), spacing=20e3, directions=16)
@@ -259,7 +269,7 @@ def test_enclosed_goal_tells_the_reasons_and_the_nearest_place():
     assert 100e3 < geodesy.distance(lat, lon, 1, 1) < 300e3
 
 
-def test_no_go_zones_close_the_way():
+def test_no_go_zones_block_the_route():
     zone = geojson((-0.5, 0.5, -0.5, 0.5))
     zone["features"][0]["properties"] = {"kind": "no-go"}
     chart = OPEN.with_zones(zone)
@@ -274,11 +284,11 @@ def test_depth_and_factors_are_on_the_edges():
     chart = Chart.open_water(-3, 3, -3, 3).with_zones(zone)
     chart = chart.with_depth(lambda lat, lon: np.where(np.abs(lon) < 0.2, 4.0, 20.0))
     network = lattice(chart, (0, -2), (0, 2), directions=8, spacing=10e3)
-    assert set(np.unique(network.depth)) == {4.0, 20.0}
-    assert network.factor.min() == 1.0
-    assert network.factor.max() == pytest.approx(2.0)
+    assert set(np.unique(network.edges.depth)) == {4.0, 20.0}
+    assert network.edges.penalty_factor.min() == 1.0
+    assert network.edges.penalty_factor.max() == pytest.approx(2.0)
     lon = network.lon[network.tails()]
-    assert np.all(network.depth[np.abs(lon) < 0.1] == 4.0)
+    assert np.all(network.edges.depth[np.abs(lon) < 0.1] == 4.0)
 
 
 @settings(max_examples=15)
@@ -286,7 +296,7 @@ def test_depth_and_factors_are_on_the_edges():
     st.floats(-75, 75), st.floats(-180, 180), st.floats(0, 6.28), st.floats(5e3, 4e6),
     st.sampled_from([8, 16, 32]), st.sampled_from(["great_circle", "latlon"]),
 )  # fmt: skip
-def test_anywhere_the_way_is_within_the_direction_error(
+def test_the_path_is_within_the_direction_error_anywhere(
     lat, lon, course, length, directions, orientation
 ):
     goal = tuple(float(v) for v in geodesy.direct(lat, lon, course, length))

@@ -91,7 +91,7 @@ def test_direction_error_of_a_regular_mesh(rings, directions, worst):
     check_network(network, symmetric=True)
     assert network.meta.directions == directions
     assert 1.0 / math.cos(network.meta.gap_rad / 2.0) == pytest.approx(worst, abs=5e-5)
-    assert np.diff(network.indptr).max() == directions
+    assert np.diff(network.graph.indptr).max() == directions
     middle = (n // 2) * n + n // 2
     distance, _ = shortest_path(network, middle)
     straight = geodesy.distance(lat[middle], lon[middle], lat, lon)
@@ -107,8 +107,8 @@ def test_no_leg_crosses_a_hole_of_the_mesh():
     assert network.meta.rejected["outside the mesh"] > 0
     tails = network.tails()
     for share in (0.25, 0.5, 0.75):
-        y = network.lat[tails] * (1 - share) + network.lat[network.target] * share
-        x = network.lon[tails] * (1 - share) + network.lon[network.target] * share
+        y = network.lat[tails] * (1 - share) + network.lat[network.graph.target] * share
+        x = network.lon[tails] * (1 - share) + network.lon[network.graph.target] * share
         assert np.hypot(x, y).min() > 0.035
 
 
@@ -123,7 +123,7 @@ def test_a_hole_touched_only_at_its_corners_is_not_crossed():
                 faces += [(a, a + 1, a + 5), (a + 1, a + 6, a + 5)]
     network = mesh(OPEN, y * 0.01, x * 0.01, faces, rings=3)
     tails = network.tails()
-    pairs = set(zip(tails.tolist(), network.target.tolist()))
+    pairs = set(zip(tails.tolist(), network.graph.target.tolist()))
     assert (6, 18) not in pairs
     assert (7, 17) not in pairs
     assert (6, 7) in pairs
@@ -137,7 +137,7 @@ def test_land_on_the_chart_is_left_out():
     tails = network.tails()
     assert not chart.legs_blocked(
         network.lat[tails], network.lon[tails],
-        network.lat[network.target], network.lon[network.target],
+        network.lat[network.graph.target], network.lon[network.graph.target],
     ).any()  # fmt: skip
 
 
@@ -156,13 +156,13 @@ def test_thinned_mesh_is_denser_where_the_flow_is_strong():
 def test_samples_lie_at_most_half_the_local_spacing_apart():
     lat, lon, triangles = triangular_mesh(15, 1000.0)
     network = mesh(OPEN, lat, lon, triangles, rings=3)
-    count = np.diff(network.via_ptr)
+    count = np.diff(network.samples.ptr)
     inner = np.hypot(network.lat, network.lon) < 0.04
-    inside = inner[network.tails()] & inner[network.target]
+    inside = inner[network.tails()] & inner[network.graph.target]
     assert inside.sum() > 500
-    assert np.all((network.length / (count + 1))[inside] <= 0.5 * 1000.0 * 1.001)
+    assert np.all((network.edges.length / (count + 1))[inside] <= 0.5 * 1000.0 * 1.001)
     assert count[inside].max() == 5
-    assert np.all(network.via_a == network.via_b)
+    assert np.all(network.samples.station_a == network.samples.station_b)
 
 
 def test_across_the_antimeridian():
@@ -172,7 +172,7 @@ def test_across_the_antimeridian():
     here = mesh(OPEN, lat, lon, triangles, rings=2)
     check_network(network, symmetric=True)
     assert network.n_edges == here.n_edges
-    assert np.sort(network.length) == pytest.approx(np.sort(here.length), rel=1e-9)
+    assert np.sort(network.edges.length) == pytest.approx(np.sort(here.edges.length), rel=1e-9)
 
 
 def test_ends_on_a_mesh():
@@ -209,6 +209,6 @@ def test_links_of_ends_are_sampled_as_closely_as_the_mesh_around_them():
     network = mesh(Chart.open_water(-2, 2, -2, 2), lat, lon, triangles)
     coarse = replace(network, meta=replace(network.meta, spacing_m=30_000.0))
     ends = with_endpoints(coarse, Chart.open_water(-2, 2, -2, 2), (0.01, 0.01), (0.1, 0.1))
-    first = slice(ends.indptr[ends.meta.start], ends.indptr[ends.meta.start + 1])
-    pieces = 1 + np.diff(ends.via_ptr)[first]
-    assert (ends.length[first] / pieces).max() < 2000.0
+    first = slice(ends.graph.indptr[ends.meta.start], ends.graph.indptr[ends.meta.start + 1])
+    pieces = 1 + np.diff(ends.samples.ptr)[first]
+    assert (ends.edges.length[first] / pieces).max() < 2000.0

@@ -1,8 +1,9 @@
-"""The public check finds every kind of fault; end points; static shortest ways; kernels."""
+"""The network check finds every kind of fault; end points; shortest paths; kernels."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import networkx as nx
 import numpy as np
@@ -15,11 +16,12 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.network import graph_building
-from thalweg.network import Network, check_network, lattice, shortest_path, with_endpoints
+from thalweg.network import Graph, Network, check_network, lattice, shortest_path, with_endpoints
 from thalweg.network.regional_lattice.conformal_projection import (
     great_circle_projection,
     mercator_projection,
 )
+from thalweg.network.shortest_paths import shortest_path_tree
 
 OPEN = Chart.open_water()
 
@@ -40,58 +42,72 @@ def test_sound_network_passes(network):
 
 
 FAULTS = {
-    "indptr": (lambda n: {"indptr": n.indptr[:-1].copy()}, "indptr"),
-    "falling": (lambda n: {"indptr": changed(n.indptr, 3, 10**6)}, "ascend"),
-    "target": (lambda n: {"target": changed(n.target, 0, n.n_nodes)}, "ends outside"),
-    "loop": (lambda n: {"target": changed(n.target, 0, 0)}, "own node"),
-    "length": (lambda n: {"length": n.length * 1.00001}, "length"),
-    "negative": (lambda n: {"length": -n.length}, "positive"),
-    "course": (lambda n: {"course": n.course + np.float32(0.01)}, "course"),
-    "factor": (lambda n: {"factor": n.factor * np.float32(0.5)}, "factor"),
-    "price": (lambda n: {"price": -n.price}, "price"),
-    "station": (lambda n: {"station_lat": changed(n.station_lat, 0, np.nan)}, "finite"),
-    "latitude": (lambda n: {"station_lat": changed(n.station_lat, 0, 91.0)}, "90"),
-    "via": (lambda n: {"via_a": changed(n.via_a, 0, -1)}, "no station"),
-    "weight": (lambda n: {"via_w": changed(n.via_w, 0, 1.5)}, "weight"),
-    "share": (lambda n: {"via_s": changed(n.via_s, 0, 1.0)}, "inside its edge"),
-    "place": (lambda n: {"via_a": np.roll(n.via_a, 500)}, "lie on its edge"),
-    "kind": (lambda n: {"course": n.course.astype(float)}, "float32"),
-    "wait": (lambda n: {"can_wait": n.can_wait[:-1].copy()}, "can_wait"),
-    "goal": (lambda n: {"meta": replace(n.meta, goal=10**6)}, "goal"),
+    "indptr": ("graph", lambda g: {"indptr": g.indptr[:-1].copy()}, "indptr"),
+    "falling": ("graph", lambda g: {"indptr": changed(g.indptr, 3, 10**6)}, "ascend"),
+    "target": (
+        "graph",
+        lambda g: {"target": changed(g.target, 0, len(g.indptr) - 1)},
+        "ends outside",
+    ),
+    "loop": ("graph", lambda g: {"target": changed(g.target, 0, 0)}, "own node"),
+    "length": ("edges", lambda e: {"length": e.length * 1.00001}, "length"),
+    "negative": ("edges", lambda e: {"length": -e.length}, "positive"),
+    "course": ("edges", lambda e: {"course": e.course + np.float32(0.01)}, "course"),
+    "penalty": (
+        "edges",
+        lambda e: {"penalty_factor": 0.5 * e.penalty_factor},
+        "factor",
+    ),
+    "price": ("edges", lambda e: {"price_factor": -e.price_factor}, "price"),
+    "station": ("stations", lambda s: {"lat": changed(s.lat, 0, np.nan)}, "finite"),
+    "latitude": ("stations", lambda s: {"lat": changed(s.lat, 0, 91.0)}, "90"),
+    "sample": ("samples", lambda s: {"station_a": changed(s.station_a, 0, -1)}, "no station"),
+    "weight": ("samples", lambda s: {"weight": changed(s.weight, 0, 1.5)}, "weight"),
+    "fraction": ("samples", lambda s: {"fraction": changed(s.fraction, 0, 1.0)}, "inside its edge"),
+    "place": ("samples", lambda s: {"station_a": np.roll(s.station_a, 500)}, "lie on its edge"),
+    "kind": ("edges", lambda e: {"course": e.course.astype(float)}, "float32"),
+    "goal": ("meta", lambda _: {"goal": 10**6}, "goal"),
 }
 
 
 @pytest.mark.parametrize("name", FAULTS)
 def test_every_fault_is_named(network, name):
-    change, word = FAULTS[name]
+    part, change, word = FAULTS[name]
+    sound = getattr(network, part)
     with pytest.raises(InputError, match=word) as fault:
-        check_network(replace(network, **change(network)))
+        check_network(replace(network, **{part: replace(sound, **change(sound))}))
     assert fault.value.details["faults"]
+
+
+def test_too_few_waiting_nodes_are_named(network):
+    with pytest.raises(InputError, match="can_wait"):
+        check_network(replace(network, can_wait=network.can_wait[:-1].copy()))
 
 
 def test_one_way_edges_are_no_fault_unless_symmetry_is_declared(network):
     keep = np.ones(network.n_edges, bool)
-    keep[np.flatnonzero(np.diff(network.via_ptr) == 0)[0]] = False
-    indptr = np.concatenate([[0], np.cumsum(keep)])[network.indptr]
-    via_ptr = np.append(network.via_ptr[:-1][keep], network.via_ptr[-1])
-    columns = {
-        name: getattr(network, name)[keep]
-        for name in ("target", "length", "course", "depth", "factor", "price")
-    }
-    lame = replace(network, indptr=indptr, via_ptr=via_ptr, **columns)
-    check_network(lame)
+    ptr = network.samples.ptr
+    keep[np.flatnonzero(np.diff(ptr) == 0)[0]] = False
+    indptr = np.concatenate([[0], np.cumsum(keep)])[network.graph.indptr]
+    one_way = replace(
+        network,
+        graph=Graph(indptr, network.graph.target[keep]),
+        edges=network.edges.take(keep),
+        samples=replace(network.samples, ptr=np.append(ptr[:-1][keep], ptr[-1])),
+    )
+    check_network(one_way)
     with pytest.raises(InputError, match="no opposite"):
-        check_network(lame, symmetric=True)
+        check_network(one_way, symmetric=True)
 
 
 def test_unordered_samples_are_a_fault():
     wide = lattice(OPEN, (10, -40), (12, -37), directions=32, spacing=30e3)
-    edge = np.flatnonzero(np.diff(wide.via_ptr) == 2)[0]
-    first = wide.via_ptr[edge]
-    swapped = wide.via_s.copy()
+    edge = np.flatnonzero(np.diff(wide.samples.ptr) == 2)[0]
+    first = wide.samples.ptr[edge]
+    swapped = wide.samples.fraction.copy()
     swapped[first : first + 2] = swapped[first : first + 2][::-1]
     with pytest.raises(InputError, match="not in order"):
-        check_network(replace(wide, via_s=swapped))
+        check_network(replace(wide, samples=replace(wide.samples, fraction=swapped)))
 
 
 def test_with_endpoints_adds_nodes_in_order(network):
@@ -128,15 +144,19 @@ def test_static_distances_equal_networkx(seed):
     a, b = a[a != b], b[a != b]
     weight = rng.random(len(a))
     indptr, target, pair, _ = graph_building.directed_edges_of_pairs(30, a, b)
-    distance, parent = np.empty(30), np.empty(30, np.int64)
-    graph_building.static_dijkstra(indptr, target, weight[pair], 0, -1, distance, parent)
+    tree = shortest_path_tree(Graph(indptr, target), weight[pair], 0)
     peer = nx.Graph()
     peer.add_nodes_from(range(30))
     for p, q, w in zip(a.tolist(), b.tolist(), weight.tolist()):
         if not peer.has_edge(p, q) or peer[p][q]["weight"] > w:
             peer.add_edge(p, q, weight=w)
     truth = nx.single_source_dijkstra_path_length(peer, 0)
-    assert distance == pytest.approx([truth.get(k, np.inf) for k in range(30)])
+    assert tree.distance == pytest.approx([truth.get(k, np.inf) for k in range(30)])
+    for node in range(30):
+        path = tree.path(node)
+        length = sum(peer[p][q]["weight"] for p, q in pairwise(path))
+        assert length == pytest.approx(truth.get(node, 0.0))
+        assert (path[:1] + path[-1:] == [0, node]) == (node in truth)
 
 
 def test_measure_agrees_with_the_exact_geodesic():

@@ -64,8 +64,8 @@ def test_nodes_of_a_network_know_it() -> None:
     network = lattice(chart(ANCHORAGE), (51.7, 3.45), (51.7, 3.7), spacing=1000.0)
     n = network.n_nodes
     inside = (
-        (network.station_lat[:n] >= 51.62) & (network.station_lat[:n] <= 51.68)
-        & (network.station_lon[:n] >= 3.46) & (network.station_lon[:n] <= 3.52)
+        (network.stations.lat[:n] >= 51.62) & (network.stations.lat[:n] <= 51.68)
+        & (network.stations.lon[:n] >= 3.46) & (network.stations.lon[:n] <= 3.52)
     )  # fmt: skip
     inside[[network.meta.start, network.meta.goal]] = True  # berths
     assert np.array_equal(network.can_wait, inside)

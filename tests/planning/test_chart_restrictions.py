@@ -40,9 +40,9 @@ def test_a_canal_between_networks_takes_its_time_and_fee():
     link = CanalLink(80_000.0, 36_000.0, 5_000.0)
     whole = concatenate_networks(parts, [link])
     check_network(whole)
-    canal = np.flatnonzero(np.isfinite(whole.fixed_time))
+    canal = np.flatnonzero(np.isfinite(whole.edges.fixed_time))
     assert len(canal) == 1
-    assert whole.fixed_time[canal[0]] == 36_000.0 and whole.fee[canal[0]] == 5_000.0
+    assert whole.edges.fixed_time[canal[0]] == 36_000.0 and whole.edges.fee[canal[0]] == 5_000.0
     assert length(whole) == pytest.approx(sum(length(part) for part in parts) + 80_000.0)
 
 

@@ -88,7 +88,7 @@ def test_the_three_ways_from_floro_to_santander():
 @pytest.mark.parametrize("name", ["Great Britain", "Ireland", "Iceland", "Viti Levu", "Australia"])
 def test_land_has_its_name(name):
     chart = Chart.gshhg("l")
-    rings = chart.land.rings
+    rings = chart.coastline.rings
     found = []
     for a, b in zip(rings.start[:-1], rings.start[1:]):
         lat, lon = rings.lat[a:b], np.degrees(np.unwrap(np.radians(rings.lon[a:b])))

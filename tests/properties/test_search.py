@@ -24,7 +24,7 @@ def random_world(seed, *, nodes=6, gaps=False, pieces=2, **options):
     pairs = [(i, j) for i in range(nodes) for j in range(nodes) if i != j and rng.random() < 0.6]
     assume(pairs)
     network = make_network(lat, lon, pairs, pieces=pieces, **options)
-    count = len(network.station_lat)
+    count = len(network.stations.lat)
     times = STEP * np.arange(STEPS)
     phase, rate = rng.uniform(0, 2 * np.pi, (2, count, 1)), rng.uniform(1, 4, (2, count, 1))
     uv = 1.1 * np.sin(phase + rate * times / 12e3)
@@ -61,8 +61,8 @@ def brute_force(network, fields, node, time, wait, seen=()):
     if node == network.n_nodes - 1:
         return time
     best = np.inf
-    for edge in range(network.indptr[node], network.indptr[node + 1]):
-        to = int(network.target[edge])
+    for edge in range(network.graph.indptr[node], network.graph.indptr[node + 1]):
+        to = int(network.graph.target[edge])
         if to not in seen:
             then = edge_arrival(network, fields, edge, time, wait)
             if then < best:
@@ -73,8 +73,8 @@ def brute_force(network, fields, node, time, wait, seen=()):
 def check_path(network, fields, result):
     """Every step of a path is an edge, departs no earlier than it arrives, and takes its time."""
     for i, (a, b) in enumerate(pairwise(result.path)):
-        edges = range(network.indptr[a], network.indptr[a + 1])
-        edge = next(e for e in edges if network.target[e] == b)
+        edges = range(network.graph.indptr[a], network.graph.indptr[a + 1])
+        edge = next(e for e in edges if network.graph.target[e] == b)
         assert result.path_depart[i] >= result.path_arrive[i]
         then = edge_arrival(network, fields, edge, result.path_depart[i], False)
         assert abs(then - result.path_arrive[i + 1]) < 1e-6

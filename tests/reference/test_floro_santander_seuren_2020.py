@@ -86,11 +86,11 @@ def fastest(chart) -> dict[str, Route]:
     for name, middle in WAYS.items():
         places = np.array([START, *middle, GOAL])
         lat, lon = places.T
-        share = chart.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        share = chart.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
         cut = [tuple(places[0])]
         for k, part in enumerate(share):
             if 1e-6 < part < 1.0 - 1e-6:
-                at = part if chart.in_eca(*places[k]) else 1.0 - part
+                at = part if chart.zones.in_eca(*places[k]) else 1.0 - part
                 cut.append(tuple(float(x) for x in positions_along(*places[k], *places[k + 1], at)))
             cut.append(tuple(places[k + 1]))
         found[name] = as_route(Track.from_positions(cut, depart=0), chart)
@@ -137,7 +137,7 @@ def at_mix(route: Route, inside: np.ndarray, mix: dict[bool, np.ndarray]) -> Tra
 
 def zones_of(route: Route, chart: Chart) -> tuple[np.ndarray, dict[bool, float]]:
     track = route.track
-    share = chart.eca_fraction(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
+    share = chart.zones.eca_fraction(track.lat[:-1], track.lon[:-1], track.lat[1:], track.lon[1:])
     inside = share > 0.5
     length = route.legs["length"]
     return inside, {True: float(length[inside].sum()), False: float(length[~inside].sum())}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.kernels.network.static_paths import connected_waters
+from thalweg.network.global_grid.endpoint_attachment import ConnectedWaters
 from thalweg.network.global_grid.grid import GridResolution, make_grid
 from thalweg.network.global_grid.icosphere import icosphere
 
@@ -68,7 +68,8 @@ def water_at(grid, root, place):
 @pytest.mark.parametrize(("coast_levels", "joined"), [(0, False), (3, True)])
 def test_gibraltar_is_closed_at_level_6_and_open_with_3_more(coast_levels, joined):
     grid = make_grid(Chart.gshhg("i"), GridResolution(6, coast_levels, directions=6))
-    root = connected_waters(len(grid.lat), grid.pairs.first, grid.pairs.second)
+    every = np.ones(len(grid.lat), bool)
+    root = ConnectedWaters.of_pairs(grid.lat, grid.lon, grid.pairs, every, 0.0).water
     atlantic, inside = (water_at(grid, root, place) for place in (ATLANTIC, MEDITERRANEAN))
     assert np.sum(root == inside) > 50
     assert (atlantic == inside) == joined

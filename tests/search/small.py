@@ -7,7 +7,7 @@ import numpy as np
 from thalweg.core import geodesy
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 from thalweg.sea.frozen_fields import StationFields
 
 NO_LIMITS = np.array([-np.inf, np.inf, np.inf])
@@ -56,21 +56,22 @@ def make_network(
     )
     station = (n + np.arange(each * (pieces - 1))).astype(np.int32)
     return Network(
-        station_lat=np.concatenate([lat, via[0]]),
-        station_lon=np.concatenate([lon, via[1]]),
-        n_nodes=n,
-        indptr=np.searchsorted(tail, np.arange(n + 1)).astype(np.int64),
-        target=head.astype(np.int32),
-        length=per_edge(length, exact, np.float64),
-        course=per_edge(course, mean, np.float32),
-        depth=per_edge(depth, None, np.float32),
-        factor=per_edge(factor, None, np.float32),
-        price=np.ones(each, np.float32),
-        via_ptr=np.arange(each + 1, dtype=np.int64) * (pieces - 1),
-        via_a=station,
-        via_b=station,
-        via_w=np.zeros(len(station), np.float32),
-        via_s=np.tile(s, each).astype(np.float32),
+        Stations(np.concatenate([lat, via[0]]), np.concatenate([lon, via[1]]), n),
+        Graph(np.searchsorted(tail, np.arange(n + 1)).astype(np.int64), head.astype(np.int32)),
+        Edges(
+            length=per_edge(length, exact, np.float64),
+            course=per_edge(course, mean, np.float32),
+            depth=per_edge(depth, None, np.float32),
+            penalty_factor=per_edge(factor, None, np.float32),
+            price_factor=np.ones(each, np.float32),
+        ),
+        Samples(
+            ptr=np.arange(each + 1, dtype=np.int64) * (pieces - 1),
+            station_a=station,
+            station_b=station,
+            weight=np.zeros(len(station), np.float32),
+            fraction=np.tile(s, each).astype(np.float32),
+        ),
         can_wait=np.ascontiguousarray(np.broadcast_to(can_wait, n), bool),
         meta=NetworkMeta("test", 0.0, 0, gap),
     )
@@ -81,14 +82,14 @@ def make_fields(network: Network, times, **channels) -> StationFields:
     times = np.asarray(times, float)
     ids = {name: getattr(codes, name.upper()) for name in channels}
     names = sorted(channels, key=lambda name: ids[name])
-    shape = (len(network.station_lat), len(times))
+    shape = (len(network.stations.lat), len(times))
     values = np.zeros((*shape, len(names)), np.float32)
     index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     for k, name in enumerate(names):
         value = channels[name]
         if callable(value):
             value = value(
-                times[None, :], network.station_lat[:, None], network.station_lon[:, None]
+                times[None, :], network.stations.lat[:, None], network.stations.lon[:, None]
             )
         values[:, :, k] = np.broadcast_to(value, shape)
         index[ids[name]] = k

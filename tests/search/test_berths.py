@@ -42,11 +42,11 @@ def minute_by_minute(network, fields):
         if k:
             there[:, k] |= there[:, k - 1] & stays[:, k] & stays[:, k - 1]
         for e in np.flatnonzero(there[tails, k] & np.isfinite(arrivals[:, k])):
-            if network.target[e] == goal:
+            if network.graph.target[e] == goal:
                 best = min(best, arrivals[e, k])
             step = round((arrivals[e, k] - DEPART) / MINUTE)
             if step < len(clock):
-                there[network.target[e], step] = True
+                there[network.graph.target[e], step] = True
     return best
 
 
@@ -80,7 +80,7 @@ def _sail_again(network, fields, found):
     for a, b, leave, come in zip(
         found.path[:-1], found.path[1:], found.path_depart[:-1], found.path_arrive[1:]
     ):
-        edge = int(np.flatnonzero((tails == a) & (network.target == b))[0])
+        edge = int(np.flatnonzero((tails == a) & (network.graph.target == b))[0])
         arrivals, _ = sampled_arrivals(
             network, fields, steady(4.0), departures=np.array([leave]), **GIVEN
         )

@@ -35,11 +35,13 @@ def test_a_static_network_agrees_with_networkx(reach):
     fields = make_fields(network, [0.0, 1e6], current_east=0.7, current_north=-0.4)
     graph = nx.DiGraph()
     tail, along = network.tails(), (0.7, -0.4)
-    for e, v in enumerate(network.target):
-        c = np.array([np.sin(network.course[e]), np.cos(network.course[e])])
+    for e, v in enumerate(network.graph.target):
+        c = np.array([np.sin(network.edges.course[e]), np.cos(network.edges.course[e])])
         across = along[1] * c[0] - along[0] * c[1]
         sog = np.dot(along, c) + np.sqrt(25.0 - across**2)
-        graph.add_edge(int(tail[e]), int(v), time=network.length[e] / sog, way=network.length[e])
+        graph.add_edge(
+            int(tail[e]), int(v), time=network.edges.length[e] / sog, way=network.edges.length[e]
+        )
     times = nx.single_source_dijkstra_path_length(graph, 0, weight="time")
     every = sail(network, fields, goal=None)
     assert every.node_arrival == pytest.approx([times[v] for v in range(72)], rel=1e-6)
@@ -159,7 +161,13 @@ def test_frozen_arrays_are_welcome():
     network = line(3, 3000.0)
     fields = make_fields(network, [0.0, 1e5], **STILL)
     before = sail(network, fields).arrive
-    for array in (network.length, network.target, network.indptr, fields.values, fields.times):
+    for array in (
+        network.edges.length,
+        network.graph.target,
+        network.graph.indptr,
+        fields.values,
+        fields.times,
+    ):
         array.flags.writeable = False
     assert sail(network, fields).arrive == before
 

@@ -52,7 +52,7 @@ def example():
     # half the slowness of the tail at departure plus half that of the head at predicted arrival
     tail = np.array([nan, nan, nan, 3, 3, 3, 9, 7, 2, 2] + [2] * 7)
     head = np.array([3] * 9 + [2, 2, 2, 2, 2] + [9, 9, 9])
-    length = network.length[0]
+    length = network.edges.length[0]
     fields = make_fields(
         network, UNIT * np.arange(17), speed_field=length / (UNIT * np.stack([tail, head]))
     )

@@ -1,7 +1,5 @@
 """Edges of fixed time: canals are passed in their time, whatever the sea is."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -20,15 +18,15 @@ HOUR = 3600.0
 
 def with_canal(network, pairs, time, *, length=None, fee=0.0):
     """Return the network with edges between pairs of nodes that take a fixed time."""
-    fixed, fees = network.fixed_time.copy(), network.fee.copy()
-    lengths = network.length.copy()
+    fixed, fees = network.edges.fixed_time.copy(), network.edges.fee.copy()
+    lengths = network.edges.length.copy()
     tails = network.tails()
     for a, b in pairs:
-        edge = np.flatnonzero((tails == a) & (network.target == b))
+        edge = np.flatnonzero((tails == a) & (network.graph.target == b))
         fixed[edge], fees[edge] = time, fee
         if length is not None:
             lengths[edge] = length
-    return dataclasses.replace(network, fixed_time=fixed, fee=fees, length=lengths)
+    return network.with_edges(fixed_time=fixed, fee=fees, length=lengths)
 
 
 def square(**options):
@@ -47,8 +45,8 @@ def search(network, fields, speed=5.0, **options):
 def test_defaults_are_sailed_edges_without_fees():
     network = square()
     check_network(network)
-    assert np.isnan(network.fixed_time).all() and (network.fee == 0.0).all()
-    assert len(network.fixed_time) == network.n_edges
+    assert np.isnan(network.edges.fixed_time).all() and (network.edges.fee == 0.0).all()
+    assert len(network.edges.fixed_time) == network.n_edges
 
 
 def test_a_canal_is_passed_in_its_time_through_any_sea():
@@ -72,7 +70,7 @@ def test_the_slower_canal_is_left_alone_and_the_quicker_one_is_taken():
     fields = make_fields(base, TIMES, current_east=0.0, current_north=0.0)
     around = search(with_canal(base, [(0, 2)], 1e5), fields)
     assert len(around.path) == 3
-    assert around.arrive == pytest.approx(base.length[0] / 5.0 * 2, rel=1e-2)
+    assert around.arrive == pytest.approx(base.edges.length[0] / 5.0 * 2, rel=1e-2)
     through = search(with_canal(base, [(0, 2)], around.arrive - 1.0), fields)
     assert through.path.tolist() == [0, 2]
 
@@ -105,7 +103,7 @@ def test_astar_equals_dijkstra_on_random_networks_with_canals(seed):
     network = make_network(lat, lon, sorted(pairs), pieces=2)
     fixed = np.where(rng.random(network.n_edges) < 0.2, rng.uniform(1e3, 2e5), np.nan)
     stretch = np.where(np.isnan(fixed), 1.0, rng.uniform(1.0, 1.5, network.n_edges))
-    network = dataclasses.replace(network, fixed_time=fixed, length=network.length * stretch)
+    network = network.with_edges(fixed_time=fixed, length=network.edges.length * stretch)
     fields = make_fields(network, np.linspace(0, 3e6, 5), current_east=0.3, current_north=-0.2)
     for objective in ("time", "distance"):
         results = [
@@ -151,16 +149,16 @@ def test_broken_fixed_times_are_named():
         ("fee", np.nan, "fee"),
         ("fee", -2.0, "fee"),
     ):
-        column = getattr(base, name).copy()
+        column = getattr(base.edges, name).copy()
         column[0] = value
         with pytest.raises(InputError, match=said):
-            check_network(dataclasses.replace(base, **{name: column}))
+            check_network(base.with_edges(**{name: column}))
     short = with_canal(base, [(0, 2)], HOUR, length=10_000.0)
     assert float(geodesy.distance(0.0, 0.0, 1 / 3, 1 / 3)) > 10_000.0
     with pytest.raises(InputError, match="canal is shorter than the geodesic"):
         check_network(short)
     with pytest.raises(InputError, match="fixed_time has 3 entries"):
-        check_network(dataclasses.replace(base, fixed_time=np.full(3, 9.0)))
+        check_network(base.with_edges(fixed_time=np.full(3, 9.0)))
 
 
 def test_a_ship_sails_the_globe_network_through_a_canal_and_round_when_it_is_forbidden():

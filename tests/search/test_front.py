@@ -73,8 +73,8 @@ def all_paths(network, goal):
         if node == goal:
             yield edges
             continue
-        for e in range(network.indptr[node], network.indptr[node + 1]):
-            stack.append((int(network.target[e]), (*edges, e)))
+        for e in range(network.graph.indptr[node], network.graph.indptr[node + 1]):
+            stack.append((int(network.graph.target[e]), (*edges, e)))
 
 
 def brute_force(network, fields, latest, *, pauses=(0.0,), **prices):
@@ -212,7 +212,7 @@ def test_points_are_real_ways(seed):
     }
     found = search(network, fields, 7, 20_000.0, bin_s=20.0, lower=False, **priced)
     got, request = world_of(network, fields, 20_000.0, **priced)
-    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(got.tails, network.target))}
+    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(got.tails, network.graph.target))}
     for point in found.points:
         time, cost = 0.0, 0.0
         for i, setting in enumerate(point.setting):
@@ -247,7 +247,7 @@ def test_legs_are_those_of_the_earliest_arrival():
     found = search(network, fields, 7, 20_000.0, lower=False)
     assert found.fastest.time == pytest.approx(fastest.duration, rel=1e-12)
     again, request = world_of(network, fields, 20_000.0)
-    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(again.tails, network.target))}
+    pairs = {(int(t), int(h)): e for e, (t, h) in enumerate(zip(again.tails, network.graph.target))}
     edges = np.array([pairs[a, b] for a, b in itertools.pairwise(fastest.path.tolist())])
     leave = np.where(fastest.path_depart > fastest.path_arrive, fastest.path_depart, -np.inf)[:-1]
     way = PlannedPath(fastest.path, edges, np.full(len(edges), 2), leave)
@@ -313,9 +313,11 @@ def test_speed_against_a_head_current(head):
 def test_canals_take_their_time_and_fee_at_the_speed_they_need():
     network = line(4, 20_000.0)
     fixed, fee = np.full(network.n_edges, np.nan), np.zeros(network.n_edges)
-    canal = int(network.indptr[1]) + int(np.argmax(network.target[network.indptr[1] :] == 2))
+    canal = int(network.graph.indptr[1]) + int(
+        np.argmax(network.graph.target[network.graph.indptr[1] :] == 2)
+    )
     fixed[canal], fee[canal] = 20_000.0 / 5.0, 40.0
-    network = replace(network, fixed_time=fixed, fee=fee)
+    network = network.with_edges(fixed_time=fixed, fee=fee)
     fields = make_fields(network, [0.0, 1e6], **STILL)
     found = search(network, fields, 3, 20_000.0, prices=LegPrices(dues=1.0))
     for point in found.points:

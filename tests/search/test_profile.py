@@ -18,6 +18,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import parse_time
 from thalweg.kernels import codes
 from thalweg.kernels.search.repeated_search import CURRENT_DIRECTIONS
+from thalweg.network import Samples
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.network.triangular_mesh.mesh_builder import mesh
 from thalweg.operations.examples.estuary import synthetic_estuary
@@ -36,7 +37,7 @@ def world():
     lon = np.concatenate([[estuary.load[1], estuary.unload[1]], nodes.lon])
     network = sampled_on_triangle_sides(mesh(estuary.chart, lat, lon, rings=2))
     fields = estuary.sea.freeze_stations(
-        network.station_lat, network.station_lon, T0, T0 + 36 * 3600.0, CHANNELS
+        network.stations.lat, network.stations.lon, T0, T0 + 36 * 3600.0, CHANNELS
     )
     return network, fields
 
@@ -232,11 +233,13 @@ def between_two_stations(bed, east):
     edges, inside = network.n_edges, 9
     network = replace(
         network,
-        via_ptr=np.arange(edges + 1) * inside,
-        via_a=np.full(edges * inside, 2, np.int32),
-        via_b=np.full(edges * inside, 3, np.int32),
-        via_w=np.full(edges * inside, 0.5, np.float32),
-        via_s=np.tile(np.arange(1, inside + 1) / (inside + 1.0), edges).astype(np.float32),
+        samples=Samples(
+            ptr=np.arange(edges + 1) * inside,
+            station_a=np.full(edges * inside, 2, np.int32),
+            station_b=np.full(edges * inside, 3, np.int32),
+            weight=np.full(edges * inside, 0.5, np.float32),
+            fraction=np.tile(np.arange(1, inside + 1) / (inside + 1.0), edges).astype(np.float32),
+        ),
     )
     wide = np.array([10.0, 10.0, *bed])[:, None], np.array([0.0, 0.0, *east])[:, None]
     return network, make_fields(

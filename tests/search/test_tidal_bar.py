@@ -13,10 +13,12 @@ CLOSED, OPEN = -8.0, 0.0  # water level over a bed of 10 m; 5 m are needed
 def bar(level_at_30_km, times, *, everywhere=False):
     """A way of 80 km in pieces of 2 km; the water level on the edge that leaves 30 km."""
     network = line(41, 2000.0, depth=10.0, pieces=2)
-    level = np.zeros((len(network.station_lat), len(times)))
-    first = int(network.indptr[15])
-    beyond = next(e for e in range(first, network.indptr[16]) if network.target[e] == 16)
-    level[network.via_a[network.via_ptr[beyond]]] = level_at_30_km
+    level = np.zeros((len(network.stations.lat), len(times)))
+    first = int(network.graph.indptr[15])
+    beyond = next(
+        e for e in range(first, network.graph.indptr[16]) if network.graph.target[e] == 16
+    )
+    level[network.samples.station_a[network.samples.ptr[beyond]]] = level_at_30_km
     if everywhere:
         level[:] = level_at_30_km
     return network, make_fields(network, times, water_level=level)

@@ -47,11 +47,11 @@ def minute_by_minute(network, fields, start, goal, depart):
         if k:
             there[:, k] |= there[:, k - 1] & afloat[:, k] & afloat[:, k - 1]
         for e in np.flatnonzero(there[tails, k] & np.isfinite(arrivals[:, k])):
-            if network.target[e] == goal:
+            if network.graph.target[e] == goal:
                 best = min(best, arrivals[e, k])
             step = int(np.ceil((arrivals[e, k] - depart) / MINUTE))
             if step < len(clock):
-                there[network.target[e], step] = True
+                there[network.graph.target[e], step] = True
     return best
 
 

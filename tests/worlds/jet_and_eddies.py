@@ -25,7 +25,7 @@ from tests.evolution.jet import (
 from tests.search.small import make_table
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 from thalweg.sea.frozen_fields import StationFields
 
 NM = 1852.0 / SHRINK  # [m] of the shrunk case
@@ -91,23 +91,31 @@ class Grid:
         length = self.spacing * NM * np.hypot(di, dj)
         edges = len(tail)
         return Network(
-            station_lat=np.ascontiguousarray(lat, float),
-            station_lon=np.ascontiguousarray(lon, float),
-            n_nodes=side * side,
-            indptr=np.searchsorted(tail, np.arange(side * side + 1)).astype(np.int64),
-            target=(tail + di * side + dj).astype(np.int32),
-            length=length,
-            course=(np.arctan2(dj, di) % (2 * np.pi)).astype(np.float32),
-            depth=np.full(edges, np.inf, np.float32),
-            factor=np.ones(edges, np.float32),
-            price=np.ones(edges, np.float32),
-            via_ptr=np.concatenate(([0], np.cumsum(samples))).astype(np.int64),
-            via_a=a.astype(np.int32),
-            via_b=np.where((is_mercator & (x == x0)) | (~is_mercator & (y == y0)), a, b).astype(
-                np.int32
+            Stations(
+                lat=np.ascontiguousarray(lat, float),
+                lon=np.ascontiguousarray(lon, float),
+                n_nodes=side * side,
             ),
-            via_w=np.where(is_mercator, x - x0, y - y0).astype(np.float32),
-            via_s=s.astype(np.float32),
+            Graph(
+                indptr=np.searchsorted(tail, np.arange(side * side + 1)).astype(np.int64),
+                target=(tail + di * side + dj).astype(np.int32),
+            ),
+            Edges(
+                length=length,
+                course=(np.arctan2(dj, di) % (2 * np.pi)).astype(np.float32),
+                depth=np.full(edges, np.inf, np.float32),
+                penalty_factor=np.ones(edges, np.float32),
+                price_factor=np.ones(edges, np.float32),
+            ),
+            Samples(
+                ptr=np.concatenate(([0], np.cumsum(samples))).astype(np.int64),
+                station_a=a.astype(np.int32),
+                station_b=np.where(
+                    (is_mercator & (x == x0)) | (~is_mercator & (y == y0)), a, b
+                ).astype(np.int32),
+                weight=np.where(is_mercator, x - x0, y - y0).astype(np.float32),
+                fraction=s.astype(np.float32),
+            ),
             can_wait=np.ones(side * side, bool),
             meta=NetworkMeta("square", self.spacing * NM, len(offsets), 0.3),
         )
@@ -116,7 +124,7 @@ class Grid:
 def freeze(network: Network, step_h: float = 1.0 / 3.0) -> StationFields:
     """Return the current at the nodes, every ``step_h`` [h]."""
     hours = np.arange(0.0, LATEST + 6.0, step_h)
-    x, y = xy(network.station_lat, network.station_lon)
+    x, y = xy(network.stations.lat, network.stations.lon)
     u, v = current(hours[None, :], x[:, None], y[:, None])
     index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
     index[[codes.CURRENT_EAST, codes.CURRENT_NORTH]] = 0, 1

@@ -71,15 +71,17 @@ def nodes_of(genome: Genome) -> np.ndarray:
 def sailed(genome: Genome) -> FrontPoint | None:
     """Sail a track edge by edge as the front does; None if it leaves the network."""
     net, nodes = network(), nodes_of(genome)
-    off = np.abs(net.station_lat[nodes] - genome.lat) + np.abs(net.station_lon[nodes] - genome.lon)
+    off = np.abs(net.stations.lat[nodes] - genome.lat) + np.abs(
+        net.stations.lon[nodes] - genome.lon
+    )
     if off.max() > 1e-9:
         return None
     edges = []
     for a, b in pairwise(nodes):
-        there = np.flatnonzero(net.target[net.indptr[a] : net.indptr[a + 1]] == b)
+        there = np.flatnonzero(net.graph.target[net.graph.indptr[a] : net.graph.indptr[a + 1]] == b)
         if not len(there):
             return None
-        edges.append(net.indptr[a] + there[0])
+        edges.append(net.graph.indptr[a] + there[0])
     table, fuel = world.tables()
     request = FrontRequest(
         int(nodes[0]), int(nodes[-1]), world.T0, LATEST, np.arange(table.n_settings),

@@ -48,7 +48,7 @@ def refereed(network, points) -> np.ndarray:
     """Return hours, tonnes and the hours of the search for each point."""
     rows = []
     for p in points:
-        lat, lon = network.station_lat[p.path], network.station_lon[p.path]
+        lat, lon = network.stations.lat[p.path], network.stations.lon[p.path]
         wait = p.path_depart - p.path_arrive
         track = Track(lat, lon, float(p.path_arrive[0]), wait, p.setting)
         route = evaluate(track, ship=jet.ship(), sea=jet.sea())

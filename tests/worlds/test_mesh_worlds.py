@@ -164,7 +164,7 @@ def test_large_models_are_thinned_to_what_can_be_searched(monkeypatch):
 def test_without_currents_only_the_spacing_counts():
     run = model(lambda t, x, y: (0.0 * x, 0.0 * x), 0.05, step=18_000.0)
     network = pruned_mesh(WATER, run, *PERIOD, largest_spacing=0.2 * HALEM.unit)
-    lat, lon = network.station_lat[: network.n_nodes], network.station_lon[: network.n_nodes]
+    lat, lon = network.stations.lat[: network.n_nodes], network.stations.lon[: network.n_nodes]
     x, y = lon * METRES_PER_LON / HALEM.unit, lat * METRES_PER_LAT / HALEM.unit
     away = np.hypot(x[:, None] - x, y[:, None] - y) + 9.0 * np.eye(len(x))
     assert away.min() > 0.2 - 1e-3

@@ -1,6 +1,6 @@
-"""Where a ship may lie and wait: in anchorages, if the chart has any, and never where it is barred.
+"""Where a ship may wait: in anchorages if the chart has any, never in no-waiting zones.
 
-A chart without such zones allows it everywhere.
+On a chart without such zones a ship may wait everywhere.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import FloatArray
 
 
-def may_wait(
+def waiting_allowed(
     anchorages: Sequence[Any], barred: Sequence[Any], lat: FloatArray, lon: FloatArray
 ) -> NDArray[np.bool_]:
     """Return at which positions a ship may wait.

@@ -1,17 +1,14 @@
-"""Coastlines and land as shapely geometries, cut to a box, for drawing."""
+"""Coastlines and land as shapely geometries, cut to a box, for maps."""
 
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from thalweg.chart.coast.rings import Rings
 from thalweg.core.types import FloatArray
-
-if TYPE_CHECKING:
-    from thalweg.chart.chart import Chart
 
 
 def ring_bounds(rings: Rings) -> tuple[Any, Any, Any, Any]:
@@ -27,11 +24,13 @@ def ring_bounds(rings: Rings) -> tuple[Any, Any, Any, Any]:
     )
 
 
-def land_polygons(chart: Chart, south: float, north: float, west: float, east: float) -> list[Any]:
-    """Return the land in a box as shapely polygons, longitudes running on from ``west``.
+def land_polygons(rings: Rings, south: float, north: float, west: float, east: float) -> list[Any]:
+    """Return the land in a box as shapely polygons (x lon, y lat), continuous from ``west``.
 
     Parameters
     ----------
+    rings : Rings
+        Outlines of land.
     south, north, west, east : float
         The box [deg]; east below west means across the antimeridian.
     """
@@ -40,7 +39,6 @@ def land_polygons(chart: Chart, south: float, north: float, west: float, east: f
     if east <= west:
         east += 360.0
     box = shapely.box(west, south, east, north)
-    rings = chart.land.rings
     lows, highs, lefts, rights = ring_bounds(rings)
     found: list[Any] = []
     for shift in (-360.0, 0.0, 360.0):
@@ -81,11 +79,12 @@ def _dataset_cut_meridians() -> Any:
 
 
 def coastline_lines(
-    chart: Chart, south: float, north: float, west: float, east: float
+    rings: Rings, south: float, north: float, west: float, east: float
 ) -> list[tuple[FloatArray, FloatArray]]:
-    """Return the outlines of land in a box as (lat, lon) arrays.
+    """Return the outlines of land in a box [deg] as (lat, lon) arrays [deg].
 
-    Without the box's own sides, and without the meridians (0 and 180) at which GSHHG cuts land.
+    The sides of the box are left out, and so are the meridians (0 and 180) at which GSHHG cuts
+    land.
     """
     import shapely
 
@@ -93,7 +92,7 @@ def coastline_lines(
         east += 360.0
     inner = shapely.box(west, south, east, north).buffer(-1e-9)
     lines: list[tuple[FloatArray, FloatArray]] = []
-    for polygon in land_polygons(chart, south, north, west, east):
+    for polygon in land_polygons(rings, south, north, west, east):
         outline = shapely.difference(
             shapely.intersection(polygon.boundary, inner), _dataset_cut_meridians()
         )

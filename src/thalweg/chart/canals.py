@@ -1,16 +1,19 @@
-"""Ship canals: the ways through land that a coastline does not show.
+"""Ship canals: connections through land that a coastline does not show.
 
 A canal is one leg between two positions in open water off its entrances, with its own length, time
-and fee. Figures are public ones, for planning; they were gathered on 2026-11-21 and are named with
-each canal. A fee is a mean of what ships paid, not a tariff: dues depend on tonnage, cargo and
-towage. Give your own canals to a chart with `dataclasses.replace` for a ship whose dues are known.
+and fee. The figures in ``data/canals.json`` are published ones, for planning, collected on
+2026-11-21; each canal names its sources. A fee is the mean that ships paid and not a tariff: dues
+depend on tonnage, cargo and towage. For a ship whose dues are known, give the chart other canals
+with `dataclasses.replace`.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import resources
 from typing import Final
 
 import numpy as np
@@ -18,10 +21,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
+from thalweg.core.units import HOUR
 
 END_TOLERANCE: Final = 2.0  # a leg ends at a canal's end when it ends this near to it [m]
-_END_TOLERANCE_DEGREES: Final = 2e-5  # nearer than this in latitude is worth measuring
-_HOUR: Final = 3600.0
+_END_TOLERANCE_DEGREES: Final = 2e-5  # only ends nearer than this in latitude are measured
 
 
 @dataclass(frozen=True)
@@ -35,20 +38,20 @@ class Canal:
     title : str
         Name in full.
     path : tuple of (lat, lon)
-        The line of the canal [deg], from open water at one end to open water at the other.
+        Centre line [deg], from open water at one end to open water at the other.
     transit_time : float
-        Time from end to end [s], without waiting for a turn.
+        Time from end to end [s], without waiting for a convoy or a lock.
     fee : float
         Mean dues of one transit [USD].
     max_draught, max_beam : float
-        Largest draught and beam allowed [m]; inf if there is none.
+        Largest draught and beam allowed [m]; inf where there is no limit.
     source : str
-        Where the figures come from, with dates.
+        Sources of the figures, with dates.
 
     Raises
     ------
     InputError
-        If the path is no path, or a figure is negative or no number.
+        If the path has fewer than two points, or a value is negative or not a number.
     """
 
     name: str
@@ -65,7 +68,7 @@ class Canal:
         sound = path.ndim == 2 and path.shape[1] == 2 and len(path) >= 2
         if not (sound and np.isfinite(path).all() and np.abs(path[:, 0]).max() <= 90.0):
             raise InputError(
-                f"The path of the canal {self.name!r} is none.",
+                f"The path of the canal {self.name!r} is not valid.",
                 "It is two or more positions (lat, lon) in degrees.",
                 "Give both ends at least.",
                 value=self.path,
@@ -75,7 +78,7 @@ class Canal:
             raise InputError(
                 f"The canal {self.name!r} has a transit time of {self.transit_time!r} s, a fee of "
                 f"{self.fee!r} and limits of {self.max_draught!r} and {self.max_beam!r} m.",
-                "Times and limits are above 0, fees not below it.",
+                "Times and limits are above 0, and fees are not negative.",
                 "Correct these figures.",
             )
 
@@ -93,7 +96,7 @@ class Canal:
     def transit_restriction(
         self, *, draught: float | None = None, beam: float | None = None
     ) -> str:
-        """Return in words why a ship of a draught and beam [m] may not pass; empty if it may."""
+        """Return why a ship of a draught and beam [m] may not pass, as text; empty if it may."""
         reasons = []
         for what, value, limit in (
             ("draught", draught, self.max_draught),
@@ -104,75 +107,34 @@ class Canal:
         return f"{self.title}: " + " and ".join(reasons) if reasons else ""
 
 
-SUEZ: Final = Canal(
-    "suez",
-    "Suez Canal",
-    (
-        (31.38, 32.38), (31.23, 32.35), (30.85, 32.315), (30.56, 32.30), (30.42, 32.35),
-        (30.32, 32.39), (30.22, 32.555), (29.93, 32.57), (29.80, 32.54),
-    ),
-    transit_time=14.0 * _HOUR,
-    fee=363_000.0,
-    max_draught=20.12,
-    max_beam=77.5,
-    source="Suez Canal Authority: 66 ft of draught (up to 50 m of beam), 77.5 m of beam; 193.3 km "
-    "with its approaches, 11 to 16 h, about 14 h on average (Encyclopaedia Britannica). Fee: "
-    "revenue of 9.4 thousand million USD over 25,887 transits in 2022/23 (Reuters, 21 June 2023).",
-)  # fmt: skip
-PANAMA: Final = Canal(
-    "panama",
-    "Panama Canal",
-    (
-        (9.45, -79.92), (9.37, -79.92), (9.27, -79.92), (9.20, -79.90), (9.12, -79.80),
-        (9.10, -79.69), (9.00, -79.60), (8.93, -79.555), (8.80, -79.48),
-    ),
-    transit_time=10.0 * _HOUR,
-    fee=261_000.0,
-    max_draught=15.24,
-    max_beam=51.25,
-    source="Panama Canal Authority: Neopanamax locks 51.25 m of beam and 50 ft of draught in "
-    "tropical fresh water, less when Gatun Lake is low (ships up to 32.31 m and 12.04 m take the "
-    "old locks); 8 to 10 h. Fee: 3.3 thousand million USD of tolls over 12,638 transits in fiscal "
-    "year 2023 (Panama Canal Authority, AFP of 18 December 2023).",
-)  # fmt: skip
-KIEL: Final = Canal(
-    "kiel",
-    "Kiel Canal",
-    (
-        (53.885, 9.10), (53.90, 9.15), (54.02, 9.29), (54.13, 9.32), (54.21, 9.50),
-        (54.31, 9.68), (54.34, 9.88), (54.365, 10.14), (54.42, 10.20),
-    ),
-    transit_time=9.0 * _HOUR,
-    fee=8_000.0,
-    max_draught=9.5,
-    max_beam=32.5,
-    source="Federal Waterways and Shipping Administration: 98.26 km at no more than 12 km/h (since "
-    "1 July 2023, Hansa of April 2023) and two locks; 32.5 m of beam, 9.5 m of draught up to 160 m "
-    "of length, 7 m up to 235.5 m. Fee: no mean is published; an estimate for 10,000 GT, of which "
-    "1,792 EUR go to the canal steerers (KanalStTO) and the rest to pilots and dues.",
-)  # fmt: skip
-CORINTH: Final = Canal(
-    "corinth",
-    "Corinth Canal",
-    ((37.97, 22.93), (37.954, 22.955), (37.916, 23.008), (37.89, 23.04)),
-    transit_time=1.25 * _HOUR,
-    fee=2_900.0,
-    max_draught=7.2,
-    max_beam=18.3,
-    source="Corinth Canal regulations, articles 2 and 3: 6.343 km at no more than 6 kn, 18.3 m of "
-    "beam, 7.2 m of draught below 14 m of beam (6.2 m at 16.5 m). Fee: 2,575 EUR for 3,000 net "
-    "tons (tariff of September 2025).",
-)
-CANALS: Final = (SUEZ, PANAMA, KIEL, CORINTH)
+def _read_canals() -> tuple[Canal, ...]:
+    text = resources.files("thalweg.chart").joinpath("data/canals.json").read_text("utf-8")
+    return tuple(
+        Canal(
+            row["name"],
+            row["title"],
+            tuple((lat, lon) for lat, lon in row["path"]),
+            transit_time=row["transit_time_h"] * HOUR,
+            fee=row["fee_usd"],
+            max_draught=row["max_draught_m"],
+            max_beam=row["max_beam_m"],
+            source=row["source"],
+        )
+        for row in json.loads(text)
+    )
+
+
+CANALS: Final = _read_canals()  #: the canals of `thalweg/chart/data/canals.json`
+SUEZ, PANAMA, KIEL, CORINTH = CANALS
 
 
 def exclude_canals(canals: Sequence[Canal], names: Sequence[str]) -> tuple[Canal, ...]:
-    """Return canals without the named ones ("all" takes all away).
+    """Return canals without the named ones ("all" excludes all).
 
     Raises
     ------
     InputError
-        If there is no canal of a name; near matches are named.
+        If a name is unknown; the message lists similar names.
     """
     known = {canal.name for canal in canals} | {canal.name for canal in CANALS}
     plain = [_normalised_canal_name(name) for name in names]

@@ -1,7 +1,8 @@
-"""Ports by name or UN/LOCODE: the World Port Index (NGA Pub. 150), and others that it leaves out.
+"""Ports by name or UN/LOCODE: the World Port Index (NGA Pub. 150), and ports missing from it.
 
-The others (Sydney, Oslo, Singapore and some 290 more) are from searoute 1.6.0 (Apache-2.0), those
-with water near them; entries that plainly lie elsewhere were left out. They are good to some miles.
+The others (Sydney, Oslo, Singapore and some 290 more) come from searoute 1.6.0 (Apache-2.0). Only
+those with water nearby are used, and entries with wrong positions were removed. Their positions
+are accurate to a few miles.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import Final
 
 from thalweg.core.errors import InputError, close_matches
 
-# Usual names of ports that the indexes have under another name.
+# Common English names of ports that the index lists under another name.
 ENGLISH_NAMES: Final = {
     "alexandria egypt": "EGALY",
     "antwerp": "BEANR",
@@ -51,7 +52,7 @@ class Port:
 
 @dataclass(frozen=True)
 class Ports:
-    """All ports, read when first asked."""
+    """All ports, read on first use."""
 
     @cached_property
     def all(self) -> tuple[Port, ...]:
@@ -62,7 +63,7 @@ class Ports:
 
     @cached_property
     def others(self) -> tuple[Port, ...]:
-        """Ports that the index leaves out."""
+        """Ports that are missing from the index."""
         table = resources.files("thalweg.chart").joinpath("data/more_ports.csv")
         text = table.read_text(encoding="utf-8")
         return tuple(_port_from_row(row) for row in csv.DictReader(io.StringIO(text)))
@@ -75,7 +76,8 @@ class Ports:
         Raises
         ------
         InputError
-            If there is no such port (with near matches), or several (with their LOCODEs).
+            If the port is unknown (the message lists similar names), or several ports have the
+            name (the message lists their LOCODEs).
         """
         wanted = normalised_port_name(text)
         known = (*self.all, *self.others)
@@ -130,7 +132,7 @@ class Ports:
         )
 
 
-#: Letters that are no letter with an accent.
+#: Letters that are not a base letter with an accent.
 _LETTER_SUBSTITUTES: Final = str.maketrans(
     {"ø": "o", "æ": "ae", "œ": "oe", "ł": "l", "đ": "d", "ð": "d"}
 )

@@ -1,1 +1,1 @@
-"""What every room stands on: geodesy, time, units, errors and the cache folder."""
+"""Shared by all packages: geodesy, time, units, errors and the cache folder."""

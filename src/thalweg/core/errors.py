@@ -54,11 +54,11 @@ class CoverageError(ThalwegError):
 
 
 class OutsideAreaError(CoverageError):
-    """A position lies outside the area of the data."""
+    """A position is outside the area of the data."""
 
 
 class OutsidePeriodError(CoverageError):
-    """A time lies outside the period of the data."""
+    """A time is outside the period of the data."""
 
 
 class MissingVariableError(CoverageError):

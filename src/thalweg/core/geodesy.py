@@ -171,7 +171,7 @@ def densify(
     lat, lon : ndarray
         Positions [deg], original vertices included.
     leg : ndarray of int
-        For each position but the last, the index of the leg its piece lies on.
+        For each position but the last, the index of its leg.
     """
     lat, lon = np.asarray(lat, float), np.asarray(lon, float)
     lengths, courses, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
@@ -197,14 +197,14 @@ def check_position(lat: float, lon: float, what: str = "position") -> Position:
         hint = "Latitude comes first: are latitude and longitude swapped?" if abs(lon) <= 90 else ""
         raise InputError(
             f"The {what} ({lat:g}, {lon:g}) has a latitude beyond 90 degrees.",
-            "Latitude lies between -90 and 90 degrees.",
+            "Latitude is between -90 and 90 degrees.",
             hint or "Give lat, lon in degrees.",
             value=(lat, lon),
         )
     if abs(lon) > 360.0:
         raise InputError(
             f"The {what} ({lat:g}, {lon:g}) has a longitude beyond 360 degrees.",
-            "Longitude lies between -180 and 180 (or 0 and 360) degrees.",
+            "Longitude is between -180 and 180 (or 0 and 360) degrees.",
             "Give lat, lon in degrees.",
             value=(lat, lon),
         )

@@ -56,7 +56,7 @@ def parse_time(value: TimeLike) -> float:
             raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
         if not _EARLIEST <= seconds <= _LATEST:
             raise InputError(
-                f"{value!r} seconds since 1970 is no time of a calendar.",
+                f"{value!r} seconds since 1970 is not a calendar time.",
                 "Times lie in the years 1 to 9999; a number counts seconds, not milliseconds.",
                 "Give an ISO 8601 time such as 2026-01-01T06:30Z.",
             )
@@ -73,7 +73,7 @@ def _parse_text(text: str) -> datetime:
         raise InputError(
             f"{text!r} is not a time.",
             "Times are ISO 8601 in UTC, such as 2026-01-01T06:30Z.",
-            "Write the time that way.",
+            "Write the time in this form.",
             value=text,
         ) from None
 

@@ -151,7 +151,7 @@ def reproduce(
     given = (evaluator.settings, variation_settings.array())
     count = np.ascontiguousarray(population.count)
     genes = np.ascontiguousarray(population.genes)
-    coast = evaluator.chart.kernel() if evaluator.chart is not None else coast_without_land()
+    coast = evaluator.chart.arrays if evaluator.chart is not None else coast_without_land()
     chosen = np.ascontiguousarray(pairs, dtype=np.int64)
 
     def part(piece: slice) -> None:
@@ -177,4 +177,4 @@ def coast_without_land() -> CoastArrays:
     """Return the coast of a world without land."""
     from thalweg.chart import Chart
 
-    return Chart.open_water().kernel()
+    return Chart.open_water().arrays

@@ -1,4 +1,4 @@
-"""Networks of ways over the sea, as plain arrays, and the builders that make them."""
+"""Networks of paths over the sea as plain arrays, and their builders."""
 
 from thalweg.deprecated_names import renamed
 from thalweg.network.alternatives.alternative_path import (
@@ -10,16 +10,29 @@ from thalweg.network.alternatives.path_search import alternative_paths, paths_wi
 from thalweg.network.endpoints import with_endpoints
 from thalweg.network.fixed_route import fixed_route
 from thalweg.network.global_grid.globe_builder import globe
-from thalweg.network.network import Network, NetworkMeta, check_network, shortest_path
+from thalweg.network.network import (
+    Edges,
+    Graph,
+    Network,
+    NetworkMeta,
+    Samples,
+    Stations,
+)
+from thalweg.network.network_check import check_network
 from thalweg.network.regional_lattice.lattice_builder import default_spacing, lattice
+from thalweg.network.shortest_paths import shortest_path
 from thalweg.network.triangular_mesh.mesh_builder import mesh
 from thalweg.network.triangular_mesh.thinning import spacing_fraction
 
 __all__ = [
     "AlternativePath",
     "EdgeWeights",
+    "Edges",
+    "Graph",
     "Network",
     "NetworkMeta",
+    "Samples",
+    "Stations",
     "alternative_paths",
     "check_network",
     "default_spacing",

@@ -1,4 +1,4 @@
-"""From pairs of nodes to a network: land tests, lengths, depths, zones and the CSR."""
+"""Assembly of a network from pairs of nodes: land tests, lengths, depths, zones and the graph."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core import geodesy
-from thalweg.core.types import BoolArray, Float32Array, FloatArray, Int32Array, IntArray
+from thalweg.core.types import BoolArray, Float32Array, FloatArray, Int32Array
 from thalweg.kernels import codes
 from thalweg.kernels.network import graph_building
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -22,28 +22,8 @@ _CHUNK_SIZE = 1_000_000
 
 
 @dataclass(frozen=True)
-class Stations:
-    """Positions [deg]: the nodes first, then extra samples."""
-
-    lat: FloatArray
-    lon: FloatArray
-    n_nodes: int
-
-
-@dataclass(frozen=True)
-class Samples:
-    """Interior samples of pairs or edges, as in `Network`."""
-
-    ptr: IntArray
-    a: Int32Array
-    b: Int32Array
-    w: Float32Array
-    s: Float32Array
-
-
-@dataclass(frozen=True)
 class Pairs:
-    """Pairs of nodes joined both ways: their nodes, length [m] and mid-edge course [rad].
+    """Pairs of nodes joined in both directions: nodes, length [m] and mid-edge course [rad].
 
     Canals have no course (NaN).
     """
@@ -69,7 +49,7 @@ def allowed_legs(
 ) -> tuple[BoolArray, RejectionCounts]:
     """Return which legs between positions the chart allows, and counts of refusals by reason.
 
-    Canals are no legs to sail: builders that know them add them as edges of their own.
+    Canals are not legs at sea; the builders add them as separate edges.
     """
     chart = chart.without_canals("all")
     free = np.empty(len(first), bool)
@@ -111,12 +91,6 @@ def measured_pairs(
     return Pairs(first, second, length, course)
 
 
-def no_samples(count: int) -> Samples:
-    """Return empty samples for a number of pairs."""
-    empty_int, empty = np.empty(0, np.int32), np.empty(0, np.float32)
-    return Samples(np.zeros(count + 1, np.int64), empty_int, empty_int, empty, empty)
-
-
 def evenly_spaced_samples(
     stations: Stations, pairs: Pairs, spacing: FloatArray | float
 ) -> tuple[Stations, Samples]:
@@ -143,33 +117,31 @@ def evenly_spaced_samples(
     return grown, samples
 
 
-def concatenate_samples(parts: list[Samples]) -> Samples:
-    """Return the samples of consecutive lots of pairs as one."""
-    if len(parts) == 1:
-        return parts[0]
-    shifts = np.cumsum([0] + [part.ptr[-1] for part in parts])
-    ptr = np.concatenate(
-        [[0]] + [part.ptr[1:] + shift for part, shift in zip(parts, shifts)]
-    ).astype(np.int64)
-    columns = [np.concatenate([getattr(part, c) for part in parts]) for c in "abws"]
-    return Samples(ptr, *columns)
-
-
 @dataclass(frozen=True)
 class DirectedEdges:
-    """Directed edges by tail: their heads, the pair each comes from, and whether reversed."""
+    """Directed edges of pairs.
 
-    indptr: IntArray
-    target: Int32Array
+    Attributes
+    ----------
+    graph : Graph
+        Which nodes the edges join.
+    pair : int32[E]
+        Pair that each edge belongs to.
+    reversed : bool[E]
+        Whether the edge runs from the second node of the pair to the first.
+    """
+
+    graph: Graph
     pair: Int32Array
-    back: BoolArray
+    reversed: BoolArray
 
 
 def directed_edges(n_nodes: int, pairs: Pairs) -> DirectedEdges:
-    """Return an edge each way for every pair."""
-    return DirectedEdges(
-        *graph_building.directed_edges_of_pairs(n_nodes, pairs.first, pairs.second)
+    """Return two opposite edges for every pair."""
+    indptr, target, pair, backward = graph_building.directed_edges_of_pairs(
+        n_nodes, pairs.first, pairs.second
     )
+    return DirectedEdges(Graph(indptr, target), pair, backward)
 
 
 def assemble(
@@ -179,68 +151,83 @@ def assemble(
     samples: Samples,
     *,
     meta: NetworkMeta,
-    edges: DirectedEdges | None = None,
+    directed: DirectedEdges | None = None,
 ) -> Network:
-    """Return the network with an edge each way for every pair; all pairs have been tested."""
-    n = stations.n_nodes
-    depth, factor, price = _edge_properties(chart, stations, pairs)
-    edges = edges or directed_edges(n, pairs)
-    pair = edges.pair
-    fixed_time, fee, own_course = _canal_properties(chart, stations, pairs)
-    via_ptr, via_a, via_b, via_w, via_s = graph_building.mirror_samples(
-        pair, edges.back, samples.ptr, samples.a, samples.b, samples.w, samples.s
-    )
-    course = own_course[pair]
-    course[edges.back] += np.float32(np.pi)
+    """Return the network with two opposite edges for every pair.
+
+    Parameters
+    ----------
+    chart : Chart
+        Gives depth, zones, canals and waiting places; the pairs must have been tested on it.
+    stations : Stations
+        Nodes and sample stations.
+    pairs : Pairs
+        Pairs of nodes to join.
+    samples : Samples
+        Samples of the pairs.
+    meta : NetworkMeta
+        Description of the network.
+    directed : DirectedEdges, optional
+        The directed edges of the pairs, where they are known.
+    """
+    directed = directed or directed_edges(stations.n_nodes, pairs)
+    course = _with_canal_courses(stations, pairs)[directed.pair]
+    course[directed.reversed] += np.float32(np.pi)
     course[course >= 2 * np.pi] -= np.float32(2 * np.pi)
+    edges = _pair_properties(chart, stations, pairs).take(directed.pair)
     return Network(
-        station_lat=stations.lat, station_lon=stations.lon, n_nodes=n,
-        indptr=edges.indptr, target=edges.target, length=pairs.length[pair], course=course,
-        depth=depth[pair], factor=factor[pair], price=price[pair],
-        via_ptr=via_ptr, via_a=via_a, via_b=via_b, via_w=via_w, via_s=via_s,
-        can_wait=_waiting_places(chart, stations, meta), meta=meta,
-        fixed_time=fixed_time[pair], fee=fee[pair],
-    )  # fmt: skip
+        stations,
+        directed.graph,
+        replace(edges, course=course),
+        Samples(
+            *graph_building.mirror_samples(directed.pair, directed.reversed, *samples.arrays())
+        ),
+        _waiting_places(chart, stations, meta),
+        meta,
+    )
 
 
 def _waiting_places(chart: Chart, stations: Stations, meta: NetworkMeta) -> BoolArray:
-    """Return at which nodes a ship may wait: where the chart allows it, and at her berths."""
+    """Return at which nodes a ship may wait: where the chart allows it, and at start and goal."""
     n = stations.n_nodes
     allowed = np.array(chart.may_wait(stations.lat[:n], stations.lon[:n]))
     allowed[[end for end in (meta.start, meta.goal) if end >= 0]] = True
     return allowed
 
 
-def _canal_properties(
-    chart: Chart, stations: Stations, pairs: Pairs
-) -> tuple[FloatArray, FloatArray, Float32Array]:
-    """Return the time of pairs that are canals [s], else NaN, their fee [USD], all courses."""
-    time, fee = np.full(len(pairs.first), np.nan), np.zeros(len(pairs.first))
-    here = np.flatnonzero(np.isnan(pairs.course))
-    if not len(here):
-        return time, fee, pairs.course
-    a, b = pairs.first[here], pairs.second[here]
-    lat, lon, course = stations.lat, stations.lon, pairs.course.copy()
-    course[here] = measured_pairs(lat, lon, a, b).course
-    for pair, canal in zip(here, chart.canal_of_legs(lat[a], lon[a], lat[b], lon[b])):
-        time[pair], fee[pair] = chart.canals[canal].transit_time, chart.canals[canal].fee
-    return time, fee, course
+def _with_canal_courses(stations: Stations, pairs: Pairs) -> Float32Array:
+    """Return the courses of pairs [rad]; of canals that of the line between their ends."""
+    canal = np.flatnonzero(np.isnan(pairs.course))
+    course = pairs.course.copy()
+    first, second = pairs.first[canal], pairs.second[canal]
+    course[canal] = measured_pairs(stations.lat, stations.lon, first, second).course
+    return course
 
 
-def _edge_properties(
-    chart: Chart, stations: Stations, pairs: Pairs
-) -> tuple[Float32Array, Float32Array, Float32Array]:
-    """Return least depth, penalty factor and price factor of pairs."""
+def _pair_properties(chart: Chart, stations: Stations, pairs: Pairs) -> Edges:
+    """Return the properties of pairs as edges from their first node to their second."""
     count = len(pairs.first)
     depth = np.full(count, np.inf, np.float32)
-    factor, price = np.ones(count, np.float32), np.ones(count, np.float32)
+    penalty, price = np.ones(count, np.float32), np.ones(count, np.float32)
     for begin in range(0, count, _CHUNK_SIZE):
         part = slice(begin, begin + _CHUNK_SIZE)
-        a, b = pairs.first[part], pairs.second[part]
-        ends = (stations.lat[a], stations.lon[a], stations.lat[b], stations.lon[b])
+        ends = _ends(stations, pairs.first[part], pairs.second[part])
         if chart.has_depth:
-            depth[part] = chart.depth_along(*ends)
-        factor[part], price[part] = chart.zone_factor(*ends)
-    canal = np.isnan(pairs.course)
-    depth[canal], factor[canal], price[canal] = np.inf, 1.0, 1.0
-    return depth, factor, price
+            depth[part] = chart.depths.along(*ends)
+        penalty[part], price[part] = chart.zones.factors(*ends)
+    fixed_time, fee = np.full(count, np.nan), np.zeros(count)
+    canals = np.flatnonzero(np.isnan(pairs.course))
+    depth[canals], penalty[canals], price[canals] = np.inf, 1.0, 1.0
+    if len(canals):
+        ends = _ends(stations, pairs.first[canals], pairs.second[canals])
+        for pair, number in zip(canals, chart.canal_of_legs(*ends)):
+            canal = chart.canals[number]
+            fixed_time[pair], fee[pair] = canal.transit_time, canal.fee
+    return Edges(pairs.length, pairs.course, depth, penalty, price, fixed_time, fee)
+
+
+def _ends(
+    stations: Stations, first: Int32Array, second: Int32Array
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    lat, lon = stations.lat, stations.lon
+    return lat[first], lon[first], lat[second], lon[second]

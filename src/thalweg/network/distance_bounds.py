@@ -15,7 +15,7 @@ from thalweg.core.types import FloatArray
 # triangle inequality together with geodesic edge lengths.
 BOUND_RADIUS: Final = EQUATORIAL_RADIUS * (1.0 - FLATTENING) ** 2
 
-ROUNDING_FACTOR: Final = 1.0 - 1e-9  # keeps bounds below the truth in floating point
+ROUNDING_FACTOR: Final = 1.0 - 1e-9  # keeps bounds below the exact value in floating point
 
 
 def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float) -> FloatArray:

@@ -1,10 +1,10 @@
-"""Start, goal and via points as nodes at their exact positions, linked to the nodes around them."""
+"""Start, goal and via points as nodes at their exact positions, linked to nearby nodes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,14 +16,13 @@ from thalweg.kernels.network import graph_building
 from thalweg.network.assembly import (
     Pairs,
     RejectionCounts,
-    Stations,
     add_counts,
     allowed_legs,
     assemble,
     evenly_spaced_samples,
     measured_pairs,
 )
-from thalweg.network.network import Network
+from thalweg.network.network import Edges, Graph, Network, Samples, Stations
 from thalweg.network.regional_lattice.conformal_projection import (
     angle_to_point,
     conformal_unit_vectors,
@@ -41,11 +40,10 @@ _SAMPLES_TO_NEAREST_NODE = (
     3  # the distance to this nearest node, over this many pieces, is how close links are sampled
 )
 _MAX_LINKS = 400
-_COLUMNS = ("target", "length", "course", "depth", "factor", "price", "fixed_time", "fee")
 
 
 def check_endpoints(chart: Chart, start: Position, goal: Position) -> tuple[Position, Position]:
-    """Return start and goal, checked: sound positions, not the same, on navigable water.
+    """Return start and goal after checks: valid, different, on navigable water.
 
     Raises
     ------
@@ -71,7 +69,7 @@ def check_at_sea(chart: Chart, place: Position, what: str) -> None:
     if not bool(np.all(chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
         raise InputError(
             f"The {what} {geodesy.format_position(*place)} is not on navigable water.",
-            "It lies on land, in a no-go zone or outside the chart.",
+            "It is on land, in a no-go zone or outside the chart.",
             "Move it to open water, or let the plan move it to the nearest navigable water.",
             field=what,
             value=place,
@@ -123,7 +121,7 @@ def _pairs(lat: FloatArray, lon: FloatArray, point: int, nodes: Int32Array) -> P
 
 
 def _nearest_pairs_by_sector(pairs: Pairs) -> Pairs:
-    """Of very many links keep the nearest, and the nearest in every sector and ring."""
+    """Return the nearest links, and the nearest in every sector and ring."""
     if len(pairs.first) <= _MAX_LINKS:
         return pairs
     order = np.argsort(pairs.length, kind="stable")
@@ -148,14 +146,14 @@ def with_endpoints(
     chart : Chart
         Tests the links.
     start, goal : (lat, lon)
-        Positions [deg]. They become nodes N and N + 1 (N nodes before), as ``meta`` tells.
+        Positions [deg]. They become nodes N and N + 1 (N nodes before), as ``meta`` states.
     via : sequence of (lat, lon), optional
         Via points; they become nodes N + 2, N + 3, ...
 
     Returns
     -------
     Network
-        With the new nodes linked both ways, by exact tested legs, to the nodes around them.
+        With the new nodes linked in both directions to the nodes around them, by tested legs.
 
     Raises
     ------
@@ -170,7 +168,7 @@ def with_endpoints(
         places.append(geodesy.check_position(*place, what=f"via point {number}"))
         check_at_sea(chart, places[-1], f"via point {number}")
     old = _insert_nodes(network, places)
-    stations = Stations(old.station_lat, old.station_lon, old.n_nodes)
+    stations = old.stations
     pairs, rejected = _link_all(chart, stations, len(places), network.meta.spacing_m)
     counts = dict(network.meta.rejected)
     add_counts(counts, rejected)
@@ -240,7 +238,7 @@ def direct_pairs(chart: Chart, stations: Stations, first: int, *, reach: float) 
 def canal_pairs(canals: Sequence[Canal], first: int) -> Pairs:
     """Return the pairs of canals whose ends are nodes ``first``, ``first + 1`` and so on.
 
-    Their course is NaN, by which canals are known until the network is put together.
+    Their course is NaN, which marks canals until the network is assembled.
     """
     nodes = (first + 2 * np.arange(len(canals))).astype(np.int32)
     length = np.array([canal.length for canal in canals], float)
@@ -261,18 +259,24 @@ def _insert_nodes(network: Network, places: Sequence[Position]) -> Network:
     """Return the network with unlinked nodes put between its nodes and its other stations."""
     n, count = network.n_nodes, len(places)
     lat, lon = np.array(places, float).T
+    old, graph, samples = network.stations, network.graph, network.samples
 
-    def moved(via: Int32Array) -> Int32Array:
-        return np.where(via >= n, via + count, via).astype(np.int32)
+    def renumbered(station: Int32Array) -> Int32Array:
+        return np.where(station >= n, station + count, station).astype(np.int32)
 
     return replace(
         network,
-        station_lat=np.concatenate([network.lat, lat, network.station_lat[n:]]),
-        station_lon=np.concatenate([network.lon, lon, network.station_lon[n:]]),
-        n_nodes=n + count,
-        indptr=np.append(network.indptr, np.full(count, network.indptr[-1])),
-        via_a=moved(network.via_a),
-        via_b=moved(network.via_b),
+        stations=Stations(
+            np.concatenate([network.lat, lat, old.lat[n:]]),
+            np.concatenate([network.lon, lon, old.lon[n:]]),
+            n + count,
+        ),
+        graph=Graph(np.append(graph.indptr, np.full(count, graph.indptr[-1])), graph.target),
+        samples=replace(
+            samples,
+            station_a=renumbered(samples.station_a),
+            station_b=renumbered(samples.station_b),
+        ),
         can_wait=np.append(network.can_wait, np.ones(count, bool)),
     )
 
@@ -281,16 +285,13 @@ def _merge_networks(old: Network, new: Network) -> Network:
     """Return the edges of both networks, on the nodes and stations of the second."""
     tails = np.concatenate([old.tails(), new.tails()])
     order = np.argsort(tails, kind="stable").astype(np.int32)
-
-    def both(name: str) -> Any:
-        return np.concatenate([getattr(old, name), getattr(new, name)])
-
-    ptr = np.append(old.via_ptr, new.via_ptr[1:] + old.via_ptr[-1])
+    target = np.concatenate([old.graph.target, new.graph.target])[order]
+    samples = Samples.concatenate([old.samples, new.samples])
     forward = np.zeros(len(order), bool)
-    vias = (both(name) for name in ("via_a", "via_b", "via_w", "via_s"))
-    via_ptr, via_a, via_b, via_w, via_s = graph_building.mirror_samples(order, forward, ptr, *vias)
-    columns: dict[str, Any] = {name: both(name)[order] for name in _COLUMNS}
     return replace(
-        new, indptr=old.indptr + new.indptr, can_wait=old.can_wait,
-        via_ptr=via_ptr, via_a=via_a, via_b=via_b, via_w=via_w, via_s=via_s, **columns,
-    )  # fmt: skip
+        new,
+        graph=Graph(old.graph.indptr + new.graph.indptr, target),
+        edges=Edges.concatenate([old.edges, new.edges]).take(order),
+        samples=Samples(*graph_building.mirror_samples(order, forward, *samples.arrays())),
+        can_wait=old.can_wait,
+    )

@@ -1,4 +1,4 @@
-"""A network of one way: its waypoints and places between them, one behind the other."""
+"""Network of a fixed route, for speed optimisation along it."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray
 from thalweg.network.assembly import (
     Pairs,
-    Stations,
     assemble,
     evenly_spaced_samples,
     measured_pairs,
 )
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta, Stations
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -26,16 +25,16 @@ _PIECES_PER_EDGE: Final = 2  # pieces in which every edge is sampled
 
 
 def fixed_route(chart: Chart, way: Sequence[Position], *, spacing: float) -> Network:
-    """Return the network of a way that is given: a ship on it only chooses its speeds.
+    """Return the network of a given route, on which a ship only chooses its speeds.
 
     Parameters
     ----------
     chart : Chart
-        The legs of the way must be allowed on it; those through canals stay whole.
+        The legs of the route must be allowed on it; those through canals are not divided.
     way : sequence of (lat, lon)
         Waypoints [deg], at least two.
     spacing : float
-        Longest edge [m], above 0. Edges end where an emission control area begins or ends too.
+        Longest edge [m], above 0. Edges also end at borders of emission control areas.
 
     Returns
     -------
@@ -72,9 +71,9 @@ def fixed_route(chart: Chart, way: Sequence[Position], *, spacing: float) -> Net
 
 
 def _cuts_at_borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[FloatArray]:
-    """Return where every leg is cut: at its beginning, and where it crosses a border once."""
-    share = np.asarray(chart.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:]))
-    inside = np.asarray(chart.in_eca(lat[:-1], lon[:-1]))
+    """Return the fractions at which legs are cut: 0, and where they cross a border once."""
+    share = np.asarray(chart.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:]))
+    inside = np.asarray(chart.zones.in_eca(lat[:-1], lon[:-1]))
     crosses = (share > 1e-6) & (share < 1.0 - 1e-6)
     at = np.where(inside, share, 1.0 - share)
     return [np.array([0.0, x] if c else [0.0]) for c, x in zip(crosses, at)]
@@ -83,7 +82,7 @@ def _cuts_at_borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[Flo
 def _split_legs(
     lat: FloatArray, lon: FloatArray, cuts: Sequence[FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return a way with its legs cut at shares of their length; 0 is their beginning."""
+    """Return a line with its legs cut at fractions of their length; 0 is their beginning."""
     leg = np.repeat(np.arange(len(cuts)), [len(c) for c in cuts])
     share = np.concatenate(cuts)
     length, course, _ = geodesy.inverse(lat[leg], lon[leg], lat[leg + 1], lon[leg + 1])

@@ -1,4 +1,4 @@
-"""Networks one behind the other as one network: passages by way of given places, and canals."""
+"""Concatenation of networks at via points and canals."""
 
 from __future__ import annotations
 
@@ -10,21 +10,20 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import BoolArray, IntArray
-from thalweg.network.network import Network, NetworkMeta
-
-_PER_EDGE = ("length", "course", "depth", "factor", "price", "fixed_time", "fee")
+from thalweg.kernels.network import graph_building
+from thalweg.network.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 
 
 @dataclass(frozen=True)
 class CanalLink:
-    """What leads from the goal of one network to the start of the next: a canal.
+    """A canal from the goal of one network to the start of the next.
 
     Attributes
     ----------
     length : float
         [m].
     transit_time : float
-        Time from one end to the other, whatever the ship [s].
+        Time from one end to the other, the same for all ships [s].
     fee : float
         [USD].
     """
@@ -35,15 +34,15 @@ class CanalLink:
 
 
 def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink | None]) -> Network:
-    """Put networks one behind the other.
+    """Concatenate networks in their order.
 
     Parameters
     ----------
     networks : sequence of Network
         Each with its start and goal.
-    links : sequence of Link or None, one fewer
-        What leads from each network to the next; None where the goal of the one is the start of
-        the other.
+    links : sequence of CanalLink or None, one fewer
+        Canal from each network to the next; None where the goal of the one is the start of the
+        other.
 
     Returns
     -------
@@ -58,11 +57,15 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
     if not networks or len(links) != len(networks) - 1:
         raise InputError(
             f"{len(networks)} networks with {len(links)} links between them cannot be joined.",
-            "There is one link fewer than networks.",
-            "Give them so.",
+            "The number of links is one less than that of networks.",
+            "Give one link between every two networks.",
         )
     if any(min(network.meta.start, network.meta.goal) < 0 for network in networks):
-        raise InputError("A network to be joined lacks its start or goal.", "", "Attach them.")
+        raise InputError(
+            "A network to be joined has no start or no goal.",
+            "All networks need both.",
+            "Add them with thalweg.network.with_endpoints.",
+        )
     if len(networks) == 1:
         return networks[0]
     node_of, kept = _numbering(networks, links)
@@ -72,7 +75,7 @@ def concatenate_networks(networks: Sequence[Network], links: Sequence[CanalLink 
 def _numbering(
     networks: Sequence[Network], links: Sequence[CanalLink | None]
 ) -> tuple[list[IntArray], list[BoolArray]]:
-    """Return the new number of every node, and which nodes are not one met before."""
+    """Return the new number of every node, and which nodes are not merged into earlier ones."""
     node_of: list[IntArray] = []
     kept: list[BoolArray] = []
     count = 0
@@ -96,75 +99,69 @@ def _assembled(
     node_of: list[IntArray],
     kept: list[BoolArray],
 ) -> Network:
-    nodes = sum(int(keep.sum()) for keep in kept)
-    station_of, beyond = [], nodes
-    for network, new in zip(networks, node_of):
-        extra = network.n_stations - network.n_nodes
-        station_of.append(np.concatenate([new, beyond + np.arange(extra)]))
-        beyond += extra
     tails = [new[network.tails()] for network, new in zip(networks, node_of)]
-    heads = [new[network.target] for network, new in zip(networks, node_of)]
-    columns = {
-        name: [np.asarray(getattr(network, name)) for network in networks] for name in _PER_EDGE
-    }
-    counts = [np.diff(network.via_ptr) for network in networks]
+    heads = [new[network.graph.target] for network, new in zip(networks, node_of)]
+    edges = [network.edges for network in networks]
+    samples = _renumbered_samples(networks, node_of, sum(int(keep.sum()) for keep in kept))
     for number, link in enumerate(links):
-        if link is None:
-            continue
-        a = node_of[number][networks[number].meta.goal]
-        b = node_of[number + 1][networks[number + 1].meta.start]
-        tails.append(np.array([a]))
-        heads.append(np.array([b]))
-        counts.append(np.zeros(1, np.int64))
-        for name, value in _canal_columns(link).items():
-            columns[name].append(np.array([value]))
-    tail, count = np.concatenate(tails), np.concatenate(counts)
-    order = np.argsort(tail, kind="stable")
-    first = np.concatenate([[0], np.cumsum(count)])
-    via_ptr = np.concatenate([[0], np.cumsum(count[order])]).astype(np.int64)
-    via = np.repeat(first[order] - via_ptr[:-1], count[order]) + np.arange(via_ptr[-1])
-    sides = [
-        np.concatenate([new[getattr(n, side)] for n, new in zip(networks, station_of)])[via]
-        for side in ("via_a", "via_b")
-    ]
-    return replace(
-        networks[0],
-        station_lat=_stations([n.station_lat for n in networks], kept),
-        station_lon=_stations([n.station_lon for n in networks], kept),
-        n_nodes=nodes,
-        indptr=np.searchsorted(tail[order], np.arange(nodes + 1)).astype(np.int64),
-        target=np.concatenate(heads)[order].astype(np.int32),
-        via_ptr=via_ptr,
-        via_a=sides[0].astype(np.int32),
-        via_b=sides[1].astype(np.int32),
-        via_w=np.concatenate([n.via_w for n in networks])[via],
-        via_s=np.concatenate([n.via_s for n in networks])[via],
-        can_wait=np.concatenate([n.can_wait[keep] for n, keep in zip(networks, kept)]),
-        meta=_meta(networks, node_of),
-        **{
-            name: np.concatenate(parts)[order].astype(parts[0].dtype)
-            for name, parts in columns.items()
-        },
+        if link is not None:
+            tails.append(node_of[number][[networks[number].meta.goal]])
+            heads.append(node_of[number + 1][[networks[number + 1].meta.start]])
+            edges.append(_canal_edge(link))
+            samples.append(Samples.none(1))
+    stations = _concatenate_stations(networks, kept)
+    tail, forward = np.concatenate(tails), np.zeros(sum(map(len, tails)), bool)
+    order = np.argsort(tail, kind="stable").astype(np.int32)
+    indptr = np.searchsorted(tail[order], np.arange(stations.n_nodes + 1)).astype(np.int64)
+    every = Samples.concatenate(samples).arrays()
+    return Network(
+        stations,
+        Graph(indptr, np.concatenate(heads)[order].astype(np.int32)),
+        Edges.concatenate(edges).take(order),
+        Samples(*graph_building.mirror_samples(order, forward, *every)),
+        np.concatenate([n.can_wait[keep] for n, keep in zip(networks, kept)]),
+        _meta(networks, node_of),
     )
 
 
-def _canal_columns(link: CanalLink) -> dict[str, float]:
-    """Return the columns of a canal's edge."""
-    return {
-        "length": link.length,
-        "course": 0.0,
-        "depth": np.inf,
-        "factor": 1.0,
-        "price": 1.0,
-        "fixed_time": link.transit_time,
-        "fee": link.fee,
-    }
+def _renumbered_samples(
+    networks: Sequence[Network], node_of: list[IntArray], n_nodes: int
+) -> list[Samples]:
+    """Return the samples of every network with the new numbers of their stations."""
+    samples, next_station = [], n_nodes
+    for network, nodes in zip(networks, node_of):
+        extra = network.n_stations - network.n_nodes
+        station = np.concatenate([nodes, next_station + np.arange(extra)]).astype(np.int32)
+        next_station += extra
+        own = network.samples
+        samples.append(
+            replace(own, station_a=station[own.station_a], station_b=station[own.station_b])
+        )
+    return samples
 
 
-def _stations(columns: list[np.ndarray], kept: list[BoolArray]) -> np.ndarray:
-    """Return positions, those of all nodes first."""
-    nodes = [column[: len(keep)][keep] for column, keep in zip(columns, kept)]
-    return np.concatenate([*nodes, *(column[len(keep) :] for column, keep in zip(columns, kept))])
+def _canal_edge(link: CanalLink) -> Edges:
+    """Return the properties of the edge through a canal."""
+    one = np.ones(1, np.float32)
+    return Edges(
+        np.array([link.length]),
+        course=np.zeros(1, np.float32),
+        depth=np.full(1, np.inf, np.float32),
+        penalty_factor=one,
+        price_factor=one,
+        fixed_time=np.array([link.transit_time]),
+        fee=np.array([link.fee]),
+    )
+
+
+def _concatenate_stations(networks: Sequence[Network], kept: list[BoolArray]) -> Stations:
+    """Return the positions of all networks, those of all nodes first."""
+    columns = []
+    for name in ("lat", "lon"):
+        parts = [(getattr(n.stations, name), keep) for n, keep in zip(networks, kept)]
+        nodes = [values[: len(keep)][keep] for values, keep in parts]
+        columns.append(np.concatenate([*nodes, *(values[len(keep) :] for values, keep in parts)]))
+    return Stations(columns[0], columns[1], sum(int(keep.sum()) for keep in kept))
 
 
 def _meta(networks: Sequence[Network], node_of: list[IntArray]) -> NetworkMeta:

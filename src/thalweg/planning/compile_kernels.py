@@ -6,7 +6,7 @@ import numpy as np
 
 from thalweg.core.geodesy import inverse
 from thalweg.kernels import codes
-from thalweg.network import Network, NetworkMeta
+from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 
 
 def compile_search() -> None:
@@ -36,21 +36,16 @@ def _two_nodes() -> Network:
     length, _, _ = inverse(0.0, 0.0, 0.0, 0.1)
     ones = np.ones(2, np.float32)
     return Network(
-        station_lat=lat,
-        station_lon=lon,
-        n_nodes=2,
-        indptr=np.array([0, 1, 2]),
-        target=np.array([1, 0], np.int32),
-        length=np.full(2, float(length)),
-        course=np.radians([90.0, 270.0]).astype(np.float32),
-        depth=np.full(2, np.inf, np.float32),
-        factor=ones,
-        price=ones,
-        via_ptr=np.zeros(3, np.int64),
-        via_a=np.empty(0, np.int32),
-        via_b=np.empty(0, np.int32),
-        via_w=np.empty(0, np.float32),
-        via_s=np.empty(0, np.float32),
+        Stations(lat, lon, n_nodes=2),
+        Graph(np.array([0, 1, 2]), target=np.array([1, 0], np.int32)),
+        Edges(
+            length=np.full(2, float(length)),
+            course=np.radians([90.0, 270.0]).astype(np.float32),
+            depth=np.full(2, np.inf, np.float32),
+            penalty_factor=ones,
+            price_factor=ones,
+        ),
+        Samples.none(2),
         can_wait=np.ones(2, np.bool_),
         meta=NetworkMeta("two nodes", 11_000.0, 2, np.pi / 8),
     )

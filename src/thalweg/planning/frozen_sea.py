@@ -41,7 +41,7 @@ def freeze_at_stations(
     InputError
         If the fields exceed `MEMORY_LIMIT`.
     """
-    lat, lon = network.station_lat, network.station_lon
+    lat, lon = network.stations.lat, network.stations.lon
     steps = len(context.sea.times(start, end))
     channels = context.needs.channels
     extra = None

@@ -227,8 +227,8 @@ def _speed_kn(context: PlanningContext) -> float | None:
 def _plot_context(context: PlanningContext, passages: list[PassageResult]) -> PlotContext:
     nodes = [passage.network.n_nodes for passage in passages]
     return PlotContext(
-        lat=np.concatenate([p.network.station_lat[:n] for p, n in zip(passages, nodes)]),
-        lon=np.concatenate([p.network.station_lon[:n] for p, n in zip(passages, nodes)]),
+        lat=np.concatenate([p.network.stations.lat[:n] for p, n in zip(passages, nodes)]),
+        lon=np.concatenate([p.network.stations.lon[:n] for p, n in zip(passages, nodes)]),
         arrival=np.concatenate([p.isochrones[:n] for p, n in zip(passages, nodes)]),
         chart=context.chart,
         sea=context.sea,

@@ -169,7 +169,7 @@ def solve_earliest_arrival(
     slowness = ROUNDING_FACTOR / given.fastest
     soonest = ROUNDING_FACTOR / max(given.fastest, canal_speed(network))
     away = np.zeros(len(station))
-    lat, lon = network.station_lat, network.station_lon
+    lat, lon = network.stations.lat, network.stations.lon
     if goal >= 0 and method == "astar":
         to = float(lat[goal]), float(lon[goal])
         away = shortened * distance_bounds(network.lat, network.lon, *to)[station]

@@ -183,7 +183,7 @@ def free_space_bound(
     Rigorous for the given fields: no route is shorter than the geodesic and none is sailed faster
     than the top speed through water plus the strongest current, or than canals are passed.
     """
-    lat, lon = network.station_lat, network.station_lon
+    lat, lon = network.stations.lat, network.stations.lon
     geodesic = ROUNDING_FACTOR * float(distance(lat[start], lon[start], lat[goal], lon[goal]))
     if objective == "distance":
         return LowerBound(geodesic, _FREE_SPACE_DISTANCE_NOTE)

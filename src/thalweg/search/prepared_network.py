@@ -62,16 +62,16 @@ class PreparedNetwork:
         InputError
             If the fields do not belong to the network.
         """
-        stations = len(network.station_lat)
+        stations = len(network.stations.lat)
         if fields.values.shape[0] != stations:
             raise InputError(
                 f"The fields have {fields.values.shape[0]} stations, the network {stations}.",
                 "Fields belong to the network they were frozen for.",
                 "Freeze the sea at the stations of this network.",
             )
-        order = np.argsort(network.target, kind="stable").astype(np.int32)
+        order = np.argsort(network.graph.target, kind="stable").astype(np.int32)
         ptr = np.concatenate(
-            [[0], np.cumsum(np.bincount(network.target, minlength=network.n_nodes))]
+            [[0], np.cumsum(np.bincount(network.graph.target, minlength=network.n_nodes))]
         )
         sea = sea_arrays(fields, tides=True)
         tails = np.ascontiguousarray(network.tails(), np.int32)

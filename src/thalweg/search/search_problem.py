@@ -83,23 +83,23 @@ def network_arrays(network: Network) -> NetworkArrays:
     """Return the arrays of a network that searches read."""
     count = len(network.can_wait)
     return NetworkArrays(
-        contiguous_array(network.indptr, np.int64),
-        contiguous_array(network.target, np.int32),
-        contiguous_array(network.length, np.float64),
-        contiguous_array(network.course, np.float32),
-        contiguous_array(network.depth, np.float32),
-        contiguous_array(network.factor, np.float32),
-        contiguous_array(network.via_ptr, np.int64),
-        contiguous_array(network.via_a, np.int32),
-        contiguous_array(network.via_b, np.int32),
-        contiguous_array(network.via_w, np.float32),
-        contiguous_array(network.via_s, np.float32),
+        contiguous_array(network.graph.indptr, np.int64),
+        contiguous_array(network.graph.target, np.int32),
+        contiguous_array(network.edges.length, np.float64),
+        contiguous_array(network.edges.course, np.float32),
+        contiguous_array(network.edges.depth, np.float32),
+        contiguous_array(network.edges.penalty_factor, np.float32),
+        contiguous_array(network.samples.ptr, np.int64),
+        contiguous_array(network.samples.station_a, np.int32),
+        contiguous_array(network.samples.station_b, np.int32),
+        contiguous_array(network.samples.weight, np.float32),
+        contiguous_array(network.samples.fraction, np.float32),
         contiguous_array(network.can_wait, np.bool_),
         np.arange(count, dtype=np.int32),
         np.full(count, -np.inf),
         np.full(count, np.inf),
         np.full(count, np.inf),
-        contiguous_array(network.fixed_time, np.float64),
+        contiguous_array(network.edges.fixed_time, np.float64),
     )
 
 
@@ -193,7 +193,7 @@ def make_search_problem(
     """
     ship = ship_arrays(table, setting, limits)
     sea = sea_arrays(fields, tides=ship.limits[LIMIT_REQUIRED_DEPTH] > -np.inf)
-    stations = len(network.station_lat)
+    stations = len(network.stations.lat)
     if sea.values.shape[0] != stations:
         raise InputError(
             f"The fields have {sea.values.shape[0]} stations, the network {stations}.",
@@ -220,11 +220,11 @@ def canal_speed(network: Network) -> float:
 
     A bound by speed holds only with at least this one: a slow ship may gain on it in a canal.
     """
-    edge = np.flatnonzero(~np.isnan(network.fixed_time))
+    edge = np.flatnonzero(~np.isnan(network.edges.fixed_time))
     if len(edge) == 0:
         return 0.0
-    tail = np.searchsorted(network.indptr, edge, side="right") - 1
-    head = network.target[edge]
-    lat, lon = network.station_lat, network.station_lon
+    tail = np.searchsorted(network.graph.indptr, edge, side="right") - 1
+    head = network.graph.target[edge]
+    lat, lon = network.stations.lat, network.stations.lon
     away = distance(lat[tail], lon[tail], lat[head], lon[head])
-    return float(np.max(away / network.fixed_time[edge]))
+    return float(np.max(away / network.edges.fixed_time[edge]))

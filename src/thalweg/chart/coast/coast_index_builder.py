@@ -1,6 +1,4 @@
-"""Building the grid of coast edges that the kernels walk (see
-`thalweg.kernels.geometry.cube_sphere`).
-"""
+"""The grid of coast edges for the kernels of `thalweg.kernels.geometry.cube_sphere`."""
 
 from __future__ import annotations
 
@@ -23,11 +21,11 @@ from thalweg.kernels.geometry.winding_numbers import carry_windings
 MAX_SEGMENT_LENGTH: Final = 10_000.0 / RADIUS  # edges are cut into pieces no longer than this [rad]
 MAX_BULGE: Final = 1.0 / RADIUS  # and bulging no more than this [rad]
 CELL_MARGIN: Final = 8.0e-5  # edges are listed in cells this near on the face (about 500 m)
-MAX_CLEARANCE: Final = 0.5  # distances are not told beyond this [rad]
+MAX_CLEARANCE: Final = 0.5  # largest distance that is stored [rad]
 
 
 class CoastSegments(NamedTuple):
-    """Edges cut short: both ends as unit vectors, and whether each goes on from the one before."""
+    """Short pieces of edges: unit vectors of both ends, and whether each continues the last."""
 
     start: FloatArray
     end: FloatArray

@@ -3,7 +3,7 @@
 ``gshhsmeta_R.dat`` has one line a ring: level, area [km2], points, south, north, byte offset,
 bytes, id. ``gshhs_R.dat`` holds the rings as little-endian float32 (lon, lat) pairs, closed, and
 cut at 180 degrees. Levels: 1 land, 2 lakes, 3 islands in lakes, 5 Antarctica (ice front).
-Only water joined to the ocean is navigable, so land is what lies inside levels 1 and 5: lakes,
+Only water joined to the ocean is navigable, so levels 1 and 5 together are land: lakes,
 the Caspian and the Great Lakes are closed.
 """
 
@@ -35,11 +35,11 @@ def data_files(resolution: str) -> tuple[Path, Path]:
     Raises
     ------
     InputError
-        If there is no such resolution, or its files are not installed.
+        If the resolution is unknown, or its files are not installed.
     """
     if resolution not in RESOLUTIONS:
         raise InputError(
-            f"There is no coastline of resolution {resolution!r}.",
+            f"The coastline resolution {resolution!r} is unknown.",
             "Resolutions are " + ", ".join(f"{k} ({v})" for k, v in RESOLUTIONS.items()) + ".",
             "Choose one of them; 'i' is the usual one.",
             value=resolution,

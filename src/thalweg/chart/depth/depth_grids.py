@@ -36,7 +36,7 @@ DEPTH_NAMES: Final = frozenset(
         "model_sea_floor_depth_below_geoid",
     )
 )
-MAX_HEIGHT, MAX_DEPTH = 9_500.0, 12_000.0  # [m] above and below datum that is believed
+MAX_HEIGHT, MAX_DEPTH = 9_500.0, 12_000.0  # [m] largest plausible height and depth
 UNIT_FACTORS: Final = {
     "m": 1.0,
     "meter": 1.0,
@@ -115,7 +115,7 @@ class DepthFunctionLayer:
     spacing_deg: float | None = None
 
     def fingerprint(self) -> str:
-        """Return the function's name and spacing: what it does is not known."""
+        """Return the function's name and spacing: its results are not part of it."""
         where = getattr(self.function, "__module__", "")
         return f"{where}.{self.name} {self.spacing_deg}"
 
@@ -164,12 +164,16 @@ def make_depth_layer(
     Raises
     ------
     InputError, DatasetError
-        If there is no such file, or the variable, its sign, its units or its grid is unclear.
+        If the file does not exist, or the variable, its sign, its units or its grid is unclear.
     """
     if callable(source):
         return DepthFunctionLayer(getattr(source, "__name__", "function"), source, spacing_deg)
     if positive not in (None, "up", "down"):
-        raise InputError(f"positive={positive!r} is no direction.", "It is 'up' or 'down'.", "")
+        raise InputError(
+            f"positive={positive!r} is not a direction.",
+            "It is 'up' for elevations or 'down' for depths.",
+            "Give one of these.",
+        )
     name, data = _open_source(source)
     array = _select_depth_variable(data, variable, name)
     scale = _depth_sign(array, positive, name) * _unit_factor(array, name)
@@ -181,7 +185,7 @@ def make_depth_layer(
         if len(line) < 2 or not ((steps > 0).all() or (steps < 0).all()):
             raise DatasetError(
                 f"The axis {axis!r} of the depth in {name} is not in order.",
-                "Latitudes and longitudes must rise or fall all along, two or more.",
+                "Latitudes and longitudes must increase or decrease throughout, two or more.",
                 "Sort the file, or use another.",
                 file=name,
             )
@@ -200,12 +204,12 @@ def make_depth_layer(
 
 
 def _check_plausible(depth: Float32Array, name: str) -> None:
-    """Raise for depths that are none: missing values that are not marked would be deep water."""
+    """Raise for impossible depths: unmarked missing values would count as deep water."""
     odd = depth[(depth < -MAX_HEIGHT) | (depth > MAX_DEPTH)]
     if odd.size:
         raise DatasetError(
             f"The depth in {name} reaches {odd[0]:g} m.",
-            f"Depths between {-MAX_HEIGHT:g} and {MAX_DEPTH:g} m are believed: wrong units, or "
+            f"Depths between {-MAX_HEIGHT:g} and {MAX_DEPTH:g} m are plausible: wrong units, or "
             "missing values that are not marked?",
             "Correct the file's units or _FillValue.",
             file=name,
@@ -292,8 +296,8 @@ def _depth_sign(array: Any, positive: str | None, name: str) -> float:
             return 1.0
     raise DatasetError(
         f"It is not clear whether {array.name!r} of {name} is positive up or down.",
-        "Its name, standard_name and attribute 'positive' do not say.",
-        "Say it: with_depth(..., positive='up') for elevation, 'down' for depth.",
+        "Its name, standard_name and attribute 'positive' do not state it.",
+        "State it: with_depth(..., positive='up') for elevation, 'down' for depth.",
         file=name,
     )
 
@@ -303,7 +307,7 @@ def _unit_factor(array: Any, name: str) -> float:
     if unit not in UNIT_FACTORS:
         raise DatasetError(
             f"The depth in {name} has the unit {unit!r}.",
-            "Units that are known: " + ", ".join(u for u in UNIT_FACTORS if u) + ".",
+            "Known units: " + ", ".join(u for u in UNIT_FACTORS if u) + ".",
             "Convert it to metres.",
             file=name,
         )

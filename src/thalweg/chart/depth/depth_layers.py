@@ -1,4 +1,4 @@
-"""Charted depth from several layers, the first that knows a place counting."""
+"""Charted depth from several layers; at each position the first layer with data counts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Box = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class DepthLayers:
-    """Layers of depth by priority; windows of them are read and kept when needed."""
+    """Layers of depth by priority; parts of them are read and cached when needed."""
 
     layers: tuple[DepthGrid | DepthFunctionLayer, ...] = ()
     _kept: dict[int, tuple[Box, DepthArrays]] = field(
@@ -84,7 +84,7 @@ class DepthLayers:
         return total
 
     def at(self, lat: ArrayLike, lon: ArrayLike, *, least: bool = False) -> FloatArray:
-        """Return the depth [m] at positions [deg], NaN where no layer knows it.
+        """Return the depth [m] at positions [deg], NaN where no layer has data.
 
         Bilinear, or the least of the soundings round each position.
         """
@@ -187,7 +187,7 @@ class DepthLayers:
 
 
 def _box_with_margin(box: Box) -> Box:
-    """Return a box a quarter wider each way, so that the next legs near by are on it too."""
+    """Return a box a quarter larger in each direction, so that it covers nearby legs as well."""
     south, north, west, east = box
     tall, wide = 0.25 * (north - south) + 0.1, 0.25 * (east - west) + 0.1
     return max(south - tall, -90.0), min(north + tall, 90.0), west - wide, east + wide
@@ -217,7 +217,7 @@ def _covers(kept: Box, box: Box) -> bool:
 
 
 def _half_mask(lat: FloatArray, lon: FloatArray, box: Box) -> NDArray[np.bool_]:
-    """Return a mask that parts places in two non-empty halves, across the longer side."""
+    """Return a mask that divides positions into two non-empty halves, across the longer side."""
     line = lat if box[1] - box[0] > box[3] - box[2] else lon
     order = np.argsort(line, kind="stable")
     left = np.zeros(len(line), bool)
@@ -236,10 +236,10 @@ def _global_depth() -> DepthArrays:
 
 
 def coarse_depth(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
-    """Return depth [m] from every 30th point of ETOPO1 (NOAA): a warning, never a proof.
+    """Return depth [m] from every 30th point of ETOPO1 (NOAA): for warnings only.
 
-    Amante and Eakins (2009), doi:10.7289/V5C8276M; points, not means, so shoals between them are
-    not in it.
+    Amante and Eakins (2009), doi:10.7289/V5C8276M; points and not means, so it
+    does not show shoals between them.
     """
     a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
     depth = np.empty(a.size)

@@ -1,7 +1,7 @@
-"""The emission control areas of MARPOL Annex VI, with their dates and what their limits rest on.
+"""The emission control areas of MARPOL Annex VI, with their dates and the sources of their limits.
 
-Facts only, in `data/eca.geojson`: published points where the regulation lists points, parallels and
-meridians where it describes them, and lines of our own over land that close the outlines.
+The file ``data/eca.geojson`` holds the published points where the regulation lists points,
+parallels and meridians where it describes them, and own lines over land to close the outlines.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from thalweg.core.errors import InputError, ThalwegWarning, unknown_name_error
 from thalweg.core.geodesy import densify
 from thalweg.core.time import TimeLike, parse_time
 
-DATA_DATE: Final = "2026-11-21"  #: up to when the dates of the areas were looked up
+DATA_DATE: Final = "2026-11-21"  #: date on which the dates of the areas were checked
 MAX_EDGE_LENGTH: Final = (
     10_000.0  # edges said to be geodesics are cut into pieces no longer than this [m]
 )
@@ -51,7 +51,7 @@ class EmissionControlArea:
         in the regulation; ``unknown``: none could be read, so this area can only be asked for
         with an outline of one's own. Lines over land are never the regulation's.
     note : str
-        What the limits rest on, in words.
+        Sources of the limits, as text.
     """
 
     name: str
@@ -100,7 +100,7 @@ class EcaZone:
         """Return which positions [deg] lie inside; by counting edges east of them.
 
         Edges are straight in longitude and latitude. For many positions in many areas at once
-        the chart's index is quicker (`Chart.in_eca`).
+        the chart's index is quicker (`Zones.in_eca`).
         """
         a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
         y, x = a.ravel(), b.ravel()
@@ -172,7 +172,7 @@ def select_emission_control_areas(
     Raises
     ------
     InputError
-        If there is no such area, its limits are unknown, or it does not count yet.
+        If the area is unknown, its limits are unknown, or it is not yet in force.
 
     Warns
     -----

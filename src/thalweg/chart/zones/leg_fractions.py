@@ -1,4 +1,4 @@
-"""How much of a leg lies inside polygons: exact along the geodesic, quick where none is touched."""
+"""Fraction of a leg inside polygons, exact along the geodesic."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from thalweg.kernels.geometry.coast_index import CoastArrays, outlines_touched, 
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, RADIUS, IndexArrays
 from thalweg.kernels.geometry.polygon_fractions import fractions_by_bisection, middles_inside
 
-CROSSING_TOLERANCE: Final = 0.25  # pieces this short are taken whole [m]
+CROSSING_TOLERANCE: Final = 0.25  # pieces this short are not cut further [m]
 MAX_PART_LENGTH: Final = 400_000.0  # longer legs are cut into such pieces first [m]
 _WORLD: Final = np.array([-90.0, 90.0, -180.0, 360.0])
 
@@ -58,9 +58,9 @@ def fractions_inside(
 
     ``outlines`` is `outlines_only` of the index.
 
-    Legs that touch no outline are told by their middle. The others are halved again and again where
-    they touch one, until pieces are shorter than ``finest`` [m]: each crossing is found to that.
-    NaN where a position is no number.
+    Legs that cross no outline are classified by their midpoint. The others are bisected where they
+    touch one, until the pieces are shorter than ``finest`` [m], the accuracy of each crossing.
+    NaN where a position is not a number.
     """
     legs = [np.require(x, float, ("C", "W")) for x in (lat1, lon1, lat2, lon2)]
     known = (

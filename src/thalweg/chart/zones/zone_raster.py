@@ -1,4 +1,4 @@
-"""A raster of the zones that have prices, for kernels that look at very many legs."""
+"""A raster of zones with prices, for kernels that test very many legs."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from thalweg.chart.zones.leg_fractions import boxes_touched, points_inside
 from thalweg.chart.zones.zone_set import Zones
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
-from thalweg.core.types import FloatArray
 
 OUTSIDE: Final = 0
 INSIDE: Final = 1
@@ -30,7 +30,7 @@ class ZoneRaster:
         next [deg]; a longitude is shifted by 360 to fit.
     cell : int8 array (Y, X)
         `OUTSIDE` (0), `INSIDE` (1), or `MIXED` (2) where an outline may run through the cell. A
-        leg that meets cells of one class only, 0 or 1, lies outside or inside altogether.
+        leg that meets only cells of class 0, or only cells of class 1, is wholly outside or inside.
     price : float32 array (Y, X)
         Price factor (of zones of the kind "price") at the middle of the cell, 1 without zones.
     """
@@ -43,15 +43,24 @@ class ZoneRaster:
     price: NDArray[np.float32]
 
 
-def zone_raster(zones: Zones, box: FloatArray, spacing: float) -> ZoneRaster:
-    """Return the raster of a box given as south, north, west and width [deg].
+def zone_raster(zones: Zones, box: BoundingBox, spacing: float) -> ZoneRaster:
+    """Return the raster of a box.
+
+    Parameters
+    ----------
+    zones : Zones
+        Zones of a chart.
+    box : BoundingBox
+        Area of the raster.
+    spacing : float
+        Largest side of a cell [deg].
 
     Raises
     ------
     InputError
         If the spacing is not above zero, or that makes too many cells.
     """
-    south, north, west, width = (float(x) for x in box)
+    south, north, west, width = box.array().tolist()
     if not (np.isfinite(spacing) and spacing > 0.0):
         raise InputError(
             f"A raster spacing of {spacing!r} degrees cannot be used.",

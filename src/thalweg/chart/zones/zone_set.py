@@ -1,9 +1,9 @@
-"""Zones: where a ship may not go, where a mile counts for more, where fuel has another price.
+"""Zones: where a ship may not sail, where a mile counts more, where fuel has another price.
 
 A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "eca") and, for
 penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
-zone without a factor is an emission control area: what fuel costs there is the ship's to say; with
-one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
+zone without a factor is an emission control area: the ship file states what fuel costs there;
+with one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
 only, and nowhere in zones of the kind "no-waiting".
 """
 
@@ -17,9 +17,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.chart import geojson_polygons
+from thalweg.chart.anchorages import waiting_allowed
 from thalweg.chart.coast.coast_cache import load_or_build
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
-from thalweg.chart.zones import geojson_zones
 from thalweg.chart.zones.emission_control_areas import EcaZone
 from thalweg.chart.zones.leg_fractions import (
     CROSSING_TOLERANCE,
@@ -74,7 +75,7 @@ class ZoneGroup:
         shapely.prepare(shapes)
         parts = [part for shape, _ in zones for part in shapely.get_parts(shape)]
         areas = [part for part in parts if part.geom_type == "Polygon"]
-        outlines = build_index(geojson_zones.rings_from_polygons(areas), ZONE_INDEX_CELLS)
+        outlines = build_index(geojson_polygons.rings_from_polygons(areas), ZONE_INDEX_CELLS)
         factors = np.repeat([factor for _, factor in zones], 3)
         return cls(shapely.STRtree(shapes), factors, outlines)
 
@@ -124,7 +125,7 @@ class Zones:
     no_waiting: tuple[Any, ...] = ()
 
     @classmethod
-    def read(cls, source: geojson_zones.GeoJsonSource) -> Zones:
+    def read(cls, source: geojson_polygons.GeoJsonSource) -> Zones:
         """Read zones from a GeoJSON file or plain data.
 
         Raises
@@ -137,14 +138,14 @@ class Zones:
             kind: [] for kind in (*KINDS_WITHOUT_FACTOR, "penalty", "price")
         }
         eca: list[EcaZone] = []
-        for geometry, properties in geojson_zones.read_features(source, "zones"):
+        for geometry, properties in geojson_polygons.read_features(source, "zones"):
             kind = _zone_kind(properties)
-            shapes = geojson_zones.parse_polygons(geometry, "zones", repair=False)
+            shapes = geojson_polygons.parse_polygons(geometry, "zones", repair=False)
             if kind == "eca":
                 eca.append(
                     EcaZone(
                         str(properties.get("name") or "eca"),
-                        geojson_zones.rings_from_polygons(shapes),
+                        geojson_polygons.rings_from_polygons(shapes),
                     )
                 )
                 continue
@@ -172,7 +173,7 @@ class Zones:
         """The grid of the edges of the no-go zones."""
         if not self.no_go:
             return empty_index()
-        return build_index(geojson_zones.rings_from_polygons(list(self.no_go)), ZONE_INDEX_CELLS)
+        return build_index(geojson_polygons.rings_from_polygons(list(self.no_go)), ZONE_INDEX_CELLS)
 
     @cached_property
     def eca_index(self) -> IndexArrays:
@@ -222,6 +223,15 @@ class Zones:
             return np.zeros(a.shape, np.bool_)
         return points_inside(self.eca_index, a.flatten(), b.flatten()).reshape(a.shape)
 
+    def may_wait(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
+        """Return at which positions [deg] a ship may wait.
+
+        In zones of the kind "anchorage" where there are any, else everywhere; never in zones of
+        the kind "no-waiting".
+        """
+        y, x = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
+        return waiting_allowed(self.anchorages, self.no_waiting, y, x)
+
     @cached_property
     def _groups(self) -> tuple[ZoneGroup, ZoneGroup]:
         """Penalty and price zones ready for legs."""
@@ -232,7 +242,7 @@ class Zones:
     ) -> tuple[FloatArray, FloatArray]:
         """Return the penalty and the price factor of legs [deg], weighted by length.
 
-        NaN where a position is no number.
+        NaN where a position is not a number.
         """
         ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
         shape = ends[0].shape

@@ -71,11 +71,11 @@ class EdgeWeights:
             )
 
         def leg_cost(*ends: FloatArray) -> FloatArray:
-            penalty, price = chart.zone_factor(*ends)
-            share = chart.eca_fraction(*ends, finest=_BORDER_TOLERANCE)
+            penalty, price = chart.zones.factors(*ends)
+            share = chart.zones.eca_fraction(*ends, finest=_BORDER_TOLERANCE)
             return np.asarray(leg_lengths(*ends) * penalty * price * (1.0 + (factor - 1.0) * share))
 
-        weight = network.length * network.factor * network.price
+        weight = network.edges.length * network.edges.penalty_factor * network.edges.price_factor
         return cls(weight * (1.0 + (factor - 1.0) * eca_fractions(network, chart)), leg_cost)
 
 
@@ -119,13 +119,13 @@ def eca_fractions(network: Network, chart: Chart) -> FloatArray:
     share = np.zeros(network.n_edges)
     if not chart.zones.eca:
         return share
-    sailed = np.flatnonzero(np.isnan(network.fixed_time))
-    a, b = network.tails()[sailed].astype(np.int64), network.target[sailed].astype(np.int64)
+    sailed = np.flatnonzero(np.isnan(network.edges.fixed_time))
+    a, b = network.tails()[sailed].astype(np.int64), network.graph.target[sailed].astype(np.int64)
     key = np.minimum(a, b) * network.n_nodes + np.maximum(a, b)  # each pair is looked at once
     keys, back = np.unique(key, return_inverse=True)
     a, b = keys // network.n_nodes, keys % network.n_nodes
     lat, lon = network.lat, network.lon
-    found = chart.eca_fraction(lat[a], lon[a], lat[b], lon[b], finest=_BORDER_TOLERANCE)
+    found = chart.zones.eca_fraction(lat[a], lon[a], lat[b], lon[b], finest=_BORDER_TOLERANCE)
     share[sailed] = np.asarray(found)[back]
     return share
 
@@ -133,7 +133,7 @@ def eca_fractions(network: Network, chart: Chart) -> FloatArray:
 def checked_edge_weights(network: Network, edge_weights: EdgeWeights) -> FloatArray:
     """Return the weight of every edge; `InputError` if they make no sense."""
     if edge_weights.weight is None:
-        return network.length
+        return network.edges.length
     weight = np.ascontiguousarray(edge_weights.weight, float)
     if weight.shape != (network.n_edges,) or not np.all(weight >= 0.0):
         raise InputError(
@@ -170,8 +170,8 @@ def taut_path(
 def canal_edges(network: Network, chart: Chart) -> IntArray:
     """Return the index in ``chart.canals`` of every edge of a network, -1 for those at sea."""
     answer = np.full(network.n_edges, -1, np.int64)
-    edge = np.flatnonzero(~np.isnan(network.fixed_time))
-    tail, head = network.tails()[edge], network.target[edge]
+    edge = np.flatnonzero(~np.isnan(network.edges.fixed_time))
+    tail, head = network.tails()[edge], network.graph.target[edge]
     lat, lon = network.lat, network.lon
     answer[edge] = chart.canal_of_legs(lat[tail], lon[tail], lat[head], lon[head])
     return answer
@@ -186,6 +186,6 @@ def path_edges(network: Network, path: Sequence[int] | IntArray) -> IntArray:
     """Return the edges along a path of nodes."""
     edges = []
     for a, b in pairwise(path):
-        first, last = network.indptr[a], network.indptr[a + 1]
-        edges.append(first + int(np.argmax(network.target[first:last] == b)))
+        first, last = network.graph.indptr[a], network.graph.indptr[a + 1]
+        edges.append(first + int(np.argmax(network.graph.target[first:last] == b)))
     return np.array(edges, np.int64)

@@ -71,7 +71,7 @@ def obstacles(network: Network, chart: Chart, island: float) -> Obstacles:
     points = np.concatenate(
         [[[-90.0, 0.5 * (network.lon[0] + 180.0)]], _large_land(network, chart, island)]
     )
-    tail, head = network.tails().astype(np.int64), network.target.astype(np.int64)
+    tail, head = network.tails().astype(np.int64), network.graph.target.astype(np.int64)
     return Obstacles(
         points, _meridian_crossing_counts(chart, network.lat, network.lon, tail, head, points)
     )
@@ -92,7 +92,7 @@ def _meridian_crossing_counts(
 
 def _large_land(network: Network, chart: Chart, island: float) -> FloatArray:
     """Return a position on each piece of land that is large enough and near the network."""
-    rings = chart.land.rings
+    rings = chart.coastline.rings
     if not len(rings):
         return np.empty((0, 2))
     begin = rings.start[:-1]

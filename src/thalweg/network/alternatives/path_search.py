@@ -12,7 +12,6 @@ import numpy as np
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance, format_position
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.kernels.network.graph_building import static_dijkstra
 from thalweg.kernels.network.static_paths import tree_sums
 from thalweg.network.alternatives.alternative_path import (
     AlternativePath,
@@ -24,7 +23,8 @@ from thalweg.network.alternatives.alternative_path import (
 )
 from thalweg.network.alternatives.homotopy import Obstacles, obstacles
 from thalweg.network.alternatives.path_shortening import total_cost
-from thalweg.network.network import Network
+from thalweg.network.network import Graph, Network
+from thalweg.network.shortest_paths import shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -194,20 +194,11 @@ def _no_path(network: Network) -> NoRouteError:
     )
 
 
-def _shortest_path_tree(
-    network: Network, weight: FloatArray, root: int, backward: bool
-) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray]:
-    """Return least costs and parents, and the graph (indptr, target, edge) they were found on."""
-    n = network.n_nodes
-    indptr, target = network.indptr, network.target
-    edge = np.arange(network.n_edges)
-    if backward:
-        edge = np.argsort(target, kind="stable")
-        indptr = np.searchsorted(target[edge], np.arange(n + 1)).astype(np.int64)
-        target = network.tails()[edge]
-    cost, parent = np.empty(n), np.empty(n, np.int64)
-    static_dijkstra(indptr, target, weight[edge], root, -1, cost, parent)
-    return cost, parent, indptr, target.astype(np.int32), edge
+def _reversed_graph(network: Network) -> tuple[Graph, IntArray]:
+    """Return the graph with all edges reversed, and the original index of each edge."""
+    edge = np.argsort(network.graph.target, kind="stable")
+    indptr = np.searchsorted(network.graph.target[edge], np.arange(network.n_nodes + 1))
+    return Graph(indptr.astype(np.int64), network.tails()[edge]), edge
 
 
 def _best_of_each_class(
@@ -216,13 +207,19 @@ def _best_of_each_class(
     """Return the best way of every kind, by way of any node, up to the stretch."""
     weight = checked_edge_weights(network, edge_weights)
     sides = []
-    for root, backward in ((network.meta.start, False), (network.meta.goal, True)):
-        cost, parent, indptr, target, edge = _shortest_path_tree(network, weight, root, backward)
+    forward = network.graph, np.arange(network.n_edges)
+    for root, (graph, edge) in (
+        (network.meta.start, forward),
+        (network.meta.goal, _reversed_graph(network)),
+    ):
+        tree = shortest_path_tree(graph, weight[edge], root)
         sums = np.zeros((network.n_nodes, seen.crossings.shape[1]), np.int16)
-        ranks = np.argsort(cost, kind="stable")
-        ranks = ranks[: int(np.isfinite(cost).sum())]
-        tree_sums(indptr, target, weight[edge], seen.crossings[edge], cost, parent, ranks, sums)
-        sides.append((cost, parent, sums))
+        ranks = np.argsort(tree.distance, kind="stable")
+        ranks = ranks[: int(np.isfinite(tree.distance).sum())]
+        tree_sums(
+            graph.indptr, graph.target, weight[edge], seen.crossings[edge], *tree, ranks, sums
+        )
+        sides.append((*tree, sums))
     (there, came, past), (back, goes, ahead) = sides
     total = there + back
     best = float(total[network.meta.start])
@@ -279,12 +276,7 @@ def _taut_paths(
 
 
 def _cheapest_path(network: Network, weight: FloatArray) -> tuple[float, list[int]] | None:
-    """Return the cost and nodes of the best way, or None."""
-    cost, parent, *_ = _shortest_path_tree(network, weight, network.meta.start, False)
-    goal = network.meta.goal
-    if not np.isfinite(cost[goal]):
-        return None
-    path = [goal]
-    while path[-1] != network.meta.start:
-        path.append(int(parent[path[-1]]))
-    return float(cost[goal]), path[::-1]
+    """Return the cost and nodes of the best path, or None."""
+    tree = shortest_path_tree(network.graph, weight, network.meta.start)
+    path = tree.path(network.meta.goal)
+    return (float(tree.distance[network.meta.goal]), path) if path else None

@@ -1,4 +1,4 @@
-"""Exact positions joined to a grid: to the largest water they see, or by an approach to it."""
+"""Attachment of exact positions to a grid, directly or by an approach to its largest water."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network.alternatives.path_shortening import pull_taut
-from thalweg.network.network import shortest_path
+from thalweg.network.assembly import Pairs
 from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
 from thalweg.network.regional_lattice.lattice_builder import lattice
+from thalweg.network.shortest_paths import shortest_path
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _SECTORS: Final = 48
 _LINKS_PER_SECTOR_AND_RING: Final = 3  # nodes tested in every sector and ring
-_NEAREST_LINKS: Final = 32  # and the nearest ones anyway
+_NEAREST_LINKS: Final = 32  # and the nearest ones in any case
 _MAX_LINKS: Final = 200
 _SHORTEST_LINK: Final = 1.0  # [m]
-_MIN_BASIN_NODES: Final = 200  # a water of so many nodes is a basin of its own
+_MIN_BASIN_NODES: Final = 200  # connected water of at least this many nodes is a basin of its own
 _FARTHEST_APPROACH: Final = 150.0 * NAUTICAL_MILE
 _MAX_APPROACHES: Final = 3
 _CHAIN_REACH: Final = 20.0 * NAUTICAL_MILE
@@ -54,6 +55,23 @@ class ConnectedWaters:
     size: IntArray
     reach: float
 
+    @classmethod
+    def of_pairs(
+        cls, lat: FloatArray, lon: FloatArray, pairs: Pairs, usable: BoolArray, reach: float
+    ) -> ConnectedWaters:
+        """Return the connected waters of nodes joined by pairs; unusable nodes count for none."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        n = len(lat)
+        joined = coo_array(
+            (np.ones(len(pairs.first), bool), (pairs.first, pairs.second)), shape=(n, n)
+        )
+        water = connected_components(joined, directed=False)[1].astype(np.int64)
+        size = np.bincount(water)[water]
+        size[~usable] = 0
+        return cls(lat, lon, water, size, reach)
+
     @cached_property
     def largest(self) -> int:
         """The number of the largest water."""
@@ -67,14 +85,14 @@ class ConnectedWaters:
 
 @dataclass(frozen=True)
 class Attachment:
-    """How a position is joined to a grid.
+    """Links of a position to a grid.
 
     Attributes
     ----------
     lat, lon : float64[K]
         The position and the waypoints of its approach [deg], each joined to the one before.
-    link_from, link_to : int64[L]
-        Links: which of these, and to which node.
+    link_waypoint, link_node : int64[L]
+        Links: index of the waypoint, and of the node.
     """
 
     lat: FloatArray
@@ -92,24 +110,25 @@ def attach(
     ----------
     chart : Chart
         Tests the legs.
-    waters : Waters
+    waters : ConnectedWaters
+        Nodes of the grid.
     place : (lat, lon)
         Navigable position [deg].
     what : str
         Its name in errors.
     approach : bool, optional
-        Whether an approach may be looked for, which takes a second or two.
+        Whether an approach may be searched, which takes one or two seconds.
 
     Returns
     -------
-    Joint
-        Links to the largest water seen; where that is a mere pocket, an approach leads on to the
-        largest of all, found on a fine lattice.
+    Attachment
+        Links to the largest water within reach; where that is small, an approach to the largest
+        of all is added, found on a fine lattice.
 
     Raises
     ------
     NoRouteError
-        If nothing can be reached.
+        If no node can be reached.
     """
     near = _candidates(waters, place, np.ones(len(waters.lat), bool), waters.reach)
     seen = _reachable_nodes(chart, place, waters, near)
@@ -196,7 +215,7 @@ def _nearest_by_sector(waters: ConnectedWaters, place: Position, nodes: IntArray
 
 
 def _approach(chart: Chart, waters: ConnectedWaters, place: Position) -> Attachment | None:
-    """Return a position joined to the largest water by a fine way, or None if there is none."""
+    """Return an approach from a position to the largest water, or None if none exists."""
     nodes = np.flatnonzero(waters.water == waters.largest)
     away, _ = _distance_and_course(waters, place, nodes)
     order = np.argsort(away, kind="stable")
@@ -208,16 +227,16 @@ def _approach(chart: Chart, waters: ConnectedWaters, place: Position) -> Attachm
         if any(float(distance(*goal, *other)) < 0.3 * away[k] for other in tried):
             continue
         tried.append(goal)
-        way = _fine_path(chart, place, goal)
-        if way is not None:
-            return _attach_along(chart, waters, way, nodes[k])
+        path = _fine_path(chart, place, goal)
+        if path is not None:
+            return _attach_along(chart, waters, path, nodes[k])
     return None
 
 
 def _fine_path(
     chart: Chart, start: Position, goal: Position
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Return the shortest way on a fine lattice between near positions."""
+    """Return the shortest path on a fine lattice between near positions."""
     away = float(distance(*start, *goal))
     margin = max(away, 15.0 * NAUTICAL_MILE) / (60.0 * NAUTICAL_MILE)
     east = margin / max(float(np.cos(np.radians(start[0]))), 0.05)
@@ -235,10 +254,10 @@ def _fine_path(
 
 
 def _attach_along(
-    chart: Chart, waters: ConnectedWaters, way: tuple[FloatArray, FloatArray], last: int
+    chart: Chart, waters: ConnectedWaters, path: tuple[FloatArray, FloatArray], last: int
 ) -> Attachment:
-    """Return an approach that ends at a node, each of its waypoints joined to what it sees."""
-    lat, lon = way[0][:-1], way[1][:-1]
+    """Return an approach that ends at a node, with links from each of its waypoints."""
+    lat, lon = path[0][:-1], path[1][:-1]
     link_waypoint, link_node = [np.array([len(lat) - 1])], [np.array([last])]
     inside = waters.water == waters.largest
     for k, place in enumerate(zip(lat.tolist(), lon.tolist())):

@@ -9,16 +9,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.canals import CANALS, Canal
+from thalweg.chart.coast.coastline import Coastline
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.kernels.network import graph_building
-from thalweg.kernels.network.static_paths import connected_waters
 from thalweg.network.assembly import (
     Pairs,
-    Stations,
     allowed_legs,
     assemble,
     directed_edges,
@@ -28,7 +26,8 @@ from thalweg.network.assembly import (
 from thalweg.network.endpoints import check_endpoints, concatenate_pairs, direct_pairs
 from thalweg.network.global_grid.endpoint_attachment import Attachment, ConnectedWaters, attach
 from thalweg.network.global_grid.grid import GlobeGrid, GridResolution, globe_grid
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta, Stations
+from thalweg.network.shortest_paths import shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -61,15 +60,9 @@ class _UnassembledGlobe:
 
     def distances(self, node: int) -> FloatArray:
         """Return the static distance [m] of every node from one; inf where unreached."""
-        n = self.stations.n_nodes
         every = concatenate_pairs([self.pairs, self.through])
-        edges = directed_edges(n, every)
-        distance, parent = np.empty(n), np.empty(n, np.int64)
-        weight = every.length[edges.pair]
-        graph_building.static_dijkstra(
-            edges.indptr, edges.target, weight, node, -1, distance, parent
-        )
-        return distance
+        edges = directed_edges(self.stations.n_nodes, every)
+        return shortest_path_tree(edges.graph, every.length[edges.pair], node).distance
 
 
 def globe(
@@ -113,8 +106,8 @@ def globe(
         Passages and leaves the North Cape open. Start and goal may lie beyond a limit, which then
         gives way as far as 1 degree past them.
     slack : float, optional
-        Nodes are kept when the shortest way start-node-goal is at most ``1 + slack`` times the
-        shortest way from start to goal; by default 1 under 100 nautical miles falling to 0.35 over
+        Nodes are kept when the shortest path start-node-goal is at most ``1 + slack`` times the
+        shortest path from start to goal; by default 1 under 100 nautical miles falling to 0.35 over
         1,000 and 0.15 over 5,000. ``math.inf`` keeps the whole sea.
     sample_spacing : float, optional
         Fields are sampled along edges at least this often [m].
@@ -180,8 +173,8 @@ def _checked(
         )  # fmt: skip
     if not -90.0 <= south < north <= 90.0:
         raise InputError(
-            f"There is no sea between the latitudes {south!r} and {north!r}.",
-            "The southern limit lies below the northern one, both within 90 degrees.",
+            f"The latitude limits {south!r} and {north!r} are not valid.",
+            "The southern limit is below the northern one, both within 90 degrees.",
             "Give degrees north, southern latitudes negative.",
         )
     if slack is not None and not slack >= 0.0:
@@ -214,7 +207,8 @@ def _draw_and_attach(
     grid = globe_grid(chart, options.fineness)
     closed = chart.without_canals("all")
     pairs, usable = _open_sea(closed, grid, options)
-    waters = _connected_waters(grid, pairs, usable, _LINK_REACH * grid.spacing)
+    reach = _LINK_REACH * grid.spacing
+    waters = ConnectedWaters.of_pairs(grid.lat, grid.lon, pairs, usable, reach)
     joints = [
         attach(closed, waters, place, what=what)
         for place, what in ((start, "start"), (goal, "goal"))
@@ -228,7 +222,11 @@ def _draw_and_attach(
     stations, more = _add_attachments(closed, grid, joints)
     ends_at = np.arange(len(grid.lat) + 2, len(grid.lat) + len(joints), 2, dtype=np.int32)
     through = measured_pairs(stations.lat, stations.lon, ends_at, ends_at + np.int32(1))
-    through = replace(through, length=np.array([canal.length for canal in canals], float))
+    through = replace(
+        through,
+        length=np.array([canal.length for canal in canals], float),
+        course=np.full(len(canals), np.nan, np.float32),
+    )
     start_node = len(grid.lat)
     return _UnassembledGlobe(
         stations, concatenate_pairs([pairs, more]), through, tuple(canals), start_node, grid
@@ -238,7 +236,7 @@ def _draw_and_attach(
 def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, BoolArray]:
     """Return the grid's legs within limits, area and zones, and which nodes are usable."""
     usable = (grid.lat >= options.south) & (grid.lat <= options.north)
-    no_land = replace(chart, land=type(chart).open_water().land)
+    no_land = replace(chart, coastline=Coastline.none())
     bounded = chart.zones.no_go or chart.area.array().tolist() != [-90.0, 90.0, -180.0, 360.0]
     if bounded:
         usable &= no_land.is_navigable(grid.lat, grid.lon)
@@ -246,15 +244,6 @@ def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, 
     if bounded:
         pairs = pairs.where(allowed_legs(no_land, grid.lat, grid.lon, pairs.first, pairs.second)[0])
     return pairs, usable
-
-
-def _connected_waters(
-    grid: GlobeGrid, pairs: Pairs, usable: BoolArray, reach: float
-) -> ConnectedWaters:
-    root = connected_waters(len(grid.lat), pairs.first, pairs.second)
-    size = np.bincount(root, minlength=len(root))[root]
-    size[~usable] = 0
-    return ConnectedWaters(grid.lat, grid.lon, root, size, reach)
 
 
 def _attach_canal(
@@ -317,7 +306,7 @@ def _renumbered(pairs: Pairs, keep: BoolArray, new: np.ndarray) -> Pairs:
 
 
 def _network(chart: Chart, sheet: _UnassembledGlobe, options: _Options, spacing: float) -> Network:
-    """Sample the legs along their length, assemble the network and set what canals take."""
+    """Sample the legs along their length and assemble the network; canals are not sampled."""
     pairs = concatenate_pairs([sheet.pairs, sheet.through])
     apart = np.full(len(pairs.first), spacing)
     apart[len(sheet.pairs.first) :] = np.inf  # canals need no weather
@@ -332,15 +321,7 @@ def _network(chart: Chart, sheet: _UnassembledGlobe, options: _Options, spacing:
         goal=sheet.start + 1,
         notes=tuple(f"may pass the {canal.title}" for canal in sheet.canals),
     )
-    edges = directed_edges(stations.n_nodes, pairs)
-    network = assemble(chart, stations, pairs, samples, meta=meta, edges=edges)
-    edge = np.flatnonzero(edges.pair >= len(sheet.pairs.first))
-    which = edges.pair[edge] - len(sheet.pairs.first)
-    for column, value in (("depth", np.inf), ("factor", 1.0), ("price", 1.0)):
-        getattr(network, column)[edge] = value
-    network.fixed_time[edge] = np.array([c.transit_time for c in sheet.canals], float)[which]
-    network.fee[edge] = np.array([c.fee for c in sheet.canals], float)[which]
-    return network
+    return assemble(chart, stations, pairs, samples, meta=meta)
 
 
 def _no_route(
@@ -357,10 +338,10 @@ def _no_route(
     missing = [canal for canal in CANALS if canal not in chart.canals]
     if missing and math.isfinite(_shortest_length(replace(chart, canals=CANALS), options, ends)):
         titles = " and the ".join(canal.title for canal in missing)
-        remedy = f"Allow the {titles}: with all canals there is a way."
+        remedy = f"Allow the {titles}: with all canals a route exists."
     return NoRouteError(
         f"There is no way by water from {names[0]} to {names[1]} on this chart.",
-        f"The way ends at {names[2]}, {away[best] / NAUTICAL_MILE:.1f} nm from the goal.",
+        f"The network reaches {names[2]}, {away[best] / NAUTICAL_MILE:.1f} nm from the goal.",
         remedy,
         reasons={"land": sheet.grid.rejected},
         nearest=nearest,
@@ -368,6 +349,6 @@ def _no_route(
 
 
 def _shortest_length(chart: Chart, options: _Options, ends: tuple[Position, Position]) -> float:
-    """Return the length of the shortest way between two ends [m]; inf where there is none."""
+    """Return the length of the shortest path between two ends [m]; inf where none exists."""
     sheet = _draw_and_attach(chart, options, *ends)
     return float(sheet.distances(sheet.start)[sheet.start + 1])

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from thalweg.chart.coast.coast_index_builder import build_index
-from thalweg.chart.zones.geojson_zones import rings_from_polygons
+from thalweg.chart.geojson_polygons import rings_from_polygons
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
@@ -31,7 +31,7 @@ from thalweg.network.global_grid.icosphere import (
     icosphere,
     sorted_unique,
 )
-from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, STRAITS, strait_levels
+from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, narrow_straits, strait_levels
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -69,7 +69,7 @@ class GlobeGrid:
 
 @dataclass(frozen=True)
 class GridResolution:
-    """How fine a grid is.
+    """Resolution of a grid.
 
     Attributes
     ----------
@@ -92,14 +92,16 @@ def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
     Parameters
     ----------
     chart : Chart
-        Only its land and the borders of its zones with prices count.
-    fineness : Fineness
+        Its land and the borders of its zones with prices determine the grid.
+    fineness : GridResolution
+        Resolution of the grid.
     """
     zones = type(chart.zones)(
         penalty=chart.zones.penalty, price=chart.zones.price, eca=chart.zones.eca
     )
-    bare = type(chart)(chart.land, zones=zones)
-    facts = (FORMAT, bare.fingerprint(), fineness, FINEST_STRAIT_LEVEL, STRAITS)
+    bare = type(chart)(chart.coastline, zones=zones)
+    straits = {name: tuple(strait) for name, strait in narrow_straits().items()}
+    facts = (FORMAT, bare.fingerprint(), fineness, FINEST_STRAIT_LEVEL, straits)
     name = hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
     path = cache_folder("globe") / f"grid-{fineness.level}-{fineness.coast_levels}-{name}.npz"
     return _load_or_make(_GridRequest(bare, fineness, path))
@@ -164,7 +166,9 @@ def _geodesic_grid(chart: Chart, fineness: GridResolution) -> Icosphere:
     level, coast = fineness.level, fineness.coast_levels
     narrow = max(FINEST_STRAIT_LEVEL - level - coast, 0) if coast else 0
     rules = [
-        RefinementRule(_crossing_test(chart.land.index), coast, lambda m: strait_levels(m, narrow))
+        RefinementRule(
+            _crossing_test(chart.coastline.index), coast, lambda m: strait_levels(m, narrow)
+        )
     ]
     rules += [
         RefinementRule(_crossing_test(outlines), fineness.border_levels)

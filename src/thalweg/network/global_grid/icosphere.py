@@ -189,7 +189,7 @@ class _Subdivision:
 
 
 def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer]) -> IntArray:
-    """Return one number for each edge, whichever way it runs."""
+    """Return one number for each edge, the same for both directions."""
     return (np.minimum(a, b).astype(np.int64) << 31) + np.maximum(a, b)
 
 

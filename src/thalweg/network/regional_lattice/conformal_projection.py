@@ -1,9 +1,9 @@
-"""Conformal frames: lattices are square in them, and angles are true.
+"""Conformal projections: lattices are square in them, and angles are true.
 
 The ellipsoid is mapped conformally to a sphere (conformal latitude, Karney 2011, "Transverse
 Mercator with an accuracy of a few nanometers", J. Geodesy 85, eqs. 7-9), the sphere is turned
 and mapped by Mercator. With the great circle from start to goal as its equator (an oblique
-Mercator frame) the lattice is equidistant along the shortest way; without turning, its rows and
+Mercator frame) the lattice is equidistant along the great circle; without turning, its rows and
 columns are meridians and parallels.
 """
 

@@ -1,4 +1,4 @@
-"""The lattice builder: square in a conformal frame, finer near coasts, as large as it must be."""
+"""The lattice builder: square in a conformal projection, finer near coasts, as large as needed."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _Offsets: TypeAlias = tuple[IntArray, IntArray]
 
 @dataclass(frozen=True)
 class _LatticeAttempt:
-    """A lattice drawn, what was coarsened in words, and the count of points that was too many."""
+    """A lattice, notes on its coarsening, and the count of points that exceeded the budget."""
 
     ground: LatticeSpecification
     draft: UnassembledLattice
@@ -57,7 +57,7 @@ class _LatticeAttempt:
 
 @dataclass(frozen=True)
 class _LatticeRequest:
-    """What the caller asked for; spacing and coast levels may be coarsened when not given."""
+    """The request of the caller; spacing and coast levels may be coarsened when not given."""
 
     chart: Chart
     start: Position
@@ -98,8 +98,8 @@ def lattice(
         Largest distance between neighbouring nodes [m]; by default a hundredth of the distance,
         between 100 m and 30 nautical miles, coarsened when the lattice would grow too large.
     directions : int, optional
-        8, 16, 32, 48, 80 or 96 directions leave a node; the way over the lattice is then at most
-        8.2, 2.7, 1.31, 0.75, 0.49 or 0.34 % longer than the shortest way in open water.
+        8, 16, 32, 48, 80 or 96 directions leave a node; the path over the lattice is then at most
+        8.2, 2.7, 1.31, 0.75, 0.49 or 0.34 % longer than the shortest path in open water.
     orientation : str, optional
         ``"great_circle"``: rows along the great circle from start to goal. ``"latlon"``: rows and
         columns along parallels and meridians.
@@ -108,16 +108,16 @@ def lattice(
     area : (south, north, west, east), optional
         Box [deg] to stay in.
     slack : float, optional
-        Nodes are kept when the shortest way start-node-goal is at most ``1 + slack`` times the
-        shortest way from start to goal; by default 1 under 100 nautical miles falling to 0.35
+        Nodes are kept when the shortest path start-node-goal is at most ``1 + slack`` times the
+        shortest path from start to goal; by default 1 under 100 nautical miles falling to 0.35
         over 1000. ``math.inf`` keeps every node within the area or on the globe.
     along : sequence of (lat, lon), optional
-        A way from start to goal [deg], by great circles; only water about this way is covered.
+        A path from start to goal [deg], by great circles; only water near it is covered.
     width : float, optional
-        How far the corridor about that way reaches to each side, roughly [m]; by default an eighth
+        Approximate half width of the corridor around that path [m]; by default an eighth
         of its length, from 20 to 300 nautical miles.
     detour : float, optional
-        Longest way that is looked for, as a multiple of the distance.
+        Longest path that is searched, as a multiple of the distance.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def lattice(
         For values out of range, start or goal not on navigable water, or both the same.
     NoRouteError
         If start and goal do not connect however large and fine the lattice is made, or not by a
-        way within ``detour``.
+        path within ``detour``.
     """
     start, goal = check_endpoints(chart, start, goal)
     di, dj = unique_offsets(directions)
@@ -236,9 +236,9 @@ def _grow_until_connected(
             raise _no_route(wish, draft, to_start)
 
 
-def _densified(way: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
-    """Return positions [deg] close together along a way, and its length [m]."""
-    lat, lon = np.asarray(way, float).T
+def _densified(path: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
+    """Return positions [deg] close together along a path, and its length [m]."""
+    lat, lon = np.asarray(path, float).T
     legs = geodesy.distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     part = max(float(legs.sum()) / 2000.0, 500.0)
     pieces = np.maximum(1, np.ceil(legs / part)).astype(int)
@@ -251,7 +251,7 @@ def _densified(way: Sequence[Position]) -> tuple[FloatArray, FloatArray, float]:
 
 
 def _corridor_around(lat: FloatArray, lon: FloatArray, width: float) -> Corridor:
-    """Return the cells about a way; they reach two cells and a half to each side."""
+    """Return the cells around a path; they reach two and a half cells to each side."""
     highest = float(np.abs(lat).max())
     frame = mercator_projection((lat[0], lon[0]), 0.4 * width, latitude=highest, closed=False)
     return Corridor.around(frame, 1.0, conformal_unit_vectors(lat, lon))
@@ -274,7 +274,7 @@ def _lattice_in_corridor(
 def _refine_along_paths(
     wish: _LatticeRequest, offsets: _Offsets, coarse: _LatticeAttempt, slack: float, extra: int
 ) -> _LatticeAttempt:
-    """Draw a lattice that had to be coarse again, finer, along the ways it found."""
+    """Build a finer lattice along the paths found on one that had to be coarse."""
     ground, stations = coarse.ground, coarse.draft.stations
     spacing = ground.frame.largest_unit * ground.step(0)
     beyond = coarse.refused > ground.coast_budget and spacing < 1.3 * wish.spacing
@@ -302,7 +302,7 @@ def _grow_within_budget(
     spacing, coast, ends = wish.spacing, wish.coast_levels + max(extra - 1, 0), 2 * extra
     notes: tuple[str, ...] = ()
     refused = 0
-    if region.unbounded and corridor is None:  # only to find the ways worth a finer look
+    if region.unbounded and corridor is None:  # only to find the paths to refine
         spacing, coast = max(spacing, _GLOBAL_SPACING), min(max(coast, 2), 3)
         wish = replace(wish, budget=_NODE_BUDGET, coast_budget=_NODE_BUDGET)
         notes = _coarsening_note(spacing, coast)
@@ -374,7 +374,7 @@ def _projection(wish: _LatticeRequest, region: Region, spacing: float) -> Confor
 
 
 def _pruned(drawing: _LatticeAttempt, slack: float, to_start: FloatArray) -> _LatticeAttempt:
-    """Drop the nodes that no reasonable way passes; count how many a finer level would have."""
+    """Drop the nodes that no path within the slack passes; scale the count of a finer level."""
     ground, draft = drawing.ground, drawing.draft
     total, limit = to_start, math.inf
     if not math.isinf(slack):
@@ -394,7 +394,7 @@ def _no_route(
     names = [geodesy.format_position(*place) for place in (wish.start, wish.goal, nearest)]
     return NoRouteError(
         f"There is no way by water from {names[0]} to {names[1]} on this chart.",
-        f"The way ends at {names[2]}, {away:.1f} nm from the goal.",
+        f"The network reaches {names[2]}, {away:.1f} nm from the goal.",
         "Choose another start or goal, a finer chart, or a finer spacing.",
         reasons=draft.rejected,
         nearest=nearest,

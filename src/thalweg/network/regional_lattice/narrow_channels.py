@@ -1,4 +1,4 @@
-"""Channels between two pieces of land, too narrow for the points of a lattice: nodes amid them."""
+"""Nodes in the middle of channels that are too narrow for the points of a lattice."""
 
 from __future__ import annotations
 
@@ -9,26 +9,27 @@ import numpy as np
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.network.alternatives.homotopy import ring_areas
-from thalweg.network.assembly import Pairs, Stations, allowed_legs, measured_pairs
+from thalweg.network.assembly import Pairs, allowed_legs, measured_pairs
 from thalweg.network.endpoints import concatenate_pairs
+from thalweg.network.network import Stations
 from thalweg.network.regional_lattice.conformal_projection import (
     conformal_positions,
     conformal_unit_vectors,
 )
 
-Edges: TypeAlias = tuple[FloatArray, FloatArray]
+ShoreEdges: TypeAlias = tuple[FloatArray, FloatArray]
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.network.regional_lattice.refinement_levels import LatticeSpecification
 
 _MAX_WIDTH: Final = 2.0  # spacings: wider channels hold points of the lattice itself
-_MIN_WIDTH: Final = 50.0  # [m] channels are told apart by their width down to this
+_MIN_WIDTH: Final = 50.0  # [m] narrower channels are not distinguished by width
 _MIN_LAND_SIZE: Final = 0.5  # open-sea spacings: smaller land is passed on its other side
 _MAX_NODES: Final = 2000
 _SHORE_SPACING: Final = 0.25  # widths: between places along a shore
 _THINNING_CELL: Final = 0.5  # widths: of which one place each is kept
-_NEAREST_SHORE_PLACES: Final = 16  # places looked at round each for one on another shore
+_NEAREST_SHORE_PLACES: Final = 16  # places searched around each for one on another shore
 _NEIGHBOURS: Final = 24
 _REACH: Final = 3.0  # spacings
 _MAX_PARTS: Final = 2000  # of one edge of a coastline
@@ -98,10 +99,12 @@ def channel_pairs(chart: Chart, stations: Stations, first: int, last: int, near:
     return pairs.where(allowed_legs(chart, lat, lon, pairs.first, pairs.second)[0])
 
 
-def _shores(ground: LatticeSpecification, island: float, apart: float) -> tuple[Edges, IntArray]:
+def _shores(
+    ground: LatticeSpecification, island: float, apart: float
+) -> tuple[ShoreEdges, IntArray]:
     """Return the shores of large land in the region, in short edges, and of which land."""
     none = np.empty((0, 3))
-    rings = ground.chart.land.rings
+    rings = ground.chart.coastline.rings
     if not len(rings):
         return (none, none), np.empty(0, np.int64)
     vectors = conformal_unit_vectors(rings.lat, rings.lon)
@@ -112,7 +115,7 @@ def _shores(ground: LatticeSpecification, island: float, apart: float) -> tuple[
     return edges, land[first][edge]
 
 
-def _split_edges(edges: Edges, apart: float) -> tuple[Edges, IntArray]:
+def _split_edges(edges: ShoreEdges, apart: float) -> tuple[ShoreEdges, IntArray]:
     """Cut edges into parts at most ``apart`` [m] long; return also of which edge each part is."""
     a, b = edges
     parts = np.ceil(np.linalg.norm(b - a, axis=1) * MEAN_RADIUS / apart).astype(np.int64)
@@ -123,11 +126,11 @@ def _split_edges(edges: Edges, apart: float) -> tuple[Edges, IntArray]:
     return (a[edge] + number[:, None] * along, a[edge] + (number[:, None] + 1) * along), edge
 
 
-def _channel_midpoints(shores: Edges, land: IntArray, widest: float) -> FloatArray:
+def _channel_midpoints(shores: ShoreEdges, land: IntArray, widest: float) -> FloatArray:
     """Return the middles between facing shores, from wide channels to narrow ones.
 
-    Shores are looked at ever closer where others are near, so that places along them stay closer
-    together than the channel is wide.
+    Shores are divided further where others are near, so that places along them are closer together
+    than the channel is wide.
     """
     found, width = [np.empty((0, 3))], widest
     while len(land):

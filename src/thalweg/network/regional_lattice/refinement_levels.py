@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 COAST_WIDTH = 3.0  #: a level reaches this many of its spacings off the coast
 _END_REACH = 24.0  # levels finer than the coast's reach this many spacings round start and goal
 _POINTS_PER_BLOCK = 2_000_000
-_CELLS_PER_POINT = 12  # cells looked at per point of the budget
+_CELLS_PER_POINT = 12  # cells examined per point of the budget
 _FLOOD_STEPS = 48
 _MAX_SHORE_DISTANCE = 250_000.0  # [m] the chart's own limit on shore distances
 _MAX_MAP_CELLS = 300_000_000
@@ -73,13 +73,13 @@ class Level:
 
 @dataclass(frozen=True)
 class LatticeSpecification:
-    """Where a lattice is to grow and how fine.
+    """Region and resolution of a lattice.
 
     Parameters
     ----------
     chart : Chart
         Land and shore distances.
-    frame : Frame
+    frame : ConformalProjection
         Its unit is the finest spacing.
     region : Region
         Where points may lie.
@@ -184,7 +184,7 @@ def _at_sea(
     if ground.coast_levels + ground.end_levels == 0:
         return ok, np.full(int(ok.sum()), np.inf)
     cap = min(COAST_WIDTH * step * float(ground.frame.largest_unit), _MAX_SHORE_DISTANCE)
-    shore = np.asarray(ground.chart.shore_distance(lat[free], lon[free], cap=cap), float)
+    shore = np.asarray(ground.chart.coastline.shore_distance(lat[free], lon[free], cap=cap), float)
     return ok, np.where(shore < 0.999 * cap, shore, np.inf)
 
 

@@ -1,4 +1,4 @@
-"""The part of the sea a lattice covers: an ellipse round start and goal, a box, or the globe."""
+"""The region of a lattice: an ellipse around start and goal, a box, or the globe."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _LARGEST_ELLIPSE = 2.4  # [rad] sum of distances above which the whole globe is 
 
 @dataclass(frozen=True)
 class Corridor:
-    """Cells of a coarse lattice that ways worth looking at pass.
+    """Cells of a coarse lattice that candidate paths pass.
 
     Parameters
     ----------
-    frame : Frame
+    frame : ConformalProjection
         Frame of the coarse lattice.
     step : float
         Its spacing in units of the frame.
@@ -113,7 +113,7 @@ class Region:
         return not self.unbounded or self.corridor is not None
 
     def slack(self, vectors: FloatArray) -> FloatArray:
-        """Return how much shorter than the limit the way start-place-goal is [m]."""
+        """Return by how much the path start-place-goal is shorter than the limit [m]."""
         total = angle_to_point(vectors, conformal_unit_vectors(*self.start)) + angle_to_point(
             vectors, conformal_unit_vectors(*self.goal)
         )

@@ -1,4 +1,4 @@
-"""A lattice in the making: its points, tested pairs and static distances, before assembly."""
+"""A lattice before assembly: its points, tested pairs and static distances."""
 
 from __future__ import annotations
 
@@ -15,12 +15,9 @@ from thalweg.network.assembly import (
     DirectedEdges,
     Pairs,
     RejectionCounts,
-    Samples,
-    Stations,
     add_counts,
     allowed_legs,
     assemble,
-    concatenate_samples,
     directed_edges,
     evenly_spaced_samples,
     measured_pairs,
@@ -32,7 +29,7 @@ from thalweg.network.endpoints import (
     direct_pairs,
     links_to_nodes,
 )
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta, Samples, Stations
 from thalweg.network.regional_lattice.conformal_projection import (
     ConformalProjection,
     angle_to_point,
@@ -44,6 +41,7 @@ from thalweg.network.regional_lattice.refinement_levels import (
     Level,
     grow_levels,
 )
+from thalweg.network.shortest_paths import shortest_path_tree
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -96,16 +94,11 @@ class UnassembledLattice:
 
     def distances(self, node: int) -> FloatArray:
         """Return the static distance [m] of every node from one; inf where unreached."""
-        n = self.stations.n_nodes
-        distance, parent = np.empty(n), np.empty(n, np.int64)
         weight = self.pairs.length[self.edges.pair]
-        graph_building.static_dijkstra(
-            self.edges.indptr, self.edges.target, weight, node, -1, distance, parent
-        )
-        return distance
+        return shortest_path_tree(self.edges.graph, weight, node).distance
 
     def where(self, keep: BoolArray) -> UnassembledLattice:
-        """Return the draft with only the nodes that are kept (start and goal always are)."""
+        """Return the lattice with only the nodes that are kept (start and goal always are)."""
         keep = keep.copy()
         keep[-2:] = True
         if keep.all():
@@ -134,8 +127,8 @@ class UnassembledLattice:
         stations, new = evenly_spaced_samples(stations, self.ends, spacing)
         samples.append(new)
         meta = replace(meta, start=self.start, goal=self.goal, rejected=self.rejected)
-        samples_of_all = concatenate_samples(samples)
-        return assemble(chart, stations, self.pairs, samples_of_all, meta=meta, edges=self.edges)
+        samples_of_all = Samples.concatenate(samples)
+        return assemble(chart, stations, self.pairs, samples_of_all, meta=meta, directed=self.edges)
 
 
 def grow_lattice(
@@ -149,9 +142,9 @@ def grow_lattice(
         _join_level_points(ground.chart, level, lat, lon, di, dj, rejected) for level in levels
     ]
     canals = canals_in(ground)
-    amid = channel_nodes(ground) if ground.region.bounded else np.empty((2, 0))
+    middles = channel_nodes(ground) if ground.region.bounded else np.empty((2, 0))
     places = [*(end for canal in canals for end in canal.ends), start, goal]
-    lat, lon = np.append(lat, amid[0]), np.append(lon, amid[1])
+    lat, lon = np.append(lat, middles[0]), np.append(lon, middles[1])
     grid, n = n, len(lat)
     lat, lon = (np.append(old, new) for old, new in zip((lat, lon), np.array(places, float).T))
     stations = Stations(lat, lon, n + len(places))

@@ -12,7 +12,7 @@ import numpy as np
 
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry.triangle_crossings import crossed_sides
-from thalweg.network.network import Network
+from thalweg.network.network import Network, Samples, Stations
 from thalweg.network.regional_lattice.conformal_projection import mercator_projection
 
 
@@ -39,9 +39,9 @@ def sampled_on_triangle_sides(network: Network) -> Network:
     triangles = np.ascontiguousarray(mesh.simplices, np.int32)
     neighbours = np.ascontiguousarray(mesh.neighbors, np.int32)
     around_ptr, around = _triangles_around_nodes(triangles, len(lat))
-    lines = network.tails(), np.ascontiguousarray(network.target, np.int32)
+    lines = network.tails(), np.ascontiguousarray(network.graph.target, np.int32)
     mesh_arrays = (x, y, triangles, neighbours, around_ptr, around)
-    ptr = np.zeros(len(network.target) + 1, np.int64)
+    ptr = np.zeros(len(network.graph.target) + 1, np.int64)
     out = _output_size(0)
     for _ in range(2):
         crossed_sides(*mesh_arrays, *lines, out, ptr)
@@ -49,9 +49,7 @@ def sampled_on_triangle_sides(network: Network) -> Network:
             break
         out = _output_size(int(ptr[-1]))
     a, b, w, s = out
-    return replace(
-        network, station_lat=lat, station_lon=lon, via_ptr=ptr, via_a=a, via_b=b, via_w=w, via_s=s
-    )
+    return replace(network, stations=Stations(lat, lon, len(lat)), samples=Samples(ptr, a, b, w, s))
 
 
 def _output_size(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -73,10 +71,10 @@ def _triangles_around_nodes(triangles: np.ndarray, count: int) -> tuple[IntArray
 
 
 def least_along_edges(network: Network, values: FloatArray) -> FloatArray:
-    """Return the least of a field given at the nodes along every edge, as its samples tell it."""
-    least = np.minimum(values[network.tails()], values[network.target])
-    w = network.via_w.astype(float)
-    inside = (1.0 - w) * values[network.via_a] + w * values[network.via_b]
-    of = np.repeat(np.arange(network.n_edges), np.diff(network.via_ptr))
+    """Return the least value along every edge of a field given at the nodes, at its samples."""
+    least = np.minimum(values[network.tails()], values[network.graph.target])
+    w = network.samples.weight.astype(float)
+    inside = (1.0 - w) * values[network.samples.station_a] + w * values[network.samples.station_b]
+    of = np.repeat(np.arange(network.n_edges), np.diff(network.samples.ptr))
     np.minimum.at(least, of, inside)
     return np.asarray(least)

@@ -19,14 +19,13 @@ from thalweg.core.geodesy import wrap_longitude
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.network.assembly import (
     Pairs,
-    Stations,
     add_counts,
     allowed_legs,
     assemble,
     evenly_spaced_samples,
 )
 from thalweg.network.assembly import measured_pairs as measure_pairs
-from thalweg.network.network import Network, NetworkMeta
+from thalweg.network.network import Network, NetworkMeta, Stations
 from thalweg.network.regional_lattice.conformal_projection import mercator_projection
 from thalweg.network.triangular_mesh.node_neighbours import pairs_by_ring
 from thalweg.network.triangular_mesh.thinning import spacing_fraction, thin_by_spacing
@@ -83,7 +82,7 @@ def mesh(
     alpha, curl_power, speed_power : float, optional
         See `spacing_fraction`.
     rings : int, optional
-        Nodes are joined to all nodes within 1, 2 or 3 rings: the way over a regular mesh is then
+        Nodes are joined to all nodes within 1, 2 or 3 rings: the path over a regular mesh is then
         at most 15.5, 3.5 or 1.4 % too long in open water.
     sampling : float, optional
         Distance between samples of a leg as a fraction of the spacing of the nodes it passes
@@ -147,7 +146,7 @@ def _checked(
 
 
 def _mercator_plane(lat: FloatArray, lon: FloatArray) -> _MercatorPlane:
-    """Lay the mesh in a Mercator plane whose seam lies opposite its middle."""
+    """Project the mesh to a Mercator plane whose seam is opposite its middle."""
     radians = np.radians(lon)
     middle = float(np.degrees(np.arctan2(np.sin(radians).mean(), np.cos(radians).mean())))
     latitude = float(lat.mean())

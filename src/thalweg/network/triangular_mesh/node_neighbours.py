@@ -48,7 +48,7 @@ def influence(triangles: IntArray, a: int, b: int, *, rings: int = 3) -> set[int
     a, b : int
         Nodes, at most ``rings`` rings apart.
     rings : int, optional
-        Farthest ring looked at.
+        Farthest ring searched.
 
     Returns
     -------

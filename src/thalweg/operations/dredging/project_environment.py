@@ -16,8 +16,8 @@ from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, direct, distance, inverse, positions_along
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
-from thalweg.network import Network, NetworkMeta, lattice, mesh
-from thalweg.network.assembly import Stations, assemble, measured_pairs, no_samples
+from thalweg.network import Network, NetworkMeta, Samples, Stations, lattice, mesh
+from thalweg.network.assembly import assemble, measured_pairs
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.operations.dredging.project import Sites
 from thalweg.planning.frozen_sea import MEMORY_LIMIT
@@ -181,7 +181,7 @@ def freeze_site_network(
     if world.bed_is_static and codes.BED_DEPTH in channels:
         channels.remove(codes.BED_DEPTH)
         network = with_bed_depth(world, network)
-    lat, lon = network.station_lat, network.station_lon
+    lat, lon = network.stations.lat, network.stations.lon
     steps = len(world.sea.times(*world.period))
     field = world.ship.speed_field
     extra = None if field is None else {codes.SPEED_FIELD: field}
@@ -276,7 +276,7 @@ def fixed_route_network(chart: Chart, route: Sequence[Position]) -> Network:
     pairs = measured_pairs(lat, lon, first, first + np.int32(1))
     meta = NetworkMeta(LINE, _LINE_SPACING, 2, 0.0, start=0, goal=len(lat) - 1)
     stations = Stations(lat, lon, len(lat))
-    return assemble(chart, stations, pairs, no_samples(len(first)), meta=meta)
+    return assemble(chart, stations, pairs, Samples.none(len(first)), meta=meta)
 
 
 def _resampled_route(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]:
@@ -291,11 +291,11 @@ def _resampled_route(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]
 
 def with_bed_depth(world: ProjectEnvironment, network: Network) -> Network:
     """Return the network with the least depth of the sea's bed along every edge."""
-    tails, heads = network.tails(), network.target
+    tails, heads = network.tails(), network.graph.target
     once = tails < heads
     pair = tails[once].astype(np.int64) * network.n_nodes + heads[once]
     spacing = max(network.meta.spacing_m, 1.0) / _BED_SAMPLES
-    count = np.maximum(np.ceil(network.length[once] / spacing).astype(np.int64), 1) + 1
+    count = np.maximum(np.ceil(network.edges.length[once] / spacing).astype(np.int64), 1) + 1
     least = np.full(int(once.sum()), np.inf)
     bounds = np.searchsorted(np.cumsum(count), np.arange(0, count.sum() + _CHUNK, _CHUNK))
     for first, last in itertools.pairwise(bounds):
@@ -306,8 +306,8 @@ def with_bed_depth(world: ProjectEnvironment, network: Network) -> Network:
     key = np.minimum(tails, heads).astype(np.int64) * network.n_nodes + np.maximum(tails, heads)
     order = np.argsort(pair)
     found = least[order][np.searchsorted(pair[order], key)]
-    depth = np.where(np.isnan(found), np.nan, np.minimum(network.depth, found))
-    return replace(network, depth=depth.astype(np.float32))
+    depth = np.where(np.isnan(found), np.nan, np.minimum(network.edges.depth, found))
+    return network.with_edges(depth=depth.astype(np.float32))
 
 
 def _minimum_bed_depth(

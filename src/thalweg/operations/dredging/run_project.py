@@ -183,7 +183,7 @@ def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, n
     times = times[(times >= start) & (times <= end)]
     depth = np.full(times.shape, np.inf)
     if world.chart.has_depth:
-        depth = np.minimum(depth, np.asarray(world.chart.depth_at(*place), float))
+        depth = np.minimum(depth, np.asarray(world.chart.depths.at(*place), float))
     channels = [n for n in (nm.BED_DEPTH, nm.WATER_LEVEL) if n in sea.variables]
     lat, lon = np.full(times.shape, place[0]), np.full(times.shape, place[1])
     got = sea.sample(channels, times, lat, lon) if channels else {}
@@ -246,10 +246,10 @@ def _passable_depth(ways: SiteNetwork, loaded: Any) -> float:
 
 def _first_unknown_depth(network: Network) -> Position | None:
     """Return where the first edge begins whose depth is not known, from the loading site on."""
-    unknown = np.flatnonzero(np.isnan(network.depth))
+    unknown = np.flatnonzero(np.isnan(network.edges.depth))
     if not len(unknown):
         return None
-    node = int(np.minimum(network.tails(), network.target)[unknown].min())
+    node = int(np.minimum(network.tails(), network.graph.target)[unknown].min())
     return float(network.lat[node]), float(network.lon[node])
 
 
@@ -257,10 +257,10 @@ def _bottleneck(ways: SiteNetwork, depth: float) -> tuple[Position, float]:
     """Return the node whose greatest depth is just that of the best way, and when it has it."""
     waters, network = ways.waters, ways.network
     sea = waters.sea
-    charted = network.depth + sea.highest[network.target]
-    best = np.minimum(charted, sea.deepest[network.target])
+    charted = network.edges.depth + sea.highest[network.graph.target]
+    best = np.minimum(charted, sea.deepest[network.graph.target])
     edge = int(np.nanargmin(np.abs(best - depth)))
-    node = int(network.target[edge])
+    node = int(network.graph.target[edge])
     column = sea.channel_index[codes.WATER_LEVEL]
     level = sea.values[node, :, column] if column >= 0 else np.zeros(len(sea.times))
     when = float(sea.times[int(np.nanargmax(level))])

@@ -230,7 +230,7 @@ def _draw_depth(result: ProjectResult, axes: Any) -> Any:
     chart, sea = result.world.chart, result.world.sea
     depth = np.full(lat.shape, np.nan)
     if chart.has_depth:
-        depth = np.asarray(chart.depth_at(lat, lon), float)
+        depth = np.asarray(chart.depths.at(lat, lon), float)
     if nm.BED_DEPTH in sea.variables:
         time = np.full(lat.shape, result.project.start)
         depth = np.fmin(depth, sea.sample([nm.BED_DEPTH], time, lat, lon)[nm.BED_DEPTH])

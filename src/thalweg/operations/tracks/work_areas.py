@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.chart.zones.geojson_zones import parse_polygons, read_features
+from thalweg.chart.geojson_polygons import parse_polygons, read_features
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import wrap_longitude
 

@@ -178,7 +178,7 @@ def _segment_midpoints(world: SailingEnvironment, pieces: TrackPieces) -> TrackP
         return points
     low = pieces.points(pieces.leg, pieces.start)
     high = pieces.points(pieces.leg, pieces.start + pieces.step)
-    depth = world.chart.depth_along(low.lat, low.lon, high.lat, high.lon)
+    depth = world.chart.depths.along(low.lat, low.lon, high.lat, high.lon)
     return replace(points, charted=np.asarray(depth, dtype=np.float64))
 
 

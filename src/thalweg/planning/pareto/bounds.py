@@ -97,7 +97,7 @@ def absolute_lower_bound(
     current = max(strongest_current(one.frozen.stations) for one in explored)
     least = min(prices.inside, prices.outside)
     if prices.dues > 0.0:
-        least *= min(float(one.alternative.network.price.min()) for one in explored)
+        least *= min(float(one.alternative.network.edges.price_factor.min()) for one in explored)
     rates = np.maximum(table_bounds(trade_off.consumption.kernel_arrays(), np.fmin), 0.0)
     fastest, value = 0.0, math.inf
     for setting in trade_off.settings:

@@ -22,7 +22,7 @@ def track_from_front_point(network: Network, point: Any) -> Track:
     wait[-1] = 0.0
     wait = np.where(wait < 1.0, 0.0, wait)
     setting = np.asarray(point.setting)
-    lat, lon = network.station_lat[path], network.station_lon[path]
+    lat, lon = network.stations.lat[path], network.stations.lon[path]
     kept = np.flatnonzero(_essential_nodes(lat, lon, setting, wait))
     return Track(lat[kept], lon[kept], float(point.path_arrive[0]), wait[kept], setting[kept[:-1]])
 

@@ -91,7 +91,7 @@ def _homotopy_labels(routes: Sequence[Route], network: Network, chart: Chart) ->
     if len(classes) == 1:
         return [""] * len(routes)
     lands = [
-        _outline_at(chart.land.rings, *obstacle_map.points[1 + k])
+        _outline_at(chart.coastline.rings, *obstacle_map.points[1 + k])
         for k in _distinguishing_landmasses(classes)
     ]
     sides = [_passing_sides_label(routes[k], lands) for k in first]

@@ -132,5 +132,5 @@ def _segment_ends(world: SailingEnvironment, pieces: TrackPieces) -> TrackPoints
     points = pieces.ends()
     if world.chart is None or not world.charted:
         return points
-    charted = np.asarray(world.chart.depth_at(points.lat, points.lon), float)
+    charted = np.asarray(world.chart.depths.at(points.lat, points.lon), float)
     return replace(points, charted=charted)

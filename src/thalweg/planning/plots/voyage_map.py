@@ -185,7 +185,7 @@ def _depth(
     """Return the water depth [m] of chart and sea; None if neither provides it."""
     names, depths = world.sea.variables, []
     if world.chart.has_depth:
-        depths.append(np.asarray(world.chart.depth_at(lat, lon), float))
+        depths.append(np.asarray(world.chart.depths.at(lat, lon), float))
     if _DEPTH in names:
         depths.append(world.sea.sample([_DEPTH], moment, lat, lon)[_DEPTH])
     if not depths:
@@ -248,7 +248,7 @@ def _draw_land(axes: Any, chart: Any, box: MapExtent) -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Outline
 
-    for polygon in chart.land_polygons(box.south, box.north, box.west, box.east):
+    for polygon in chart.coastline.polygons(box.south, box.north, box.west, box.east):
         rings = [np.asarray(ring.coords) for ring in (polygon.exterior, *polygon.interiors)]
         outline = Outline.make_compound_path(*(Outline(ring, closed=True) for ring in rings))
         axes.add_patch(PathPatch(outline, fc=_LAND, ec=_SHORE, lw=0.4, zorder=3))

@@ -125,7 +125,7 @@ def _coastlines(sea: Sea, chart: Chart) -> list[tuple[np.ndarray, np.ndarray]]:
     south, north = min(row.south for row in rows), max(row.north for row in rows)
     west, east = min(row.west for row in rows), max(row.east for row in rows)
     outlines = []
-    for polygon in chart.land_polygons(south, north, west, east):
+    for polygon in chart.coastline.polygons(south, north, west, east):
         lon, lat = np.asarray(polygon.exterior.coords).T
         outlines.append((lat, lon))
     return outlines

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.chart.depth.depth_layers import coarse_depth
 from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
@@ -36,9 +37,9 @@ def route_warnings(context: PlanningContext, route: Route) -> list[str]:
 def shallow_water_warnings(context: PlanningContext, route: Route) -> list[str]:
     """Return a warning where the coarse global depth is shallow, well off the coast."""
     lat, lon = route.samples["lat"][::4], route.samples["lon"][::4]
-    depth = np.asarray(context.chart.coarse_depth_at(lat, lon))
+    depth = np.asarray(coarse_depth(lat, lon))
     offshore = (
-        np.asarray(context.chart.shore_distance(lat, lon, cap=_MIN_SHORE_DISTANCE))
+        np.asarray(context.chart.coastline.shore_distance(lat, lon, cap=_MIN_SHORE_DISTANCE))
         >= _MIN_SHORE_DISTANCE
     )
     doubtful = offshore & (depth < float(context.ship.draught) + _MIN_PLAUSIBLE_CLEARANCE)

@@ -150,7 +150,7 @@ class _CoverageProbe:
         """Return the depth at chart datum [m]; NaN where unknown."""
         depths = np.full(lat.shape, math.nan)
         if self.chart.has_depth:
-            depths = np.asarray(self.chart.depth_at(lat, lon), float)
+            depths = np.asarray(self.chart.depths.at(lat, lon), float)
         if standard_names.BED_DEPTH in self.sea.variables:
             bed = self._sample([standard_names.BED_DEPTH], lat, lon)[standard_names.BED_DEPTH]
             depths = np.fmin(depths, np.fmin.reduce(bed, axis=0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from thalweg.chart import Chart
+from thalweg.chart.ports import PORTS
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance, format_position, parse_position
 from thalweg.core.units import NAUTICAL_MILE
@@ -71,7 +72,7 @@ def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
     if isinstance(place, str):
         position = parse_position(place)
         if position is None:
-            port = chart.ports.lookup(place)
+            port = PORTS.lookup(place)
             found = _snap_to_water(port.name, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
             return replace(found, is_port=True)
     else:

@@ -54,7 +54,7 @@ def find_controlling_depth(network: Network, fields: StationFields) -> Controlli
 
     start, goal = network.meta.start, network.meta.goal
     greatest, place = _maximum_depths(network, fields)
-    tails, heads, n = network.tails(), network.target, network.n_nodes
+    tails, heads, n = network.tails(), network.graph.target, network.n_nodes
 
     def parts(keep: np.ndarray) -> np.ndarray:
         ones = np.ones(int(keep.sum()), np.int8)
@@ -78,19 +78,19 @@ def find_controlling_depth(network: Network, fields: StationFields) -> Controlli
     edge = int(least[np.argmin(_detour_measure(network, tails[least], heads[least]))])
     station = int(place[edge])
     return ControllingDepth(
-        depth, float(network.station_lat[station]), float(network.station_lon[station]),
+        depth, float(network.stations.lat[station]), float(network.stations.lon[station]),
         _time_of_high_water(fields, station),
     )  # fmt: skip
 
 
 def _detour_measure(network: Network, tails: np.ndarray, heads: np.ndarray) -> FloatArray:
     """Return the sum of rough distances of legs to start and goal [deg]."""
-    lat = 0.5 * (network.station_lat[tails] + network.station_lat[heads])
-    lon = 0.5 * (network.station_lon[tails] + network.station_lon[heads])
+    lat = 0.5 * (network.stations.lat[tails] + network.stations.lat[heads])
+    lon = 0.5 * (network.stations.lon[tails] + network.stations.lon[heads])
     away = np.zeros(len(lat))
     for end in (network.meta.start, network.meta.goal):
-        east = (lon - network.station_lon[end] + 180.0) % 360.0 - 180.0
-        away += np.hypot(lat - network.station_lat[end], east * np.cos(np.radians(lat)))
+        east = (lon - network.stations.lon[end] + 180.0) % 360.0 - 180.0
+        away += np.hypot(lat - network.stations.lat[end], east * np.cos(np.radians(lat)))
     return away
 
 
@@ -98,14 +98,14 @@ def _maximum_depths(network: Network, fields: StationFields) -> tuple[FloatArray
     """Return the greatest depth over time of each edge [m], and its shallowest station."""
     bed = _maximum_over_time(fields, BED_DEPTH, math.inf)
     level = _maximum_over_time(fields, WATER_LEVEL, 0.0)
-    charted = np.asarray(network.depth, float)
+    charted = np.asarray(network.edges.depth, float)
     charted = np.where(np.isnan(charted), -math.inf, charted)
     edges = np.arange(len(charted))
-    samples = np.diff(network.via_ptr)
-    edge = np.concatenate([edges, edges, np.repeat(edges, samples)])
-    a = np.concatenate([network.tails(), network.target, network.via_a]).astype(np.int64)
-    b = np.concatenate([network.tails(), network.target, network.via_b]).astype(np.int64)
-    share = np.concatenate([np.zeros(2 * len(edges)), network.via_w])
+    edge = np.concatenate([edges, edges, np.repeat(edges, np.diff(network.samples.ptr))])
+    ends, inside = (network.tails(), network.graph.target), network.samples
+    a = np.concatenate([*ends, inside.station_a]).astype(np.int64)
+    b = np.concatenate([*ends, inside.station_b]).astype(np.int64)
+    share = np.concatenate([np.zeros(2 * len(edges)), network.samples.weight])
     with np.errstate(invalid="ignore"):
         beds = np.where(share > 0.0, (1.0 - share) * bed[a] + share * bed[b], bed[a])
         levels = np.where(share > 0.0, (1.0 - share) * level[a] + share * level[b], level[a])

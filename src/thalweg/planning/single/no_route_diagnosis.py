@@ -51,8 +51,8 @@ def no_route_error(
     reasons = {reason: count for reason, count in reasons.items() if count}
     nearest, reached = None, "No point beyond the start can be reached."
     if result.nearest_node >= 0:
-        lat = float(network.station_lat[result.nearest_node])
-        lon = float(network.station_lon[result.nearest_node])
+        lat = float(network.stations.lat[result.nearest_node])
+        lon = float(network.stations.lon[result.nearest_node])
         nearest = (lat, lon)
         left = float(distance(lat, lon, ends[1].lat, ends[1].lon)) / NAUTICAL_MILE
         reached = f"The nearest point reached is {format_position(lat, lon)}, {left:.1f} nm short."

@@ -182,7 +182,7 @@ def _refined_bound_path(
     value = _objective_value(context, route)
     if len(bound.path) < 2 or not value - bound.value > _WIDE_GAP * value:
         return route
-    lat, lon = network.station_lat[bound.path], network.station_lon[bound.path]
+    lat, lon = network.stations.lat[bound.path], network.stations.lon[bound.path]
     settings = np.full(len(lat) - 1, context.setting)
     other = refine_track(context, Track(lat, lon, route.depart, None, settings), limits)  # type: ignore[arg-type]
     routes = (route, other)  # with penalty zones, as in the search
@@ -245,8 +245,8 @@ def track_from_result(network: Network, result: SearchResult, setting: int) -> T
     wait = np.maximum(0.0, result.path_depart - result.path_arrive)
     wait[-1] = 0.0
     return Track(
-        network.station_lat[path],
-        network.station_lon[path],
+        network.stations.lat[path],
+        network.stations.lon[path],
         float(result.path_arrive[0]),
         np.where(wait < 1.0, 0.0, wait),
         np.full(len(path) - 1, setting),

@@ -195,7 +195,7 @@ class Evaluator:
         if prices.differs_in_control_areas and len(getattr(zones, "eca", ())):
             inside = self._eca_fractions(ends)
         if chart.zones.penalty or chart.zones.price:
-            penalty, zone_factor = (np.asarray(factor) for factor in chart.zone_factor(*ends))
+            penalty, zone_factor = (np.asarray(factor) for factor in chart.zones.factors(*ends))
         return blocked, charted, prices.of_legs(inside, zone_factor), penalty
 
     def _eca_fractions(self, ends: tuple[FloatArray, ...]) -> FloatArray:
@@ -204,7 +204,7 @@ class Evaluator:
         share = np.empty(len(ends[0]))
 
         def part(legs: slice) -> None:
-            share[legs] = chart.eca_fraction(
+            share[legs] = chart.zones.eca_fraction(
                 *(end[legs] for end in ends), finest=self.zone_resolution
             )
 

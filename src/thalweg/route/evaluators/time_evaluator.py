@@ -225,7 +225,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     depth = np.full(len(leg), math.inf)
     for side in (-0.5 * math.pi, 0.5 * math.pi):  # a corridor: the same however legs are cut
         ends = *direct(*a, direction + side, beside), *direct(*b, direction + side, beside)
-        depth = np.minimum(depth, np.asarray(chart.depth_along(*ends), dtype=np.float64))
+        depth = np.minimum(depth, np.asarray(chart.depths.along(*ends), dtype=np.float64))
     least: FloatArray = np.minimum.reduceat(depth, first)
     return least
 
@@ -319,7 +319,7 @@ def penalty_factors(chart: Chart | None, lat: FloatArray, lon: FloatArray) -> Fl
         return None
     ends = lat[..., :-1], lon[..., :-1], lat[..., 1:], lon[..., 1:]
     shape = ends[0].shape
-    return np.asarray(chart.zone_factor(*(x.ravel() for x in ends))[0]).reshape(shape)
+    return np.asarray(chart.zones.factors(*(x.ravel() for x in ends))[0]).reshape(shape)
 
 
 def unique_legs(ends: Sequence[FloatArray]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -178,9 +178,9 @@ def _zones_of_pieces(
         return share, price, zone
     ends = (low.lat, low.lon, high.lat, high.lon)
     if chart.zones.price:
-        price = chart.zone_factor(*ends)[1]
+        price = chart.zones.factors(*ends)[1]
     if chart.zones.eca:
-        share = chart.eca_fraction(*ends)
+        share = chart.zones.eca_fraction(*ends)
         some = np.flatnonzero(share > 0.0)
         for place in (low, high):
             zone[some] = np.where(
@@ -198,9 +198,9 @@ def _zones_of_positions(
     """Return (share, price factor, number of the area or -1) of positions."""
     share, price, zone = np.zeros(len(lat)), np.ones(len(lat)), np.full(len(lat), -1)
     if chart is not None and chart.zones.price:
-        price = chart.zone_factor(lat, lon, lat, lon)[1]
+        price = chart.zones.factors(lat, lon, lat, lon)[1]
     if chart is not None and chart.zones.eca:
-        share = chart.in_eca(lat, lon).astype(np.float64)
+        share = chart.zones.in_eca(lat, lon).astype(np.float64)
         zone = np.where(share > 0.0, np.maximum(_control_area_of(chart, lat, lon), 0), -1)
     return share, price, zone
 

@@ -274,6 +274,6 @@ def _repeated_waypoint(
     lat, lon = np.full(count, track.lat[index]), np.full(count, track.lon[index])
     charted = np.full(count, math.inf)
     if world.charted and world.chart is not None:
-        charted[:] = np.asarray(world.chart.depth_at(track.lat[index], track.lon[index]), float)
+        charted[:] = np.asarray(world.chart.depths.at(track.lat[index], track.lon[index]), float)
     zero = np.zeros(count, dtype=np.int64)
     return TrackPoints(lat, lon, np.zeros(count), zero, zero, np.zeros(count), charted)

@@ -161,7 +161,7 @@ def _least_charted_depths(world: SailingEnvironment, pieces: TrackPieces) -> Flo
         return np.full(len(pieces), math.inf)
     low = pieces.points(pieces.leg, pieces.start)
     high = pieces.points(pieces.leg, pieces.start + pieces.step)
-    depth = world.chart.depth_along(low.lat, low.lon, high.lat, high.lon)
+    depth = world.chart.depths.along(low.lat, low.lon, high.lat, high.lon)
     return np.where(pieces.canals.number[pieces.leg] >= 0, math.inf, np.asarray(depth, float))
 
 

@@ -286,13 +286,13 @@ def _split_at_zone_borders(line: Polyline, evaluator: CostEvaluator) -> Polyline
     chart = evaluator.chart
     if chart is None or not chart.zones.eca or not evaluator.prices.differs_in_control_areas:
         return line
-    share = chart.eca_fraction(line.lat[:-1], line.lon[:-1], line.lat[1:], line.lon[1:])
+    share = chart.zones.eca_fraction(line.lat[:-1], line.lon[:-1], line.lat[1:], line.lon[1:])
     crossed = (share > _MIN_ZONE_SHARE) & (share < 1.0 - _MIN_ZONE_SHARE)
     crossed &= ~evaluator.canal_legs(line.lat, line.lon)
     legs = np.flatnonzero(crossed)
     if not len(legs):
         return line
-    inside = chart.in_eca(line.lat[legs], line.lon[legs])
+    inside = chart.zones.in_eca(line.lat[legs], line.lon[legs])
     at = np.where(inside, share[legs], 1.0 - share[legs])
     length, course, _ = inverse(
         line.lat[legs], line.lon[legs], line.lat[legs + 1], line.lon[legs + 1]

@@ -156,13 +156,16 @@ def _with_states(given: SearchProblem, request: FrontRequest) -> tuple[SearchPro
 def _prices(
     network: Network, origin: IntArray, ship: MultiSettingShip, request: FrontRequest
 ) -> EdgePrices:
-    fixed_time, fee = np.asarray(network.fixed_time), request.prices.dues * np.asarray(network.fee)
+    fixed_time, fee = (
+        np.asarray(network.edges.fixed_time),
+        request.prices.dues * np.asarray(network.edges.fee),
+    )
     fuel, choice = np.zeros(len(origin)), np.zeros(len(origin), np.int64)
     fixed = fixed_time[origin]
     if not np.isnan(fixed).all():
         speeds, rates = still_water_values(ship.table, ship), still_water_values(ship.fuel, ship)
         for e in np.flatnonzero(~np.isnan(fixed)):
-            enough = np.flatnonzero(speeds >= network.length[origin[e]] / fixed[e])
+            enough = np.flatnonzero(speeds >= network.edges.length[origin[e]] / fixed[e])
             choice[e] = enough[0] if len(enough) else int(np.nanargmax(speeds))
             fuel[e] = rates[choice[e]] * fixed[e]
     return EdgePrices(

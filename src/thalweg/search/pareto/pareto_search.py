@@ -398,5 +398,5 @@ def _request(
         )
     return FrontRequest(
         int(start), int(goal), float(depart), float(latest), chosen, prices,
-        prices.of_legs(inside, np.asarray(network.price, float)), bool(wait),
+        prices.of_legs(inside, np.asarray(network.edges.price_factor, float)), bool(wait),
     )  # fmt: skip

@@ -1,10 +1,10 @@
-"""Polygons from GeoJSON (RFC 7946), with errors that say what is wrong where.
+"""Polygons from GeoJSON (RFC 7946), with messages that name the faulty polygon.
 
-An edge over more than 180 degrees of longitude can be read in two ways: as it is written, round by
-Greenwich, or the short way across the antimeridian, where RFC 7946 would have the area cut. It is
-read the one way in which the ring is an area at all; if it is one both ways, it is taken to cross
-the antimeridian if it runs the way RFC 7946 asks for then (outlines counter-clockwise, holes
-clockwise), and refused otherwise. Edges over 360 degrees are those of bands round the globe.
+An edge over more than 180 degrees of longitude has two readings: as written, by Greenwich, or the
+short one across the antimeridian, where RFC 7946 asks for the area to be cut. The reading by which
+the ring encloses an area is used. If both do, the ring is taken to cross the antimeridian when its
+direction is the one that RFC 7946 asks for then (outlines counter-clockwise, holes clockwise), and
+is refused otherwise. Edges of 360 degrees belong to bands around the globe.
 """
 
 from __future__ import annotations
@@ -60,21 +60,21 @@ def _features(
     if kind == "FeatureCollection":
         yield from _features(_checked_list(data.get("features") or [], what), properties, what)
     elif kind == "Feature":
-        told = data.get("properties") or {}
-        if not isinstance(told, Mapping):
+        given = data.get("properties") or {}
+        if not isinstance(given, Mapping):
             raise InputError(
-                f"A feature of the {what} has the properties {str(told)[:40]!r}.",
+                f"A feature of the {what} has the properties {str(given)[:40]!r}.",
                 "Properties are names with values.",
                 "Check the GeoJSON.",
             )
-        yield from _features(data.get("geometry"), told, what)
+        yield from _features(data.get("geometry"), given, what)
     elif kind == "GeometryCollection":
         yield from _features(_checked_list(data.get("geometries") or [], what), properties, what)
     elif kind in ("Polygon", "MultiPolygon"):
         yield data, properties
     else:
         raise InputError(
-            f"The GeoJSON of the {what} holds {kind or type(data).__name__!r}, which is no area.",
+            f"The GeoJSON of the {what} holds {kind or type(data).__name__!r}: not an area.",
             "Polygon and MultiPolygon are areas, alone or in a Feature or FeatureCollection.",
             "Give areas only.",
             value=str(kind),
@@ -101,7 +101,7 @@ def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = Tru
         ]
         if not rings:
             continue
-        for k in range(1, len(rings)):  # holes go on the same turn as their outline
+        for k in range(1, len(rings)):  # holes get longitudes of the same turn as their outline
             rings[k][:, 0] += 360.0 * np.round((rings[0][0, 0] - rings[k][0, 0]) / 360.0)
         shape: Any = shapely.polygons(rings[0], holes=rings[1:] or None)
         if not shapely.is_valid(shape):
@@ -117,7 +117,7 @@ def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = Tru
 
 
 def _invalid_polygon_error(reason: str, what: str) -> InputError:
-    """Build the error for a polygon that is none, with the place (lon, lat) of the fault."""
+    """Return the error for an invalid polygon, with the position of the fault."""
     fault, _, place = reason.partition("[")
     numbers = place.rstrip("]").split()
     where = f" near longitude {numbers[0]}, latitude {numbers[1]}" if len(numbers) == 2 else ""
@@ -169,7 +169,7 @@ def _unwrapped_ring(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDAr
     Raises
     ------
     InputError
-        If it may be meant either way, or goes once round a pole.
+        If it is ambiguous, or encloses a pole.
     """
     step = np.diff(ring[:, 0])
     long = (np.abs(step) > 180.0) & (np.abs(step) <= 360.0)
@@ -182,9 +182,9 @@ def _unwrapped_ring(ring: NDArray[np.float64], what: str, *, hole: bool) -> NDAr
         return ring
     if turns and not is_area:
         raise InputError(
-            f"A ring of the {what} goes once round a pole.",
+            f"A ring of the {what} encloses a pole.",
             "As an area it must be closed along a meridian through the pole.",
-            "Let it run from longitude -180 to 180 and back by latitude 90 (or -90) of both.",
+            "Draw it from longitude -180 to 180, and back along latitude 90 (or -90).",
         )
     if not is_area or (not turns and _has_area(short) and _turns_left(short) != hole):
         return short
@@ -209,11 +209,11 @@ def _ambiguous_edge_error(ring: NDArray[np.float64], edge: int, what: str) -> In
     wide = east - west
     return InputError(
         f"A ring of the {what} has an edge from longitude {ring[edge, 0]:g} to "
-        f"{ring[edge + 1, 0]:g}: {wide:g} degrees as written, or {360.0 - wide:g} the other way "
-        "round.",
+        f"{ring[edge + 1, 0]:g}: {wide:g} degrees as written, or {360.0 - wide:g} across "
+        "the antimeridian.",
         f"Across the antimeridian longitudes run on ({west + 360.0:g} for {west:g}), or the area "
-        "is cut in two at 180, as RFC 7946 asks; the long way is sure with points in between.",
-        "Write it one way or the other.",
+        "is cut in two at 180, as RFC 7946 asks; for the long edge, add points in between.",
+        "Write the ring in one of these forms.",
         value=[float(west), float(east)],
     )
 

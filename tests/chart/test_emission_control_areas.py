@@ -1,4 +1,4 @@
-"""Emission control areas: their limits and dates, and the share of a leg inside them."""
+"""Emission control areas: limits, dates, and the fraction of a leg inside them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from thalweg.chart.zones.emission_control_areas import (
     emission_control_areas,
     select_emission_control_areas,
 )
+from thalweg.chart.zones.zone_raster import zone_raster
+from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError, ThalwegWarning
 from thalweg.core.geodesy import direct, distance, positions_along
 from thalweg.kernels.compilation.jit import jit
@@ -127,9 +129,9 @@ def test_published_points_are_kept_to_the_digit():
     ],
 )
 def test_places_inside_and_outside(seas, lat, lon, within):
-    assert bool(seas.in_eca(lat, lon)) is within
+    assert bool(seas.zones.in_eca(lat, lon)) is within
     assert any(z.contains(lat, lon) for z in seas.zones.eca) is within
-    assert bool(seas.in_eca(lat, lon + 360.0)) is within
+    assert bool(seas.zones.in_eca(lat, lon + 360.0)) is within
 
 
 @pytest.mark.parametrize(
@@ -149,17 +151,17 @@ def test_closing_lines_leave_no_coastal_water_out(world, name, box):
     lat, lon = (m.ravel() for m in np.mgrid[south:north:0.1, west:east:0.1])
     water = world.is_navigable(lat, lon)
     assert water.sum() > 500
-    assert OPEN.with_eca(name).in_eca(lat[water], lon[water]).all()
+    assert OPEN.with_eca(name).zones.in_eca(lat[water], lon[water]).all()
 
 
 def test_share_of_a_leg_half_inside():
     chart = OPEN.with_zones(zone(0, -1, 2, 1))
-    assert chart.eca_fraction(0.0, -1.0, 0.0, 1.0) == pytest.approx(0.5, abs=2e-6)
-    assert chart.eca_fraction(0.5, [0.5, 3.0], 0.5, [1.5, 4.0]).tolist() == [1.0, 0.0]
-    assert np.isnan(chart.eca_fraction(np.nan, 0.0, 0.0, 1.0))
-    assert np.isnan(OPEN.eca_fraction(np.nan, 0.0, 0.0, 1.0))
-    assert OPEN.eca_fraction(0.0, 0.0, 0.0, 1.0) == 0.0
-    assert not OPEN.in_eca(0.0, 0.0)
+    assert chart.zones.eca_fraction(0.0, -1.0, 0.0, 1.0) == pytest.approx(0.5, abs=2e-6)
+    assert chart.zones.eca_fraction(0.5, [0.5, 3.0], 0.5, [1.5, 4.0]).tolist() == [1.0, 0.0]
+    assert np.isnan(chart.zones.eca_fraction(np.nan, 0.0, 0.0, 1.0))
+    assert np.isnan(OPEN.zones.eca_fraction(np.nan, 0.0, 0.0, 1.0))
+    assert OPEN.zones.eca_fraction(0.0, 0.0, 0.0, 1.0) == 0.0
+    assert not OPEN.zones.in_eca(0.0, 0.0)
 
 
 def test_share_is_by_length_on_a_long_oblique_geodesic():
@@ -171,15 +173,17 @@ def test_share_is_by_length_on_a_long_oblique_geodesic():
         middle = 0.5 * (low + high)
         low, high = (middle, high) if positions_along(*ends, middle)[0] < 60.0 else (low, middle)
     length = float(distance(*ends))
-    assert float(chart.eca_fraction(*ends)) * length == pytest.approx((1.0 - low) * length, abs=0.5)
+    assert float(chart.zones.eca_fraction(*ends)) * length == pytest.approx(
+        (1.0 - low) * length, abs=0.5
+    )
 
 
 def test_a_leg_out_of_one_area_and_into_another(seas):
     """Santander road to Boston: exact pieces add up whatever the cuts."""
     ends = (48.0, -12.0, 42.0, -69.0)
-    whole = float(seas.eca_fraction(*ends))
+    whole = float(seas.zones.eca_fraction(*ends))
     lat, lon = positions_along(*ends, np.linspace(0.0, 1.0, 38))
-    parts = seas.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
+    parts = seas.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:])
     lengths = distance(lat[:-1], lon[:-1], lat[1:], lon[1:])
     assert whole == pytest.approx(float((parts * lengths).sum() / lengths.sum()), abs=1e-6)
     assert 0.1 < whole < 0.5
@@ -203,17 +207,22 @@ def test_share_agrees_with_many_points(lat, lon, course, length, data):
         "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
     }
     chart = OPEN.with_zones(feature)
-    share = float(chart.eca_fraction(lat, lon, *end))
+    share = float(chart.zones.eca_fraction(lat, lon, *end))
     y, x = positions_along(lat, lon, float(end[0]), float(end[1]), (np.arange(2000) + 0.5) / 2000)
-    assert share == pytest.approx(chart.in_eca(y, x).mean(), abs=3e-3)
+    assert share == pytest.approx(chart.zones.in_eca(y, x).mean(), abs=3e-3)
 
 
 def test_areas_across_the_antimeridian():
     chart = OPEN.with_zones(zone(179, -1, -179, 1))
-    assert chart.in_eca(0.0, [179.5, -179.5, 178.5, 180.5]).tolist() == [True, True, False, True]
-    assert chart.eca_fraction(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
+    assert chart.zones.in_eca(0.0, [179.5, -179.5, 178.5, 180.5]).tolist() == [
+        True,
+        True,
+        False,
+        True,
+    ]
+    assert chart.zones.eca_fraction(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
     written_on = OPEN.with_zones(zone(179, -1, 181, 1))
-    assert written_on.eca_fraction(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
+    assert written_on.zones.eca_fraction(0.0, 178.0, 0.0, -178.0) == pytest.approx(0.5, abs=2e-6)
     assert written_on.zones.eca[0].contains(0.0, [-179.5, 179.5]).all()
 
 
@@ -226,15 +235,15 @@ def test_a_hole_is_outside():
         "geometry": {"type": "Polygon", "coordinates": [ring, hole]},
     }
     chart = OPEN.with_zones(feature)
-    assert chart.in_eca(2.0, [0.5, 2.0]).tolist() == [True, False]
+    assert chart.zones.in_eca(2.0, [0.5, 2.0]).tolist() == [True, False]
     assert chart.zones.eca[0].contains(2.0, [0.5, 2.0]).tolist() == [True, False]
-    assert chart.eca_fraction(2.0, 0.0, 2.0, 4.0) == pytest.approx(0.5, abs=1e-3)
+    assert chart.zones.eca_fraction(2.0, 0.0, 2.0, 4.0) == pytest.approx(0.5, abs=1e-3)
 
 
 def test_a_control_area_with_a_factor_is_a_price_zone():
     chart = OPEN.with_zones(zone(0, -1, 2, 1, factor=1.6))
     assert chart.zones.eca == ()
-    assert chart.zone_factor(0.0, -1.0, 0.0, 1.0)[1] == pytest.approx(1.3, abs=1e-6)
+    assert chart.zones.factors(0.0, -1.0, 0.0, 1.0)[1] == pytest.approx(1.3, abs=1e-6)
 
 
 def test_invalid_outlines_are_refused_with_the_place():
@@ -264,13 +273,13 @@ def _count_inside(index, lat, lon):
 
 
 def test_the_raster_and_the_index_for_kernels(seas):
-    raster = seas.zone_raster(45.0, 64.0, -15.0, 12.0, 0.25)
+    raster = zone_raster(seas.zones, BoundingBox(45.0, 64.0, -15.0, 12.0), 0.25)
     assert raster.cell.shape == (76, 108)
     rng = np.random.default_rng(3)
     lat, lon = rng.uniform(45.0, 64.0, 4000), rng.uniform(-15.0, 12.0, 4000)
     j = ((lat - raster.lat0) / raster.dlat).astype(int)
     i = ((lon - raster.lon0) / raster.dlon).astype(int)
-    cell, within = raster.cell[j, i], seas.in_eca(lat, lon)
+    cell, within = raster.cell[j, i], seas.zones.in_eca(lat, lon)
     assert within[cell == 1].all()
     assert not within[cell == 0].any()
     assert 0.01 < (cell == 2).mean() < 0.15
@@ -280,11 +289,14 @@ def test_the_raster_and_the_index_for_kernels(seas):
 
 def test_a_raster_across_the_antimeridian_and_its_errors():
     chart = OPEN.with_zones([zone(179, -1, -179, 1), zone(0, 0, 1, 1, kind="price", factor=2.0)])
-    raster = chart.zone_raster(-2.0, 2.0, 178.0, -178.0, 0.3)
+    raster = zone_raster(chart.zones, BoundingBox(-2.0, 2.0, 178.0, -178.0), 0.3)
     assert raster.cell[raster.cell.shape[0] // 2, raster.cell.shape[1] // 2] == 1
     assert raster.cell[0, 0] == 0
-    assert chart.zone_raster(0.0, 1.0, 0.0, 1.0, 0.5).price.tolist() == [[2.0, 2.0]] * 2
+    assert (
+        zone_raster(chart.zones, BoundingBox(0.0, 1.0, 0.0, 1.0), 0.5).price.tolist()
+        == [[2.0, 2.0]] * 2
+    )
     with pytest.raises(InputError, match="above zero"):
-        chart.zone_raster(0.0, 1.0, 0.0, 1.0, 0.0)
+        zone_raster(chart.zones, BoundingBox(0.0, 1.0, 0.0, 1.0), 0.0)
     with pytest.raises(InputError, match="million cells"):
-        chart.zone_raster(-80.0, 80.0, -180.0, 180.0, 0.001)
+        zone_raster(chart.zones, BoundingBox(-80.0, 80.0, -180.0, 180.0), 0.001)

@@ -1,4 +1,4 @@
-"""The index on disk: used when whole, replaced when broken."""
+"""The coast index on disk: used when valid, replaced when damaged."""
 
 from __future__ import annotations
 

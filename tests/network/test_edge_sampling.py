@@ -1,4 +1,4 @@
-"""Samples on the sides of triangles: they lie on their edges and tell a linear field exactly."""
+"""Samples on the sides of triangles lie on their edges and are exact for linear fields."""
 
 import numpy as np
 import pytest
@@ -24,16 +24,17 @@ def network():
 def test_it_is_a_sound_network_whose_stations_are_its_nodes(network):
     check_network(network, sample=network.n_edges)
     assert network.n_stations == network.n_nodes
-    assert len(network.via_a) > network.n_edges / 2
+    assert len(network.samples.station_a) > network.n_edges / 2
 
 
 def test_samples_lie_on_their_edges(network):
     tails = network.tails()
-    of = np.repeat(np.arange(network.n_edges), np.diff(network.via_ptr))
-    w, s = network.via_w.astype(float), network.via_s.astype(float)
+    of = np.repeat(np.arange(network.n_edges), np.diff(network.samples.ptr))
+    w, s = network.samples.weight.astype(float), network.samples.fraction.astype(float)
+    a, b = network.samples.station_a, network.samples.station_b
     for values in (network.lat, network.lon):
-        sampled = (1 - w) * values[network.via_a] + w * values[network.via_b]
-        straight = (1 - s) * values[tails[of]] + s * values[network.target[of]]
+        sampled = (1 - w) * values[a] + w * values[b]
+        straight = (1 - s) * values[tails[of]] + s * values[network.graph.target[of]]
         assert sampled == pytest.approx(
             straight, abs=1e-4
         )  # 11 m; Mercator against degrees on 10 km
@@ -41,8 +42,11 @@ def test_samples_lie_on_their_edges(network):
 
 def test_every_crossing_is_of_a_side(network):
     """Nodes joined by the sample are neighbours: a ring-1 edge crosses none."""
-    pairs = set(zip(network.tails().tolist(), network.target.tolist()))
-    assert all(pair in pairs for pair in zip(network.via_a.tolist(), network.via_b.tolist()))
+    pairs = set(zip(network.tails().tolist(), network.graph.target.tolist()))
+    assert all(
+        pair in pairs
+        for pair in zip(network.samples.station_a.tolist(), network.samples.station_b.tolist())
+    )
 
 
 def test_least_along_an_edge_is_found_inside(network):
@@ -50,9 +54,9 @@ def test_least_along_an_edge_is_found_inside(network):
     depth[7] = 2.0
     least = least_along_edges(network, depth)
     tails = network.tails()
-    ends = np.minimum(depth[tails], depth[network.target])
+    ends = np.minimum(depth[tails], depth[network.graph.target])
     assert np.all(least <= ends)
-    touched = (tails != 7) & (network.target != 7) & (least < 9.0)
+    touched = (tails != 7) & (network.graph.target != 7) & (least < 9.0)
     assert touched.any()  # edges that pass near the shoal feel it
 
 
@@ -60,6 +64,6 @@ def test_edges_and_lengths_stay(network):
     draw = np.random.default_rng(4)
     lat, lon = 52.0 + draw.uniform(0.0, 0.2, 400), 3.0 + draw.uniform(0.0, 0.3, 400)
     plain = mesh(Chart.open_water(51.9, 52.3, 2.9, 3.4), lat, lon, rings=3)
-    assert np.array_equal(plain.target, network.target)
-    assert np.array_equal(plain.length, network.length)
+    assert np.array_equal(plain.graph.target, network.graph.target)
+    assert np.array_equal(plain.edges.length, network.edges.length)
     assert plain.n_stations > 10 * network.n_stations

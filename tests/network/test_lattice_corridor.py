@@ -1,4 +1,4 @@
-"""Lattices along a given way."""
+"""Lattices along a given path."""
 
 import itertools
 
@@ -10,7 +10,7 @@ from thalweg.core import geodesy
 from thalweg.network import check_network, lattice, shortest_path
 
 
-def test_a_corridor_holds_only_water_near_its_way():
+def test_a_corridor_holds_only_water_near_its_path():
     chart = Chart.open_water(-10.0, 10.0, -10.0, 30.0)
     way = [(0.0, 0.0), (5.0, 10.0), (0.0, 20.0)]
     network = lattice(chart, way[0], way[-1], along=way, width=100_000.0)
@@ -24,7 +24,7 @@ def test_a_corridor_holds_only_water_near_its_way():
     assert max(away) > 60_000.0
 
 
-def test_the_way_through_a_corridor_is_hardly_longer_than_its_line():
+def test_the_path_in_a_corridor_is_hardly_longer_than_its_line():
     chart = Chart.open_water(-20.0, 20.0, -10.0, 30.0)
     way = [(0.0, 0.0), (12.0, 10.0), (0.0, 20.0)]
     network = lattice(chart, way[0], way[-1], along=way, width=60_000.0, directions=32)

@@ -1,4 +1,4 @@
-"""Nodes amid channels too narrow for a lattice, and networks of one way."""
+"""Nodes in narrow channels, and networks of fixed routes."""
 
 import numpy as np
 import pytest
@@ -54,7 +54,7 @@ def test_a_kyle_of_the_highlands_is_passed_on_a_coarse_lattice():
     assert north + south < 1.25 * reached[network.meta.goal]
 
 
-def test_a_line_has_nodes_along_its_way_and_at_borders():
+def test_a_fixed_route_has_nodes_along_it_and_at_borders():
     chart = Chart.gshhg("i").with_eca("north-sea")
     way = [(61.0, 2.0), (62.5, 2.0), (62.5, -3.0)]
     network = fixed_route(chart, way, spacing=50_000.0)
@@ -64,9 +64,11 @@ def test_a_line_has_nodes_along_its_way_and_at_borders():
     legs = distance(*way[0], *way[1]) + distance(*way[1], *way[2])
     assert length[-1] == pytest.approx(float(legs), rel=1e-9)
     assert path == list(range(network.n_nodes))
-    assert network.length.max() <= 50_000.0 + 1e-6
+    assert network.edges.length.max() <= 50_000.0 + 1e-6
     assert np.abs(network.lat - 62.0).min() < 1e-4  # the area ends at 62 N
-    share = chart.eca_fraction(network.lat[:-1], network.lon[:-1], network.lat[1:], network.lon[1:])
+    share = chart.zones.eca_fraction(
+        network.lat[:-1], network.lon[:-1], network.lat[1:], network.lon[1:]
+    )
     assert np.all((share < 1e-4) | (share > 1.0 - 1e-4))
 
 
@@ -75,6 +77,6 @@ def test_a_line_through_a_canal_keeps_it():
     canal = next(c for c in chart.canals if c.name == "kiel")
     network = fixed_route(chart, list(canal.ends), spacing=1000.0)
     assert network.n_nodes == 2
-    assert network.length[0] == canal.length
-    assert network.fixed_time[0] == canal.transit_time and network.fee[0] == canal.fee
+    assert network.edges.length[0] == canal.length
+    assert network.edges.fixed_time[0] == canal.transit_time and network.edges.fee[0] == canal.fee
     assert list(zip(network.lat, network.lon)) == list(canal.ends)

@@ -48,7 +48,7 @@ def test_agrees_with_shapely_on_every_random_leg(world, window, lengths):
     lines = [densified(*leg, 1000.0) for leg in zip(*legs)]
     west, south, east, north = np.array([line.bounds for line in lines]).T
     tree = shapely.STRtree(
-        world.land_polygons(max(south.min(), -89.9), north.max(), west.min(), east.max())
+        world.coastline.polygons(max(south.min(), -89.9), north.max(), west.min(), east.max())
     )
     theirs = np.zeros(len(lines), bool)
     theirs[tree.query(lines, predicate="intersects")[0]] = True
@@ -60,7 +60,7 @@ def test_agrees_with_shapely_on_every_random_leg(world, window, lengths):
 def test_positions_agree_with_shapely(world):
     rng = np.random.default_rng(5)
     lat, lon = np.degrees(np.arcsin(rng.uniform(-1, 1, 20000))), rng.uniform(-180, 180, 20000)
-    tree = shapely.STRtree(world.land_polygons(-90, 90, -180, 180))
+    tree = shapely.STRtree(world.coastline.polygons(-90, 90, -180, 180))
     land = np.zeros(len(lat), bool)
     land[tree.query(shapely.points(lon, lat), predicate="intersects")[0]] = True
     assert np.array_equal(world.is_navigable(lat, lon), ~land)
@@ -116,7 +116,7 @@ def test_long_legs_follow_the_geodesic_not_a_rhumb_line(world):
     # the geodesic from Lisbon's roads to the Caribbean is open; Tokyo - Seattle passes Alaska clear
     assert not world.legs_blocked(38.4, -9.6, 18.5, -60.0)
     assert world.legs_blocked(36.0, 141.5, 51.0, -127.5) == shapely.intersects(
-        shapely.union_all(world.land_polygons(30, 70, 130, -120)),
+        shapely.union_all(world.coastline.polygons(30, 70, 130, -120)),
         densified(36.0, 141.5, 51.0, -127.5, 1000.0),
     )
 
@@ -141,7 +141,7 @@ def test_not_a_number_is_no_data_and_blocked(world):
 
 
 def test_kernel_is_the_same_test(world):
-    coast = world.kernel()
+    coast = world.arrays
     legs = random_legs(11, 300, (48, 62, -8, 12), (5e3, 60e3))
     ours = [leg_blocked(coast, *leg) for leg in zip(*legs)]
     assert np.array_equal(ours, world.legs_blocked(*legs))
@@ -235,7 +235,7 @@ def test_open_water_wider_than_half_the_world_is_not_left_round_the_back():
 def test_whole_world_of_open_water_has_no_border():
     chart = Chart.open_water()
     assert not chart.legs_blocked(0.0, 179.0, 89.0, -100.0)
-    assert chart.shore_distance(0.0, 0.0) >= 50_000.0
+    assert chart.coastline.shore_distance(0.0, 0.0) >= 50_000.0
 
 
 @pytest.mark.parametrize("box", [(1, -1, 0, 1), (-91, 0, 0, 1), (0, 1, 5, 5), (0, np.nan, 0, 1)])
@@ -247,8 +247,8 @@ def test_an_area_that_is_none_is_refused(box):
 def test_shore_distance_is_a_lower_bound_and_near_the_truth(world):
     rng = np.random.default_rng(8)
     lat, lon = rng.uniform(49, 60, 300), rng.uniform(-8, 10, 300)
-    found = world.shore_distance(lat, lon)
-    polygons = shapely.union_all(world.land_polygons(45, 64, -15, 16))
+    found = world.coastline.shore_distance(lat, lon)
+    polygons = shapely.union_all(world.coastline.polygons(45, 64, -15, 16))
     outline = shapely.get_coordinates(shapely.segmentize(polygons, 0.01).boundary)
     water = world.is_navigable(lat, lon)
     assert np.array_equal(found > 0.0, water)

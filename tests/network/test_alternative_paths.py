@@ -1,4 +1,4 @@
-"""Ways that differ in kind: round islands, through canals, and at other prices."""
+"""Alternative paths: around islands, through canals, and at other prices."""
 
 import dataclasses
 
@@ -35,7 +35,7 @@ def world():
     return chart, lattice(chart, WEST, EAST, slack=1.0)
 
 
-def test_both_sides_of_an_island_are_found_and_taut(world):
+def test_both_sides_of_an_island_are_found_and_shortened(world):
     chart, network = world
     ways = alternative_paths(network, chart)
     assert len(ways) == 2
@@ -60,7 +60,7 @@ def test_small_islands_count_when_asked_and_large_ones_need_not(world):
     assert len(alternative_paths(network, chart, island=1000.0, most=2)) == 2
 
 
-def test_stretch_bounds_the_ways(world):
+def test_stretch_limits_the_paths(world):
     chart, network = world
     north = corner_way((0.1, -0.2), (0.1, 0.2))
     south = corner_way((-0.3, -0.2), (-0.3, 0.2))
@@ -68,10 +68,10 @@ def test_stretch_bounds_the_ways(world):
     assert len(alternative_paths(network, chart, stretch=1.2 * (south / north - 1.0))) == 2
 
 
-def test_prices_bring_out_the_other_way(world):
+def test_prices_favour_the_other_path(world):
     chart, network = world
     tail = network.tails()
-    dear = np.where(network.lat[tail] > 0.05, 3.0, 1.0) * network.length
+    dear = np.where(network.lat[tail] > 0.05, 3.0, 1.0) * network.edges.length
     ways = alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(), EdgeWeights(dear)])
     assert [way.ratio for way in ways] == [1.0, 1.0]
     assert ways[1].lat.min() < -0.29
@@ -142,7 +142,7 @@ def test_pulling_with_a_cost_goes_round_what_is_dear():
     assert np.abs(y).max() > 0.2
 
 
-def test_canals_stay_in_pulled_ways_and_count_with_their_length():
+def test_canals_stay_in_shortened_paths_with_their_length():
     chart = Chart.gshhg("i")
     suez = chart.canals[0]
     (a, b), (c, d) = suez.ends
@@ -159,7 +159,7 @@ def test_canals_stay_in_pulled_ways_and_count_with_their_length():
         ((51.98, 4.0), (37.85, 23.2), [("corinth",), ()]),
     ],
 )
-def test_ways_without_canals_are_offered_up_to_the_threshold(start, goal, through):
+def test_paths_without_canals_are_returned_up_to_the_threshold(start, goal, through):
     chart = Chart.gshhg("i")
     network = globe(chart, start, goal, slack=0.6)
     ways = paths_without_canals(network, chart, threshold=0.6)
@@ -174,13 +174,13 @@ def test_ways_without_canals_are_offered_up_to_the_threshold(start, goal, throug
         assert way.length == pytest.approx(sea + sum(canals), rel=1e-9)
 
 
-def test_a_way_by_two_canals_gives_the_runs_of_their_subsets():
+def test_a_path_by_two_canals_is_searched_without_their_subsets():
     chart = Chart.gshhg("i")
     network = globe(chart, (38.2, 22.5), (27.0, 34.5), slack=0.6)  # Gulf of Corinth to Red Sea
     ways = paths_without_canals(network, chart, threshold=0.6)
     # no way without Suez lies within the threshold, so two of the four subsets are left
     assert [way.canals for way in ways] == [("corinth", "suez"), ("suez",)]
-    toll = network.length + 1e6 * (network.fee == chart.canals[3].fee)
+    toll = network.edges.length + 1e6 * (network.edges.fee == chart.canals[3].fee)
     first, *_ = paths_without_canals(network, chart, edge_weights=EdgeWeights(toll), threshold=0.6)
     assert first.canals == ("suez",)
     hours = EdgeWeights(network.times(7.0))
@@ -195,7 +195,7 @@ def test_a_way_by_two_canals_gives_the_runs_of_their_subsets():
 
 
 @pytest.mark.slow
-def test_floro_santander_has_the_three_ways_of_its_prices():
+def test_floro_santander_has_three_paths_for_three_prices():
     """Shortest, 1.2 and 1.5593 times the price inside: exact lengths by visibility graph."""
     chart = Chart.gshhg("i").with_eca("north-sea")
     ends = [chart.nearest_navigable(*place)[:2] for place in NORTH_SEA_CASE]

@@ -1,0 +1,101 @@
+"""The coastline of a chart: its polygons of land, their index, and what is asked of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thalweg.chart.basemap import coastline_lines, land_polygons
+from thalweg.chart.coast.coast_cache import gshhg_index
+from thalweg.chart.coast.coast_index_builder import build_index, empty_index
+from thalweg.chart.coast.gshhg import read_land_rings
+from thalweg.chart.coast.rings import Rings
+from thalweg.chart.geojson_polygons import GeoJsonSource, read_land_areas
+from thalweg.core.types import FloatArray
+from thalweg.kernels.geometry.cube_sphere import IndexArrays
+from thalweg.kernels.geometry.shore_distance import shore_distances
+
+_GEOJSON_INDEX_CELLS: Final = 512  # cells along a face of the index of land from GeoJSON
+_MAX_SHORE_DISTANCE: Final = 250_000.0  # [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Coastline:
+    """Polygons of land.
+
+    Attributes
+    ----------
+    name : str
+        Source of the polygons.
+    index : IndexArrays
+        Grid of their edges, for kernels.
+    read : callable
+        Reads the rings of the polygons.
+    """
+
+    name: str
+    index: IndexArrays
+    read: Callable[[], Rings]
+
+    @classmethod
+    def gshhg(cls, resolution: str) -> Coastline:
+        """Return the land of the world from GSHHG (see `thalweg.chart.Chart.gshhg`)."""
+        index = gshhg_index(resolution)
+        return cls(f"GSHHG {resolution}", index, lambda: read_land_rings(resolution))
+
+    @classmethod
+    def none(cls) -> Coastline:
+        """Return no land."""
+        rings = Rings.from_lists([])
+        return cls("open water", empty_index(), lambda: rings)
+
+    @classmethod
+    def from_geojson(cls, land: GeoJsonSource) -> Coastline:
+        """Return the areas of a GeoJSON file or of plain data (see `thalweg.chart.Chart`)."""
+        rings = read_land_areas(land)
+        index = build_index(rings, _GEOJSON_INDEX_CELLS)
+        return cls(f"GeoJSON {rings.fingerprint()}", index, lambda: rings)
+
+    @cached_property
+    def rings(self) -> Rings:
+        """The rings of the polygons, read when first used."""
+        return self.read()
+
+    def shore_distance(
+        self, lat: ArrayLike, lon: ArrayLike, *, cap: float = 50_000.0
+    ) -> FloatArray:
+        """Return a lower bound of the distance [m] to the nearest land.
+
+        Parameters
+        ----------
+        lat, lon : array_like
+            Positions [deg]; they broadcast.
+        cap : float
+            Up to this distance [m], at most 250 km, the result is the true distance to 1 %
+            and never above it; farther from land it is at least ``cap``. On land it is 0.
+        """
+        a, b = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
+        distance = np.empty(a.size)
+        shore_distances(
+            self.index,
+            np.ascontiguousarray(a).ravel(),
+            np.ascontiguousarray(b).ravel(),
+            min(float(cap), _MAX_SHORE_DISTANCE),
+            distance,
+        )
+        return distance.reshape(a.shape)
+
+    def lines(
+        self, south: float, north: float, west: float, east: float
+    ) -> list[tuple[FloatArray, FloatArray]]:
+        """Return the outlines of land in a box [deg] as (lat, lon) arrays [deg], for drawing."""
+        return coastline_lines(self.rings, south, north, west, east)
+
+    def polygons(self, south: float, north: float, west: float, east: float) -> list[Any]:
+        """Return the land in a box [deg] as shapely polygons (x lon, y lat) [deg], for drawing."""
+        return land_polygons(self.rings, south, north, west, east)
