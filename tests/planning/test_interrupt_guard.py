@@ -50,7 +50,7 @@ def test_before_the_front_is_found_the_fastest_route_is_returned():
 
 
 def test_before_refinement_the_exact_front_is_returned_and_evaluated():
-    found = stopped("drawing the ways")
+    found = stopped("finding alternative routes")
     assert found.cancelled and set(found.front.stages) <= {"exact", "fastest", "way round"}
     assert 10 < len(found.routes) <= 22
     assert all(route.feasible for route in found.routes)

@@ -9,6 +9,7 @@ import pytest
 from tests.evolution import jet
 from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
+from thalweg.core.objective import LegPrices
 from thalweg.evolution import Genome, VariationSettings, evolve
 from thalweg.evolution.evolve import METHODS
 from thalweg.evolution.variation import OperatorWeights
@@ -85,7 +86,7 @@ def sailed(genome: Genome) -> FrontPoint | None:
     table, fuel = world.tables()
     request = FrontRequest(
         int(nodes[0]), int(nodes[-1]), world.T0, LATEST, np.arange(table.n_settings),
-        np.ones(net.n_edges), 0.0, 0.0, True,
+        LegPrices(), np.ones(net.n_edges), True,
     )  # fmt: skip
     got = make_front_problem(
         net, fields(), table, fuel, request=request, limits=NO_LIMITS, top_speed=None
