@@ -45,7 +45,7 @@ def offshore(distance: float) -> tuple[float, float]:
 
 
 def waters(scenario: TidalEllipse, *, decay: float, depth, density_gradient: float = 0.0) -> Sea:
-    """Return the prescribed ellipse, alike over the draught; strongest northward at time 0."""
+    """Return the prescribed ellipse, equal over the draught; strongest northward at time 0."""
     current = stratified_coast_current(
         scenario,
         coast=COAST,

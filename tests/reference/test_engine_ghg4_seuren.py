@@ -87,7 +87,7 @@ def test_no_number_is_an_error_not_a_guess():
         specific_consumption.base_sfoc("slow_speed_diesel", "lng")
 
 
-def test_turbines_do_not_feel_load():
+def test_turbine_consumption_does_not_depend_on_load():
     flat = specific_consumption.fuel_rate(
         [1e6, 9e6], 10e6, sfoc_g_kwh=300.0, varies_with_load=False
     )

@@ -187,7 +187,7 @@ def planned(chart):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("days", DAYS)
-def test_the_front_of_a_plan_costs_what_the_exact_ways_do(planned, days):
+def test_the_front_of_a_plan_costs_the_same_as_the_exact_routes(planned, days):
     best = min(costs[DAYS.index(days)] or np.inf for costs in THOUSANDS.values())
     hours = np.array([route.time_h for route in planned.routes])
     # between two points of the front a ship may sail part of the way as in each
@@ -196,7 +196,7 @@ def test_the_front_of_a_plan_costs_what_the_exact_ways_do(planned, days):
 
 
 @pytest.mark.slow
-def test_the_front_of_a_plan_holds_all_three_ways_round(planned):
+def test_the_front_of_a_plan_holds_all_three_alternative_routes(planned):
     lengths = np.array([route.distance_nm for route in planned.routes])
     for wanted in (sum(LENGTHS[way]) for way in WAYS):
         assert np.abs(lengths / wanted - 1.0).min() < 0.003

@@ -79,7 +79,7 @@ def test_1982_example_components_as_printed():
 
 
 def test_the_correlation_is_taken_over_hull_and_appendages():
-    """222.07 kN, or 220.57 over the hull alone, which misses the printed 221.98 by 0.64 %."""
+    """222.07 kN, or 220.57 over the hull only, which misses the printed 221.98 by 0.64 %."""
     both = holtrop(25 * KNOT, SHIP, bulb_transom_appendages=ENDS, **WATER)
     hull = holtrop(25 * KNOT, SHIP, bulb_transom_appendages=ENDS, correlation_area="hull", **WATER)
     area = float(wetted_surface(SHIP, bulb_area=20.0))
@@ -255,7 +255,7 @@ def test_transom_runs_dry_at_transom_froude_number_five():
 
 
 def test_correlation_of_a_hull_of_small_draught():
-    """T_F / L below 0.04, where the last term of C_A acts; both worked examples lie above."""
+    """T_F / L below 0.04, where the last term of C_A acts; both worked examples are above."""
     hull = hull_form(
         length_waterline=200.0,
         breadth=32.0,

@@ -78,7 +78,7 @@ def test_regressions_written_out():
 
 
 def test_block_from_froude():
-    """KCS at Fn .26 has .651; KVLCC2 at .142 lies outside."""
+    """KCS at Fn .26 has .651; KVLCC2 at .142 is outside."""
     assert reg.block_from_froude(0.26) == pytest.approx(0.651, abs=0.05)
     assert np.isnan(reg.block_from_froude([0.142, 0.33])).all()
 

@@ -2,7 +2,7 @@
 
 What the thesis does not print was found from its results: a path of 999 steps of 50 m, energy
 that counts 5 % of the installed power on top of the brake power, a bulb of C_BB = 0.2 whose
-centre lies at the highest place the method allows (0.6 of the draught, a third of the whole
+centre is at the highest place the method allows (0.6 of the draught, a third of the whole
 resistance), water of 1025 kg/m3 and 1e-6 m2/s, a transom of 0.2 B T, appendages of 5 % of the
 wetted surface with 1 + k2 = 2.5, and one calibrated constant, the hull efficiency 1.029. Test
 case 2 (the depth falls from 20 to 8 m) is missed by 1.6 %: the final program of the thesis has

@@ -100,7 +100,7 @@ def _by_hand(length_ratio, speed, angle, hull):
     root = math.sqrt(abs(math.cos(angle)))
     counts = deep * ((4.0 + root) / 5.0 if block <= 0.75 else (2.0 + root) / 3.0)
 
-    def felt(depth):
+    def orbital_decay(depth):
         excess = 1.0 / (length_ratio * size) - 1.0 / (2.5 * size)
         return 1.0 - math.exp(-4.0 * math.pi * depth * excess) if excess > 0.0 else 0.0
 
@@ -113,13 +113,13 @@ def _by_hand(length_ratio, speed, angle, hull):
     front = (0.87 / block) ** ((1.0 + 4.0 * math.sqrt(fn)) * front)
     total = 0.0
     if angle <= math.pi - bow:
-        total += felt(deep) * end(bow, 1.0) * front
+        total += orbital_decay(deep) * end(bow, 1.0) * front
     if angle <= bow:
-        total += felt(deep) * end(bow, -1.0) * front
+        total += orbital_decay(deep) * end(bow, -1.0) * front
     if angle >= stern:
-        total -= felt(counts) * end(stern, -1.0)
+        total -= orbital_decay(counts) * end(stern, -1.0)
     if angle >= math.pi - stern:
-        total -= felt(counts) * end(stern, 1.0)
+        total -= orbital_decay(counts) * end(stern, 1.0)
     return motion, 2.25 / 4.0 * 1025.0 * GRAVITY * wide * total
 
 

@@ -69,7 +69,7 @@ def test_successive_high_waves():
 
 
 def test_margins_written_out():
-    """At the limits of the circular the margins are zero, and they are the distances told."""
+    """At the limits of the circular the margins are zero, and they are the stated distances."""
     at = {"length": 100.0, "wave_period": 8.0, "wave_height": 5.0}
     got = check(speed=12.0 * KNOT, **at)  # T_E = 2 T_W: 0.2 inside 1.8, wave length 99.84 m
     assert got.margins.high_waves == pytest.approx(max(1 - 99.84 / 80.0, 1 - 5.0 / 4.0, -0.2))

@@ -21,7 +21,7 @@ Holtrop and Mennen approximate power prediction method for full hull form, low F
 vessels", J. Ship Prod. Des. (2018), refit it to modern tankers and bulk carriers, KVLCC2 among
 them.
 
-Where the surplus lies: KVLCC2 has it in the form factor (1.298 by Holtrop 1984; the tank leaves
+Where the surplus is: KVLCC2 has it in the form factor (1.298 by Holtrop 1984; the tank leaves
 1.177 when Holtrop's waves are right, 1.195 when there are none), KCS mostly in the waves.
 Extrapolation and correlation allowance play no part at model scale without allowance, the wetted
 surfaces are the published ones, and no input of KVLCC2 lowers its result by more than 0.5 %.

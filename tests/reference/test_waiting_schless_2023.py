@@ -1,13 +1,13 @@
 """Section 4.3 of Schless (2023): does it pay to wait for the current before sailing?
 
-His figures tell, in words: one way at neap tide at most "approximately 4.5 %" saved, five cycles
+His figures state, in words: one way at neap tide at most "approximately 4.5 %" saved, five cycles
 "approximately 2.6 %" from t0 = 0 and "approximately 3 %" from t0 = 0.5 T and 0.75 T, at spring tide
 "approximately 1.5 %"; never a saving with a generator of 327.1 kW; savings only with 5 or 10 % of
 that power, not with 25 %, and with 10 % not at the end of the curve, where one way from t0 = 0 all
 180 minutes to the best current are waited.
 
 With the amplitudes printed in Table 4.9 (0.7 m/s along and 0.35 m/s across the coast at neap tide)
-savings come out nearly twice as large: the across current alone changes the speed over ground by
+savings come out nearly twice as large: the current across alone changes the speed over ground by
 more than 5 % either way. All that he reports comes out with *half* the across current of the
 table, as if its widths of the ellipse had been taken for amplitudes. Both are held here.
 """
@@ -123,7 +123,7 @@ def test_generators_of_table_4_11():
 
 
 @pytest.mark.parametrize("rudder", [True, False])
-def test_break_even_power_lies_between_five_and_ten_per_cent(rudder):
+def test_break_even_power_is_between_five_and_ten_per_cent(rudder):
     """Of the 327.1 kW, one way from t0 = 0 by his rule with the 180 minutes allowed."""
     trips = [nourishment(HALVED["neap"], rudder=rudder)[0]]
     power = break_even_power(trips, start=0.0, max_wait=0.26 * TIDE, rule="current")

@@ -37,7 +37,7 @@ def test_fujiwara_against_an_independent_calculation():
     np.testing.assert_allclose(got, expected, atol=5.1e-4)
 
 
-def test_fujiwara_feels_where_the_side_area_stands():
+def test_fujiwara_depends_on_the_position_of_the_side_area():
     """C_MC lowers the head wind's coefficient by 1.162 C_MC / L_OA, and the stern's not at all."""
     forward = replace(SHIP, area_centre_forward=0.1 * SHIP.length_overall)
     angles = np.radians([0.0, 180.0])

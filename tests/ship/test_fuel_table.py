@@ -204,9 +204,9 @@ def test_fuel_that_is_given_is_the_whole_ships():
     ids=["speeds only", "function", "field"],
 )
 def test_ships_without_a_fuel_model_say_so(ship):
-    with pytest.raises(InputError, match="cannot be tabulated") as told:
+    with pytest.raises(InputError, match="cannot be tabulated") as refusal:
         ship.tabulate_fuel()
-    assert "fuel model" in str(told.value)
+    assert "fuel model" in str(refusal.value)
 
 
 def test_fuels_of_different_engines_are_not_mixed_up_on_disk(tmp_path, monkeypatch):
@@ -290,9 +290,9 @@ def test_ships_of_unknown_power_say_so():
         Ship.simple(speed_kn=8.0),
         Ship.from_speed_function(lambda c: 6.0 - c.wave_height),
     ):
-        with pytest.raises(InputError, match="brake power is unknown") as told:
+        with pytest.raises(InputError, match="brake power is unknown") as refusal:
             ship.tabulate_power()
-        assert "reference_power_kw" in told.value.possible
+        assert "reference_power_kw" in refusal.value.possible
 
 
 def test_a_plug_in_of_known_power_is_tabulated_over_what_it_reads():

@@ -136,7 +136,7 @@ def test_a_given_top_speed_is_taken():
         Ship.from_speed_function(lambda c: 2.0, top_speed=-1.0)
 
 
-def test_fingerprints_tell_functions_apart_and_not_their_names():
+def test_fingerprints_distinguish_functions_and_not_their_names():
     def a(c):
         return 2.0 + np.abs(np.sin(c.lat))
 

@@ -121,7 +121,7 @@ def test_unknown_wind_gives_unknown_speed():
     assert np.isnan(ship.speed_through_water(c)).all()
 
 
-def test_the_table_agrees_with_the_ship_and_tells_its_error():
+def test_the_table_agrees_with_the_ship_and_states_its_error():
     ship = Ship.simple(15.2, 9.5, breadth_m=23.4, speed_loss="kwon_2008", **BULKER)
     table = ship.tabulate(tolerance=0.005)
     assert table.error.p99 <= 0.005
@@ -140,7 +140,7 @@ def test_the_top_speed_bounds_ship_and_table():
     assert ship.top_speed(0) == pytest.approx(15.2 * KNOT, rel=1e-6)
 
 
-def test_fingerprints_tell_ships_apart():
+def test_fingerprints_distinguish_ships():
     one = Ship.simple(8.0, 5.0)
     assert one.fingerprint() == Ship.simple(8.0, 5.0, name="another name").fingerprint()
     others = [
@@ -152,7 +152,7 @@ def test_fingerprints_tell_ships_apart():
     assert len({one.fingerprint(), *(ship.fingerprint() for ship in others)}) == 5
 
 
-def test_notes_tell_where_kwon_is_out_of_range():
+def test_notes_report_where_kwon_is_out_of_range():
     ship = Ship.simple(15.2, 9.5, breadth_m=23.4, speed_loss="kwon_2008", **BULKER)
     assert ship.notes(CALM) == []
     (note,) = ship.notes(GALE)

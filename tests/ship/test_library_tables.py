@@ -19,7 +19,7 @@ def test_tables_meet_one_per_cent_in_eight_megabytes(name):
 
 
 @pytest.mark.parametrize("name", ["jbc", "s175"])
-def test_the_error_told_is_the_error_elsewhere_too(name):
+def test_the_stated_error_holds_at_other_conditions(name):
     """Fresh conditions, settings and all; the floor of the measure is a quarter of the top."""
     ship = Ship.load(name)
     table, draw = ship.tabulate(), np.random.default_rng(99)

@@ -79,28 +79,28 @@ def test_what_contradicts_itself_is_refused(hull, sections, words):
 
 
 def test_the_prismatic_coefficient_stands_for_midship_or_block():
-    told = _estimates(_ship({"prismatic_coefficient": 0.75}))
-    assert told["midship_coefficient"] == (pytest.approx(0.96), "C_B over C_P")
-    told = _estimates(
+    estimates = _estimates(_ship({"prismatic_coefficient": 0.75}))
+    assert estimates["midship_coefficient"] == (pytest.approx(0.96), "C_B over C_P")
+    estimates = _estimates(
         _ship(
             {"block_coefficient": None, "prismatic_coefficient": 0.75, "midship_coefficient": 0.96}
         )
     )
-    assert told["block_coefficient"] == (pytest.approx(0.72), "C_P C_M")
+    assert estimates["block_coefficient"] == (pytest.approx(0.72), "C_P C_M")
     same = {"midship_coefficient": 0.96}
     assert _drag(_ship({"prismatic_coefficient": 0.75})) == pytest.approx(_drag(_ship(same)))
 
 
 def test_who_names_the_bulbs_section_has_its_height():
-    told = _estimates(_ship({"bulb_area_m2": 12.0}))
-    assert told["bulb_centre_height_m"] == (pytest.approx(2.8), "Rakke (2016)")
+    estimates = _estimates(_ship({"bulb_area_m2": 12.0}))
+    assert estimates["bulb_centre_height_m"] == (pytest.approx(2.8), "Rakke (2016)")
     assert _estimates(_ship())["bulb_area_m2"] == (0.0, "taken as no bulb")
 
 
-def test_shapes_that_are_not_told_are_listed():
-    told = _estimates(_ship({"appendage_area_m2": 20.0}))
-    assert told["stern_shape"][0] == "normal" and told["appendage_factor"][0] == 1.5
-    angle = told["half_entrance_angle_deg"][0]
+def test_shapes_that_are_not_given_are_listed():
+    estimates = _estimates(_ship({"appendage_area_m2": 20.0}))
+    assert estimates["stern_shape"][0] == "normal" and estimates["appendage_factor"][0] == 1.5
+    angle = estimates["half_entrance_angle_deg"][0]
     assert 5.0 < angle < 60.0
     stated = {"half_entrance_angle_deg": angle, "stern_shape": 0, "appendage_factor": 1.5}
     again = _ship({"appendage_area_m2": 20.0, **stated})
@@ -179,11 +179,11 @@ def test_the_efficiency_of_all_goes_before_its_parts(others):
     ship = Ship.from_dict(data)
     power = float(ship.power_at_speed(Conditions(CALM), 6.0))
     assert power == pytest.approx(_drag(ship) * 6.0 / (0.7 * 0.98 * 0.96))
-    told = performance_sheet(ship)["assumed"]
-    assert told == [f"propulsion.{key} is not used" for key in sorted(others, key=told_order)]
+    assumed = performance_sheet(ship)["assumed"]
+    assert assumed == [f"propulsion.{key} is not used" for key in sorted(others, key=file_order)]
 
 
-def told_order(key):
+def file_order(key):
     order = ("open_water_efficiency", "hull_efficiency", "wake_fraction", "thrust_deduction")
     return order.index(key)
 
@@ -219,7 +219,7 @@ def test_numbers_may_be_numpys():
     assert len(ship.speeds) == 3
 
 
-def test_motions_are_those_of_the_draught_the_ship_lies_at():
+def test_motions_are_those_at_the_draught_of_the_ship():
     emptied = {"draught_full_m": 7.0, "draught_empty_m": 4.0, "displacement_empty_m3": 5000.0}
     data = {"name": "x", "hull": HULL, "speeds_kn": [12.0], "loading": emptied}
     weather = {"wave_height": 3.0, "wave_angle": 0.3}
@@ -274,8 +274,8 @@ def test_a_field_of_speeds_has_no_sheet():
 def test_a_ballast_line_that_is_not_there_is_told():
     twin = {"propellers": 2, "propeller_diameter_m": 4.0}
     ballast = {"condition": "ballast"}
-    told = _estimates(_ship({}, "hollenbach_1998_mean", propulsion=twin, loading=ballast))
-    assert told["loading.condition"][0] == "twin_design"
+    estimates = _estimates(_ship({}, "hollenbach_1998_mean", propulsion=twin, loading=ballast))
+    assert estimates["loading.condition"][0] == "twin_design"
     single = _ship({}, "hollenbach_1998_mean", loading=ballast)
     assert "loading.condition" not in _estimates(single)
 
@@ -286,8 +286,8 @@ def test_a_load_factor_that_changes_nothing_is_said():
         "load factor 0.5 has no effect: the ship file does not describe the empty ship"
     ]
     assert performance_sheet(_ship())["assumed"] == []
-    told = _ship(loading={"draught_empty_m": 5.0})
-    assert performance_sheet(told.with_load_factor(0.5))["assumed"] == []
+    ship = _ship(loading={"draught_empty_m": 5.0})
+    assert performance_sheet(ship.with_load_factor(0.5))["assumed"] == []
 
 
 def test_an_emptier_hull_keeps_its_trim_and_loses_wetted_surface():

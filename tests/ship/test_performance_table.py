@@ -146,7 +146,7 @@ def test_refinement_chooses_the_axis_that_bends():
     assert part.values.shape[1] > 20
 
 
-def test_refinement_stops_at_the_memory_allowed_and_tells_the_error():
+def test_refinement_stops_at_the_memory_allowed_and_reports_the_error():
     def step(where):
         return np.where(where["wave_height"] < 7.3, 9.0, 2.0)[..., None]
 

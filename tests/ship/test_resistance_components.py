@@ -90,7 +90,7 @@ def test_fuel_per_mile_and_co2_follow_from_fuel_per_hour():
         assert row["co2_kg_per_h"] == pytest.approx(3.206 * row["fuel_kg_per_h"])
 
 
-def test_waves_told_by_where_they_go_come_from_the_other_side():
+def test_waves_given_by_where_they_go_come_from_the_opposite_direction():
     north = {"sea_surface_wave_to_direction": 0.0}
     assert float(Conditions.from_sea(north, heading=np.pi).wave_angle) == pytest.approx(0.0)
     assert float(Conditions.from_sea(north, heading=0.0).wave_angle) == pytest.approx(np.pi)

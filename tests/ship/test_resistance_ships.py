@@ -230,7 +230,7 @@ def test_methods_that_are_not_there_or_do_not_fit_are_refused(models, message):
         _ship(models)
 
 
-def test_missing_particulars_are_named_with_a_way_out():
+def test_missing_particulars_are_named_with_a_remedy():
     bare = {"breadth_m": 32.0, "draught_m": 10.0}
     data = {
         "name": "x",

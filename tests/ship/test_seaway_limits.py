@@ -174,7 +174,7 @@ def test_the_height_from_which_waves_are_a_danger_can_be_set():
     assert ship.limits.safety.forbids(ship.speeds, **at).tolist() == [False, False, True]
 
 
-def test_the_referee_tells_where_the_ship_does_what_it_must_not():
+def test_the_referee_lists_where_the_ship_breaks_its_safety_limits():
     sea = Sea.from_functions(
         {
             "sea_surface_wave_significant_height": lambda t, lat, lon: 4.0 + 0 * lat,

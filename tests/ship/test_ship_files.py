@@ -168,7 +168,7 @@ def test_an_unknown_name_gets_near_matches():
 
 
 @pytest.mark.parametrize("name", library_names())
-def test_library_ships_load_and_tell_their_sources(name):
+def test_library_ships_load_and_give_their_sources(name):
     ship = Ship.load(name)
     assert ship.data["sources"] and ship.data["description"]
     assert (np.diff(ship.speeds) > 0).all()
@@ -326,8 +326,8 @@ def test_engines_burn_for_the_power_of_a_ship_with_known_speeds(engine, sfoc, la
     assert ship.fuel_rate(Conditions(), np.array([0, 1])) == pytest.approx(burnt, rel=1e-4)
     slow = ship.with_speeds(speeds[:1] * 1852 / 3600)
     assert float(slow.fuel_rate(Conditions(), 0)) == pytest.approx(burnt[0], rel=1e-4)
-    told = {e.key for e in ship.estimated}
-    assert ("engine.sfoc_g_per_kwh" in told) == ("type" in engine)
+    estimates = {e.key for e in ship.estimated}
+    assert ("engine.sfoc_g_per_kwh" in estimates) == ("type" in engine)
 
 
 def test_a_table_that_is_missing_is_named():
@@ -351,8 +351,8 @@ def test_what_kwon_needs_and_was_estimated_is_told():
     ship = Ship.from_dict(
         {"name": "x", "hull": hull, "speeds_kn": [9], "models": {"speed_loss": "kwon_2008"}}
     )
-    told = {e.key for e in ship.estimated}
-    assert told == {"length_between_perpendiculars_m", "block_coefficient"}
+    estimates = {e.key for e in ship.estimated}
+    assert estimates == {"length_between_perpendiculars_m", "block_coefficient"}
 
 
 def test_the_sign_in_kwons_table_is_a_choice():

@@ -185,7 +185,7 @@ def _table_error_holds(model: ShipModel, load_factor: float, tolerance: float) -
     truth = model.speed_through_water(conditions, 0)
     found = table.lookup(conditions, np.zeros(400, int))
     scale = np.maximum(truth, 0.25 * np.nanmax(truth))
-    strays = float(np.nanquantile(np.abs(found - truth) / scale, 0.98))
-    if strays > max(2.0 * error.p99, tolerance):
-        return [f"the table differs from the model by {strays:.2%}, but states {error.p99:.2%}"]
+    excess = float(np.nanquantile(np.abs(found - truth) / scale, 0.98))
+    if excess > max(2.0 * error.p99, tolerance):
+        return [f"the table differs from the model by {excess:.2%}, but states {error.p99:.2%}"]
     return []

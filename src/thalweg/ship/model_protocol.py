@@ -54,7 +54,7 @@ class ShipModel(Protocol):
 
     @property
     def reads(self) -> frozenset[str]:
-        """Names of the conditions it reads, ``load_factor`` aside (see `Conditions`)."""
+        """Names of the conditions it reads, except ``load_factor`` (see `Conditions`)."""
         ...
 
     @property

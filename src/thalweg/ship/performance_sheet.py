@@ -53,14 +53,14 @@ def performance_sheet(
     -------
     dict
         Plain data: ``name``, ``conditions[]`` (``speed_kn``, ``resistance_n`` by component, which
-        add up to its ``total``; what Hollenbach's method has besides friction, all of it pressure,
-        stands under ``wave_making``; with Kwon's speed loss the resistance is that of calm water at
-        the speed, the power that of the calm speed behind it;
+        add up to its ``total``; the remainder of Hollenbach's method, all of it pressure,
+        is part of ``wave_making``; with Kwon's speed loss the resistance is that of calm water at
+        the speed, the power that of the unreduced calm-water speed;
         ``effective_power_kw``, ``brake_power_kw``, ``fuel_kg_per_h``, ``co2_kg_per_h``,
         ``fuel_kg_per_nm``, ``cii``, ``squat``, ``motions``, ``warnings``), ``assumed[]`` (period
         and directions of weather that were not given), ``warnings[]`` (speeds
-        left out, weather the ship has no model of), ``missing[]`` (what is not known and which keys
-        would tell it), ``settings[]`` (what each setting attains in
+        left out, weather without a model of the ship), ``missing[]`` (unknown results and the keys
+        that would give them), ``settings[]`` (the speed of each setting in
         this weather), ``estimated[]`` and ``sources``. Unknown numbers are None.
 
     Raises
@@ -71,7 +71,7 @@ def performance_sheet(
     if ship.speed_field is not None:
         raise InputError(
             f"The speed of {ship.name!r} is a field of place and time.",
-            "A sheet shows ships whose speed depends on what they meet alone.",
+            "A sheet is for ships whose speed depends on wind, waves, depth and setting only.",
             "Ask for a ship with settings, or evaluate a route with this one.",
             ship=ship.name,
         )

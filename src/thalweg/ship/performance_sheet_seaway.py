@@ -100,8 +100,8 @@ class ShipInSeaway:
         bow = ship_response(
             **common, wave_angle=at.wave_angle, hull=hull, forward=0.5 * hull.length
         )
-        felt = weighted_acceleration(middle.acceleration_parts, middle.encounter_frequency)
-        dose = motion_sickness_dose(felt, duration=EXPOSURE_TIME)
+        weighted = weighted_acceleration(middle.acceleration_parts, middle.encounter_frequency)
+        dose = motion_sickness_dose(weighted, duration=EXPOSURE_TIME)
         found: Mapping[str, Any] = {
             "significant_heave_m": middle.heave.significant_amplitude,
             "significant_pitch_deg": np.degrees(middle.pitch.significant_amplitude),

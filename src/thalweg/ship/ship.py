@@ -332,7 +332,7 @@ class Ship(ShipQueries):
     def top_speed(self, setting: int = 0) -> float | None:
         """Upper bound of the speed through water [m/s]; None for an unbounded field.
 
-        It covers the model and its table, rounded to single precision, alike.
+        It holds for the model and for its table, which is rounded to single precision.
         """
         top = self.model.top_speed(setting, self.loading.load_factor)
         return None if top is None else top * (1.0 + _SINGLE_PRECISION)

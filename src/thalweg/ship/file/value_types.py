@@ -6,7 +6,7 @@ import math
 from numbers import Real
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
 from thalweg.core.errors import unknown_name_error
@@ -89,7 +89,9 @@ def as_stern_shape(value: Any) -> str | float:
 
 
 Number = Annotated[float, BeforeValidator(as_number)]
-WholeNumber = Annotated[int, BeforeValidator(as_whole_number)]
+WholeNumber = Annotated[
+    int, BeforeValidator(as_whole_number), PlainSerializer(float, return_type=float)
+]
 Text = Annotated[str, BeforeValidator(as_text)]
 Texts = Annotated[tuple[str, ...], BeforeValidator(as_texts)]
 Flag = Annotated[bool, BeforeValidator(as_flag)]

@@ -93,8 +93,8 @@ class WindResistance:
 
         The wind is that relative to the moving water [m/s], its angle off the bow [rad].
         """
-        felt, where = relative_wind(wind_speed, angle, ship_speed=speed)
-        return wind_resistance(felt, self.coefficient(where), frontal_area=self.frontal_area)
+        relative, where = relative_wind(wind_speed, angle, ship_speed=speed)
+        return wind_resistance(relative, self.coefficient(where), frontal_area=self.frontal_area)
 
 
 _WAVE_PARTICULARS = (
@@ -236,9 +236,10 @@ _BLENDERMANN_TYPES: Final = {
 
 def _with_blendermann_type(hull: Hull) -> tuple[Hull, str]:
     """Blendermann's type of ship from ``hull.type``; a cargo ship when it is not given."""
-    told = str(hull.values.get("type", "")).casefold().replace("_", " ")
-    kind = next((kind for word, kind in _BLENDERMANN_TYPES.items() if word in told), "cargo_loaded")
-    why = f"from hull.type {told!r}" if told else "no hull.type given"
+    given = str(hull.values.get("type", "")).casefold().replace("_", " ")
+    kinds = (kind for word, kind in _BLENDERMANN_TYPES.items() if word in given)
+    kind = next(kinds, "cargo_loaded")
+    why = f"from hull.type {given!r}" if given else "no hull.type given"
     return hull.with_estimates(Estimate("models.wind_type", kind, why)), kind
 
 

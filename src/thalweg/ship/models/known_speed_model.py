@@ -211,7 +211,7 @@ class KnownSpeedModel:
         Raises
         ------
         InputError
-            If a speed lies outside the table, or above the highest speed of a ship without law.
+            If a speed is outside the table, or above the highest speed of a ship without law.
         """
         rows = self.law.rows or (
             *(self.speeds_full, self.speeds_empty),

@@ -107,7 +107,7 @@ class PerformanceTable:
         return float(high[setting])
 
     def at_setting(self, setting: int) -> PerformanceTable:
-        """Return the table of one setting alone, which is smaller and so quicker to look up."""
+        """Return the table of one setting, which is smaller and quicker to look up."""
         chosen = slice(setting, setting + 1)
         finish = None if self.finish is None else self.finish.at(chosen)
         parts = self.parts

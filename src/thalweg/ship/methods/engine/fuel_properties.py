@@ -50,7 +50,7 @@ _684 = (
     "3.030000, 2.750000); MEPC.364(79) 2.2.1 as transcribed by two independent open calculators"
 )
 _364 = (
-    "MEPC.364(79) 2.2.1 as transcribed alike by at least four open projects, and the carbon of the "
+    "MEPC.364(79) 2.2.1 as transcribed by at least four open projects, and the carbon of the "
     "molecule within 0.2 %; the resolution itself was not seen"
 )
 

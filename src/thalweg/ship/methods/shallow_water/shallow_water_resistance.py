@@ -238,7 +238,7 @@ def lackenby_1963_speed_loss(
     ndarray
         A part of the speed, not below zero; NaN where the depth is not positive. The procedure
         applies the formula from A_M / h^2 = 0.05; below that the first term is taken as zero, so
-        that it fades out. The draught is not known here: the caller tells where the ship touches.
+        that it fades out. The draught is not known here: the caller checks where the ship grounds.
     """
     velocity, water = np.asarray(speed, dtype=float), _positive(depth)
     blocked = np.maximum(np.asarray(midship_area) / water**2 - 0.05, 0.0)
