@@ -131,7 +131,7 @@ def test_the_ship_keeps_out_of_what_is_closed(waiting) -> None:
 def test_diagrams_of_plans_and_routes(waiting, tmp_path) -> None:
     figure = draw_space_time_diagram(waiting, tmp_path / "plan.png")
     told = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert told == ["too little water", "ship", f"waits {waiting.best.waiting_h:.2f} h in all",
+    assert told == ["too little water", "ship", f"waits {waiting.best.waiting_h:.2f} h in total",
                     "arrive by"]  # fmt: skip
     left, right = figure.axes[0].get_xlim()
     assert left < 0.0 and right > 7.5  # the latest arrival is in the picture
