@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thalweg.chart import Chart
-from thalweg.kernels.network.static_paths import connected_waters
+from thalweg.network.global_grid.globe_builder import connected_water
 from thalweg.network.global_grid.grid import GridResolution, make_grid
 from thalweg.network.global_grid.icosphere import icosphere
 
@@ -68,7 +68,7 @@ def water_at(grid, root, place):
 @pytest.mark.parametrize(("coast_levels", "joined"), [(0, False), (3, True)])
 def test_gibraltar_is_closed_at_level_6_and_open_with_3_more(coast_levels, joined):
     grid = make_grid(Chart.gshhg("i"), GridResolution(6, coast_levels, directions=6))
-    root = connected_waters(len(grid.lat), grid.pairs.first, grid.pairs.second)
+    root = connected_water(len(grid.lat), grid.pairs.first, grid.pairs.second)
     atlantic, inside = (water_at(grid, root, place) for place in (ATLANTIC, MEDITERRANEAN))
     assert np.sum(root == inside) > 50
     assert (atlantic == inside) == joined

@@ -7,15 +7,17 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from thalweg.chart.canals import CANALS, Canal
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position
-from thalweg.core.types import BoolArray, FloatArray
+from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels.network import graph_building
-from thalweg.kernels.network.static_paths import connected_waters
 from thalweg.network.assembly import (
     Pairs,
     Stations,
@@ -248,10 +250,24 @@ def _open_sea(chart: Chart, grid: GlobeGrid, options: _Options) -> tuple[Pairs, 
     return pairs, usable
 
 
+def connected_water(count: int, first: NDArray[np.int32], second: NDArray[np.int32]) -> IntArray:
+    """Return for each of ``count`` nodes the first node that legs connect it to.
+
+    Parameters
+    ----------
+    count : int
+    first, second : int32[L]
+        Ends of the legs.
+    """
+    legs = coo_array((np.ones(len(first), bool), (first, second)), (count, count))
+    part = connected_components(legs, directed=False)[1]
+    return np.asarray(np.unique(part, return_index=True)[1][part])
+
+
 def _connected_waters(
     grid: GlobeGrid, pairs: Pairs, usable: BoolArray, reach: float
 ) -> ConnectedWaters:
-    root = connected_waters(len(grid.lat), pairs.first, pairs.second)
+    root = connected_water(len(grid.lat), pairs.first, pairs.second)
     size = np.bincount(root, minlength=len(root))[root]
     size[~usable] = 0
     return ConnectedWaters(grid.lat, grid.lon, root, size, reach)
