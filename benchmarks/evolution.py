@@ -31,6 +31,7 @@ from tests.evolution import jet
 
 from thalweg import Chart, Ship
 from thalweg.core.geodesy import positions_along, rough_lengths
+from thalweg.core.limits import Limits
 from thalweg.evolution import Evaluator, Genome, evolve, make_evaluator, refine_front
 from thalweg.evolution.indicators import hypervolume
 from thalweg.kernels import codes
@@ -67,7 +68,7 @@ def ocean() -> Evaluator:
         table=ship.tabulate(),
         fuel=ship.tabulate_fuel(),
         fields=weather(),
-        limits=[-math.inf, math.inf, math.inf],
+        limits=Limits(),
         depart=0.0,
         chart=Chart.gshhg("i"),
         spacing=25_500.0,

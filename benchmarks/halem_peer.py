@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from thalweg import Chart, Sea, Ship, lattice
+from thalweg.core.limits import Limits
 from thalweg.core.units import KNOT
 from thalweg.kernels import codes
 from thalweg.search import earliest_arrival
@@ -86,7 +87,7 @@ def ours(directions):
         goal=network.meta.goal,
         depart=T0,
         setting=0,
-        limits=np.array([-np.inf, np.inf, np.inf]),
+        limits=Limits(),
         top_speed=4.0,
     )
     return network.n_nodes, found.cost

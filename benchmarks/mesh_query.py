@@ -21,12 +21,12 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from thalweg.chart import Chart
+from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network import mesh
 from thalweg.sea.frozen_fields import StationFields
-from thalweg.search import earliest_arrival
-from thalweg.search.prepared_network import PreparedNetwork
+from thalweg.search import PreparedNetwork, earliest_arrival, prepare_profile_search
 
 SPACING = 300.0  # m
 SPEED, DRAUGHT = 5.0, 5.0
@@ -88,7 +88,7 @@ def main() -> None:
     stations, edges = len(network.stations.lat), len(network.graph.target)
     print(f"{network.n_nodes} nodes, {edges} edges, {stations} stations, built in {built:.1f} s")
     print(f"fields of {fields.values.nbytes / 1e6:.0f} MB, {len(fields.times)} times")
-    limits = np.array([DRAUGHT + 1.0, np.inf, np.inf])
+    limits = Limits(required_depth=DRAUGHT + 1.0)
     rng = np.random.default_rng(0)
     deep = np.flatnonzero(fields.values[: network.n_nodes, 0, 3] > 10.0)
     given = {"setting": 0, "limits": limits, "top_speed": SPEED}
@@ -107,11 +107,11 @@ def main() -> None:
             for (s, g), t in zip(pairs, departs)
         ],
     )
-    waters = PreparedNetwork.prepare(network, fields)
+    prepared = PreparedNetwork.prepare(network, fields)
     runs = []
     for start, goal in pairs[: options.places]:
         began = time.process_time()
-        passages = waters.passages(steady(), start=start, goal=goal, **given)
+        passages = prepare_profile_search(prepared, steady(), start=start, goal=goal, **given)
         print(f"preparing a pair of places {1e3 * (time.process_time() - began):.0f} ms")
         runs += [timed(lambda t=t, p=passages: p.sail(t)) for t in departs]
     told("prepared query", runs)

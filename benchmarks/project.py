@@ -18,6 +18,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.network.triangular_mesh.mesh_builder import mesh
@@ -28,7 +29,7 @@ from thalweg.operations.dredging.project_inputs import (
     open_project_inputs,
 )
 from thalweg.operations.examples.estuary import synthetic_estuary
-from thalweg.search import PreparedNetwork, ProfileSearch
+from thalweg.search import PreparedNetwork, ProfileSearch, prepare_profile_search
 
 
 class Clock:
@@ -93,14 +94,14 @@ def single_queries(spacing: float) -> None:
     channels = (codes.CURRENT_EAST, codes.CURRENT_NORTH, codes.WATER_LEVEL)
     period = project.start, project.start + 2 * 86400.0
     fields = estuary.sea.freeze_stations(network.lat, network.lon, *period, channels)
-    waters = PreparedNetwork.prepare(network, fields)
+    prepared = PreparedNetwork.prepare(network, fields)
     clock.lap("two days of fields")
     ship = open_project_inputs(project)[0]
     for load in (1.0, 0.5, 0.0):
         loaded = ship.with_load_factor(load)
-        limits = np.array([loaded.draught + 1.0, np.inf, np.inf])
-        passages = waters.passages(
-            loaded.tabulate(), start=0, goal=1, setting=0, limits=limits,
+        limits = Limits(required_depth=loaded.draught + 1.0)
+        passages = prepare_profile_search(
+            prepared, loaded.tabulate(), start=0, goal=1, setting=0, limits=limits,
             top_speed=loaded.top_speed(0),
         )  # fmt: skip
         for turn in ("first round", "warm"):

@@ -20,11 +20,12 @@ import time
 
 import numpy as np
 
+from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 from thalweg.sea.frozen_fields import StationFields
-from thalweg.search.earliest_arrival import solve_earliest_arrival
+from thalweg.search.earliest_arrival import ArrivalQuery, solve_earliest_arrival
 from thalweg.search.search_problem import make_search_problem
 
 SPACING = 2000.0  # [m]
@@ -41,7 +42,7 @@ CHANNELS = (
     codes.WAVE_NORTH,
     codes.WATER_LEVEL,
 )
-SPEED, TOP_LIMITS = 8.0, np.array([8.0, 9.0, np.inf])
+SPEED, TOP_LIMITS = 8.0, Limits(required_depth=8.0, wave_height=9.0)
 
 
 def regular_network(side: int, offsets=OFFSETS) -> Network:
@@ -132,15 +133,14 @@ def main() -> None:
     given = make_search_problem(
         network, fields, speed_table(), setting=0, limits=TOP_LIMITS, top_speed=SPEED
     )
-    solve_earliest_arrival(network, given, start=0, goal=1, depart=0.0)  # compile
+    solve_earliest_arrival(network, given, ArrivalQuery(0, 1, 0.0))  # compile
     print(f"{network.n_nodes:,} nodes, {network.n_edges:,} edges, {len(network.samples):,} middles")
     starts = [0, side * side // 2 + side // 2, side * side - 1, side * side // 4 + 3]
     relaxed, sailed = [], []
     for run in range(options.runs):
         begin = time.process_time()
-        result = solve_earliest_arrival(
-            network, given, start=starts[run % 4], goal=None, depart=60.0 * run
-        )
+        asked = ArrivalQuery(starts[run % 4], None, 60.0 * run)
+        result = solve_earliest_arrival(network, given, asked)
         taken = time.process_time() - begin
         relaxed.append(result.relaxed / taken / 1e6)
         sailed.append(result.work.sailed / taken / 1e6)

@@ -12,6 +12,7 @@ from functools import cache
 import numpy as np
 
 from thalweg.chart import Chart
+from thalweg.core.limits import Limits
 from thalweg.evolution import Evaluator, Genome, make_evaluator
 from thalweg.kernels import codes
 from thalweg.route import evaluate
@@ -119,8 +120,8 @@ def fields(cells: int = 200):
     )
 
 
-def limits() -> np.ndarray:
-    return np.array([-math.inf, math.inf, math.inf])
+def limits() -> Limits:
+    return Limits()
 
 
 def evaluator(**more) -> Evaluator:

@@ -10,6 +10,7 @@ import pytest
 from tests.evolution import jet
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.objective import LegPrices
 from thalweg.evolution import Genome, Population
 from thalweg.kernels.leg import population_sailing
@@ -132,7 +133,7 @@ def test_only_changed_legs_are_looked_up():
 
 def test_charted_depth_limits_legs():
     shoal = jet.chart().with_depth(lambda lat, lon: np.where(lon > 0.05, 5.0, 50.0))
-    deep = np.array([8.0, math.inf, math.inf])
+    deep = Limits(required_depth=8.0)
     track = jet.straight(6, 11)
     assert jet.evaluator(chart=shoal)([track])[2][0] == 0.0  # not asked for
     _, _, violation = jet.evaluator(chart=shoal, limits=deep)([track])

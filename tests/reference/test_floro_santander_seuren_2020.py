@@ -13,6 +13,7 @@ from scipy.optimize import linprog
 
 from thalweg.chart import Chart
 from thalweg.core.geodesy import positions_along
+from thalweg.core.limits import Limits
 from thalweg.core.units import DAY, NAUTICAL_MILE, TONNE
 from thalweg.planning import Voyage, plan
 from thalweg.route import Route, Track, evaluate, polish
@@ -167,7 +168,7 @@ def test_polishing_finds_the_speeds_or_better(fastest, chart, way, days):
     mixed = as_route(at_mix(fastest[way], inside, best_mix(zones, days * DAY)), chart)
     route = polish(
         fastest[way], ship=SHIP, sea=Sea.calm(), chart=chart, table=SHIP.tabulate(),
-        fuel=SHIP.tabulate_fuel(), limits=np.array([-np.inf, np.inf, np.inf]), min_ukc=None,
+        fuel=SHIP.tabulate_fuel(), limits=Limits(), min_ukc=None,
         arrive_by=days * DAY,
     )  # fmt: skip
     assert route.feasible

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from tests.evolution import jet
 from thalweg.chart import Chart
 from thalweg.chart.canals import SUEZ
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
 from thalweg.route import Track, better_route, evaluate, join, polish, smooth
 from thalweg.route.refinement.speed_profile import _efficient_settings, _knapsack
@@ -21,7 +21,7 @@ from thalweg.sea import Sea
 from thalweg.ship import Ship
 
 OPEN = Chart.open_water()
-FREE = np.array([-math.inf, math.inf, math.inf])
+FREE = Limits()
 BULKER = Ship.from_dict(
     {
         **Ship.load("handysize-bulker").data,
@@ -260,7 +260,7 @@ def test_time_that_weather_takes_away_is_not_used():
     assert 7.5 < start.time_h < 8.2 and start.feasible
     route = polish(
         start, ship=ship, sea=sea, chart=OPEN, table=ship.tabulate(), fuel=ship.tabulate_fuel(),
-        limits=[-math.inf, 4.0, math.inf], objective="fuel", arrive_by=12 * HOUR, thin=False,
+        limits=Limits(wave_height=4.0), objective="fuel", arrive_by=12 * HOUR, thin=False,
     )  # fmt: skip
     assert route.feasible
     assert route.arrive <= 8.3 * HOUR + 60.0

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from tests.route.planar import Plane, ship
 from thalweg.chart import Chart
+from thalweg.core.limits import Limits
 from thalweg.route import Track, better_route, evaluate
 from thalweg.sea import Sea
 
-NO_LIMITS = [-math.inf, math.inf, math.inf]
+NO_LIMITS = Limits()
 LEVEL = "sea_surface_height_above_geopotential_datum"
 
 
@@ -73,7 +74,7 @@ def test_smoothing_keeps_charted_depth():
         sea=Sea.calm(),
         chart=chart,
         table=boat.tabulate(),
-        limits=[5.0, math.inf, math.inf],
+        limits=Limits(required_depth=5.0),
     )
     assert better.feasible
     assert better.min_ukc_m >= 0.0

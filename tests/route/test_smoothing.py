@@ -7,6 +7,7 @@ import pytest
 
 from tests.route.planar import Islands, Plane, rectangle, ship
 from thalweg.chart import Chart
+from thalweg.core.limits import Limits
 from thalweg.route import Track, better_route, evaluate
 from thalweg.route.evaluators.polyline import polyline_of_track
 from thalweg.route.evaluators.time_evaluator import make_time_evaluator
@@ -14,7 +15,7 @@ from thalweg.route.refinement.string_pulling import string_pull
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
-NO_LIMITS = [-math.inf, math.inf, math.inf]
+NO_LIMITS = Limits()
 BED = "sea_floor_depth_below_geoid"
 HALEM_DEGREE = 6372800 * math.pi / 180  # metres per degree of van Halem's sphere
 
@@ -130,7 +131,7 @@ def test_halem_bar_waits_no_second_too_long():
     points = [(0.5, 0.1), (0.45, 0.2), (0.5, 0.35), (0.5, 0.5), (0.55, 0.7), (0.5, 0.9)]
     lat, lon = np.array([plane.place(*p) for p in points]).T
     track = Track(lat, lon, 0, [0, 0, 150.0, 0, 0, 0])
-    scored, better = improved(track, ship(4.0, 5.0), sea, limits=[5.0, math.inf, math.inf])
+    scored, better = improved(track, ship(4.0, 5.0), sea, limits=Limits(required_depth=5.0))
     assert scored.feasible
     optimum_is_met(better, 319.0329)
     assert better.waiting_h * 3600 == pytest.approx(319.0329 - 0.8 * plane.unit / 4.0, abs=0.5)
@@ -225,7 +226,7 @@ def test_a_limit_in_the_field_is_kept():
     sea = Sea.from_functions({"sea_surface_wave_significant_height": waves}, time_step=0.0)
     boat = Ship.simple(10, 5, max_wave_height_m=3.0)
     track = Track.from_positions([plane.place(*p) for p in [(0, 0), (5, 3), (10, 0)]], depart=0)
-    scored, better = improved(track, boat, sea, limits=[-math.inf, 3.0, math.inf])
+    scored, better = improved(track, boat, sea, limits=Limits(wave_height=3.0))
     radius = math.sqrt(2 * math.log(2))  # where the height is 3 m
     taut = 2 * math.sqrt(25 - radius**2) + radius * (math.pi - 2 * math.acos(radius / 5))
     assert scored.distance_nm > better.distance_nm
@@ -319,7 +320,7 @@ def test_waits_for_the_tide_are_found_and_cut_to_what_they_must_be():
             sea=sea,
             chart=None,
             table=boat.tabulate(),
-            limits=[5.0, math.inf, math.inf],
+            limits=Limits(required_depth=5.0),
             min_ukc=0.5,
         )
         assert better.feasible

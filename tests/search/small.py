@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from thalweg.core import geodesy
+from thalweg.core.limits import Limits
 from thalweg.kernels import codes
+from thalweg.kernels.leg.point_speed import point_speed
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 from thalweg.sea.frozen_fields import StationFields
 
-NO_LIMITS = np.array([-np.inf, np.inf, np.inf])
+NO_LIMITS = Limits()
 
 
-def limits(depth: float = -np.inf, wave: float = np.inf, wind: float = np.inf) -> np.ndarray:
-    return np.array([depth, wave, wind])
+def limits(depth: float = -np.inf, wave: float = np.inf, wind: float = np.inf) -> Limits:
+    return Limits(depth, wave, wind)
 
 
 def make_network(
@@ -115,6 +119,20 @@ def make_table(*parts) -> TableArrays:
 def steady(speed: float) -> TableArrays:
     """Return the table of a ship that keeps its speed in all weathers."""
     return make_table(((), (), np.array([speed])))
+
+
+def point_speed_at(table=None, *, course=0.0, depth=np.inf, bounds=None, setting=0, **channels):
+    """Return (speed, status) for a course [rad] and channel values by name."""
+    sample = np.full(codes.CHANNEL_COUNT, np.nan)
+    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
+    for k, (name, value) in enumerate(channels.items()):
+        channel = getattr(codes, name.upper())
+        sample[channel], index[channel] = value, k
+    bounds = (limits() if bounds is None else bounds).array
+    table = steady(5.0) if table is None else table
+    return point_speed(
+        sample, index, math.sin(course), math.cos(course), table, setting, depth, bounds
+    )
 
 
 def line(count: int, spacing: float, **options) -> Network:

@@ -139,7 +139,7 @@ def test_waves_are_waited_out():
     network = line(3, 3000.0)
     times = np.arange(0.0, 36001.0, 3600.0)
     height = np.interp(times, [0.0, 18000.0, 36000.0], [6.0, 2.0, 2.0])
-    fields = make_fields(network, times, wave_height_ch=height[None, :] + np.zeros((3, 1)))
+    fields = make_fields(network, times, wave_height_channel=height[None, :] + np.zeros((3, 1)))
     result = sail(network, fields, limits=limits(wave=4.0))
     calm_enough = 9000.0
     assert result.path_depart[0] == pytest.approx(calm_enough, abs=1.5)

@@ -84,7 +84,7 @@ def test_the_search_waits_as_in_the_example(depart, method):
         assert result.path_depart[0] == 8 * UNIT
 
 
-@pytest.mark.parametrize("may_wait", ["nobody", "not here"])
+@pytest.mark.parametrize("may_wait", ["nowhere", "not here"])
 def test_the_search_without_waiting_takes_what_it_gets(may_wait):
     network, fields = example()
     if may_wait == "not here":
@@ -92,7 +92,7 @@ def test_the_search_without_waiting_takes_what_it_gets(may_wait):
     results = [
         earliest_arrival(
             network, fields, steady(1.0), start=0, goal=1, depart=UNIT * t,
-            wait=may_wait != "nobody", **GIVEN,
+            wait=may_wait != "nowhere", **GIVEN,
         )
         for t in range(10)
     ]  # fmt: skip

@@ -1,1 +1,1 @@
-"""Compiled kernels over plain arrays; the only room that imports numba."""
+"""Compiled kernels over plain arrays; the only package that imports numba."""

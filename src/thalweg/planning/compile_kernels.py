@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from thalweg.core.geodesy import inverse
+from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 
@@ -22,7 +23,7 @@ def compile_search() -> None:
     index[[codes.WIND_EAST, codes.WIND_NORTH, codes.WAVE_HEIGHT_CHANNEL]] = [0, 1, 2]
     stations = StationFields(times, np.zeros((2, 2, 3), np.float32), index)
     table = Ship.load("handysize-bulker").tabulate()
-    limits = np.array([-np.inf, 8.0, np.inf])
+    limits = Limits(wave_height=8.0)
     options = {"start": 0, "goal": 1, "depart": 0.0, "setting": 0, "limits": limits}
     earliest_arrival(network, stations, table, top_speed=10.0, **options)  # type: ignore[arg-type]
     lower_bound(network, stations, table, top_speed=10.0, **options)  # type: ignore[arg-type]

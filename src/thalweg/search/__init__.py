@@ -8,7 +8,12 @@ from thalweg.search.lower_bounds import LowerBound, direction_factor, lower_boun
 from thalweg.search.pareto.front_result import FrontPoint, FrontWork, NetworkFront, cheapest
 from thalweg.search.pareto.pareto_search import pareto_front
 from thalweg.search.prepared_network import PreparedNetwork
-from thalweg.search.profile_search import NetworkPassage, Profile, ProfileSearch
+from thalweg.search.profile_search import (
+    NetworkPassage,
+    Profile,
+    ProfileSearch,
+    prepare_profile_search,
+)
 from thalweg.search.search_result import SearchResult, SearchWork
 from thalweg.ship.tables.table_bounds import table_bounds
 
@@ -32,6 +37,7 @@ __all__ = [
     "fifo_report",
     "lower_bound",
     "pareto_front",
+    "prepare_profile_search",
     "table_bounds",
 ]
 

@@ -6,12 +6,18 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.search.earliest_arrival import Method, check_request, solve_earliest_arrival
+from thalweg.search.earliest_arrival import (
+    ArrivalQuery,
+    Method,
+    check_query,
+    solve_earliest_arrival,
+)
 from thalweg.search.limited_waiting import (
     earliest_arrival_with_restricted_waiting,
     waiting_is_restricted,
@@ -25,7 +31,7 @@ if TYPE_CHECKING:
     from thalweg.ship.tables.performance_table import PerformanceTable
 
 _MAX_DEPARTURES = 97  # of the first pass
-_MAX_DEPARTURES_RESTRICTED_WAITING = 25  # where every departure is a search by waves
+_MAX_DEPARTURES_RESTRICTED_WAITING = 25  # where every departure is a search in rounds
 _GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 _COST_TOLERANCE = 1e-3  # costs closer than this are equal [s or m]
 
@@ -39,7 +45,7 @@ def best_departure(
     goal: int,
     window: tuple[float, float],
     setting: int,
-    limits: ArrayLike,
+    limits: Limits,
     top_speed: float,
     objective: SingleSettingObjective = "time",
     wait: bool = True,
@@ -79,7 +85,7 @@ def best_departure(
     -----
     Each departure tried is searched exactly; between them the best one's neighbourhood is
     searched by golden section. So the answer is the best of its samples; a shorter optimum that
-    lies wholly between two samples elsewhere can be missed. A ship that would wait at the start
+    is wholly between two samples elsewhere can be missed. A ship that would wait at the start
     leaves when the waiting ends.
     """
     first, last = float(window[0]), float(window[1])
@@ -89,8 +95,8 @@ def best_departure(
             "It ends no earlier than it begins.",
             "Exchange the two times.",
         )
-    check_request(network.n_nodes, start, goal, first, objective, method)
-    berths = wait and objective == "time" and waiting_is_restricted(network)
+    check_query(network.n_nodes, ArrivalQuery(start, goal, first, objective, method=method))
+    restricted = wait and objective == "time" and waiting_is_restricted(network)
     given = make_search_problem(
         network,
         fields,
@@ -98,28 +104,19 @@ def best_departure(
         setting=setting,
         limits=limits,
         top_speed=top_speed,
-        ends=(start, goal) if wait and not berths else None,
+        ends=(start, goal) if wait and not restricted else None,
     )
 
     def sail(depart: float) -> SearchResult:
-        if berths:
+        if restricted:
             return earliest_arrival_with_restricted_waiting(
-                network, given, start=start, goal=goal, depart=depart, limits=limits,
+                network, given, start=start, goal=goal, depart=depart,
                 arrive_by=arrive_by,
             )  # fmt: skip
-        return solve_earliest_arrival(
-            network,
-            given,
-            start=start,
-            goal=goal,
-            depart=depart,
-            objective=objective,
-            wait=wait,
-            arrive_by=arrive_by,
-            method=method,
-        )
+        asked = ArrivalQuery(start, goal, depart, objective, wait, arrive_by, method)
+        return solve_earliest_arrival(network, given, asked)
 
-    most = _MAX_DEPARTURES_RESTRICTED_WAITING if berths else _MAX_DEPARTURES
+    most = _MAX_DEPARTURES_RESTRICTED_WAITING if restricted else _MAX_DEPARTURES
     departures = _departures(given, first, last, step, most)
     tried = [sail(t) for t in departures]
     tried += [sail(t) for t in _after_waiting(tried, last)]

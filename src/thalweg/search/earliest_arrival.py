@@ -1,14 +1,16 @@
-"""The earliest arrival (or the shortest way) on a network through time-dependent water."""
+"""The earliest arrival (or the shortest path) on a network through time-dependent water."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
@@ -44,6 +46,35 @@ if TYPE_CHECKING:
 Method = Literal["astar", "dijkstra"]
 
 
+@dataclass(frozen=True)
+class ArrivalQuery:
+    """What `earliest_arrival` is asked on a network; meanings as there.
+
+    Attributes
+    ----------
+    start, goal : int
+        Nodes; a goal of None (or -1) settles everything that can be reached.
+    depart, arrive_by : float
+        [s].
+    objective : {"time", "distance"}
+    wait : bool
+    method : {"astar", "dijkstra"}
+    """
+
+    start: int
+    goal: int | None
+    depart: float
+    objective: SingleSettingObjective = "time"
+    wait: bool = True
+    arrive_by: float | None = None
+    method: Method = "astar"
+
+    @property
+    def goal_node(self) -> int:
+        """The goal; -1 if there is none."""
+        return -1 if self.goal is None else int(self.goal)
+
+
 def earliest_arrival(
     network: Network,
     fields: StationFields,
@@ -53,14 +84,14 @@ def earliest_arrival(
     goal: int | None,
     depart: float,
     setting: int,
-    limits: ArrayLike,
+    limits: Limits,
     top_speed: float,
     objective: SingleSettingObjective = "time",
     wait: bool = True,
     arrive_by: float | None = None,
     method: Method = "astar",
 ) -> SearchResult:
-    """Find the way of least time or least distance from one node of a network to another.
+    """Find the path of least time or least distance from one node of a network to another.
 
     Parameters
     ----------
@@ -74,9 +105,8 @@ def earliest_arrival(
         Time at the start [s].
     setting : int
         Setting of the ship.
-    limits : array_like
-        By ``LIMIT_*`` of `thalweg.kernels.codes`: required depth [m], wave height [m], wind speed
-        [m/s].
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
     top_speed : float
         Upper bound of the ship's speed through water at this setting [m/s].
     objective : {"time", "distance"}
@@ -90,7 +120,7 @@ def earliest_arrival(
     Returns
     -------
     SearchResult
-        ``found`` is False when there is no way; ``refused`` then says why.
+        ``found`` is False when there is no path; ``refused`` then says why.
 
     Raises
     ------
@@ -100,7 +130,7 @@ def earliest_arrival(
     Notes
     -----
     By time and with penalty factors of 1 the result is exact on the network as long as edges keep
-    order (who departs later arrives later); waiting provides that where it is allowed, to within
+    order (a later departure arrives later); waiting provides that where it is allowed, to within
     the sampling of departures named in `thalweg.kernels.search.edge_departure.wait_for_edge`.
     Elsewhere `thalweg.search.fifo.fifo_report` measures how far order is broken. By distance, or
     with other penalty factors, one label per node is exact as long as the time of passage does not
@@ -108,7 +138,7 @@ def earliest_arrival(
 
     A ship waits only while it stays afloat at the required depth, except at the start; a node that
     falls dry has a label for each time it is afloat (`thalweg.search.tidal_states`). Where it may
-    not wait at every node, time is minimised by waves from where it may
+    not wait at every node, time is minimised by rounds from where it may
     (`thalweg.search.limited_waiting`).
 
     A* uses a lower bound of the geodesic distance to the goal divided by the largest speed over
@@ -116,9 +146,10 @@ def earliest_arrival(
     which obeys the triangle inequality. Edges of fixed time are passed in that time whatever the
     sea is.
     """
-    goal = -1 if goal is None else int(goal)
-    check_request(network.n_nodes, start, goal, depart, objective, method)
-    berths = wait and goal >= 0 and objective == "time" and waiting_is_restricted(network)
+    asked = ArrivalQuery(start, goal, depart, objective, wait, arrive_by, method)
+    check_query(network.n_nodes, asked)
+    node = asked.goal_node
+    restricted = wait and node >= 0 and objective == "time" and waiting_is_restricted(network)
     given = make_search_problem(
         network,
         fields,
@@ -126,83 +157,68 @@ def earliest_arrival(
         setting=setting,
         limits=limits,
         top_speed=top_speed,
-        ends=(start, goal) if wait and not berths else None,
+        ends=(start, node) if wait and not restricted else None,
     )
-    if berths:
+    if restricted:
         return earliest_arrival_with_restricted_waiting(
-            network, given, start=int(start), goal=goal, depart=float(depart), limits=limits,
+            network, given, start=int(start), goal=node, depart=float(depart),
             arrive_by=arrive_by,
         )  # fmt: skip
-    return solve_earliest_arrival(
-        network,
-        given,
-        start=start,
-        goal=goal,
-        depart=depart,
-        objective=objective,
-        wait=wait,
-        arrive_by=arrive_by,
-        method=method,
-    )
+    return solve_earliest_arrival(network, given, asked)
 
 
 def solve_earliest_arrival(
-    network: Network,
-    given: SearchProblem,
-    *,
-    start: int,
-    goal: int | None,
-    depart: float,
-    objective: SingleSettingObjective = "time",
-    wait: bool = True,
-    arrive_by: float | None = None,
-    method: Method = "astar",
-    shortened: float = 1.0,
+    network: Network, given: SearchProblem, asked: ArrivalQuery, *, shortened: float = 1.0
 ) -> SearchResult:
     """Do as `earliest_arrival`, for a problem already gathered.
 
-    ``shortened`` is the least ratio of an edge length to the geodesic between its nodes.
+    Parameters
+    ----------
+    network : Network
+    given : SearchProblem
+    asked : ArrivalQuery
+    shortened : float
+        Least ratio of an edge length to the geodesic between its nodes.
     """
-    goal = -1 if goal is None else int(goal)
-    check_request(network.n_nodes, start, goal, depart, objective, method)
+    check_query(network.n_nodes, asked)
+    goal, by_distance = asked.goal_node, asked.objective == "distance"
     station = given.network.station
     slowness = ROUNDING_FACTOR / given.fastest
     soonest = ROUNDING_FACTOR / max(given.fastest, canal_speed(network))
     away = np.zeros(len(station))
     lat, lon = network.stations.lat, network.stations.lon
-    if goal >= 0 and method == "astar":
+    if goal >= 0 and asked.method == "astar":
         to = float(lat[goal]), float(lon[goal])
         away = shortened * distance_bounds(network.lat, network.lon, *to)[station]
     query = SearchQuery(
-        start=int(start),
+        start=int(asked.start),
         goal=goal,
-        depart=float(depart),
-        horizon=math.inf if arrive_by is None else float(arrive_by),
-        by_distance=objective == "distance",
-        wait=bool(wait),
+        depart=float(asked.depart),
+        horizon=math.inf if asked.arrive_by is None else float(asked.arrive_by),
+        by_distance=by_distance,
+        wait=bool(asked.wait),
         slowness=slowness,
-        per_metre=ROUNDING_FACTOR if objective == "distance" else soonest,
+        per_metre=ROUNDING_FACTOR if by_distance else soonest,
     )
     labels, memory = new_labels(len(station)), new_search_workspace(len(station))
     label_setting(given.network, given.sea, given.ship, query, away, labels, memory)
     return _result(network, station, query, labels, memory)
 
 
-def check_request(
-    n_nodes: int, start: int, goal: int, depart: float, objective: str, method: str
-) -> None:
-    """Raise `InputError` unless nodes, departure, objective and method exist; goal -1 is none."""
+def check_query(n_nodes: int, asked: ArrivalQuery) -> None:
+    """Raise `InputError` unless the nodes, departure, objective and method of a query exist."""
+    start, goal = asked.start, asked.goal_node
     if not (0 <= start < n_nodes and -1 <= goal < n_nodes):
         raise InputError(
             f"There is no way from node {start} to node {goal} to search for.",
             f"The network has nodes 0 to {n_nodes - 1}.",
             "",
         )
-    if not math.isfinite(depart):
-        raise InputError(f"The departure {depart} is not a time.", "", "Give a departure.")
+    if not math.isfinite(asked.depart):
+        raise InputError(f"The departure {asked.depart} is not a time.", "", "Give a departure.")
     for kind, word, known in (
-        ("objective", objective, ("time", "distance")),
-        ("method", method, ("astar", "dijkstra")),
+        ("objective", asked.objective, ("time", "distance")),
+        ("method", asked.method, ("astar", "dijkstra")),
     ):
         if word not in known:
             raise InputError(f"There is no {kind} {word!r}.", f"Known: {', '.join(known)}.", "")

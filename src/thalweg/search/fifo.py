@@ -1,4 +1,4 @@
-"""Order on edges: does who departs later arrive later, and what waiting makes of it."""
+"""FIFO property of edges (a later departure arrives later), with and without waiting."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.edge_departure import edge_arrivals
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FifoReport:
-    """How far edges break order when nobody may wait.
+    """How far edges break order when no ship may wait.
 
     Attributes
     ----------
@@ -79,7 +80,7 @@ def sampled_arrivals(
     *,
     departures: ArrayLike,
     setting: int,
-    limits: ArrayLike,
+    limits: Limits,
     top_speed: float,
     edges: ArrayLike | None = None,
 ) -> tuple[FloatArray, NDArray[np.int64]]:
@@ -122,11 +123,11 @@ def fifo_report(
     *,
     departures: ArrayLike,
     setting: int,
-    limits: ArrayLike,
+    limits: Limits,
     top_speed: float,
     edges: ArrayLike | None = None,
 ) -> FifoReport:
-    """Measure how far edges break order (who departs later arrives later) at sampled departures.
+    """Measure how far edges break order (a later departure arrives later) at sampled departures.
 
     Parameters
     ----------

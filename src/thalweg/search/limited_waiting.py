@@ -1,10 +1,10 @@
-"""Earliest arrival where a ship may wait at some nodes only: wave after wave from its berths.
+"""Earliest arrival where a ship may wait at some nodes only.
 
 Where waiting is allowed everywhere the earliest label of a node is the best one. Where it is not,
-an early ship may stand before a closed bar with nowhere to stay, and the one that left its
-anchorage later passes. So a ship leaves the places where it may wait in waves, from all those it
-has reached and still lies safely at, and sails without waiting; what a wave reaches may send later
-ones.
+an early ship may meet a closed bar with no place to wait, while one that left its anchorage later
+passes. The search therefore runs in rounds, each at a later departure. In each round the ship
+leaves from all nodes where it may wait, that it has reached, and where it is still afloat. It sails
+without waiting. Waiting nodes reached in a round are sources of later rounds.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, REASONS
@@ -43,14 +43,14 @@ if TYPE_CHECKING:
     from thalweg.network.network import Network
 
 
-DEPARTURE_STEP = 600.0  #: longest time between two waves [s]
-MIN_DEPARTURE_ROUNDS = 24  #: ... and at least so many over the time looked at
+DEPARTURE_STEP = 600.0  #: longest time between two rounds [s]
+MIN_DEPARTURE_ROUNDS = 24  #: ... and at least so many over the time considered
 _TIME_TOLERANCE = 1e-6  # arrivals closer than this are one [s]
-_BISECTIONS = 10  # of the step before the best wave, in which an earlier one is looked for
+_BISECTIONS = 10  # of the step before the best round, in which an earlier one is searched
 
 
 class WaitInterval(NamedTuple):
-    """Lying at a node: since when, until when at most [s], and by which wave it was reached."""
+    """A wait at a node: its begin and latest end [s], and the round that reached the node."""
 
     arrive: float
     until: float
@@ -58,7 +58,7 @@ class WaitInterval(NamedTuple):
 
 
 class DepartureRound(NamedTuple):
-    """A departure [s] from all nodes where a ship then lies, and by which stay it lies there."""
+    """One round: its departure [s], and the wait at each node it leaves from."""
 
     time: float
     stays: dict[int, WaitInterval]
@@ -66,18 +66,18 @@ class DepartureRound(NamedTuple):
 
 @dataclass
 class WaitingSearch:
-    """What waves have found so far.
+    """The state of the search after some rounds.
 
     Attributes
     ----------
     network : Network
-    given : Problem
+    given : SearchProblem
     goal : int
     depart, horizon : float
         [s].
     stays : dict
         By node, one for each time it is afloat.
-    rounds : list of Wave
+    rounds : list of DepartureRound
     counts, refused : int64 array
         Of all searches.
     """
@@ -93,7 +93,7 @@ class WaitingSearch:
     refused: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
 
     def present(self, time: float) -> dict[int, WaitInterval]:
-        """Return the nodes where a ship can lie at a time, and how it came there."""
+        """Return the nodes where a ship can be at a time, and how it came there."""
         found = {}
         for node, stays in self.stays.items():
             here = [s for s in stays if s.arrive <= time <= s.until]
@@ -147,43 +147,41 @@ def waiting_is_restricted(network: Network) -> bool:
 
 def earliest_arrival_with_restricted_waiting(
     network: Network, given: SearchProblem, *, start: int, goal: int, depart: float,
-    limits: ArrayLike, arrive_by: float | None = None, step: float = DEPARTURE_STEP,
+    arrive_by: float | None = None, step: float = DEPARTURE_STEP,
 ) -> SearchResult:  # fmt: skip
-    """Find the way of least time where waiting is allowed at some nodes only.
+    """Find the path of least time where waiting is allowed at some nodes only.
 
     Parameters
     ----------
     network : Network
-        Its ``can_wait`` tells where, of the start too.
-    given : Problem
+        Its ``can_wait`` states where, of the start too.
+    given : SearchProblem
         Gathered without times afloat (``ends=None``).
     start, goal : int
     depart : float
         [s].
-    limits : array_like
-        As in `thalweg.search.earliest_arrival`.
     arrive_by : float, optional
         [s].
     step : float, optional
-        Longest time between two waves [s].
+        Longest time between two rounds [s].
 
     Returns
     -------
     SearchResult
-        Its cost is the time from departure to arrival; penalty factors only steer single waves.
+        Its cost is the time from departure to arrival; penalty factors only steer single rounds.
 
     Notes
     -----
-    Exact on the network but for the times of waves: the last wait ends within a thousandth of a
-    step of the best moment, earlier waits within a step; an opening shorter than a step between two
-    waves can be missed. No further wave is sent once a ship that may wait anywhere would arrive no
-    sooner: in open water the first one is the only one.
+    Exact on the network except for the times of the rounds: the last wait ends within a thousandth
+    of a step of the best moment, earlier waits within a step. An opening between rounds that is
+    shorter than a step can be missed. The rounds end once a ship that may wait anywhere would
+    arrive no sooner; in open water one round is enough.
     """
     horizon = math.inf if arrive_by is None else float(arrive_by)
     end = min(horizon, float(given.sea.times[-1]))
     sweep = WaitingSearch(network, given, goal, depart, end)
     sweep.stays[start] = [WaitInterval(depart, math.inf if network.can_wait[start] else depart, -1)]
-    afloat = _safe_intervals(network, given, np.asarray(limits, float), start)
+    afloat = _safe_intervals(network, given, start)
     reached = np.full(network.n_nodes, math.inf)
     best, best_wave = math.inf, -1
     least = _arrival_with_unrestricted_waiting(sweep, start)
@@ -208,7 +206,7 @@ def earliest_arrival_with_restricted_waiting(
 
 
 def _arrival_with_unrestricted_waiting(sweep: WaitingSearch, start: int) -> float:
-    """Return when a ship would arrive that may wait anywhere, afloat or not: no wave is sooner."""
+    """Return the arrival of a ship that may wait anywhere, afloat or not: a lower bound [s]."""
     network = sweep.given.network
     free = network._replace(
         can_wait=np.ones_like(network.can_wait), factor=np.ones_like(network.factor)
@@ -226,7 +224,7 @@ def _departures(depart: float, end: float, step: float) -> FloatArray:
 def _arrival_lower_bound(
     sweep: WaitingSearch, sources: dict[int, WaitInterval], time: float
 ) -> float:
-    """Return a time before which no wave that leaves now can be at the goal."""
+    """Return a lower bound of the arrival of any round that leaves now [s]."""
     network, goal = sweep.network, sweep.goal
     nodes = np.flatnonzero(network.can_wait)
     nodes = nodes[nodes != goal]  # who is there leaves no more
@@ -237,14 +235,12 @@ def _arrival_lower_bound(
     return time + float(away.min()) * ROUNDING_FACTOR / fastest if len(nodes) else math.inf
 
 
-def _safe_intervals(
-    network: Network, given: SearchProblem, limits: FloatArray, start: int
-) -> dict[int, FloatArray]:
-    """Return the times (begin, end) during which a ship lies safely at each node of waiting."""
+def _safe_intervals(network: Network, given: SearchProblem, start: int) -> dict[int, FloatArray]:
+    """Return the times (begin, end) during which a ship is safely afloat at each waiting node."""
     nodes = np.flatnonzero(network.can_wait)
     nodes = nodes[nodes != start]
     always = np.array([[-math.inf, math.inf]])
-    required = float(limits[LIMIT_REQUIRED_DEPTH])
+    required = float(given.ship.limits[LIMIT_REQUIRED_DEPTH])
     spans = afloat_intervals(given.network, given.sea, required, nodes)
     if spans is None:
         return {int(node): always for node in nodes}
@@ -260,7 +256,7 @@ def _record_waits(
     settled: NDArray[np.bool_],
     afloat: dict[int, FloatArray],
 ) -> None:
-    """Note where the last wave can stay, if no ship lies there as early in that time afloat."""
+    """Record the waits that the last round makes possible, if none is known as early."""
     round_index = len(sweep.rounds) - 1
     for node, spans in afloat.items():
         if not settled[node] or node == sweep.goal:
@@ -278,7 +274,7 @@ def _record_waits(
 
 
 def _refine_departure(sweep: WaitingSearch, round_index: int, best: float) -> int:
-    """Look between the best wave and the one before for an earlier one; return the best."""
+    """Look between the best round and the one before for an earlier one; return the best."""
     if round_index == 0:
         return round_index
     low, high = sweep.rounds[round_index - 1].time, sweep.rounds[round_index].time
@@ -298,7 +294,7 @@ def _refine_departure(sweep: WaitingSearch, round_index: int, best: float) -> in
 def _assemble_result(
     sweep: WaitingSearch, start: int, round_index: int, reached: FloatArray
 ) -> SearchResult:
-    """Put the way together, from the goal back from berth to berth."""
+    """Assemble the path backwards from the goal, wait by wait."""
     nodes: list[int] = []
     arrive: list[float] = []
     leave: list[float] = []
@@ -308,11 +304,11 @@ def _assemble_result(
         labels = sweep.search_from(sent.time, list(sent.stays), to, math.inf)
         path = _path(labels, to, len(sweep.given.network.station))
         times = labels.time[path]
-        berth = sent.stays[path[0]]
+        wait = sent.stays[path[0]]
         nodes = [*path, *nodes[1:]]
-        arrive = [berth.arrive, *times[1:].tolist(), *arrive[1:]]
+        arrive = [wait.arrive, *times[1:].tolist(), *arrive[1:]]
         leave = [sent.time, *times[1:-1].tolist(), *(leave or [float(times[-1])])]
-        to, round_index = path[0], berth.round_index
+        to, round_index = path[0], wait.round_index
     counts = sweep.counts
     work = SearchWork(
         settled=int(counts[SETTLED]),

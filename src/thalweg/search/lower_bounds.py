@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thalweg.core.geodesy import distance
+from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
-from thalweg.kernels.codes import LIMIT_REQUIRED_DEPTH, LIMIT_WAVE_HEIGHT, LIMIT_WIND_SPEED
 from thalweg.kernels.leg.table_lookup import TableArrays
-from thalweg.search.earliest_arrival import solve_earliest_arrival
+from thalweg.search.earliest_arrival import ArrivalQuery, solve_earliest_arrival
 from thalweg.search.search_problem import (
     ROUNDING_FACTOR,
     SearchProblem,
@@ -51,7 +51,7 @@ class LowerBound:
     kappa : float
         Factor on the lengths of the network; 1 for the bound in free space.
     path : int64[P]
-        Nodes of the way that attains the bound on the network: a hint at a good route, since it
+        Nodes of the path that attains the bound on the network: a hint at a good route, since it
         is timed as a ship in open water would be. Empty where there is none.
     """
 
@@ -67,7 +67,7 @@ class LowerBound:
 
 
 def direction_factor(gap: float, current_ratio: float = 0.0) -> float:
-    """Return how much shorter than the network's way the way in open water may be.
+    """Return the least ratio of a path in open water to the shortest path on the network.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def lower_bound(
     goal: int,
     depart: float,
     setting: int,
-    limits: ArrayLike,
+    limits: Limits,
     top_speed: float,
     objective: SingleSettingObjective = "time",
     known: float | None = None,
@@ -156,7 +156,7 @@ def lower_bound(
 
     Returns
     -------
-    Bound
+    LowerBound
         The larger of `free_space_bound` and `network_bound`, as far as both hold.
     """
     given = make_search_problem(
@@ -210,8 +210,8 @@ def network_bound(
 
     Returns
     -------
-    Bound
-        Value 0 when the network shows no way or no factor holds.
+    LowerBound
+        Value 0 when the network shows no path or no factor holds.
     """
     gap = float(network.meta.gap_rad)
     rho = 0.0 if objective == "distance" else given.top_current / given.top_speed
@@ -225,23 +225,8 @@ def network_bound(
         factor=np.ones_like(arrays.factor),
         can_wait=np.ones_like(arrays.can_wait),
     )
-    ship = given.ship._replace(limits=_relaxed_limits(given.ship.limits))
+    ship = given.ship._replace(limits=Limits(*given.ship.limits).relaxed(_LIMIT_RELAXATION).array)
     relaxed = given._replace(network=shorter, ship=ship)
-    result = solve_earliest_arrival(
-        network,
-        relaxed,
-        start=start,
-        goal=goal,
-        depart=depart,
-        objective=objective,
-        shortened=kappa,
-    )
+    asked = ArrivalQuery(start, goal, depart, objective)
+    result = solve_earliest_arrival(network, relaxed, asked, shortened=kappa)
     return LowerBound(result.cost if result.found else 0.0, kind, kappa, result.path)
-
-
-def _relaxed_limits(limits: NDArray[np.float64]) -> NDArray[np.float64]:
-    loose = limits.copy()
-    loose[LIMIT_REQUIRED_DEPTH] -= _LIMIT_RELAXATION * abs(limits[LIMIT_REQUIRED_DEPTH])
-    loose[LIMIT_WAVE_HEIGHT] *= 1.0 + _LIMIT_RELAXATION
-    loose[LIMIT_WIND_SPEED] *= 1.0 + _LIMIT_RELAXATION
-    return loose

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray, IntArray
@@ -17,14 +17,12 @@ from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArray
 from thalweg.kernels.leg.table_lookup import TableArrays, table_value
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search import tidal_intervals
-from thalweg.kernels.search.field_bounds import largest_current, largest_speed_field
-from thalweg.search.search_problem import ROUNDING_FACTOR, network_arrays, sea_arrays, ship_arrays
+from thalweg.kernels.search.field_bounds import largest_current
+from thalweg.search.search_problem import network_arrays, sea_arrays
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
     from thalweg.sea.frozen_fields import StationFields
-    from thalweg.search.profile_search import ProfileSearch
-    from thalweg.ship.tables.performance_table import PerformanceTable
 
 
 _MOST_DEPTH = 60.0  # deeper than this the greatest speed is that anywhere [m]
@@ -88,7 +86,7 @@ class PreparedNetwork:
     def by_time(self) -> SeaArrays:
         """The same fields with all stations of one time close together in memory.
 
-        A search reads few times at many stations; in the fields of a long period these lie so far
+        A search reads few times at many stations; in the fields of a long period these are so far
         apart that fetching them takes most of its time.
         """
         values = np.ascontiguousarray(self.sea.values.transpose(1, 0, 2))
@@ -111,42 +109,7 @@ class PreparedNetwork:
             depth[has_edges] = np.fmax.reduceat(sailed, first)
         return depth
 
-    def passages(
-        self,
-        table: PerformanceTable | TableArrays,
-        *,
-        start: int,
-        goal: int,
-        setting: int,
-        limits: ArrayLike,
-        top_speed: float,
-        wait: bool = True,
-    ) -> ProfileSearch:
-        """Prepare the passages of a ship between two nodes; arguments as in `earliest_arrival`."""
-        count = len(self.network.can_wait)
-        if not (0 <= start < count and 0 <= goal < count and start != goal):
-            raise InputError(
-                f"There are no passages from node {start} to node {goal}.",
-                f"The network has nodes 0 to {count - 1}, and the two differ.",
-                "",
-            )
-        from thalweg.search.profile_search import ProfileSearch
-
-        ship = ship_arrays(table, setting, limits)
-        field_top = largest_speed_field(self.sea)
-        fastest = field_top if field_top >= 0.0 else float(top_speed)
-        if not (np.isfinite(fastest) and fastest > 0.0):
-            raise InputError(
-                f"A ship with a top speed of {fastest} m/s gets nowhere.",
-                "A speed is a positive number.",
-                "Check the ship's speeds.",
-            )
-        states = self._states(ship, (start, goal), wait)
-        ahead = self._ahead(ship, goal, fastest, field_top >= 0.0)
-        slowness = ROUNDING_FACTOR / (fastest + self.top_current)
-        return ProfileSearch(self, ship, states, ahead, (start, goal), slowness, wait)
-
-    def _states(
+    def tidal_states(
         self, ship: ShipArrays, ends: tuple[int, int], wait: bool
     ) -> tidal_intervals.TidalStates:
         """Return the times afloat of every node; start and goal stay single."""
@@ -170,7 +133,7 @@ class PreparedNetwork:
         tidal_intervals.fill_tidal_states(self.sea, self.charted, changing, required, states)
         return states
 
-    def _ahead(
+    def time_bounds(
         self, ship: ShipArrays, goal: int, fastest: float, field: bool
     ) -> kernel.TravelTimeBounds:
         """Return lower bounds of the time to the goal and of every edge [s]."""

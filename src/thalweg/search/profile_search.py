@@ -12,13 +12,16 @@ import math
 import sys
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, ShipArrays
+from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search import repeated_search as kernel
 from thalweg.kernels.search.tidal_intervals import TidalStates
 from thalweg.search.limited_waiting import (
@@ -26,10 +29,19 @@ from thalweg.search.limited_waiting import (
     waiting_is_restricted,
 )
 from thalweg.search.prepared_network import PreparedNetwork
-from thalweg.search.search_problem import ROUNDING_FACTOR, SearchProblem
+from thalweg.search.search_problem import (
+    ROUNDING_FACTOR,
+    SearchProblem,
+    ship_arrays,
+    top_speed_through_water,
+)
 
-_ARRIVAL_SLACK = 1e-3  # an arrival this much above a known one is still looked at [s]
-_HEURISTIC_WEIGHT = 1.5  # weight of the time to go in a hasty search ...
+if TYPE_CHECKING:
+    from thalweg.ship.tables.performance_table import PerformanceTable
+
+
+_ARRIVAL_SLACK = 1e-3  # an arrival this much above a known one is still considered [s]
+_HEURISTIC_WEIGHT = 1.5  # weight of the time to go in a weighted A* search ...
 _MAX_SETTLED_WEIGHTED = 2000  # ... which settles at most so many nodes
 _FIRST_SLACK = 3600.0  # beyond the bound, when nothing is known yet [s]
 _SAME_ARRIVAL = 0.25  # arrivals closer than this are one tide's opening (found to 0.1 s) [s]
@@ -37,7 +49,7 @@ _SAME_ARRIVAL = 0.25  # arrivals closer than this are one tide's opening (found 
 
 @dataclass(frozen=True, eq=False)
 class NetworkPassage:
-    """One departure and the way it sails.
+    """One departure and the path it sails.
 
     Attributes
     ----------
@@ -65,7 +77,7 @@ class NetworkPassage:
 
     @property
     def waiting(self) -> float:
-        """Time lain still [s]."""
+        """Waiting time [s]."""
         return float(np.sum(self.node_depart - self.node_arrive))
 
 
@@ -75,7 +87,7 @@ class Profile:
 
     Attributes
     ----------
-    passages : tuple of Passage
+    passages : tuple of NetworkPassage
         By departure, ascending.
     searched : int
         How many of them were searched; the others wait for the next one of these and sail with it.
@@ -101,11 +113,11 @@ class ProfileSearch:
 
     Attributes
     ----------
-    waters : Waters
+    prepared : PreparedNetwork
     ship : ShipArrays
-    states : States
+    states : TidalStates
         Times afloat of every node.
-    ahead : Ahead
+    ahead : TravelTimeBounds
         Lower bounds of the time to go.
     ends : tuple of int
         Start and goal.
@@ -115,7 +127,7 @@ class ProfileSearch:
         Whether the ship may wait.
     """
 
-    waters: PreparedNetwork
+    prepared: PreparedNetwork
     ship: ShipArrays
     states: TidalStates
     ahead: kernel.TravelTimeBounds
@@ -125,12 +137,12 @@ class ProfileSearch:
 
     @property
     def shortest(self) -> float:
-        """Lower bound of the time of any passage [s]; inf if no tide ever opens a way."""
+        """Lower bound of the time of any passage [s]; inf if no tide ever opens a path."""
         return float(self.ahead.node[self.ends[0]])
 
     @cached_property
     def _network(self) -> NetworkArrays:
-        given = self.waters.network
+        given = self.prepared.network
         return given._replace(opens=np.array(given.opens), closes=np.array(given.closes))
 
     @cached_property
@@ -138,7 +150,7 @@ class ProfileSearch:
         return kernel.new_profile_workspace(len(self.states.node))
 
     @cached_property
-    def _room(self) -> tuple[NDArray[np.int32], FloatArray, FloatArray]:
+    def _path_arrays(self) -> tuple[NDArray[np.int32], FloatArray, FloatArray]:
         count = len(self.states.node)
         return np.empty(count, np.int32), np.empty(count), np.empty(count)
 
@@ -154,16 +166,16 @@ class ProfileSearch:
         known : float
             An arrival that is known to be possible, or a guess [s]; it saves work.
         arrive_by : float
-            Later arrivals are of no use [s].
+            Later arrivals are not useful [s].
 
         Returns
         -------
-        Passage
+        NetworkPassage
             The same as that of `earliest_arrival`, to within ties (where the ship may wait at some
             nodes only, to within a wave of `thalweg.search.limited_waiting`).
         """
         depart = float(depart)
-        latest = min(float(arrive_by), float(self.waters.sea.times[-1]))
+        latest = min(float(arrive_by), float(self.prepared.sea.times[-1]))
         longest = (latest - depart) * self._largest_penalty
         if not (math.isfinite(depart) and self.shortest <= longest):
             return _passage_not_found(depart)
@@ -186,10 +198,10 @@ class ProfileSearch:
     @cached_property
     def _largest_penalty(self) -> float:
         """The largest penalty factor: what a second costs at most."""
-        return float(np.max(self.waters.network.factor, initial=1.0))
+        return float(np.max(self.prepared.network.factor, initial=1.0))
 
     def _feasible_cost(self, depart: float, limit: float, latest: float) -> float:
-        """Return a cost [s] that some way has, found by a hasty search; 0 if it finds none."""
+        """Return the cost [s] of a path found by weighted A*; 0 if it finds none."""
         _, cost = self._labelled(depart, limit, latest, _HEURISTIC_WEIGHT, _MAX_SETTLED_WEIGHTED)
         kernel.reset_workspace(self._workspace)
         return cost + _ARRIVAL_SLACK if cost < math.inf else 0.0
@@ -197,18 +209,18 @@ class ProfileSearch:
     @cached_property
     def _waiting_is_restricted(self) -> bool:
         """Whether the ship may wait at some nodes but not at all of them."""
-        return self.wait and waiting_is_restricted(self.waters.source)
+        return self.wait and waiting_is_restricted(self.prepared.source)
 
     def _search_with_restricted_waiting(
         self, depart: float, limit: float, latest: float
     ) -> NetworkPassage:
         """Search where waiting is allowed at some nodes only (`thalweg.search.limited_waiting`)."""
-        waters = self.waters
-        top = ROUNDING_FACTOR / self.slowness - waters.top_current
-        given = SearchProblem(waters.network, waters.sea, self.ship, top, waters.top_current)
+        prepared = self.prepared
+        top = ROUNDING_FACTOR / self.slowness - prepared.top_current
+        given = SearchProblem(prepared.network, prepared.sea, self.ship, top, prepared.top_current)
         found = earliest_arrival_with_restricted_waiting(
-            waters.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
-            limits=self.ship.limits, arrive_by=min(depart + limit, latest),
+            prepared.source, given, start=self.ends[0], goal=self.ends[1], depart=depart,
+            arrive_by=min(depart + limit, latest),
         )  # fmt: skip
         return NetworkPassage(
             depart, found.arrive, found.path, found.path_arrive, found.path_depart, found.settled
@@ -221,7 +233,7 @@ class ProfileSearch:
         if cost == math.inf:
             kernel.reset_workspace(marks)
             return replace(_passage_not_found(depart), settled=settled)
-        nodes, arrive, leave = self._room
+        nodes, arrive, leave = self._path_arrays
         count = kernel.trace_departure(self.states, marks, trip, nodes, arrive, leave)
         kernel.reset_workspace(marks)
         path, when, out = nodes[-count:], arrive[-count:].copy(), leave[-count:].copy()
@@ -249,7 +261,7 @@ class ProfileSearch:
             heuristic_weight,
             most,
         )
-        sea = self.waters.by_time
+        sea = self.prepared.by_time
         cost = kernel.search_departure(
             self._network, self.states, sea, self.ship, trip, self.ahead, self._workspace
         )
@@ -263,7 +275,7 @@ class ProfileSearch:
         departures : array_like
             [s], ascending.
         arrive_by : float
-            Later arrivals are of no use [s].
+            Later arrivals are not useful [s].
 
         Returns
         -------
@@ -280,7 +292,7 @@ class ProfileSearch:
         if times.size == 0 or not np.all(np.isfinite(times)) or np.any(np.diff(times) <= 0.0):
             raise InputError("The departures do not ascend.", "Times in order [s].", "Sort them.")
         found: dict[int, NetworkPassage] = {}
-        waits = self.wait and bool(self.waters.network.can_wait[self.ends[0]])
+        waits = self.wait and bool(self.prepared.network.can_wait[self.ends[0]])
         if waits and self._largest_penalty == 1.0:
             self._halve(times, found, arrive_by)
         else:
@@ -315,6 +327,62 @@ class ProfileSearch:
             open_ranges += [(low, middle), (middle, high)]
 
 
+def prepare_profile_search(
+    prepared: PreparedNetwork,
+    table: PerformanceTable | TableArrays,
+    *,
+    start: int,
+    goal: int,
+    setting: int,
+    limits: Limits,
+    top_speed: float,
+    wait: bool = True,
+) -> ProfileSearch:
+    """Prepare the passages of a ship between two nodes.
+
+    Parameters
+    ----------
+    prepared : PreparedNetwork
+    table : PerformanceTable or TableArrays
+        Speed through water [m/s].
+    start, goal : int
+        Nodes.
+    setting : int
+    limits : Limits
+    top_speed : float
+        Upper bound of the ship's speed through water at this setting [m/s].
+    wait : bool
+        Whether the ship may wait at nodes that allow it.
+
+    Returns
+    -------
+    ProfileSearch
+
+    Raises
+    ------
+    InputError
+        If a node or the setting does not exist, or the ship has no speed.
+    """
+    count = len(prepared.network.can_wait)
+    if not (0 <= start < count and 0 <= goal < count and start != goal):
+        raise InputError(
+            f"There are no passages from node {start} to node {goal}.",
+            f"The network has nodes 0 to {count - 1}, and the two differ.",
+            "",
+        )
+    ship = ship_arrays(table, setting, limits)
+    fastest, from_field = top_speed_through_water(prepared.sea, top_speed)
+    return ProfileSearch(
+        prepared,
+        ship,
+        prepared.tidal_states(ship, (start, goal), wait),
+        prepared.time_bounds(ship, goal, fastest, from_field),
+        (start, goal),
+        ROUNDING_FACTOR / (fastest + prepared.top_current),
+        wait,
+    )
+
+
 def _longest_useful_passage(passages: ProfileSearch) -> float:
     """Return how long a passage may take for its arrival to bound an earlier one [s]."""
     return 3.0 * passages.shortest + _FIRST_SLACK
@@ -323,7 +391,7 @@ def _longest_useful_passage(passages: ProfileSearch) -> float:
 def _arrive_together(first: NetworkPassage, second: NetworkPassage) -> bool:
     """Whether two departures arrive at one moment, or the first not at all."""
     if not first.found:
-        return True  # who leaves later does not arrive either
+        return True  # a later departure does not arrive either
     return second.found and abs(second.arrive - first.arrive) <= _SAME_ARRIVAL
 
 

@@ -1,4 +1,4 @@
-"""From the types that travel between rooms to the arrays that kernels see."""
+"""Arrays of network, sea and ship that search kernels read."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance
-from thalweg.kernels.codes import CHANNEL_COUNT, LIMIT_COUNT, LIMIT_REQUIRED_DEPTH
+from thalweg.core.limits import Limits
+from thalweg.kernels.codes import CHANNEL_COUNT
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays, ShipArrays
 from thalweg.kernels.leg.table_lookup import ARRAY_TYPES, TableArrays, axes_needed
 from thalweg.kernels.search.field_bounds import largest_current, largest_speed_field, tidal_extremes
@@ -33,6 +34,7 @@ __all__ = [
     "network_arrays",
     "sea_arrays",
     "ship_arrays",
+    "top_speed_through_water",
 ]
 
 
@@ -142,16 +144,20 @@ def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
     return sea
 
 
-def ship_arrays(
-    table: PerformanceTable | TableArrays, setting: int, limits: ArrayLike
-) -> ShipArrays:
+def ship_arrays(table: PerformanceTable | TableArrays, setting: int, limits: Limits) -> ShipArrays:
     """Return a ship at one setting as kernels see it.
 
     Raises
     ------
     InputError
-        If the setting is not one of the table's.
+        If the setting is not one of the table's, or the limits are not `Limits`.
     """
+    if not isinstance(limits, Limits):
+        raise InputError(
+            f"The limits are given as {type(limits).__name__}.",
+            "A search takes limits as one object with names and units.",
+            "Give thalweg.core.limits.Limits(required_depth=..., wave_height=..., wind_speed=...).",
+        )
     raw = table if isinstance(table, TableArrays) else table.kernel_arrays()
     count = int(raw.n_settings)
     if not 0 <= setting < count:
@@ -162,14 +168,33 @@ def ship_arrays(
         name: contiguous_array(getattr(raw, name), kind) for name, kind in ARRAY_TYPES.items()
     }
     arrays = raw._replace(n_settings=count, **kinds)
-    bounds = contiguous_array(limits, np.float64)
-    if bounds.shape != (LIMIT_COUNT,) or np.any(np.isnan(bounds)):
+    return ShipArrays(arrays, int(setting), limits.array, int(axes_needed(arrays)))
+
+
+def top_speed_through_water(sea: SeaArrays, top_speed: float) -> tuple[float, bool]:
+    """Return (upper bound of the speed through water [m/s], whether a speed field gives it).
+
+    Parameters
+    ----------
+    sea : SeaArrays
+        A ``SPEED_FIELD`` channel replaces the ship's own speed.
+    top_speed : float
+        Of the ship [m/s].
+
+    Raises
+    ------
+    InputError
+        If the bound is not a positive number.
+    """
+    field_top = float(largest_speed_field(sea))
+    fastest = field_top if field_top >= 0.0 else float(top_speed)
+    if not (np.isfinite(fastest) and fastest > 0.0):
         raise InputError(
-            f"The limits {bounds} are not {LIMIT_COUNT} numbers.",
-            "They are required depth [m], wave height [m] and wind speed [m/s].",
-            "Use -inf or +inf for what is not limited.",
+            f"A ship with a top speed of {fastest} m/s does not move.",
+            "A speed is a positive number.",
+            "Check the ship's speeds.",
         )
-    return ShipArrays(arrays, int(setting), bounds, int(axes_needed(arrays)))
+    return fastest, field_top >= 0.0
 
 
 def make_search_problem(
@@ -178,7 +203,7 @@ def make_search_problem(
     table: PerformanceTable | TableArrays,
     *,
     setting: int,
-    limits: ArrayLike,
+    limits: Limits,
     top_speed: float,
     ends: tuple[int, int | None] | None = None,
 ) -> SearchProblem:
@@ -192,7 +217,7 @@ def make_search_problem(
         If the parts do not fit together or the ship has no speed.
     """
     ship = ship_arrays(table, setting, limits)
-    sea = sea_arrays(fields, tides=ship.limits[LIMIT_REQUIRED_DEPTH] > -np.inf)
+    sea = sea_arrays(fields, tides=limits.depth_checked)
     stations = len(network.stations.lat)
     if sea.values.shape[0] != stations:
         raise InputError(
@@ -200,18 +225,11 @@ def make_search_problem(
             "Fields belong to the network they were frozen for.",
             "Freeze the sea at the stations of this network.",
         )
-    field_top = largest_speed_field(sea)
-    fastest = field_top if field_top >= 0.0 else float(top_speed)
-    if not (np.isfinite(fastest) and fastest > 0.0):
-        raise InputError(
-            f"A ship with a top speed of {fastest} m/s gets nowhere.",
-            "A speed is a positive number.",
-            "Check the ship's speeds.",
-        )
+    fastest, _ = top_speed_through_water(sea, top_speed)
     arrays = network_arrays(network)
     if ends is not None:
         keep = ends[0], -1 if ends[1] is None else ends[1]
-        arrays = tidal_states(arrays, sea, ship.limits, keep)
+        arrays = tidal_states(arrays, sea, limits.required_depth, keep)
     return SearchProblem(arrays, sea, ship, fastest, float(largest_current(sea)))
 
 

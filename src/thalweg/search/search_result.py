@@ -1,4 +1,4 @@
-"""What a search found."""
+"""The result of a search on a network."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class SearchWork:
     relaxed : int
         Edges that left them.
     sailed : int
-        Edges that could be of use and were therefore sailed.
+        Edges that could be useful and were therefore sailed.
     refused : dict of str to int
         How many of the sailed ones were refused, by reason.
     """

@@ -1,6 +1,6 @@
 """Nodes that fall dry: one state for each time a ship is afloat there.
 
-To be early at a node is worth nothing if the ship then falls dry: the later arrival that floats on
+An early arrival at a node is not useful if the ship then grounds: the later arrival that floats on
 the next tide goes further. So a node with several times afloat becomes several states, each with
 its own label ("safe intervals": Phillips and Likhachev 2011, "SIPP: Safe interval path planning
 for dynamic environments").
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.kernels.codes import BED_DEPTH, LIMIT_REQUIRED_DEPTH, WATER_LEVEL
+from thalweg.kernels.codes import BED_DEPTH, WATER_LEVEL
 from thalweg.kernels.leg.edge_sailing import NetworkArrays, SeaArrays
 
 _DEPTH_TOLERANCE = 1e-3  # depths are in single precision [m]
@@ -30,7 +30,7 @@ class AfloatIntervals(NamedTuple):
 
 
 def tidal_states(
-    network: NetworkArrays, sea: SeaArrays, limits: FloatArray, keep: tuple[int, int]
+    network: NetworkArrays, sea: SeaArrays, required: float, keep: tuple[int, int]
 ) -> NetworkArrays:
     """Return a network in which nodes that fall dry are several states.
 
@@ -39,9 +39,10 @@ def tidal_states(
     network : NetworkArrays
         One state per node.
     sea : SeaArrays
-    limits : float64[LIMITS]
+    required : float
+        Required depth [m]; -inf if none.
     keep : tuple of int
-        Start and goal, which stay single: a ship lies safely there.
+        Start and goal, which stay single: a ship is safe there.
 
     Returns
     -------
@@ -49,7 +50,6 @@ def tidal_states(
         The same if no depth is required or no depth varies. The first states are those of the
         nodes, in order.
     """
-    required = float(limits[LIMIT_REQUIRED_DEPTH])
     varies = sea.channel_index[WATER_LEVEL] >= 0 or sea.channel_index[BED_DEPTH] >= 0
     if required == -np.inf or not varies:
         return network
@@ -80,7 +80,7 @@ def _depths(network: NetworkArrays, sea: SeaArrays) -> NDArray[np.float32]:
     count = len(network.can_wait)
     has_edges = np.diff(network.indptr) > 0
     charted = np.full(count, -np.inf, np.float32)
-    # a node lies on every edge that leaves it, so it is at least as deep as the deepest of them
+    # a node is on every edge that leaves it, so it is at least as deep as the deepest of them
     if has_edges.any():
         first = network.indptr[:-1][has_edges]
         sailed = np.where(np.isnan(network.fixed_time), network.depth, np.float32(-np.inf))
@@ -127,7 +127,7 @@ def _split_nodes(network: NetworkArrays, chosen: IntArray, times: AfloatInterval
     if first.all():
         return network._replace(until=until)
     repeated = ~first[1:]
-    between = 0.5 * (times.end[:-1][repeated] + times.begin[1:][repeated])  # amid the dry
+    between = 0.5 * (times.end[:-1][repeated] + times.begin[1:][repeated])  # middle of the dry time
     opens, closes = np.full(count, -np.inf), np.full(count, np.inf)
     extra_closes = np.full(len(between), np.inf)
     later = times.node[~first]

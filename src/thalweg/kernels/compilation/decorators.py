@@ -23,7 +23,7 @@ def allocation_free(function):
 
 
 def kernel_only(function):
-    """Compile as `allocation_free` does, for callers in kernels only: without the door to
+    """Compile as `allocation_free` does, for callers in kernels only: without an entry from
     Python.
     """
     return _compile(function, **_INNER)
@@ -41,7 +41,7 @@ def inlined(function):
 def inlined_by_numba(function):
     """Compile as part of the caller from the start: for thin layers over large inlined functions.
 
-    Each layer of `inlined` functions is optimised anew; woven ones cost nothing. Do not weave large
-    functions or many: the time of type inference grows fast.
+    Each layer of `inlined` functions is optimised again; these cost nothing. Use it for small
+    functions only: the time of type inference grows fast.
     """
     return _compile(function, inline="always", **_INNER)

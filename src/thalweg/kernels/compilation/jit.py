@@ -1,4 +1,4 @@
-"""The one way kernels are compiled: numba, cached on disk, without division checks."""
+"""How kernels are compiled: numba, cached on disk, without division checks."""
 
 import numba
 

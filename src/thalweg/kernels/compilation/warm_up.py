@@ -17,7 +17,7 @@ from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 _COMPILED_MARKER, _COMPILING_MARKER = COMPILED_FOLDER / "warm", COMPILED_FOLDER / "warming"
 _CHILD_TIMEOUT = 120.0  # seconds the parent waits for the child at most
 _GARBAGE_COLLECTION_THRESHOLD = (
-    200_000  # objects made before rubbish is looked for: compiling makes millions that stay
+    200_000  # objects made before rubbish is searched: compiling makes millions that stay
 )
 _children: list[subprocess.Popen[bytes]] = []
 

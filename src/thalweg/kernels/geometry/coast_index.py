@@ -62,7 +62,7 @@ class CoastArrays(NamedTuple):
 
 @allocation_free
 def _offset(k, mz, ez, half, tan_half, t):
-    """Return how far the geodesic lies beside the plane at the angle t from its middle."""
+    """Return how far the geodesic is beside the plane at the angle t from its middle."""
     s, c = sin(t), cos(t)
     return k * (mz * (t * s - half * tan_half * c) + ez * (half * s / tan_half - t * c))
 
@@ -98,7 +98,7 @@ def _edge_cut(p, q, m, e, n, k, half, tan_half, unsure):
 
 @allocation_free
 def _edge_touched(p, q, m, e, n, k, tan_half, unsure):
-    """Test one edge that lies near the leg's plane: 0 clear, 1 touched, 2 unsure."""
+    """Test one edge that is near the leg's plane: 0 clear, 1 touched, 2 unsure."""
     half = atan(tan_half)
     t0 = atan2(p[0] * e[0] + p[1] * e[1] + p[2] * e[2], p[0] * m[0] + p[1] * m[1] + p[2] * m[2])
     t1 = atan2(q[0] * e[0] + q[1] * e[1] + q[2] * e[2], q[0] * m[0] + q[1] * m[1] + q[2] * m[2])
@@ -150,7 +150,7 @@ def _column_exit(direction, side, column, mu, eu, mw, ew, tau):
     else:
         border = 2.0 * column / side - 1.0 - REACH
     out = (border * mw - mu) / (eu - border * ew)
-    return out if out > tau else np.inf  # not above tau: it lies behind the back of the cube
+    return out if out > tau else np.inf  # not above tau: it is behind the back of the cube
 
 
 @allocation_free
@@ -208,7 +208,7 @@ def _is_whole_globe(area):
 
 @allocation_free
 def _position_in_area(area, lat, lon):
-    """Return whether a position [deg] lies in an area, borders included."""
+    """Return whether a position [deg] is in an area, borders included."""
     east = (lon - area[2]) % 360.0
     return area[0] <= lat <= area[1] and (east <= area[3] or east >= 360.0 - 1e-9)
 
@@ -236,7 +236,7 @@ def leg_in_area(area, lat1, lon1, lat2, lon2):
 
 @allocation_free
 def _vector_code(coast, lat, lon, x, y, z):
-    """Return OK, LAND or NO_GO for a position given both ways."""
+    """Return OK, LAND or NO_GO for a position given in degrees and as a vector."""
     if inside(coast.land, x, y, z):
         return LAND
     if not _is_whole_globe(coast.area) and not _position_in_area(coast.area, lat, lon):
@@ -316,7 +316,7 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
     code : int
         OK, LAND, NO_GO (a zone, or outside the area) or NO_DATA (a position that is none).
     unsure : bool
-        The leg passes so near that the first-order geodesic cannot tell; ``code`` is then the
+        The leg passes so near that the first-order geodesic cannot decide; ``code`` is then the
         blocked one.
     """
     if not (abs(lat1) <= 90.0 and abs(lon1) < 1e6 and abs(lat2) <= 90.0 and abs(lon2) < 1e6):

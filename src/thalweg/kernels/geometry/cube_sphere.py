@@ -1,4 +1,4 @@
-"""Polygons on the faces of a cube: where a position lies, and whether inside.
+"""Polygons on the faces of a cube: where a position is, and whether inside.
 
 A position becomes the unit vector of its geocentric latitude. Seen from the centre of the Earth
 onto the faces of a cube (gnomonic projection) great-circle arcs are straight lines, and the poles
@@ -116,7 +116,7 @@ def latitude_longitude(x, y, z):
 
 @allocation_free
 def _side_of_edge(px, py, pz, qx, qy, qz, x, y, z):
-    """Return on which side of the edge p, q, straight in lon and lat, a near point lies."""
+    """Return on which side of the edge p, q, straight in lon and lat, a near point is."""
     plat, plon = latitude_longitude(px, py, pz)
     qlat, qlon = latitude_longitude(qx, qy, qz)
     lat, lon = latitude_longitude(x, y, z)
@@ -127,7 +127,7 @@ def _side_of_edge(px, py, pz, qx, qy, qz, x, y, z):
 
 @allocation_free
 def winding_from(index, row, ax, ay, az, bx, by, bz, winding, exact):
-    """Return the winding number at a, given that at b; both lie in the row's cell."""
+    """Return the winding number at a, given that at b; both are in the row's cell."""
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
     xyz, first = index.xyz, index.first
     before = False
@@ -155,7 +155,7 @@ def cell_middle(face, i, j, side):
 
 @allocation_free
 def inside(index, x, y, z):
-    """Return whether a direction lies inside the polygons of an index."""
+    """Return whether a direction is inside the polygons of an index."""
     side = index.side
     face = face_of(x, y, z)
     u, v, w = face_components(x, y, z, face)

@@ -1,8 +1,8 @@
 """Charted depth on grids of soundings, by priority; compiled.
 
 A leg is sampled no farther apart than half a grid step, and each sample takes the least of the
-four soundings round it: bilinear depth never lies below them, so the answer errs to the shallow
-side. Where a step passes into the cell across a corner, both cells beside it are looked at too.
+four soundings round it: bilinear depth is never below them, so the answer errs to the shallow
+side. Where a step passes into the cell across a corner, both adjacent cells are considered too.
 """
 
 from math import ceil, cos, floor, pi, sqrt

@@ -1,7 +1,7 @@
 """Kernels that find points in triangles and gather values from grids; no physics.
 
 Interpolation in space is a weighted sum over the corners of a cell, in time between two levels.
-A corner or level of weight 0 is not looked at; any other that is NaN makes the answer NaN.
+A corner or level of weight 0 is not read; any other that is NaN makes the answer NaN.
 """
 
 import numpy as np
@@ -26,8 +26,9 @@ def corner_sum(values, level, index, weight, i):
 def gather_points(values, index, weight, level, fraction, out):
     """Interpolate ``values`` (T, M) at points with their own times into ``out`` (N,).
 
-    ``level`` is the time level before each point (-1 where unknown), ``fraction`` the way to the
-    next; ``index`` (N, C) holds corners, -1 in its first column where the point is outside.
+    ``level`` is the time level before each point (-1 where unknown), ``fraction`` the share of the
+    step to the next; ``index`` (N, C) holds corners, -1 in its first column where the
+    point is outside.
     """
     for i in range(out.shape[0]):
         if level[i] < 0 or index[i, 0] < 0:

@@ -1,4 +1,4 @@
-"""How much of a leg lies inside polygons."""
+"""How much of a leg is inside polygons."""
 
 from math import atan2, cos, sin, sqrt
 from typing import Final
@@ -13,9 +13,9 @@ _ECCENTRICITY_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)  # eccentricity s
 
 @allocation_free
 def middle_inside(index, lat1, lon1, lat2, lon2):
-    """Return whether the middle of a leg [deg] lies inside the polygons of an index.
+    """Return whether the middle of a leg [deg] is inside the polygons of an index.
 
-    Ends that lie on an outline to the last bit say nothing; the middle of a leg that touches none
+    Ends that are on an outline to the last bit say nothing; the middle of a leg that touches none
     does. It is that of the great ellipse, some metres from the geodesic on the longest legs.
     """
     ax, ay, az = unit_vector(lat1, lon1)
@@ -55,7 +55,7 @@ def _fraction_inside(index, outlines, a, b, finest):
     if chord < SHORTEST_ARC:
         return (1.0 if inside(index, a[0], a[1], a[2]) else 0.0), 0
     arc = 2.0 * atan2(0.5 * chord, sqrt(max(0.5 + 0.5 * dot, 0.0)))
-    # the scale is a parabola through three places; its integral tells lengths
+    # the scale is a parabola through three places; its integral gives lengths
     first, amid, last = (
         _metres_per_radian(a, b, arc, 0.0),
         _metres_per_radian(a, b, arc, 0.5),
@@ -89,9 +89,10 @@ def fractions_by_bisection(index, outlines, lat1, lon1, lat2, lon2, finest, shar
     """Fill the share of the length of short geodesic legs [deg] inside the polygons of an index.
 
     A leg that touches an outline is halved, and each half again, until the parts are shorter than
-    ``finest`` [rad]; parts that touch none, or are so short, are told by their middle. A leg that
+    ``finest`` [rad]; parts that touch
+    none, or are so short, are classified by their midpoint. A leg that
     runs along an outline would take very many parts: they are left eight times longer then. The
-    legs are at most some hundred kilometres long (`geodesic_point` tells how near the geodesic
+    legs are at most some hundred kilometres long (`geodesic_point` gives how near the geodesic
     its points are).
     """
     for i in range(len(share)):

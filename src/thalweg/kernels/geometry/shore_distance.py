@@ -59,7 +59,7 @@ def _nearest_within(index, x, y, z, radius):
 
 @allocation_free
 def shore_distances(index, lat, lon, cap, distance):
-    """Fill ``distance`` [m] with a lower bound of the way to the nearest edge of an index.
+    """Fill ``distance`` [m] with a lower bound of the distance to the nearest edge of an index.
 
     Inside the polygons it is 0; within ``cap`` [m] (at most 250 km) of an edge it is the true
     distance to a part in 1000; elsewhere it is at least ``cap``.

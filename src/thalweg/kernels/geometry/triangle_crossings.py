@@ -23,14 +23,14 @@ def crossed_sides(x, y, triangles, neighbours, around_ptr, around, first, second
     first, second : int32[L]
         Ends of the lines.
     out : tuple (a int32[V], b int32[V], w float32[V], s float32[V])
-        Filled: the crossing lies at ``(1 - w) * a + w * b`` and at share s of its line.
+        Filled: the crossing is at ``(1 - w) * a + w * b`` and at share s of its line.
     ptr : int64[L + 1]
         Filled: the crossings of line e are ``ptr[e]:ptr[e + 1]``.
 
     Notes
     -----
     Delaunay triangles cover the hull of their nodes, so a line leaves them by rounding alone, along
-    the rim; what lies beyond is not sampled.
+    the rim; what is beyond is not sampled.
     """
     fill = out[0].shape[0] > 0
     count = 0
@@ -57,7 +57,7 @@ def crossed_sides(x, y, triangles, neighbours, around_ptr, around, first, second
 
 @jit
 def _side_of(x, y, a, b, c):
-    """Return twice the area of a, b, c: positive if c lies to the left of a to b."""
+    """Return twice the area of a, b, c: positive if c is to the left of a to b."""
     return (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
 
 

@@ -53,7 +53,7 @@ def _arc_crosses(index, m, e, tan_half):
 def outlines_crossed(index, lat1, lon1, lat2, lon2, crossed):
     """Fill ``crossed`` (bool): whether legs [deg] touch an outline of polygons.
 
-    A leg that lies wholly inside a polygon, or outside, does not; legs may be as long as 160
+    A leg that is wholly inside a polygon, or outside, does not; legs may be as long as 160
     degrees.
     """
     for i in range(len(crossed)):
@@ -98,7 +98,7 @@ def find_midpoint(keys, middles, a, b):
 def _walk_boundary(keys, middles, faces, f, ring, sides, stack):
     """Fill the boundary of a leaf face, hanging vertices included; return its length.
 
-    ``sides`` has a bit for each side a vertex lies on (corners have two).
+    ``sides`` has a bit for each side a vertex is on (corners have two).
     """
     count = 0
     for s in range(3):
@@ -144,7 +144,7 @@ def leaf_face_pairs(keys, middles, faces, longest, first, second):
 
     Notes
     -----
-    Neighbours along the boundary are joined, and every two of its vertices that do not lie on one
+    Neighbours along the boundary are joined, and every two of its vertices that are not on one
     side: a face is convex, so such a pair crosses the face itself.
     """
     room = max(longest, 1)

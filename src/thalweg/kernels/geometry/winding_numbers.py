@@ -1,4 +1,4 @@
-"""Which cells of a coast index lie inside: winding numbers carried from cell to cell."""
+"""Which cells of a coast index are inside: winding numbers carried from cell to cell."""
 
 from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, FIRST_ROW, cell_middle, winding_from

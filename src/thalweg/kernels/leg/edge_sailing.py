@@ -9,9 +9,10 @@ from thalweg.kernels.codes import (
     DEPTH,
     OK,
     OUTSIDE_PERIOD,
+    SHIP_RANGE,
 )
 from thalweg.kernels.compilation.decorators import inlined, kernel_only
-from thalweg.kernels.leg.point_speed import point_speed_from_guess
+from thalweg.kernels.leg.point_speed import fuel_rate_at_speed, point_speed_from_guess
 from thalweg.kernels.leg.table_lookup import TableArrays
 
 
@@ -85,6 +86,28 @@ class ShipArrays(NamedTuple):
     setting: int
     limits: np.ndarray
     needs: int
+
+
+class FuelTable(NamedTuple):
+    """The fuel rate of a ship [kg/s] by setting, and the axes its table needs."""
+
+    table: TableArrays
+    needs: int
+
+
+class MarchCutoff(NamedTuple):
+    """When to stop sailing an edge that is not useful.
+
+    Attributes
+    ----------
+    latest : float
+        An arrival from this time on is not useful [s].
+    least : float
+        Lower bound of the time per metre [s/m].
+    """
+
+    latest: float
+    least: float
 
 
 @inlined
@@ -188,48 +211,45 @@ def least_time(network, edge, slowness):
 
 
 @inlined
-def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least):
-    """Sail one edge: return (arrival, status).
+def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
+    """Sail one edge that is not a canal: return (arrival, fuel burnt, status).
 
     Parameters
     ----------
     network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
+    fuel : FuelTable or None
+        None if the fuel is not asked for: nothing of it is compiled then.
     edge : int
     k : int
         Interval of the times that holds the departure.
     t : float
         Departure [s].
-    tail : float64[CHANNELS]
-        The sea at the tail of the edge at that time.
-    sample, spare : float64[CHANNELS]
-        Work space.
-    latest : float
-        An arrival from this time on is of no use [s].
-    least : float
-        Lower bound of the time per metre [s/m].
+    cutoff : MarchCutoff
+    work : tuple of three float64[CHANNELS]
+        The sea at the tail of the edge at the departure, and two arrays of work space.
 
     Returns
     -------
     arrival : float
-        [s]; inf when it is of no use. When the status is not `OK`: when the ship was to pass the
+        [s]; inf when it is not useful. When the status is not `OK`: when the ship was to pass the
         sample that blocks the edge.
+    burnt : float
+        Fuel [kg]; 0 without a fuel table.
     status : int
 
     Notes
     -----
-    The edge is marched over its samples. A piece of length d between two samples takes
+    Heun's method, of second order in the piece. A piece of length d between two samples takes
     ``d (1/G0 + 1/G1) / 2`` with the speeds over ground G0 at its start and G1 at its end, that
-    at the time predicted with G0 (Heun's method: second order in the piece). Any blocked sample
-    blocks the edge. An edge of fixed time is passed in that time, whatever the sea is.
+    at the time predicted with G0. Its fuel is ``d (r0/G0 + r1/G1) / 2`` with the fuel rates r0 and
+    r1. Any blocked sample blocks the edge.
     """
-    fixed = network.fixed_time[edge]
-    if fixed == fixed:
-        return pass_canal(network, edge, t, sea.times[-1])
     east, north = course_vector(float(network.course[edge]))
     depth = np.float64(network.depth[edge])  # single precision would be another leg to compile
     table, setting, limits, needs = ship
     index = sea.channel_index
-    slowness, at, here, guess, then = 0.0, 0.0, tail, math.inf, t
+    tail, sample, spare = work
+    slowness, rate, burnt, at, here, guess, then = 0.0, 0.0, 0.0, 0.0, tail, math.inf, t
     first, last = network.via_ptr[edge], network.via_ptr[edge + 1]
     for p in range(first - 1, last + 1):
         piece = 0.0
@@ -237,13 +257,14 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
             to = float(network.via_s[p]) if p < last else 1.0
             piece = network.length[edge] * (to - at)
             at = to
-            soonest = 0.5 * piece * (slowness + least) + network.length[edge] * (1.0 - to) * least
-            if t + soonest >= latest:
-                return math.inf, OK
+            rest = network.length[edge] * (1.0 - to) * cutoff.least
+            soonest = 0.5 * piece * (slowness + cutoff.least) + rest
+            if t + soonest >= cutoff.latest:
+                return math.inf, 0.0, OK
             then = t + piece * slowness
             k = interval_near(sea.times, k, then)
             if k < 0:
-                return math.inf, OUTSIDE_PERIOD
+                return math.inf, 0.0, OUTSIDE_PERIOD
             a = b = network.station[network.target[edge]]
             weight = 0.0
             if p < last:
@@ -254,13 +275,35 @@ def sail_edge(network, sea, ship, edge, k, t, tail, sample, spare, latest, least
             here, index, east, north, table, setting, depth, limits, needs, guess
         )
         if status != OK:
-            return then, status
+            return then, 0.0, status
         before = slowness
         slowness = 1.0 / speed
+        if fuel is not None:
+            used, known = fuel_rate_at_speed(
+                here, index, (east, north), fuel.table, setting, depth, limits, fuel.needs, guess
+            )
+            if not known:
+                return then, 0.0, SHIP_RANGE
+            burnt += 0.5 * piece * (rate * before + used * slowness)
+            rate = used
         t += 0.5 * piece * (before + slowness)
     if t > sea.times[-1]:
-        return math.inf, OUTSIDE_PERIOD
+        return math.inf, 0.0, OUTSIDE_PERIOD
     head = network.target[edge]
     if not network.opens[head] <= t < network.closes[head]:
-        return t, DEPTH  # afloat there, but at another tide
-    return t, OK
+        return t, 0.0, DEPTH  # afloat there, but at another tide
+    return t, burnt, OK
+
+
+@inlined
+def sail_edge(network, sea, ship, edge, k, t, cutoff, work):
+    """Sail one edge, or pass it if it is a canal: return (arrival, status).
+
+    Arguments and results as in `march_edge`. An edge of fixed time is passed in that time, whatever
+    the sea is.
+    """
+    fixed = network.fixed_time[edge]
+    if fixed == fixed:
+        return pass_canal(network, edge, t, sea.times[-1])
+    arrival, _, status = march_edge(network, sea, ship, None, edge, k, t, cutoff, work)
+    return arrival, status

@@ -271,7 +271,7 @@ def point_speed(sample, channel_index, east, north, table, setting, static_depth
         channels the sea does not have are not read.
     channel_index : int64[CHANNELS]
         -1 where the sea has no such channel. Without a current channel there is no current; other
-        channels are looked at only when the table has such an axis or there is a limit on them,
+        channels are considered only when the table has such an axis or there is a limit on them,
         and missing ones then count as unknown.
     east, north : float
         Unit vector of the course over ground.

@@ -1,16 +1,16 @@
-"""What a ship must not do in waves: MSC.1/Circ.1228, and motions that are too much."""
+"""Limits of a ship in waves: the situations of MSC.1/Circ.1228, and limits of motions."""
 
 import math
 
 from thalweg.kernels.compilation.decorators import inlined
 
 # entries of the numbers of a ship (`thalweg.ship.models.seaway_limits.SafetyLimits.numbers`)
-SURF_RIDING_SPEED = 0  # 1.8 sqrt(L) in m/s; inf when surf-riding is not looked at
-HIGH_WAVE_LENGTH = 1  # length of the ship for successive high waves [m]; 0 when not looked at
-ROLL_PERIOD = 2  # [s]; 0 when roll is not looked at
+SURF_RIDING_SPEED = 0  # 1.8 sqrt(L) in m/s; inf when surf-riding is not checked
+HIGH_WAVE_LENGTH = 1  # length of the ship for successive high waves [m]; 0 when not checked
+ROLL_PERIOD = 2  # [s]; 0 when roll is not checked
 CHECK_HALF_ROLL_PERIOD = 3  # 1 when half of the roll period counts as well
 ROLL_TOLERANCE = 4
-MIN_WAVE_HEIGHT = 5  # waves up to this are no danger [m]
+MIN_WAVE_HEIGHT = 5  # waves up to this are not dangerous [m]
 MEAN_TO_PEAK_PERIOD = 6  # mean over peak period
 SAFETY_NUMBER_COUNT = 7
 _KNOT = 1852.0 / 3600.0

@@ -325,7 +325,7 @@ def _sift_down(heap, place, distance, size, node):
 
 @jit
 def keep_spaced_points(x, y, spacing, keep):
-    """Keep points in order when they lie farther than their spacing from every point kept before.
+    """Keep points in order when they are farther than their spacing from every point kept before.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Kernels of static ways over a network: A*, connected waters, and crossings summed along trees."""
+"""Static shortest paths on a network: A*, and meridian crossings summed along path trees."""
 
 import math
 
@@ -57,29 +57,8 @@ def static_astar(indptr, target, weight, potential, start, goal, distance, paren
 
 
 @jit
-def connected_waters(n, first, second):
-    """Return for every node the smallest node it is joined to (union by path halving)."""
-    root = np.arange(n)
-    for e in range(first.shape[0]):
-        a, b = first[e], second[e]
-        while root[a] != a:
-            root[a] = root[root[a]]
-            a = root[a]
-        while root[b] != b:
-            root[b] = root[root[b]]
-            b = root[b]
-        if a < b:
-            root[b] = a
-        else:
-            root[a] = b
-    for i in range(n):  # a root is below its nodes, so it is final before them
-        root[i] = root[root[i]]
-    return root
-
-
-@jit
 def tree_sums(indptr, target, weight, value, distance, parent, order, sums):
-    """Sum values of edges along a tree of shortest ways.
+    """Sum values of edges along a tree of shortest paths.
 
     Parameters
     ----------
@@ -118,7 +97,7 @@ def meridian_crossings(lat, lon, first, second, points, crossings):
     lat, lon : float64[N]
         Positions [deg].
     first, second : int64[E]
-        Ends of each leg, which runs the shorter way round.
+        Ends of each leg, which spans less than 180 degrees of longitude.
     points : float64[K, 2]
         Latitude and longitude [deg] of each point.
     crossings : int8[E, K]

@@ -17,15 +17,17 @@ from thalweg.kernels.codes import (
 )
 from thalweg.kernels.compilation.decorators import allocation_free, inlined, kernel_only
 from thalweg.kernels.leg.edge_sailing import (
+    FuelTable,
+    MarchCutoff,
     NetworkArrays,
     SeaArrays,
+    ShipArrays,
     course_vector,
-    interval_near,
     interval_of,
-    sample_between,
+    march_edge,
+    pass_canal,
     sample_station,
 )
-from thalweg.kernels.leg.point_speed import fuel_rate_at_speed, point_speed_from_guess
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.field_bounds import never_deep_enough
 
@@ -60,7 +62,7 @@ class EdgePrices(NamedTuple):
     weight : float64[E]
         Cost of a kilogram of fuel.
     fee : float64[E]
-        Cost of the passage beside fuel.
+        Cost of the passage in addition to fuel.
     fixed_time : float64[E]
         Duration of edges that do not depend on the sea [s]; NaN where sailed.
     fixed_fuel : float64[E]
@@ -86,7 +88,7 @@ class EdgeTables(NamedTuple):
     """Durations and costs of all edges that leave a node, by time of departure.
 
     The block of node n and its i-th slice holds, for every edge in order, the durations [s] at
-    all settings and then the costs. NaN: shut then, but may open; inf: of no use.
+    all settings and then the costs. NaN: closed then, but may open; inf: not useful.
 
     Attributes
     ----------
@@ -99,7 +101,7 @@ class EdgeTables(NamedTuple):
     offset : int64[N]
         Where the values of the node's first block start.
     state : uint8[:]
-        0: not filled yet; 1: filled; 2: some edge is shut at some setting, but may open; 3: some
+        0: not filled yet; 1: filled; 2: some edge is closed at some setting, but may open; 3: some
         edge is so at all settings.
     values : float32[:]
     refused : int64[COUNT]
@@ -131,66 +133,28 @@ class FrontArrays(NamedTuple):
 
 @inlined
 def _pass_fixed_time_edge(world, edge, choice, t):
-    """Pass an edge whose duration does not depend on the sea."""
-    network, prices = world.network, world.prices
-    if choice != prices.fixed_choice[edge]:
+    """Pass an edge whose duration does not depend on the sea: return (arrival, fuel, status)."""
+    if choice != world.prices.fixed_choice[edge]:
         return math.inf, 0.0, SHIP_RANGE
-    then = t + prices.fixed_time[edge]
-    if then > world.sea.times[-1]:
-        return math.inf, 0.0, OUTSIDE_PERIOD
-    head = network.target[edge]
-    if not network.opens[head] <= then < network.closes[head]:
-        return then, 0.0, DEPTH
-    return then, prices.fixed_fuel[edge], OK
+    arrival, status = pass_canal(world.network, edge, t, world.sea.times[-1])
+    return arrival, world.prices.fixed_fuel[edge], status
 
 
 @inlined
 def _sail_sea_edge(world, edge, choice, k, t, work):
-    """Sail an edge by Heun's method over its samples, as
-    `thalweg.kernels.leg.edge_sailing.sail_edge` does.
-    """
-    network, sea, ship = world.network, world.sea, world.ship
-    course = course_vector(float(network.course[edge]))
-    depth = float(network.depth[edge])
-    setting, limits, index = ship.settings[choice], ship.limits, sea.channel_index
-    slowness, rate, at, here, guess, then, burnt = 0.0, 0.0, 0.0, work[1], math.inf, t, 0.0
-    first, last = network.via_ptr[edge], network.via_ptr[edge + 1]
-    for p in range(first - 1, last + 1):
-        piece = 0.0
-        if p >= first:
-            to = float(network.via_s[p]) if p < last else 1.0
-            piece = network.length[edge] * (to - at)
-            at = to
-            then = t + piece * slowness
-            k = interval_near(sea.times, k, then)
-            if k < 0:
-                return math.inf, 0.0, OUTSIDE_PERIOD
-            a = b = network.station[network.target[edge]]
-            weight = 0.0
-            if p < last:
-                a, b, weight = network.via_a[p], network.via_b[p], float(network.via_w[p])
-            sample_between(sea, a, b, weight, k, then, work[2], work[3])
-            here = work[2]
-        speed, status, guess = point_speed_from_guess(
-            here, index, course[0], course[1], ship.table, setting, depth, limits, ship.needs, guess
-        )
-        if status != OK:
-            return then, 0.0, status
-        used, ok = fuel_rate_at_speed(
-            here, index, course, ship.fuel, setting, depth, limits, ship.fuel_needs, guess
-        )
-        if not ok:
-            return then, 0.0, SHIP_RANGE
-        before, slowness = slowness, 1.0 / speed
-        burnt += 0.5 * piece * (rate * before + used * slowness)
-        t += 0.5 * piece * (before + slowness)
-        rate = used
-    if t > sea.times[-1]:
-        return math.inf, 0.0, OUTSIDE_PERIOD
-    head = network.target[edge]
-    if not network.opens[head] <= t < network.closes[head]:
-        return t, 0.0, DEPTH
-    return t, burnt, OK
+    """Sail an edge in open water: return (arrival, fuel, status)."""
+    ship = world.ship
+    return march_edge(
+        world.network,
+        world.sea,
+        ShipArrays(ship.table, ship.settings[choice], ship.limits, ship.needs),
+        FuelTable(ship.fuel, ship.fuel_needs),
+        edge,
+        k,
+        t,
+        MarchCutoff(math.inf, 0.0),
+        (work[1], work[2], work[3]),
+    )
 
 
 @kernel_only
@@ -199,7 +163,7 @@ def sail_edge_priced(world, edge, choice, k, t, work):
 
     Parameters
     ----------
-    world : World
+    world : FrontArrays
     edge, choice : int
     k : int
         Interval of the sea's times that holds the departure.
@@ -211,7 +175,7 @@ def sail_edge_priced(world, edge, choice, k, t, work):
     Returns
     -------
     arrival, cost : float
-        Cost of fuel, fee and time; not of use unless the status is `OK`.
+        Cost of fuel, fee and time; not useful unless the status is `OK`.
     status : int
     """
     fixed = world.prices.fixed_time[edge]
@@ -272,7 +236,7 @@ def sail_departures(world, edges, tails, choices, departures, out, work):
 
     Parameters
     ----------
-    world : World
+    world : FrontArrays
     edges, tails, choices : int64[M]
     departures : float64[M]
         [s].
@@ -298,7 +262,7 @@ def sail_path(world, nodes, edges, choices, leave, arrive, depart, work):
 
     Parameters
     ----------
-    world : World
+    world : FrontArrays
     nodes : int64[P]
         States.
     edges, choices : int64[P - 1]

@@ -19,10 +19,10 @@ from thalweg.kernels.pareto.time_expanded_labels import (
     may_be_non_dominated,
 )
 
-_SAFETY_FACTOR = 2.0  # of the difference met amid two slices
+_SAFETY_FACTOR = 2.0  # of the difference met midway between two slices
 _ROUNDING = 1e-6  # of tables in single precision
 _LARGEST_USEFUL_ERROR = 0.25  # off by more: what holds whatever the sea is may be the larger bound
-_HALVINGS = 4  # to find when an edge shuts
+_HALVINGS = 4  # to find when an edge closes
 _CLOSING_ERROR = 0.01  # what an edge may be off by after the last moment it was met open
 
 
@@ -40,7 +40,7 @@ class LowerLabels(NamedTuple):
     best : float64[N]
         Least up to the bin being processed.
     dead : float64[N]
-        The value from which on nothing is worth sailing on.
+        Sailing on is not useful from this value on.
     """
 
     first: np.ndarray
@@ -59,12 +59,12 @@ class InterpolationBounds(NamedTuple):
     start : int64[N]
         Where a node's first block starts.
     state : uint8[B]
-        By block: 0 not looked at; 1 known.
+        By block: 0 not checked; 1 known.
     off : float32[:, 3]
         How much shorter a passage may be, how much cheaper without the price of time, and how much
         longer; each as a share.
     gains : uint8[:]
-        Whether leaving later may be of use; 2 where the edge is shut at one of the two slices.
+        Whether leaving later may be useful; 2 where the edge is closed at one of the two slices.
     along : float64[E]
         Largest current along an edge [m/s].
     fastest, thriftiest : float64[S]
@@ -91,7 +91,7 @@ def _widened_errors(off, took, spent, time, cost, price):
 
 @inlined
 def _midpoint_errors(world, blocks, edge, at, span, k, t, count, work):
-    """Return how far passages amid two slices are from the mean of the two."""
+    """Return how far passages midway between two slices are from the mean of the two."""
     values, off = blocks.values, (0.0, 0.0, 0.0)
     for s in range(0, count, max(count - 1, 1)):
         d0, d1 = np.float64(values[at + s]), np.float64(values[at + span + s])
@@ -108,7 +108,7 @@ def _midpoint_errors(world, blocks, edge, at, span, k, t, count, work):
 
 @inlined
 def _errors_until_shut(world, blocks, node, edge, s, open_at, shut_at, took, spent, work):
-    """Return how far passages of an edge that is open at one slice are off until it shuts."""
+    """Return how far passages of an edge that is open at one slice are off until it closes."""
     sea, off = world.sea, (0.0, 0.0, 0.0)
     for _ in range(_HALVINGS):
         t = world.depart + 0.5 * (open_at + shut_at)
@@ -221,7 +221,7 @@ def interpolation_errors(slack, here):
 def interpolate_slices(d0, d1, c0, c1, f, g):
     """Return durations and costs at two shares of the time between two slices.
 
-    An edge that is shut at one of the slices is as at the other.
+    An edge that is closed at one of the slices is as at the other.
     """
     if not d0 < math.inf:
         return d1, d1, c1, c1
@@ -258,7 +258,7 @@ def least_between_slices(world, slack, edge, s, rate, longest, begin, end, pair,
 
 @kernel_only
 def _sail_piece(world, labels, target, clock, blocks, slack, node, piece, all_edges, counts, work):
-    """Sail on from a node at any moment of a piece of a bin that lies between two slices."""
+    """Sail on from a node at any moment of a piece of a bin that is between two slices."""
     begin, end, cost, k, b = piece
     i = k - blocks.first[node]
     if i < 0 or i + 1 >= blocks.count[node]:
@@ -359,14 +359,14 @@ def process_bins_lower(world, labels, target, clock, blocks, slack, agenda, begi
 
     Parameters
     ----------
-    world : World
+    world : FrontArrays
     labels : LowerLabels
-    target : Target
-        ``upper`` holds real ways only.
-    clock : Clock
-    blocks : Blocks
-    slack : Slack
-    agenda : Agenda
+    target : LabelTarget
+        ``upper`` holds real paths only.
+    clock : TimeBins
+    blocks : EdgeTables
+    slack : InterpolationBounds
+    agenda : ActiveNodes
     begin, end : int
     work : float64[4, CHANNELS]
 

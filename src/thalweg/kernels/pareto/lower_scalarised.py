@@ -30,7 +30,7 @@ class ScalarisedLabelTarget(NamedTuple):
     rate : float
         Price of a second.
     known : float
-        Cost plus priced time of a real way: what is not below leads nowhere.
+        Cost plus priced time of a real path: what is not below leads nowhere.
     time_to_go : float64[N]
         Lower bound of the time to the goal [s].
     floor : float64[N]
@@ -63,7 +63,7 @@ def _lower_bin_values(labels, clock, target, head, sooner, later, value, b):
 
 @kernel_only
 def _sail_piece_scalarised(world, labels, target, clock, blocks, slack, node, piece, counts, work):
-    """Sail on from a node at any moment of a piece of a bin that lies between two slices."""
+    """Sail on from a node at any moment of a piece of a bin that is between two slices."""
     begin, end, value, k, b = piece
     i = k - blocks.first[node]
     if i < 0 or i + 1 >= blocks.count[node]:
@@ -131,15 +131,15 @@ def process_bins_scalarised(world, labels, target, clock, blocks, slack, agenda,
 
     Parameters
     ----------
-    world : World
+    world : FrontArrays
     labels : LowerLabels
         ``cost`` holds cost plus priced time; ``best`` what a ship has that waits since an earlier
         bin, ``dead`` what the node was left with in this bin.
     target : TimePriced
-    clock : Clock
-    blocks : Blocks
-    slack : Slack
-    agenda : Agenda
+    clock : TimeBins
+    blocks : EdgeTables
+    slack : InterpolationBounds
+    agenda : ActiveNodes
     work : float64[4, CHANNELS]
 
     Notes

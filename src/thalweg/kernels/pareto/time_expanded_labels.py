@@ -161,7 +161,7 @@ def cost_margin(labels, clock, network, prices, head, time, cost):
 
 @inlined
 def _any_shut(values, at, span, count):
-    """Return whether an edge is shut at some setting at one of the two slices around."""
+    """Return whether an edge is closed at some setting at one of the two slices around."""
     for s in range(count):
         if values[at + s] != values[at + s] or values[at + span + s] != values[at + span + s]:
             return True
@@ -170,7 +170,7 @@ def _any_shut(values, at, span, count):
 
 @kernel_only
 def _sail_shut(world, labels, target, clock, blocks, node, edge, e0, i, start, work):
-    """Sail an edge now at the settings that are shut at one of the slices around."""
+    """Sail an edge now at the settings that are closed at one of the slices around."""
     time, cost, slot, left, b = start
     network, count = world.network, world.ship.settings.shape[0]
     span = (network.indptr[node + 1] - e0) * 2 * count
@@ -284,7 +284,7 @@ def _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work):
             net = price - rate * took
             if not (took <= ample and net < room):
                 continue
-            if known and room < math.inf:  # not cheaper than before: of no use
+            if known and room < math.inf:  # not cheaper than before: not useful
                 low, paid = values[at - span + s], values[at - span + count + s]
                 before = paid + f * (price - paid) - rate * (low + f * (took - low))
                 if net >= before - 1e-6 * abs(before) and low + f * (took - low) <= took + 1.0:
@@ -300,7 +300,7 @@ def _wait_until(world, labels, target, clock, blocks, node, k, b, counts, work):
 
 @kernel_only
 def _wait_in_bin(world, labels, target, clock, blocks, node, b, counts, work, spare):
-    """Let the best label so far of a node leave in this bin, where waiting may be of use."""
+    """Let the best label so far of a node leave in this bin, where waiting may be useful."""
     again = False
     if labels.best[node] == math.inf or not world.network.can_wait[node]:
         return False
@@ -361,12 +361,12 @@ def process_bins(world, labels, target, clock, blocks, agenda, begin, end, work,
 
     Parameters
     ----------
-    world : World
+    world : FrontArrays
     labels : BinLabels
-    target : Target
-    clock : Clock
-    blocks : Blocks
-    agenda : Agenda
+    target : LabelTarget
+    clock : TimeBins
+    blocks : EdgeTables
+    agenda : ActiveNodes
     begin, end : int
     work : float64[4, CHANNELS]
     spare : float32[2 S]

@@ -4,7 +4,7 @@ import math
 
 from thalweg.kernels.codes import DEPTH, LIMIT_REQUIRED_DEPTH, NO_DATA, OK, OUTSIDE_PERIOD
 from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
-from thalweg.kernels.leg.edge_sailing import interval_of, sail_edge, sample_station
+from thalweg.kernels.leg.edge_sailing import MarchCutoff, interval_of, sail_edge, sample_station
 from thalweg.kernels.leg.point_speed import water_depth
 
 OPENING_TOLERANCE = 0.1  # an opening is found to this [s]
@@ -14,15 +14,17 @@ OPENING_TOLERANCE = 0.1  # an opening is found to this [s]
 def _sail_edge_at(network, sea, ship, edge, tail_node, k, t, work):
     """Sail an edge at any departure of interval k, sampling the tail too."""
     sample_station(sea, tail_node, k, t, work[1])
-    return sail_edge(network, sea, ship, edge, k, t, work[1], work[2], work[3], math.inf, 0.0)
+    cutoff = MarchCutoff(math.inf, 0.0)
+    return sail_edge(network, sea, ship, edge, k, t, cutoff, (work[1], work[2], work[3]))
 
 
 @kernel_only
 def _find_opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival, useless, work):
     """Return the earliest (departure, arrival) of an edge that opens in (shut, opened].
 
-    Where depth is what lacks, which is linear between the times of the data, two departures tell
-    when it will do; else by halving. The arrival is inf if no departure before ``useless`` is open.
+    Where depth is what lacks, which is linear between the times of the data, two departures
+    give the time when it suffices; else by halving. The arrival is inf if no departure before
+    ``useless`` is open.
     """
     required, depth = ship.limits[LIMIT_REQUIRED_DEPTH], float(network.depth[edge])
     guess, share, checking = math.nan, 0.001, False
@@ -35,7 +37,7 @@ def _find_opening(network, sea, ship, edge, tail_node, k, shut, opened, arrival,
         then, status = _sail_edge_at(network, sea, ship, edge, tail_node, k, probe, work)
         if status == OK:
             opened, arrival = probe, then
-            if guessed:  # once just before it, to see that it is shut there
+            if guessed:  # once just before it, to see that it is closed there
                 guess = math.nan if checking else probe - 0.9 * OPENING_TOLERANCE
                 checking = not checking
         else:
@@ -76,7 +78,7 @@ def wait_for_edge(
     quickest : float
         Lower bound of the time under way on this edge [s].
     enough : float
-        A departure is of use only if waiting plus ``factor`` times sailing is below this [s].
+        A departure is useful only if waiting plus ``factor`` times sailing is below this [s].
     work : float64[4, CHANNELS]
         Work space; the first row is left alone.
 
@@ -95,7 +97,7 @@ def wait_for_edge(
     before a candidate that is open (to 0.1 s). Of their arrivals the least is taken: the
     suffix minimum (van Halem 2019, section 3.4, corrected for series that start blocked). A better
     departure between two that are both open is not looked for, and a window between two times can
-    be missed where one sample shuts as another opens.
+    be missed where one sample closes as another opens.
     """
     departure, best = t, math.inf
     if status == OK:

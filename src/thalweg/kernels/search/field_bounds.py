@@ -1,4 +1,4 @@
-"""The extremes of frozen fields: what bounds a search, and which edges no tide ever opens."""
+"""Extremes of frozen fields: bounds for searches, and edges too shallow at every tide."""
 
 import math
 

@@ -15,6 +15,7 @@ from thalweg.kernels.codes import (
 )
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
 from thalweg.kernels.leg.edge_sailing import (
+    MarchCutoff,
     interval_of,
     least_time,
     sail_edge,
@@ -128,8 +129,9 @@ def _best_departure(network, sea, ship, query, node, edge, k, time, enough, work
     factor = 1.0 if query.by_distance else float(network.factor[edge])
     latest = math.inf if query.by_distance else time + enough / factor
     least, quickest = query.slowness, least_time(network, edge, query.slowness)
+    cutoff = MarchCutoff(latest, least)
     arrival, status = sail_edge(
-        network, sea, ship, edge, k, time, work[0], work[2], work[3], latest, least
+        network, sea, ship, edge, k, time, cutoff, (work[0], work[2], work[3])
     )
     if not (query.wait and network.can_wait[node]):
         return time, arrival, status
@@ -169,7 +171,7 @@ def _relax_edge(network, sea, ship, query, distances, labels, memory, node, edge
     if status != OK:
         memory.refused[status] += 1
         return size
-    if arrival == math.inf:  # of no use
+    if arrival == math.inf:  # not useful
         return size
     if arrival > query.horizon:
         memory.refused[ARRIVE_BY] += 1
@@ -193,15 +195,15 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
     Parameters
     ----------
     network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
-    query : Query
+    query : SearchQuery
     distances : float64[M]
         Lower bound of the distance from each state to the goal [m], obeying the triangle
         inequality with the edge lengths; zeros make the search Dijkstra's.
-    labels : Labels
+    labels : NodeLabels
         Filled; nothing may be reached before.
     memory : Workspace
         Work space; its counts are filled: how many nodes were settled, how many edges left them,
-        how many of these were sailed because they could be of use, and how many of these were
+        how many of these were sailed because they could be useful, and how many of these were
         refused for each reason.
 
     Notes

@@ -18,7 +18,7 @@ from thalweg.kernels.codes import (
     OK,
 )
 from thalweg.kernels.compilation.decorators import allocation_free, inlined_by_numba
-from thalweg.kernels.leg.edge_sailing import interval_of, sail_edge, sample_station
+from thalweg.kernels.leg.edge_sailing import MarchCutoff, interval_of, sail_edge, sample_station
 from thalweg.kernels.search import heap
 from thalweg.kernels.search.edge_departure import wait_for_edge
 
@@ -28,7 +28,7 @@ _DEPTH_ROUNDING = 1e-3  # depth that rounding may hide [m]
 
 
 class TravelTimeBounds(NamedTuple):
-    """Lower bounds: time to the goal from every node, and of every edge [s]; inf: no way."""
+    """Lower bounds: time to the goal from every node, and of every edge [s]; inf: no path."""
 
     node: np.ndarray
     edge: np.ndarray
@@ -44,7 +44,7 @@ class DepartureQuery(NamedTuple):
     depart : float
         [s].
     limit : float
-        Costs above this are of no use [s].
+        Costs above this are not useful [s].
     latest : float
         So are later arrivals [s].
     slowness : float
@@ -52,7 +52,7 @@ class DepartureQuery(NamedTuple):
     wait : bool
         Whether waiting is allowed at all.
     heuristic_weight : float
-        Weight of the bounds of the time to go: 1 finds the best way; more finds some way, sooner.
+        Weight of the bounds of the time to go: 1 finds the best path; more finds some path, sooner.
     most : int
         The search gives up after settling so many nodes.
     """
@@ -226,7 +226,7 @@ def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, ahead, me
     times : float64[E]
     goal : int
     ahead : float64[N]
-        Filled; inf where there is no way.
+        Filled; inf where there is no path.
     memory : tuple of int32[N], float64[N], int32[N]
         Heap; its places are -1.
     """
@@ -250,10 +250,10 @@ def least_times_to_goal(reverse_ptr, reverse_edge, tails, times, goal, ahead, me
 def _best_passage(network, sea, ship, trip, node, edge, k, time, until, enough, quickest, work):
     """Return (departure, arrival, status) of the best use of an edge since a time."""
     factor = float(network.factor[edge])
+    cutoff = MarchCutoff(time + enough / factor, trip.slowness)
     arrival, status = sail_edge(
-        network, sea, ship, edge, k, time, work[0], work[2], work[3],
-        time + enough / factor, trip.slowness,
-    )  # fmt: skip
+        network, sea, ship, edge, k, time, cutoff, (work[0], work[2], work[3])
+    )
     if not (trip.wait and network.can_wait[node]):
         return time, arrival, status
     pause = sea.times[k + 1] - time  # until the next time of the data
@@ -319,12 +319,12 @@ def search_departure(network, states, sea, ship, trip, ahead, marks):
     ----------
     network : NetworkArrays
         One state per node; its ``opens`` and ``closes`` are written to.
-    states : States
+    states : TidalStates
     sea, ship : SeaArrays, ShipArrays
-    trip : Trip
-    ahead : Ahead
+    trip : DepartureQuery
+    ahead : TravelTimeBounds
         Bounds that obey the triangle inequality with the times of edges.
-    marks : Marks
+    marks : ProfileWorkspace
         Holds the labels until the next `reset_workspace`, which must have been called before.
     """
     nodes, keys, place, counts = marks.nodes, marks.keys, marks.place, marks.counts

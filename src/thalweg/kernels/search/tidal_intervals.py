@@ -81,7 +81,7 @@ def fill_tidal_states(sea, charted, can_wait, required, states):
         for t in range(last + 1):
             afloat = _depth(sea, charted, n, t) >= least
             if afloat and not before:
-                if open_now:  # a later time afloat: it begins amid the dry
+                if open_now:  # a later time afloat: it begins in the middle of the dry time
                     begin = _threshold_time(sea, charted, n, t - 1, t, required)
                     middle = 0.5 * (states.until[s] + begin)
                     states.closes[s] = middle

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, direct, distance, inverse, positions_along
+from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.kernels import codes
 from thalweg.network import Network, NetworkMeta, Samples, Stations, lattice, mesh
@@ -29,7 +30,7 @@ from thalweg.planning.request.requirements import (
 )
 from thalweg.planning.voyage import Voyage
 from thalweg.sea import standard_names as nm
-from thalweg.search import PreparedNetwork, ProfileSearch
+from thalweg.search import PreparedNetwork, ProfileSearch, prepare_profile_search
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -98,10 +99,10 @@ class ProjectEnvironment:
     def loaded(self, load_factor: float) -> LoadedShip:
         """Return the ship at a load, with its table and limits."""
         ship = self.ship.with_load_factor(load_factor)
-        limits = self.needs.limits.copy()
-        if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]):
+        limits = self.needs.limits
+        if limits.depth_checked:
             keel = self.min_ukc + self.sites.margin
-            limits[codes.LIMIT_REQUIRED_DEPTH] = ship.draught + keel
+            limits = limits.with_required_depth(ship.draught + keel)
         setting = len(ship.speeds) - 1
         top = ship.top_speed(setting)
         speed = float(ship.speeds[setting]) if top is None else top
@@ -115,18 +116,18 @@ def _voyage(sites: Sites, period: tuple[float, float]) -> Voyage:
 
 @dataclass(frozen=True, eq=False)
 class LoadedShip:
-    """A ship at one load: table, limits in the order of kernels, setting, top speed [m/s]."""
+    """A ship at one load: table, limits, setting, top speed [m/s]."""
 
     ship: Ship
     table: PerformanceTable
-    limits: FloatArray
+    limits: Limits
     setting: int
     top_speed: float
 
     @property
     def required_depth(self) -> float:
         """Draught, clearance and margin [m]."""
-        return float(self.limits[codes.LIMIT_REQUIRED_DEPTH])
+        return self.limits.required_depth
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,18 +145,20 @@ class SiteNetwork:
     waters: PreparedNetwork
 
     def passages(
-        self, loaded: LoadedShip, *, full: bool, extra_depth: float = 0.0
+        self, loaded: LoadedShip, *, full: bool, limits: Limits | None = None
     ) -> ProfileSearch:
-        """Prepare the passages from loading to unloading site (full), or back."""
+        """Prepare the passages from loading to unloading site (full), or back.
+
+        ``limits`` replaces those of the loaded ship.
+        """
         ends = (self.network.meta.start, self.network.meta.goal)
-        limits = loaded.limits.copy()
-        limits[codes.LIMIT_REQUIRED_DEPTH] += extra_depth
-        return self.waters.passages(
+        return prepare_profile_search(
+            self.waters,
             loaded.table,
             start=ends[0] if full else ends[1],
             goal=ends[1] if full else ends[0],
             setting=loaded.setting,
-            limits=limits,
+            limits=limits or loaded.limits,
             top_speed=loaded.top_speed,
         )
 

@@ -234,13 +234,17 @@ def no_passage_error(
 def _passable_depth(ways: SiteNetwork, loaded: Any) -> float:
     """Return the greatest depth that some way has all along at its highest tides [m]."""
     low, high = -_MAX_DEPTH, _MAX_DEPTH
-    required = loaded.required_depth
-    if ways.passages(loaded, full=True, extra_depth=low - required).shortest == math.inf:
+    limits = loaded.limits
+
+    def passable(depth: float) -> bool:
+        tried = limits.with_required_depth(depth)
+        return ways.passages(loaded, full=True, limits=tried).shortest < math.inf
+
+    if not passable(low):
         return -math.inf
     for _ in range(_MAX_BISECTIONS):
         middle = 0.5 * (low + high)
-        open_way = ways.passages(loaded, full=True, extra_depth=middle - required).shortest
-        low, high = (middle, high) if open_way < math.inf else (low, middle)
+        low, high = (middle, high) if passable(middle) else (low, middle)
     return low
 
 

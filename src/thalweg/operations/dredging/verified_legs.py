@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.geodesy import MEAN_RADIUS
+from thalweg.core.limits import SITE_LEG_TIGHTENING
 from thalweg.core.types import FloatArray
 from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
 from thalweg.operations.dredging.cycles import SailedLeg, leg_energy
@@ -20,8 +21,6 @@ from thalweg.route import Route, Track, evaluate
 from thalweg.route.referee.limit_checks import is_data_gap
 from thalweg.search import NetworkPassage, ProfileSearch
 
-#: Depth added for a leg while the referee finds a limit broken between the nodes [m].
-DEPTH_MARGINS = (0.0, 0.05, 0.2, 0.5)
 LARGEST_STEP = 600.0  #: twice the referee's coarser step at most [m]
 _CROSS_TRACK_TOLERANCE = 0.5  # nodes so near the line between their neighbours are no waypoints [m]
 
@@ -39,7 +38,7 @@ class SiteLegPlanner:
         self.world, self.ways = world, ways
         self.step = 0.5 * min(ways.network.meta.spacing_m, LARGEST_STEP)
         self._loaded: dict[float, LoadedShip] = {}
-        self._passages: dict[tuple[float, bool, float], ProfileSearch] = {}
+        self._passages: dict[tuple[float, bool, int], ProfileSearch] = {}
 
     def loaded(self, load_factor: float) -> LoadedShip:
         """Return the ship at a load."""
@@ -47,12 +46,16 @@ class SiteLegPlanner:
             self._loaded[load_factor] = self.world.loaded(load_factor)
         return self._loaded[load_factor]
 
-    def passages(self, load_factor: float, *, outward: bool, extra: float = 0.0) -> ProfileSearch:
-        """Return the passages of a load to the unloading site (outward) or back."""
-        key = (load_factor, outward, extra)
+    def passages(self, load_factor: float, *, outward: bool, step: int = 0) -> ProfileSearch:
+        """Return the passages of a load to the unloading site (outward) or back.
+
+        ``step`` is the step of `SITE_LEG_TIGHTENING`.
+        """
+        key = (load_factor, outward, step)
         if key not in self._passages:
             loaded = self.loaded(load_factor)
-            self._passages[key] = self.ways.passages(loaded, full=outward, extra_depth=extra)
+            limits = loaded.limits.tightened(SITE_LEG_TIGHTENING[step])
+            self._passages[key] = self.ways.passages(loaded, full=outward, limits=limits)
         return self._passages[key]
 
     def sail(
@@ -82,9 +85,9 @@ class SiteLegPlanner:
             limit is returned as it is; its route tells what is broken.
         """
         loaded, best = self.loaded(load_factor), None
-        for extra in DEPTH_MARGINS:
+        for step in range(len(SITE_LEG_TIGHTENING)):
             if passage is None:
-                passage = self.passages(load_factor, outward=outward, extra=extra).sail(depart)
+                passage = self.passages(load_factor, outward=outward, step=step).sail(depart)
             if passage.found:
                 route = self._evaluated_passage(passage, loaded)
                 best = route if best is None or route.feasible else best

@@ -51,7 +51,7 @@ def weather_blind_tracks(
 
     Where only the sea provides depth, the route keeps to that depth.
     """
-    depth_from_sea = math.isfinite(context.needs.limits[0]) and not context.chart.has_depth
+    depth_from_sea = context.needs.limits.depth_checked and not context.chart.has_depth
     sea = context.sea if depth_from_sea else _calm_sea(context)
     depart = context.voyage.earliest_departure
     top = len(context.ship.speeds) - 1

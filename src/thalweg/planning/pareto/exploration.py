@@ -46,7 +46,7 @@ def explore_alternative(
             depart=depart,
             last=context.data_end,
             fields=frozen.stations,
-            required=float(trade_off.limits[codes.LIMIT_REQUIRED_DEPTH]),
+            required=trade_off.limits.required_depth,
         )
     if first.arrive > context.latest_arrival:
         raise late_arrival_error(context.latest_arrival, first.arrive)

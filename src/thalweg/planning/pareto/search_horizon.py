@@ -10,7 +10,6 @@ import numpy as np
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import distance
 from thalweg.core.units import HOUR
-from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network, shortest_path
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
@@ -63,7 +62,7 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
     """
     context, depart = trade_off.context, trade_off.context.voyage.earliest_departure
     asked = math.isfinite(context.latest_arrival)
-    tides = math.isfinite(context.needs.limits[codes.LIMIT_REQUIRED_DEPTH])
+    tides = context.needs.limits.depth_checked
     length = shortest_path_length(network)
     if math.isinf(length):  # no path: the period of the geodesic
         ends = trade_off.ends[0], trade_off.ends[-1]

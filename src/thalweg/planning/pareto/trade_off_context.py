@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from thalweg.core.interrupt import InterruptGuard
+from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
 from thalweg.planning.frozen_sea import FrozenSea
 from thalweg.planning.network_selection.route_alternatives import RouteAlternative
@@ -47,7 +48,7 @@ class TradeOffContext:
     consumption: PerformanceTable
     ends: tuple[Endpoint, ...]
     settings: np.ndarray
-    limits: np.ndarray
+    limits: Limits
     interrupt_guard: InterruptGuard
     notes: list[str] = field(default_factory=list)
 

@@ -9,13 +9,13 @@ import numpy as np
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.interrupt import InterruptGuard
+from thalweg.core.limits import NETWORK_TIGHTENING
 from thalweg.core.pareto_fronts import (
     ROUNDING_TOLERANCE,
     evenly_spaced_subset,
     non_dominated_indices,
 )
 from thalweg.core.units import HOUR
-from thalweg.kernels import codes
 from thalweg.planning.network_selection.route_alternatives import (
     RouteAlternative,
     find_route_alternatives,
@@ -34,10 +34,6 @@ from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.request.voyage_objective import priced_objective
 from thalweg.ship.consumption import consumption_table
-
-#: Margins on the depth [m] and on wave height and wind [fraction], tried in turn while the referee
-#: finds no route within the limits.
-_TIGHTENING_SCHEDULE = ((0.0, 0.0), (0.1, 0.02), (0.3, 0.05), (1.0, 0.1))
 
 #: Least and greatest number of routes of a front, and of the steps of their evaluation.
 _MIN_ROUTES, _MAX_ROUTES, _MAX_STEPS = 40, 100, 150_000
@@ -69,11 +65,8 @@ def plan_trade_off(context: PlanningContext, ends: list[Endpoint]) -> Plan:
             interrupt_guard,
         )
         alternatives = find_route_alternatives(context, ends)
-        for depth, fraction in _TIGHTENING_SCHEDULE:
-            limits = context.needs.limits * (1.0 - fraction)
-            limits[codes.LIMIT_REQUIRED_DEPTH] = (
-                context.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
-            )
+        for step in NETWORK_TIGHTENING:  # while the referee finds no route within the limits
+            limits = context.needs.limits.tightened(step)
             explored = _explore_all(replace(trade_off, limits=limits), alternatives)
             scored = _refereed(trade_off, _candidates(replace(trade_off, limits=limits), explored))
             if interrupt_guard.stopped() or any(item.route.feasible for item in scored):

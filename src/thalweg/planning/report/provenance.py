@@ -11,7 +11,6 @@ import numpy as np
 from thalweg.chart.depth.depth_layers import coarse_depth
 from thalweg.core.geodesy import format_position
 from thalweg.core.time import format_time
-from thalweg.kernels import codes
 from thalweg.network import Network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
@@ -29,7 +28,7 @@ _ICE_WARNING_LATITUDE = 72.0
 def route_warnings(context: PlanningContext, route: Route) -> list[str]:
     """Return warnings about a route that limits do not cover."""
     notes = ice_warnings(route) + data_gap_warnings(context, route)
-    if not math.isfinite(context.needs.limits[codes.LIMIT_REQUIRED_DEPTH]):
+    if not context.needs.limits.depth_checked:
         notes += shallow_water_warnings(context, route)
     return notes
 

@@ -95,7 +95,7 @@ class _CoverageProbe:
             (channels | set(ship.needs)) - set(_DIRECTIONS) - {standard_names.BED_DEPTH}
         )
         self.sea, self.chart = sea, chart
-        self.depth = float(needs.limits[codes.LIMIT_REQUIRED_DEPTH])
+        self.depth = needs.limits.required_depth
         first = voyage.earliest_departure
         end = (
             needs.data_end

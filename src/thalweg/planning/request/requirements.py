@@ -6,10 +6,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
 from thalweg.chart import Chart
 from thalweg.core.errors import MissingVariableError, OutsidePeriodError
+from thalweg.core.limits import Limits
 from thalweg.core.time import format_time
 from thalweg.kernels import codes
 from thalweg.planning.voyage import Voyage
@@ -27,8 +26,8 @@ class Requirements:
     ----------
     channels : tuple of int
         Channels of the sea to freeze (see `thalweg.kernels.codes`).
-    limits : ndarray
-        Limits for the kernels, in their order.
+    limits : Limits
+        Limits along the route.
     notes : tuple of str
         Assumptions for data that are missing.
     data_end : float
@@ -36,7 +35,7 @@ class Requirements:
     """
 
     channels: tuple[int, ...]
-    limits: np.ndarray
+    limits: Limits
     notes: tuple[str, ...]
     data_end: float
 
@@ -67,7 +66,7 @@ def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -
             notes.append("No water levels in the data: depths are taken at chart datum.")
         if standard_names.BED_DEPTH in sea.variables:
             channels.add(codes.BED_DEPTH)
-    limits = np.array([required, ship.limits.wave_height, ship.limits.wind_speed], float)
+    limits = Limits(required, ship.limits.wave_height, ship.limits.wind_speed)
     data_end = _checked_data_end(voyage, sea, channels)
     return Requirements(tuple(sorted(channels)), limits, tuple(notes), data_end)
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import distance, positions_along
+from thalweg.core.limits import NETWORK_TIGHTENING, Limits
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
-from thalweg.kernels import codes
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
@@ -31,16 +31,9 @@ _WIDE_GAP = 0.01
 #: Isochrones are drawn until this multiple of the passage's time.
 _ISOCHRONE_TIME_RATIO = 1.5
 _TWO_TIDES = 25 * HOUR
-#: What is tried in turn while the referee finds a limit broken between the stations: how much finer
-#: the network, the margin on the depth [m], and on the limits of wave height and wind [fraction].
-_TIGHTENING_SCHEDULE = (
-    (1, 0.0, 0.0),
-    (1, 0.1, 0.02),
-    (2, 0.0, 0.0),
-    (2, 0.3, 0.05),
-    (4, 0.0, 0.0),
-    (4, 1.0, 0.1),
-)
+#: Attempts while the referee finds a limit exceeded between the stations: how many times finer the
+#: network is, and the step of `NETWORK_TIGHTENING`.
+_ATTEMPTS = ((1, 0), (1, 1), (2, 0), (2, 2), (4, 0), (4, 3))
 
 
 @dataclass(frozen=True)
@@ -87,13 +80,10 @@ def plan_passage(
     networks: dict[int, Network] = {}
     passage: PassageResult | None = None
     refusal: NoRouteError | None = None
-    for finer, depth, fraction in _TIGHTENING_SCHEDULE:
+    for finer, step in _ATTEMPTS:
         if finer not in networks:
             networks[finer] = _network(context, (start, goal), finer, networks)
-        limits = context.needs.limits * (1.0 - fraction)
-        limits[codes.LIMIT_REQUIRED_DEPTH] = (
-            context.needs.limits[codes.LIMIT_REQUIRED_DEPTH] + depth
-        )
+        limits = context.needs.limits.tightened(NETWORK_TIGHTENING[step])
         try:
             tried = _search_and_refine(context, networks[finer], (start, goal), window, limits)
         except NoRouteError as error:
@@ -152,7 +142,7 @@ def _search_and_refine(
     network: Network,
     ends: tuple[Endpoint, Endpoint],
     window: tuple[float, float],
-    limits: np.ndarray,
+    limits: Limits,
 ) -> PassageResult:
     """Search, refine and bound the passage on one network with one set of limits."""
     frozen, result = _search(context, network, limits, window, ends)
@@ -172,7 +162,7 @@ def _search_and_refine(
 
 
 def _refined_bound_path(
-    context: PlanningContext, network: Network, bound: LowerBound, route: Route, limits: np.ndarray
+    context: PlanningContext, network: Network, bound: LowerBound, route: Route, limits: Limits
 ) -> Route:
     """Where the gap is wide, refine the path of the bound as well and return the better route.
 
@@ -222,7 +212,7 @@ def isochrones(
     return everywhere.node_arrival
 
 
-def refine_track(context: PlanningContext, track: Track, limits: np.ndarray) -> Route:
+def refine_track(context: PlanningContext, track: Track, limits: Limits) -> Route:
     """Evaluate a track, refine it, and return the better route."""
     context.report_progress("refining the route")
     scored = context.evaluate(track)
@@ -256,7 +246,7 @@ def track_from_result(network: Network, result: SearchResult, setting: int) -> T
 def _search(
     context: PlanningContext,
     network: Network,
-    limits: np.ndarray,
+    limits: Limits,
     window: tuple[float, float],
     ends: tuple[Endpoint, Endpoint],
 ) -> tuple[FrozenSea, SearchResult]:
@@ -278,13 +268,13 @@ def _search(
             raise _late_arrival_error(context, network, limits, window, ends)
         raise no_route_error(
             network, result, ends, depart=context.voyage.earliest_departure, last=context.data_end,
-            fields=frozen.stations, required=float(limits[codes.LIMIT_REQUIRED_DEPTH]),
+            fields=frozen.stations, required=limits.required_depth,
         )  # fmt: skip
     return frozen, result
 
 
 def _late_arrival_error(
-    context: PlanningContext, network: Network, limits: np.ndarray, window: tuple[float, float],
+    context: PlanningContext, network: Network, limits: Limits, window: tuple[float, float],
     ends: tuple[Endpoint, Endpoint],
 ) -> NoRouteError:  # fmt: skip
     """Return the error for a missed latest arrival; raises where there is no route at all."""
@@ -314,7 +304,7 @@ def _run_search(
     context: PlanningContext,
     network: Network,
     frozen: FrozenSea,
-    limits: np.ndarray,
+    limits: Limits,
     window: tuple[float, float],
 ) -> SearchResult:
     options = {

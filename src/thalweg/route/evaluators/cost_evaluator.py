@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from thalweg.core.limits import Limits
 from thalweg.core.objective import LegPrices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.leg import population_sailing as columns
@@ -175,7 +176,7 @@ def make_cost_evaluator(
     table: PerformanceTable | TableArrays,
     fuel: PerformanceTable | TableArrays,
     fields: GridFields,
-    limits: ArrayLike,
+    limits: Limits,
     chart: Chart | None,
     track: Track,
     prices: LegPrices,
@@ -190,8 +191,8 @@ def make_cost_evaluator(
         Speed through water [m/s], and the rate of consumption that is priced, such as fuel [kg/s].
     fields : GridFields
         The sea frozen around the track.
-    limits : array_like of float
-        Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
     chart : Chart or None
         Land, zones, canals and charted depth.
     track : Track

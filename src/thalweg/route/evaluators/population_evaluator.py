@@ -11,9 +11,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
@@ -238,7 +238,7 @@ def make_evaluator(
     table: PerformanceTable | TableArrays,
     fuel: PerformanceTable | TableArrays,
     fields: GridFields,
-    limits: ArrayLike,
+    limits: Limits,
     depart: float,
     chart: Chart | None = None,
     latest: float = math.inf,
@@ -256,8 +256,8 @@ def make_evaluator(
         Speed through water [m/s] and fuel rate [kg/s].
     fields : GridFields
         The sea frozen around the tracks.
-    limits : array_like of float
-        Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
     depart : float
         [s since 1970-01-01T00:00Z].
     chart : Chart, optional

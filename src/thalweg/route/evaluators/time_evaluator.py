@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.geodesy import METRES_PER_DEGREE, direct, inverse, rough_lengths
+from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels import codes
 from thalweg.kernels.leg.polyline_sailing import (
@@ -235,7 +236,7 @@ def make_time_evaluator(
     table: PerformanceTable | TableArrays,
     chart: Chart | None,
     fields: GridFields,
-    limits: ArrayLike,
+    limits: Limits,
     origin: float,
     by_length: bool,
     total: float,
@@ -251,8 +252,8 @@ def make_time_evaluator(
         Land, zones and charted depth; None: not checked.
     fields : GridFields
         The sea frozen around the tracks.
-    limits : array_like of float
-        Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
     origin : float
         Where times count from [s since 1970-01-01T00:00Z].
     by_length : bool
@@ -266,7 +267,7 @@ def make_time_evaluator(
     raster = raster_arrays(fields, origin)
     arrays = table if isinstance(table, TableArrays) else table.kernel_arrays()
     spacing = min(max(0.5 * fields.dlat * METRES_PER_DEGREE, total / 400.0), _MAX_PIECE_LENGTH)
-    bounds = np.asarray(limits, np.float64)
+    bounds = limits.array
     waiting_parameters = np.zeros(3)
     if wait and np.isfinite(bounds).any():
         pause = float(np.clip(np.median(np.diff(raster.times)), *_WAIT_STEPS))

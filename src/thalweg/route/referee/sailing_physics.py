@@ -21,6 +21,7 @@ from thalweg.ship.condition_variables import (
     WAVE_NORTH,
 )
 from thalweg.ship.conditions import Conditions
+from thalweg.ship.methods.current_triangle import current_triangle
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
@@ -179,24 +180,20 @@ def solve_sailing_state(
 
     Notes
     -----
-    With the current's components ``a`` along and ``b`` across the course (positive to starboard)
-    the heading is ``course - asin(b / V)`` and the speed over ground ``a + sqrt(V^2 - b^2)``
-    (van Halem 2019, section 2.3). As V depends on the heading where waves and wind are met at
-    an angle, both are found by fixed-point iteration to a relative 1e-11.
+    Heading and speed over ground follow from the speed through water V by
+    `thalweg.ship.methods.current_triangle.current_triangle` (van Halem 2019, section 2.3). As V
+    depends on the heading where waves and wind are met at an angle, both are found by fixed-point
+    iteration to a relative 1e-11.
     """
     sampled, depth = sample_sea_and_depth(world, points, time)
-    east, north = np.sin(points.course), np.cos(points.course)
-    along = across = np.zeros(len(points))
+    east = north = np.zeros(len(points))
     if world.has_current:
-        current_east, current_north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
-        along = current_east * east + current_north * north
-        across = current_east * north - current_north * east
+        east, north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
+    across = east * np.cos(points.course) - north * np.sin(points.course)
     speed, drift = _solve_current_triangle(world, points, time, sampled, depth, across, guess)
-    with np.errstate(invalid="ignore"):
-        ground = along + np.sqrt(speed * speed - across * across)
-        ground = np.where((ground > 0.0) & (speed > np.abs(across)), ground, math.nan)
-    heading = (points.course - drift) % (2.0 * math.pi)
-    return SailingState(sampled, depth, heading, speed, ground)
+    found = current_triangle(speed, points.course, current_east=east, current_north=north)
+    heading = np.where(found.possible, found.heading, (points.course - drift) % (2.0 * math.pi))
+    return SailingState(sampled, depth, heading, speed, found.speed_over_ground)
 
 
 def conditions_at(

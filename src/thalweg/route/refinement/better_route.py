@@ -8,10 +8,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from thalweg.core.geodesy import unwrap_longitude
-from thalweg.core.types import FloatArray
+from thalweg.core.limits import REFINEMENT_TIGHTENING, Limits
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
@@ -38,8 +37,8 @@ _RASTER_MARGINS = (
     0.6,
 )  # margins around the track, as shares of its box, tried while a track comes near the edge
 _RASTER_EDGE_SHARE = 0.04  # distance to the edge that counts as near, as a share of the raster
-# (share by which limits are tightened, whether it may wait anywhere), in the order of attempts
-_ATTEMPTS = ((0.0, True), (0.005, True), (0.02, True), (0.06, True), (0.0, False), (0.02, False))
+# (step of `REFINEMENT_TIGHTENING`, whether it may wait anywhere), in the order of attempts
+_ATTEMPTS = ((0, True), (1, True), (2, True), (3, True), (0, False), (2, False))
 _ATTEMPTS_WITHOUT_WAITING = 4  # those that differ for a ship that does not wait
 _WAIT_TOLERANCE = 0.5  # seconds to which waits are shortened, or this share of the voyage if less:
 _WAIT_TOLERANCE_SHARE = 1e-5
@@ -60,7 +59,7 @@ def better_route(
     sea: Sea,
     chart: Chart | None,
     table: PerformanceTable | TableArrays,
-    limits: ArrayLike,
+    limits: Limits,
     min_ukc: float | None = 0.0,
     objective: str = "time",
     wait: bool | None = None,
@@ -76,8 +75,8 @@ def better_route(
     chart : Chart or None
     table : PerformanceTable or TableArrays
         Of the ship.
-    limits : array_like of float
-        Required depth [m], wave height [m] and wind speed [m/s] for the kernels.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
     min_ukc : float or None
         As for `evaluate`.
     objective : {"time", "distance"}
@@ -109,7 +108,7 @@ def better_route(
         return min(scored, refined, key=lambda item: comparison_key(item, objective, chart))
     best, infeasible = scored, None
     may_wait = bool(scored.track.wait.any()) if wait is None else wait
-    for margin, patient in _ATTEMPTS[: None if may_wait else _ATTEMPTS_WITHOUT_WAITING]:
+    for step, patient in _ATTEMPTS[: None if may_wait else _ATTEMPTS_WITHOUT_WAITING]:
         track = scored.track
         for edge in _RASTER_MARGINS:
             fields = freeze_around_track(scored, track, edge, ship=ship, sea=sea, limits=limits)
@@ -117,7 +116,7 @@ def better_route(
                 track,
                 table=table,
                 fields=fields,
-                limits=tightened_limits(limits, margin),
+                limits=limits.tightened(REFINEMENT_TIGHTENING[step]),
                 chart=chart,
                 objective=objective,
                 wait=may_wait and patient,
@@ -162,7 +161,7 @@ def freeze_around_track(
     *,
     ship: Ship,
     sea: Sea,
-    limits: ArrayLike,
+    limits: Limits,
     until: float | None = None,
 ) -> GridFields:
     """Freeze the sea on a raster around a track, as fine as the data and a size limit allow.
@@ -181,7 +180,7 @@ def freeze_around_track(
     arrive = route.arrive if math.isfinite(route.arrive) else start + 2.0 * _usual(route, ship)
     arrive = arrive if until is None else max(arrive, until)
     end = start + 1.1 * (arrive - start) + 600.0
-    channels = _channels(ship, sea, np.asarray(limits, float))
+    channels = _channels(ship, sea, limits)
     extra = {codes.SPEED_FIELD: ship.speed_field} if ship.speed_field is not None else None
     size = RasterSize(margin, *_CELLS, LARGEST_RASTER)
     lon = unwrap_longitude(track.lon)
@@ -289,24 +288,15 @@ def comparison_key(route: Route, objective: str, chart: Chart | None) -> tuple[b
     return not route.feasible, cost, route.arrive
 
 
-def tightened_limits(limits: ArrayLike, margin: float) -> FloatArray:
-    """Return limits that are stricter by a share of themselves."""
-    tight = np.array(limits, dtype=float)
-    tight[codes.LIMIT_REQUIRED_DEPTH] *= 1.0 + margin
-    tight[codes.LIMIT_WAVE_HEIGHT] *= 1.0 - margin
-    tight[codes.LIMIT_WIND_SPEED] *= 1.0 - margin
-    return tight
-
-
 def _usual(route: Route, ship: Ship) -> float:
     speeds = ship.speeds[np.isfinite(ship.speeds)]
     return float(route.legs["length"].sum()) / float(speeds[-1] if speeds.size else 5.0)
 
 
-def _channels(ship: Ship, sea: Sea, limits: FloatArray) -> list[int]:
+def _channels(ship: Ship, sea: Sea, limits: Limits) -> list[int]:
     """Return the channels that the kernels need."""
     names = {CHANNEL_VARIABLES[codes.CURRENT_EAST], CHANNEL_VARIABLES[codes.CURRENT_NORTH]}
     names |= ship.needs
-    if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]) or "depth" in ship.reads:
+    if limits.depth_checked or "depth" in ship.reads:
         names |= {CHANNEL_VARIABLES[codes.WATER_LEVEL], CHANNEL_VARIABLES[codes.BED_DEPTH]}
     return [c for c, name in CHANNEL_VARIABLES.items() if name in names and name in sea.variables]

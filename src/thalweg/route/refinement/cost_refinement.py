@@ -7,10 +7,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
+from thalweg.core.limits import REFINEMENT_TIGHTENING, Limits, Tightening
 from thalweg.core.objective import Objective
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.kernels.leg.table_lookup import TableArrays
@@ -23,7 +23,7 @@ from thalweg.route.evaluators.polyline import (
 )
 from thalweg.route.evaluators.time_evaluator import penalty_factors
 from thalweg.route.referee.evaluation import evaluate
-from thalweg.route.refinement.better_route import freeze_around_track, tightened_limits
+from thalweg.route.refinement.better_route import freeze_around_track
 from thalweg.route.refinement.sailed_polyline import optimise_line_offsets
 from thalweg.route.refinement.simplification import simplified_route
 from thalweg.route.refinement.smoothing import resampled_polyline
@@ -40,11 +40,7 @@ if TYPE_CHECKING:
     from thalweg.ship.fuel_prices import FuelTerms
 
 _OBJECTIVE_COLUMNS = {"fuel": "fuel", "cost": "cost", "co2": "co2"}
-_LIMIT_MARGINS = (
-    0.0,
-    0.005,
-    0.02,
-)  # by which limits are tightened while the referee finds violations
+_TIGHTENING = REFINEMENT_TIGHTENING[:3]  # steps tried while the referee finds violations
 _MIN_LEGS_OF_LEVEL = (6, 12, 24, 48)  # least number of legs of each level
 _PASSES_PER_LEVEL = 2  # choices of settings, each followed by Newton's method
 _NEWTON_STEPS = 4  # iterations of Newton's method
@@ -66,7 +62,7 @@ def polish(
     chart: Chart | None,
     table: PerformanceTable | TableArrays,
     fuel: PerformanceTable | TableArrays,
-    limits: ArrayLike,
+    limits: Limits,
     objective: str = "cost",
     arrive_by: TimeLike | None = None,
     terms: FuelTerms | None = None,
@@ -86,8 +82,8 @@ def polish(
     table, fuel : PerformanceTable or TableArrays
         Of the ship: speed through water [m/s] and fuel rate [kg/s] (`Ship.tabulate_fuel`). Where
         the cost is that of time and cubed speed (`FuelTerms.by_speed`) ``fuel`` is not used.
-    limits : array_like of float
-        Required depth [m], wave height [m] and wind speed [m/s] for the kernels.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
     objective : {"fuel", "cost", "co2"}
     arrive_by : time, optional
         Latest arrival; by default when the given route arrives, and never earlier than that.
@@ -145,13 +141,13 @@ def polish(
             scored, scored.track, 0.2, ship=ship, sea=sea, limits=limits, until=latest
         )
 
-    def evaluator_of(track: Track, margin: float) -> CostEvaluator:
+    def evaluator_of(track: Track, step: Tightening) -> CostEvaluator:
         return make_cost_evaluator(
             ship=ship,
             table=table,
             fuel=fuel,
             fields=frozen,
-            limits=tightened_limits(limits, margin),
+            limits=limits.tightened(step),
             chart=chart,
             track=track,
             prices=prices,
@@ -167,7 +163,7 @@ def polish(
 def _best_attempt(
     scored: Route,
     latest: float,
-    evaluator_of: Callable[[Track, float], CostEvaluator],
+    evaluator_of: Callable[[Track, Tightening], CostEvaluator],
     score: Callable[[Track], Route],
     value: Callable[[Route], float],
 ) -> Route:
@@ -179,8 +175,8 @@ def _best_attempt(
 
     def attempt(start: Route, target: float) -> Route:
         best = start
-        for margin in _LIMIT_MARGINS:
-            evaluator = evaluator_of(start.track, margin)
+        for step in _TIGHTENING:
+            evaluator = evaluator_of(start.track, step)
             line = _optimised(
                 polyline_of_track(start.track, evaluator), evaluator, target - start.depart
             )

@@ -9,9 +9,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from thalweg.core.geodesy import rough_lengths
+from thalweg.core.limits import Limits
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
@@ -54,7 +54,7 @@ def smooth(
     *,
     table: PerformanceTable | TableArrays,
     fields: GridFields,
-    limits: ArrayLike,
+    limits: Limits,
     chart: Chart | None = None,
     objective: str = "time",
     wait: bool | None = None,
@@ -70,8 +70,8 @@ def smooth(
         Speed through water.
     fields : GridFields
         The sea frozen around the track.
-    limits : array_like of float
-        Required depth, wave height and wind speed, in the order of `thalweg.kernels.codes`.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
     chart : Chart, optional
         Land, zones and charted depth that are kept clear.
     objective : {"time", "distance"}
@@ -139,7 +139,7 @@ def smooth(
 
 
 def _duration_function(
-    table: PerformanceTable | TableArrays, fields: GridFields, limits: ArrayLike
+    table: PerformanceTable | TableArrays, fields: GridFields, limits: Limits
 ) -> Callable[[Track], float]:
     """Return a function of the duration of a track at sea [s]; inf if it cannot be sailed."""
 

@@ -39,7 +39,8 @@ _END_SHARE = 0.05  # of the horizon: longer than edges take
 _MAX_ERROR_RATIO = (
     0.4  # of the error left by halving steps, at most, if the sea is smooth: a quarter is due
 )
-_SAMPLED_EDGES = 400  # edges looked at to choose the slices
+PROGRESS_CHUNKS = 50  #: how often the progress of a search over the bins is reported
+_SAMPLED_EDGES = 400  # edges considered to choose the slices
 _LABEL_BYTES = 20
 _ROUND_BIN_WIDTHS = [
     0.1,
@@ -62,7 +63,7 @@ _ROUND_BIN_WIDTHS += [300.0, 450.0, 600.0, 900.0, 1200.0, 1800.0, 3600.0]
 
 
 class BinWindows(NamedTuple):
-    """Bins of every state between which a label may be of use; none when last < first."""
+    """Bins of every state between which a label may be useful; none when last < first."""
 
     first: NDArray[np.int32]
     last: NDArray[np.int32]
@@ -78,8 +79,8 @@ class Discretisation(NamedTuple):
 
     Attributes
     ----------
-    clock : Clock
-    windows : Windows
+    clock : TimeBins
+    windows : BinWindows
     slices : float64[K]
         [s after departure].
     table_error : float
@@ -108,9 +109,9 @@ def choose_discretisation(
 
     Parameters
     ----------
-    front_problem : Gathered
-    request : Request
-    bounds : Bounds
+    front_problem : FrontProblem
+    request : FrontRequest
+    bounds : BoundsToGoal
     earliest : float64[N]
         Earliest arrival at every state [s].
     bin_s : float, optional
@@ -255,9 +256,9 @@ def _table_error(
     clock: TimeBins,
     slices: FloatArray,
 ) -> tuple[float, bool]:
-    """Return how far legs amid two slices are from the mean of the two, as a share.
+    """Return how far legs midway between two slices are from the mean of the two, as a share.
 
-    Also whether any is shut at one of the slices or amid them, and open at another.
+    Also whether any is closed at one of the slices or midway between them, and open at another.
     """
     rng = np.random.default_rng(0)
     usable = windows.last >= windows.first

@@ -7,9 +7,10 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.limits import Limits
 from thalweg.core.objective import LegPrices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import (
@@ -77,10 +78,10 @@ class FrontProblem(NamedTuple):
 
     Attributes
     ----------
-    world : World
-    given : Problem
+    world : FrontArrays
+    given : SearchProblem
         For the search of the earliest arrival, at the highest setting.
-    whole : Problem
+    whole : SearchProblem
         The same with one state for each node.
     origin : int64[E]
         Edge of the network that each edge of the world comes from.
@@ -106,7 +107,7 @@ def make_front_problem(
     fuel: PerformanceTable | TableArrays,
     *,
     request: FrontRequest,
-    limits: ArrayLike,
+    limits: Limits,
     top_speed: float | None,
 ) -> FrontProblem:
     """Gather the arrays that a front is searched with."""
@@ -125,7 +126,7 @@ def make_front_problem(
     whole = make_search_problem(
         network, fields, table, setting=int(request.settings[-1]), limits=limits, top_speed=top
     )
-    given, origin = _with_states(whole, request)
+    given, origin = _with_states(whole, request, limits.required_depth)
     factor = np.ones_like(whole.network.factor)
     whole = whole._replace(network=whole.network._replace(factor=factor))
     if given.sea.channel_index[SPEED_FIELD] >= 0:
@@ -141,13 +142,15 @@ def make_front_problem(
     return FrontProblem(world, given, whole, origin, tails, fastest, thriftiest)
 
 
-def _with_states(given: SearchProblem, request: FrontRequest) -> tuple[SearchProblem, IntArray]:
+def _with_states(
+    given: SearchProblem, request: FrontRequest, required_depth: float
+) -> tuple[SearchProblem, IntArray]:
     """Split nodes that fall dry into states; return where each edge comes from as well."""
     net = given.network
     numbered = net._replace(factor=np.arange(len(net.target), dtype=np.float64))
     if request.wait:
         keep = request.start, request.goal
-        numbered = tidal_states(numbered, given.sea, given.ship.limits, keep)
+        numbered = tidal_states(numbered, given.sea, required_depth, keep)
     origin = numbered.factor.astype(np.int64)
     net = numbered._replace(factor=np.ones(len(origin), np.float32))
     return given._replace(network=net), origin
@@ -195,7 +198,7 @@ def still_water_values(table: TableArrays, ship: MultiSettingShip) -> FloatArray
 
 
 class BoundsToGoal(NamedTuple):
-    """What the way from a state to the goal takes at least.
+    """Lower bounds of time and cost from a state to the goal.
 
     Attributes
     ----------
@@ -255,7 +258,7 @@ class BackwardSearch:
         return self._least(self._costs(rate)) * (1.0 - 1e-6)
 
     def way(self, start: int, rate: float) -> IntArray:
-        """Return the states of the way of least cost plus price of time; empty if there is none."""
+        """Return the states of the path of least cost plus priced time; empty if there is none."""
         parent = np.empty(len(self._indptr) - 1, np.int64)
         distance = self._least(self._costs(rate), parent)
         if not math.isfinite(distance[start]):
@@ -321,7 +324,7 @@ def _time_prices(front_problem: FrontProblem, weight: float) -> FloatArray:
 def _on_or_above_line(
     a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]
 ) -> bool:
-    """Return whether b lies on or above the line from a to c."""
+    """Return whether b is on or above the line from a to c."""
     return (b[1] - a[1]) * (c[0] - a[0]) >= (c[1] - a[1]) * (b[0] - a[0])
 
 

@@ -1,4 +1,4 @@
-"""What a front is: points that are real ways, a lower front below them, and how to choose."""
+"""The Pareto front on a network: points that are real paths, and a lower front below them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thalweg.core.types import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class FrontPoint:
-    """One way over the network, edge by edge, with its settings and times.
+    """One path over the network, edge by edge, with its settings and times.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class FrontWork:
         Difference between these tables and the legs themselves, as a share, met on a sample of
         edges at times between slices (95th percentile).
     dropped : int
-        Ways of the front that turned out shut when sailed exactly.
+        Paths of the front that turned out closed when sailed exactly.
     memory : int
         Memory planned for [bytes].
     """
@@ -86,14 +86,14 @@ class FrontWork:
 
 @dataclass(frozen=True, eq=False)
 class NetworkFront:
-    """Ways none of which is dominated in time and cost, and what no way can be below.
+    """Paths that are not dominated in time and cost, and a lower bound of any path.
 
     Attributes
     ----------
     points : tuple of FrontPoint
         By ascending time and falling cost.
     lower_time, lower_cost : float64[L]
-        The lower front: no way on the network that takes at most a time costs less than the
+        The lower front: no path on the network that takes at most a time costs less than the
         last value up to that time. Empty when it was not asked for.
     bin_s : float
         Width of the bins of time [s].
@@ -130,13 +130,13 @@ class NetworkFront:
         return self.points[-1]
 
     def lower_at(self, time: float) -> float:
-        """Return what no way that takes at most a time [s] can cost less than; NaN if unknown."""
+        """Return what no path that takes at most a time [s] can cost less than; NaN if unknown."""
         n = int(np.searchsorted(self.lower_time, time, side="right"))
         return float(self.lower_cost[n - 1]) if n else float("nan")
 
     @property
     def gap(self) -> FloatArray:
-        """How far each point may be above the best way of its time, as a share of its cost.
+        """How far each point may be above the best path of its time, as a share of its cost.
 
         NaN without a lower front; 0 where the cost is 0.
         """
@@ -146,7 +146,7 @@ class NetworkFront:
         return np.where(np.isnan(below), np.nan, np.maximum(share, 0.0))
 
     def knee(self) -> FrontPoint:
-        """Return the point that lies farthest below the line between the ends of the front."""
+        """Return the point that is farthest below the line between the ends of the front."""
         time, cost = self.time, self.cost
         spans = np.ptp(time), np.ptp(cost)
         if min(spans) <= 0.0:

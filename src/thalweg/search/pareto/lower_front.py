@@ -1,4 +1,4 @@
-"""The lower front: what no way on the network can be below."""
+"""The lower front: a lower bound of the cost of every path on the network, by time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,12 @@ from thalweg.kernels.pareto.lower_labels import (
 )
 from thalweg.kernels.pareto.lower_scalarised import ScalarisedLabelTarget, process_bins_scalarised
 from thalweg.kernels.pareto.time_expanded_labels import PRUNED, RELAXED, VISITED
-from thalweg.search.pareto.discretisation import Discretisation, new_agenda, new_target
+from thalweg.search.pareto.discretisation import (
+    PROGRESS_CHUNKS,
+    Discretisation,
+    new_agenda,
+    new_target,
+)
 from thalweg.search.pareto.front_problem import (
     BoundsToGoal,
     FrontProblem,
@@ -49,30 +54,26 @@ def lower_front(
     plan: Discretisation,
     blocks: EdgeTables,
     points: tuple[FrontPoint, ...],
-    tell: Callable[[float], None],
-    chunks: int,
+    report: Callable[[float], None],
 ) -> LowerFront:
     """Search the lower front below the points of a front.
 
     Parameters
     ----------
-    front_problem : Gathered
-    request : Request
-    bounds : Bounds
-    plan : Plan
-    blocks : Blocks
+    front_problem : FrontProblem
+    request : FrontRequest
+    bounds : BoundsToGoal
+    plan : Discretisation
+    blocks : EdgeTables
         Tables of edges, as far as they are filled.
     points : tuple of FrontPoint
-        Real ways: labels that cannot lead below them are dropped.
-    tell : callable
-        Called with the share done, ``chunks`` times.
-    chunks : int
+        Real paths: labels that cannot lead below them are dropped.
+    report : callable
+        Called with the share done, `PROGRESS_CHUNKS` times.
     """
     front_problem = _waiting_price_capped(front_problem)
     slack = _new_slack(front_problem, bounds, blocks)
-    halves = _lower_by_bins(
-        front_problem, request, bounds, plan, blocks, slack, points, tell, chunks
-    )
+    halves = _lower_by_bins(front_problem, request, bounds, plan, blocks, slack, points, report)
     lines, priced = _lower_by_time_prices(
         front_problem, request, bounds, plan, blocks, slack, points
     )
@@ -105,8 +106,7 @@ def _lower_by_bins(
     blocks: EdgeTables,
     slack: InterpolationBounds,
     points: tuple[FrontPoint, ...],
-    tell: Callable[[float], None],
-    chunks: int,
+    report: Callable[[float], None],
 ) -> LowerFront:
     """Let every arrival count for the start of its bin."""
     clock = plan.clock
@@ -116,12 +116,12 @@ def _lower_by_bins(
     labels = _new_labels(plan)
     labels.cost[labels.place[request.start]] = 0.0
     agenda, work = new_agenda(plan.windows), new_edge_workspace()
-    edges = np.unique(np.linspace(0, clock.count, chunks + 1).astype(int))
+    edges = np.unique(np.linspace(0, clock.count, PROGRESS_CHUNKS + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
         process_bins_lower(
             front_problem.world, labels, target, clock, blocks, slack, agenda, a, b, work
         )
-        tell(b / clock.count)
+        report(b / clock.count)
     first, last = int(labels.first[request.goal]), int(labels.last[request.goal])
     begin = int(labels.place[request.goal])
     time = np.arange(first, last + 1) * clock.width

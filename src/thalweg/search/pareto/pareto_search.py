@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError, NoRouteError
+from thalweg.core.limits import Limits
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
@@ -27,6 +28,7 @@ from thalweg.search.limited_waiting import (
     waiting_is_restricted,
 )
 from thalweg.search.pareto.discretisation import (
+    PROGRESS_CHUNKS,
     Discretisation,
     choose_discretisation,
     new_agenda,
@@ -63,7 +65,6 @@ if TYPE_CHECKING:
     from thalweg.ship.tables.performance_table import PerformanceTable
 
 
-_PROGRESS_CHUNKS = 50
 MEMORY_LIMIT = 3e9  # [bytes]
 
 
@@ -76,7 +77,7 @@ def pareto_front(
     start: int,
     goal: int,
     depart: float,
-    limits: ArrayLike,
+    limits: Limits,
     latest: float,
     settings: Sequence[int] | NDArray[np.int64] | None = None,
     prices: LegPrices = FUEL_MASS,
@@ -88,7 +89,7 @@ def pareto_front(
     top_speed: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NetworkFront:
-    """Find the ways between two nodes that no other beats in both time and cost.
+    """Find the Pareto front of time and cost of the paths between two nodes.
 
     The cost of a path is the sum over its edges of fuel times its price and of canal dues, plus
     the price of the whole time, plus that of the fuel burnt while waiting
@@ -107,7 +108,7 @@ def pareto_front(
         Nodes.
     depart, latest : float
         Time at the start and latest arrival [s since epoch].
-    limits : array_like
+    limits : Limits
         As in `thalweg.search.earliest_arrival`.
     settings : sequence of int, optional
         Settings to choose from on every edge (default: all). The highest is taken to be the
@@ -133,7 +134,7 @@ def pareto_front(
 
     Returns
     -------
-    Front
+    NetworkFront
 
     Raises
     ------
@@ -141,7 +142,7 @@ def pareto_front(
         If the latest arrival is before the earliest possible (``details["earliest"]``), if the
         memory does not suffice (``details["memory"]``), or if the request makes no sense.
     NoRouteError
-        If there is no way at all, with the reasons.
+        If there is no path at all, with the reasons.
 
     Notes
     -----
@@ -151,31 +152,31 @@ def pareto_front(
 
     * A label keeps its own time, not that of its bin, and every point of the front is sailed
       again, leg by leg, with the kernel that `earliest_arrival` sails with: its time and cost
-      are those of a real way. The fastest point is that of `earliest_arrival` at the highest
+      are those of a real path. The fastest point is that of `earliest_arrival` at the highest
       setting, as exact as that is; with limits in waves, which a lower setting may keep where the
-      highest does not, it is the fastest way found.
+      highest does not, it is the fastest path found.
     * One label per bin is not always the right one: a dearer label of the same bin may be
-      earlier by less than the bin and win later. So the front lies on or above the true one,
+      earlier by less than the bin and win later. So the front is on or above the true one,
       and nearer the narrower the bins are.
     * While searching, durations and costs of edges are interpolated linearly between departures at
       slices of time (``work.slices``; chosen so that the interpolation is right within 0.1 % at 95
       % of a sample, see ``work.table_error``, or the tables would be too large). This may mislead
-      a choice, not a number: all points are sailed again. Where an edge opens or shuts between two
+      a choice, not a number: all points are sailed again. Where an edge opens or closes between two
       slices it is sailed exactly.
     * Where the ship may wait, a label is dropped if an earlier one costs no more with the waiting
       in between paid: exact, since the earlier ship can wait. A waiting ship leaves at slices, and
-      where an edge is shut at all settings at one of the slices around, at the start of any bin.
+      where an edge is closed at all settings at one of the slices around, at the start of any bin.
       Elsewhere (and with ``wait=False`` everywhere) labels are compared inside a bin only.
     * The lower front is the larger of two bounds. One lets every arrival count for the start of
       its bin and leaves at any moment of the bin, whatever is earliest and cheapest; it closes as
       the bins narrow. The other is the least cost plus a price of time, for up to 6 prices, which
       loses nothing to the bins but bounds the lower hull of the front only. Both take an edge at
-      the most favourable moment of the bin, less twice the difference to the leg itself met amid
-      the two slices around at the lowest and the highest setting; both let a ship wait as long as
-      it likes where it may wait at all; waiting then costs no more than sailing at its cheapest.
+      the most favourable moment of the bin, less twice the difference to the leg itself midway
+      between the two slices around, at the lowest and the highest setting. Both let a ship wait
+      without end where it may wait at all; waiting then costs no more than sailing at its cheapest.
       They are certain as far as durations and costs between slices stay within twice that
-      difference, and no edge that is shut at both slices opens for a moment between them. An edge
-      open at one slice only is looked at up to when it shuts, less 1 %.
+      difference, and no edge that is closed at both slices opens for a moment between them. An edge
+      open at one slice only is considered up to when it closes, less 1 %.
     * Labels are dropped as well when even the largest currents along the edges, the best weather
       and the best prices of every edge do not lead them below what is known of the goal. This
       loses nothing.
@@ -209,13 +210,13 @@ def _search(
 ) -> NetworkFront:
     parts = 2 if lower else 1
 
-    def tell(share: float, part: int) -> None:
+    def report(share: float, part: int) -> None:
         if progress is not None:
             progress((part + share) / parts)
 
     blocks = new_edge_tables(front_problem, plan)
     found, dropped, counts = _set_labels(
-        front_problem, request, bounds, plan, first.points, blocks, tell
+        front_problem, request, bounds, plan, first.points, blocks, report
     )
     points = non_dominated_points([*first.points, *found])
     if not points and first.refusal is not None:
@@ -229,8 +230,7 @@ def _search(
             plan,
             blocks,
             points,
-            lambda share: tell(share, 1),
-            _PROGRESS_CHUNKS,
+            lambda share: report(share, 1),
         )
     work = FrontWork(
         labels=int(counts[VISITED]) + below.labels,
@@ -253,9 +253,9 @@ def _set_labels(
     plan: Discretisation,
     known: list[FrontPoint],
     blocks: EdgeTables,
-    tell: Callable[[float, int], None],
+    report: Callable[[float, int], None],
 ) -> tuple[list[FrontPoint], int, NDArray[np.int64]]:
-    """Label all nodes bin by bin; return the goal's ways, how many are shut, and counts."""
+    """Label all nodes bin by bin; return the goal's paths, how many are closed, and counts."""
     target, labels = new_target(request.goal, bounds, plan.clock), new_bin_labels(plan.windows)
     for point in known:
         tighten_target(target, plan.clock, point)
@@ -263,12 +263,12 @@ def _set_labels(
     labels.cost[begin], labels.when[begin], labels.source[begin] = 0.0, (0.0, np.nan), -1
     agenda, work = new_agenda(plan.windows), new_edge_workspace()
     spare = np.empty(2 * len(request.settings), np.float32)
-    edges = np.unique(np.linspace(0, plan.clock.count, _PROGRESS_CHUNKS + 1).astype(int))
+    edges = np.unique(np.linspace(0, plan.clock.count, PROGRESS_CHUNKS + 1).astype(int))
     for a, b in pairwise(edges.tolist()):
         process_bins(
             front_problem.world, labels, target, plan.clock, blocks, agenda, a, b, work, spare
         )
-        tell(b / plan.clock.count, 0)
+        report(b / plan.clock.count, 0)
     found, dropped = paths_of_goal_labels(front_problem, request, labels)
     return found, dropped, agenda.counts
 
@@ -283,9 +283,9 @@ class _SeedPaths(NamedTuple):
 def _find_seed_paths(
     network: Network, front_problem: FrontProblem, request: FrontRequest, bounds: BoundsToGoal
 ) -> _SeedPaths:
-    """Return the ways to begin with; raise if even the fastest is too late.
+    """Return the seed paths; raise if even the fastest is too late.
 
-    What is forbidden in waves may be allowed at a lower setting: then the search has the last word.
+    What is forbidden in waves may be allowed at a lower setting: then the search decides.
     """
     table, arrive, fastest = front_problem.world.ship.table, math.inf, None
     heeds = len(table.safety) > 0 or len(table.motions) > 0
@@ -314,13 +314,13 @@ def _find_seed_paths(
 def _fastest_path(
     network: Network, front_problem: FrontProblem, request: FrontRequest, choice: int
 ) -> tuple[float, PlannedPath | None]:
-    """Return the earliest arrival at one of the chosen settings [s], and its way."""
+    """Return the earliest arrival at one of the chosen settings [s], and its path."""
     if request.wait and waiting_is_restricted(network):
         ship = ship_at_setting(front_problem.whole.ship, int(request.settings[choice]))
         found = earliest_arrival_with_restricted_waiting(
             network, front_problem.whole._replace(ship=ship), start=request.start,
         goal=request.goal,
-            depart=request.depart, limits=ship.limits,
+            depart=request.depart,
         )  # fmt: skip
         return found.arrive, path_of_search_result(front_problem, found) if found.found else None
     arrivals = earliest_arrivals(front_problem, request, everywhere=False, choice=choice)

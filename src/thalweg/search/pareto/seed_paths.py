@@ -1,4 +1,4 @@
-"""Ways over the network, sailed exactly: seeds of a front, and what its labels stand for."""
+"""Paths over the network, sailed exactly: seeds of a front, and the paths of its labels."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SETTING_SWITCHES = 24  # places at most where a seed changes from one setting t
 
 
 class PlannedPath(NamedTuple):
-    """A way as planned: states, edges, choices of setting, and when nodes are left at the earliest.
+    """A path as planned: states, edges, choices of setting, and the earliest departures.
 
     ``leave`` is -inf where the ship does not wait [s].
     """
@@ -44,17 +44,17 @@ class PlannedPath(NamedTuple):
 
 
 def sail_planned_path(
-    front_problem: FrontProblem, request: FrontRequest, way: PlannedPath
+    front_problem: FrontProblem, request: FrontRequest, path: PlannedPath
 ) -> FrontPoint | None:
-    """Sail a way exactly; None if it is shut."""
-    arrive, depart = np.empty(len(way.states)), np.empty(len(way.states))
+    """Sail a path exactly; None if it is closed."""
+    arrive, depart = np.empty(len(path.states)), np.empty(len(path.states))
     arrive[0] = request.depart
     cost, status = sail_path(
         front_problem.world,
-        way.states,
-        way.edges,
-        way.choices,
-        way.leave,
+        path.states,
+        path.edges,
+        path.choices,
+        path.leave,
         arrive,
         depart,
         new_edge_workspace(),
@@ -64,41 +64,41 @@ def sail_planned_path(
     return FrontPoint(
         time=float(arrive[-1] - request.depart),
         cost=float(cost),
-        path=front_problem.world.network.station[way.states].astype(np.int64),
+        path=front_problem.world.network.station[path.states].astype(np.int64),
         path_arrive=arrive,
         path_depart=depart,
-        setting=front_problem.world.ship.settings[way.choices],
+        setting=front_problem.world.ship.settings[path.choices],
     )
 
 
 def seed_paths(
     front_problem: FrontProblem, request: FrontRequest, fastest: PlannedPath, bounds: BoundsToGoal
 ) -> list[FrontPoint]:
-    """Return ways that are likely to lie near the front; the fastest at the highest setting first.
+    """Return paths that are likely to be near the front, the fastest first.
 
-    They are the fastest way, and the best for each price of time in the most favourable weather, at
-    every setting and at two settings one after the other. Those that take too long are left out.
-    A dense front known from the beginning spares most labels.
+    They are the fastest path, and the best for each price of time in the most favourable weather,
+    at every setting and at two settings one after the other. Those that take too long are left out.
+    A dense front known from the beginning avoids most labels.
     """
-    ways = [fastest]
-    known = {ways[0].states.tobytes()}
+    paths = [fastest]
+    known = {fastest.states.tobytes()}
     for rate in bounds.rates:
         states = bounds.to_goal.way(request.start, float(rate))
         if len(states) > 1 and states.tobytes() not in known:
             known.add(states.tobytes())
-            ways.append(_path_through(front_problem, states))
+            paths.append(_path_through(front_problem, states))
     sailed = [
-        sail_planned_path(front_problem, request, way._replace(choices=choices))
-        for way in ways
-        for choices in _setting_choices(front_problem, way, len(request.settings))
+        sail_planned_path(front_problem, request, path._replace(choices=choices))
+        for path in paths
+        for choices in _setting_choices(front_problem, path, len(request.settings))
     ]
     return [point for point in sailed if point is not None and point.time <= request.horizon]
 
 
-def _setting_choices(front_problem: FrontProblem, way: PlannedPath, count: int) -> list[IntArray]:
-    """Return settings for the edges of a way: one throughout, or two neighbours in turn."""
-    same = [_edge_settings(front_problem, way.edges, choice) for choice in range(count)][::-1]
-    legs = len(way.edges)
+def _setting_choices(front_problem: FrontProblem, path: PlannedPath, count: int) -> list[IntArray]:
+    """Return settings for the edges of a path: one throughout, or two neighbours in turn."""
+    same = [_edge_settings(front_problem, path.edges, choice) for choice in range(count)][::-1]
+    legs = len(path.edges)
     switches = np.unique(
         np.linspace(1, legs - 1, min(_SETTING_SWITCHES, max(legs - 1, 0))).astype(int)
     )
@@ -118,19 +118,19 @@ def _edge_settings(front_problem: FrontProblem, edges: IntArray, choice: int) ->
 def earliest_arrival_path(
     front_problem: FrontProblem, request: FrontRequest, arrivals: EarliestArrivals
 ) -> PlannedPath:
-    """Return the way of the earliest arrival at the goal."""
+    """Return the path of the earliest arrival at the goal."""
     states = [request.goal]
     while states[-1] != request.start:
         states.append(int(arrivals.before[states[-1]]))
-    path = np.array(states[::-1], np.int64)
-    departed = arrivals.departed[path[1:]]
-    waited = departed > arrivals.time[path[:-1]]
-    way = _path_through(front_problem, path)
-    return way._replace(leave=np.where(waited, departed, -math.inf))
+    visited = np.array(states[::-1], np.int64)
+    departed = arrivals.departed[visited[1:]]
+    waited = departed > arrivals.time[visited[:-1]]
+    path = _path_through(front_problem, visited)
+    return path._replace(leave=np.where(waited, departed, -math.inf))
 
 
 def path_of_search_result(front_problem: FrontProblem, found: SearchResult) -> PlannedPath:
-    """Return the way of a search on a network with one state for each node."""
+    """Return the path of a search on a network with one state for each node."""
     net = front_problem.world.network
     states = [int(found.path[0])]
     for node, time in zip(found.path[1:].tolist(), found.path_arrive[1:].tolist()):
@@ -141,12 +141,12 @@ def path_of_search_result(front_problem: FrontProblem, found: SearchResult) -> P
         )
         states.append(int(heads[there][0]))
     waited = found.path_depart[:-1] > found.path_arrive[:-1]
-    way = _path_through(front_problem, np.array(states, np.int64))
-    return way._replace(leave=np.where(waited, found.path_depart[:-1], -math.inf))
+    path = _path_through(front_problem, np.array(states, np.int64))
+    return path._replace(leave=np.where(waited, found.path_depart[:-1], -math.inf))
 
 
 def _path_through(front_problem: FrontProblem, path: IntArray) -> PlannedPath:
-    """Return the way through states, without waiting."""
+    """Return the path through states, without waiting."""
     net = front_problem.world.network
     edges = []
     for a, b in pairwise(path.tolist()):
@@ -166,9 +166,9 @@ def tighten_target(target: LabelTarget, clock: TimeBins, point: FrontPoint) -> N
 def paths_of_goal_labels(
     front_problem: FrontProblem, request: FrontRequest, labels: BinLabels
 ) -> tuple[list[FrontPoint], int]:
-    """Return the ways of the goal's labels that no earlier label dominates, and how many are shut.
+    """Return the paths of the non-dominated labels of the goal, and how many are closed.
 
-    Every way is sailed again, leg by leg.
+    Every path is sailed again, leg by leg.
     """
     goal, count = request.goal, len(request.settings)
     first, last = int(labels.first[goal]), int(labels.last[goal])
@@ -182,8 +182,8 @@ def paths_of_goal_labels(
         while n < 0:  # ships that may not wait can circle
             slots = np.empty(2 * len(slots), np.int64)
             n = int(trace_labels(labels, int(slot), slots))
-        way = _path_of_label(front_problem, request, labels, slots[:n][::-1], count)
-        point = sail_planned_path(front_problem, request, way)
+        path = _path_of_label(front_problem, request, labels, slots[:n][::-1], count)
+        point = sail_planned_path(front_problem, request, path)
         if point is None:
             dropped += 1
         elif point.time <= request.horizon * (1.0 + 1e-12):

@@ -31,7 +31,8 @@ def test_a_home_that_cannot_be_written_is_no_obstacle(tmp_path):
     (tmp_path / "file").write_text("")
     environment = {**os.environ, "THALWEG_CACHE": str(tmp_path / "file" / "below")}
     environment.pop("NUMBA_CACHE_DIR", None)
-    code = "from thalweg.kernels.compilation.compiled_code_cache import COMPILED; print(COMPILED)"
+    module = "thalweg.kernels.compilation.compiled_code_cache"
+    code = f"from {module} import COMPILED_FOLDER; print(COMPILED_FOLDER)"
     done = subprocess.run(
         [sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True
     )

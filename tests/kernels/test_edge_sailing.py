@@ -83,7 +83,7 @@ def test_outside_the_period_there_is_no_sailing():
     ("channels", "bounds", "status"),
     [
         ({"water_level": -3.0}, limits(depth=5.0), codes.DEPTH),
-        ({"wave_height_ch": 4.0}, limits(wave=3.0), codes.WAVE_HEIGHT),
+        ({"wave_height_channel": 4.0}, limits(wave=3.0), codes.WAVE_HEIGHT),
         ({"wind_east": 20.0, "wind_north": 0.0}, limits(wind=15.0), codes.WIND_SPEED),
         ({"current_east": -6.0, "current_north": 0.0}, limits(), codes.CURRENT),
         ({"current_east": np.nan, "current_north": 0.0}, limits(), codes.NO_DATA),

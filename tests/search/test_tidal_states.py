@@ -77,7 +77,7 @@ def test_states_of_one_node_with_three_times_afloat():
     level[1] = [0, 0, -2, 0, 0, -4, -4, 0, 0]
     fields = make_fields(network, times, water_level=level, bed_depth=6.0)
     arrays, sea = network_arrays(network), sea_arrays(fields)
-    split = tidal_states(arrays, sea, GIVEN["limits"], (0, 2))
+    split = tidal_states(arrays, sea, REQUIRED, (0, 2))
     assert split.station.tolist() == [0, 1, 2, 1, 1]
     # a spare depth of 1 m falls to -1 m in half an hour, and to -3 m in a quarter
     assert split.until[[1, 3, 4]] / HOUR == pytest.approx([1.5, 4.25, np.inf])
@@ -90,8 +90,8 @@ def test_states_of_one_node_with_three_times_afloat():
     assert np.isinf(split.until[[0, 2]]).all()
 
 
-@pytest.mark.parametrize("bounds", [limits(), limits(depth=1.0)])
-def test_nothing_is_split_that_never_falls_dry(bounds):
+@pytest.mark.parametrize("required", [-np.inf, 1.0])
+def test_nothing_is_split_that_never_falls_dry(required):
     network, fields = gully(1)
     arrays = network_arrays(network)
-    assert tidal_states(arrays, sea_arrays(fields), bounds, (0, 6)) is arrays
+    assert tidal_states(arrays, sea_arrays(fields), required, (0, 6)) is arrays

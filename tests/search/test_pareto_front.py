@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_network, make_table
-from tests.search.test_berths import barred_line
+from tests.search.test_limited_waiting import barred_line
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.kernels import codes
@@ -428,7 +428,7 @@ def test_too_late_says_the_earliest_arrival():
     assert caught.value.details["earliest"] == pytest.approx(5000.0)
 
 
-def test_memory_is_told_before_it_is_taken():
+def test_required_memory_is_checked_before_it_is_allocated():
     network, fields = random_world(1)
     with pytest.raises(InputError, match="GB of memory") as caught:
         search(network, fields, 7, 50_000.0, bin_s=0.01, memory_limit=1e6)
@@ -530,7 +530,7 @@ def surfing(height, east, speed_limit=6.0, latest=5e4):
     column = np.zeros((4, 2))
     fields = make_fields(
         network, [0.0, 1e5], current_north=0.0, current_east=np.array(east)[:, None] + column,
-        wave_height_ch=np.array(height)[:, None] + column, wave_east=1.0, wave_north=0.0,
+        wave_height_channel=np.array(height)[:, None] + column, wave_east=1.0, wave_north=0.0,
         wave_period=8.0,
     )  # fmt: skip
     return search(network, fields, 3, latest, tables=(table, fuel))

@@ -119,7 +119,7 @@ def test_limits_at_the_network_do_not_lift_the_bound_above_a_looser_ship():
     network, _ = world(1, math.pi / 4)
     wave = np.where(np.abs(network.stations.lon - 0.1) < 0.03, 3.03, 1.0)
     wave[network.stations.lat > 0.3] = 1.0
-    fields = make_fields(network, [0.0, 1e6], wave_height_ch=wave[:, None])
+    fields = make_fields(network, [0.0, 1e6], wave_height_channel=wave[:, None])
     tight = lower_bound(
         network, fields, steady(5.0), **(GIVEN | {"limits": limits(wave=3.0)}), depart=0.0
     )

@@ -6,22 +6,8 @@ import numpy as np
 import pytest
 
 from tests.search.small import limits, make_table, steady
+from tests.search.small import point_speed_at as at
 from thalweg.kernels import codes
-from thalweg.kernels.leg.point_speed import point_speed
-
-
-def at(table=None, *, course=0.0, depth=np.inf, bounds=None, setting=0, **channels):
-    """Return (speed, status) for a course [rad] and channel values by name."""
-    sample = np.full(codes.CHANNEL_COUNT, np.nan)
-    index = np.full(codes.CHANNEL_COUNT, -1, np.int64)
-    for k, (name, value) in enumerate(channels.items()):
-        channel = getattr(codes, name.upper())
-        sample[channel], index[channel] = value, k
-    bounds = limits() if bounds is None else bounds
-    table = steady(5.0) if table is None else table
-    return point_speed(
-        sample, index, math.sin(course), math.cos(course), table, setting, depth, bounds
-    )
 
 
 @pytest.mark.parametrize(
@@ -97,15 +83,15 @@ def test_waves_count_from_where_they_come():
     angle = np.linspace(0.0, np.pi, 181)
     table = make_table(((codes.AXIS_WAVE_ANGLE,), (angle,), (3.0 + angle)[:, None]))
     for course, expected in ((0.0, math.pi), (math.pi, 0.0), (math.pi / 2, math.pi / 2)):
-        sog, _ = at(table, course=course, wave_height_ch=1.0, wave_east=0.0, wave_north=1.0)
+        sog, _ = at(table, course=course, wave_height_channel=1.0, wave_east=0.0, wave_north=1.0)
         assert sog == pytest.approx(3.0 + expected, abs=1e-5)
 
 
 def test_waves_without_height_need_no_direction_but_others_do():
     table = make_table(((codes.AXIS_WAVE_ANGLE,), (np.linspace(0, np.pi, 3),), np.ones((3, 1))))
     unknown = {"wave_east": np.nan, "wave_north": np.nan}
-    assert at(table, wave_height_ch=0.0, **unknown)[1] == codes.OK
-    assert at(table, wave_height_ch=1.0, **unknown)[1] == codes.NO_DATA
+    assert at(table, wave_height_channel=0.0, **unknown)[1] == codes.OK
+    assert at(table, wave_height_channel=1.0, **unknown)[1] == codes.NO_DATA
 
 
 @pytest.mark.parametrize(
@@ -122,14 +108,14 @@ def test_waves_without_height_need_no_direction_but_others_do():
         ({"bounds": limits(depth=6.0), "depth": 5.0, "bed_depth": 9.0}, codes.DEPTH),
         ({"bounds": limits(depth=6.0), "depth": 9.0, "bed_depth": np.nan}, codes.NO_DATA),
         ({"bounds": limits(depth=6.0), "depth": 9.0, "water_level": np.nan}, codes.NO_DATA),
-        ({"bounds": limits(wave=2.0), "wave_height_ch": 2.0}, codes.OK),
-        ({"bounds": limits(wave=2.0), "wave_height_ch": 2.1}, codes.WAVE_HEIGHT),
-        ({"bounds": limits(wave=2.0), "wave_height_ch": np.nan}, codes.NO_DATA),
+        ({"bounds": limits(wave=2.0), "wave_height_channel": 2.0}, codes.OK),
+        ({"bounds": limits(wave=2.0), "wave_height_channel": 2.1}, codes.WAVE_HEIGHT),
+        ({"bounds": limits(wave=2.0), "wave_height_channel": np.nan}, codes.NO_DATA),
         ({"bounds": limits(wave=2.0)}, codes.NO_DATA),
         ({"bounds": limits(wind=5.0), "wind_east": 3.0, "wind_north": 4.0}, codes.OK),
         ({"bounds": limits(wind=4.9), "wind_east": 3.0, "wind_north": 4.0}, codes.WIND_SPEED),
         ({"bounds": limits(wind=4.9)}, codes.NO_DATA),
-        ({"wave_height_ch": np.nan, "wind_east": np.nan, "wind_north": 1.0}, codes.OK),
+        ({"wave_height_channel": np.nan, "wind_east": np.nan, "wind_north": 1.0}, codes.OK),
         ({"speed_field": np.nan}, codes.NO_DATA),
     ],
 )

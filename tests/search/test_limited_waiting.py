@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.search.small import line, make_fields, steady
-from tests.search.test_tides import GIVEN, HOUR, MINUTE, REQUIRED, gully
+from tests.search.test_tidal_states import GIVEN, HOUR, MINUTE, REQUIRED, gully
 from thalweg.search import earliest_arrival
 from thalweg.search.fifo import sampled_arrivals
 
@@ -112,7 +112,7 @@ def test_the_wait_before_a_bar_is_taken_at_the_anchorage():
     assert found.arrive == pytest.approx(opens + 250.0, abs=1.0)
 
 
-def test_without_an_anchorage_the_berth_serves():
+def test_without_an_anchorage_the_ship_waits_at_the_start():
     network, fields = barred_line(4.0 * HOUR)
     network = replace(network, can_wait=np.arange(6) == 0)
     found = earliest_arrival(network, fields, steady(4.0), start=0, goal=5, depart=0.0, **GIVEN)
@@ -125,7 +125,7 @@ def test_without_an_anchorage_the_berth_serves():
     assert not none.found
 
 
-def test_no_way_is_told_with_its_reasons():
+def test_no_path_is_reported_with_its_reasons():
     network, fields = barred_line(100.0 * HOUR)
     found = earliest_arrival(network, fields, steady(4.0), start=0, goal=5, depart=0.0, **GIVEN)
     assert not found.found

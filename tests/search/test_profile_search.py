@@ -22,7 +22,7 @@ from thalweg.network import Samples
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.network.triangular_mesh.mesh_builder import mesh
 from thalweg.operations.examples.estuary import synthetic_estuary
-from thalweg.search import PreparedNetwork, earliest_arrival
+from thalweg.search import PreparedNetwork, earliest_arrival, prepare_profile_search
 from thalweg.ship import Ship
 
 T0 = parse_time("2026-06-01T00:00Z")
@@ -53,7 +53,7 @@ def ask(ship, load_factor, **more):
     return {
         "table": loaded.tabulate(),
         "setting": 0,
-        "limits": np.array([loaded.draught + 1.0, np.inf, np.inf]),
+        "limits": limits(depth=loaded.draught + 1.0),
         "top_speed": loaded.top_speed(0),
         **more,
     }
@@ -70,7 +70,7 @@ def test_every_departure_has_the_answer_of_a_separate_search(
 ):
     asked = ask(dredger, load_factor, start=start, goal=goal)
     table = asked.pop("table")
-    passages = PreparedNetwork.prepare(*world).passages(table, **asked)
+    passages = prepare_profile_search(PreparedNetwork.prepare(*world), table, **asked)
     departures = T0 + 3600.0 * np.array([0.5, 3.0, 5.25, 7.0, 9.1, 11.0, 13.3, 16.0, 19.0, 22.0])
     waited = 0
     for depart in departures:
@@ -87,7 +87,7 @@ def test_every_departure_has_the_answer_of_a_separate_search(
 
 def test_all_departures_at_once_are_those_one_by_one(world, dredger):
     asked = ask(dredger, 1.0, start=0, goal=1)
-    passages = PreparedNetwork.prepare(*world).passages(asked.pop("table"), **asked)
+    passages = prepare_profile_search(PreparedNetwork.prepare(*world), asked.pop("table"), **asked)
     departures = T0 + 600.0 * np.arange(0, 150)
     profile = passages.profile(departures)
     one_by_one = np.array([passages.sail(t).arrive for t in departures])
@@ -106,7 +106,7 @@ def test_all_departures_at_once_are_those_one_by_one(world, dredger):
 def test_waiting_forbidden_is_never_waited(world, dredger):
     asked = ask(dredger, 0.6, start=0, goal=1, wait=False)
     table = asked.pop("table")
-    passages = PreparedNetwork.prepare(*world).passages(table, **asked)
+    passages = prepare_profile_search(PreparedNetwork.prepare(*world), table, **asked)
     for depart in T0 + 3600.0 * np.array([1.0, 6.0, 12.0]):
         one = separately(world, depart, table=table, **asked)
         found = passages.sail(depart)
@@ -117,24 +117,24 @@ def test_waiting_forbidden_is_never_waited(world, dredger):
 def test_waiting_at_anchorages_only(world, dredger):
     """As the search of single voyages, from where the ship may wait, wave after wave."""
     network, fields = world
-    berths = np.zeros(network.n_nodes, bool)
-    berths[[0, 1]] = True
-    anchored = replace(network, can_wait=berths)
+    waiting = np.zeros(network.n_nodes, bool)
+    waiting[[0, 1]] = True
+    anchored = replace(network, can_wait=waiting)
     asked = ask(dredger, 1.0, start=0, goal=1)
     table = asked.pop("table")
-    passages = PreparedNetwork.prepare(anchored, fields).passages(table, **asked)
+    passages = prepare_profile_search(PreparedNetwork.prepare(anchored, fields), table, **asked)
     for depart in T0 + 3600.0 * np.array([1.0, 8.0]):
         one = separately((anchored, fields), depart, table=table, **asked)
         found = passages.sail(depart)
         assert found.found == one.found
         assert found.arrive == pytest.approx(one.arrive, abs=600.0)
         waits = found.node_depart - found.node_arrive
-        assert np.all(waits[~berths[found.nodes]] == 0.0)
+        assert np.all(waits[~waiting[found.nodes]] == 0.0)
 
 
 def test_a_known_arrival_changes_nothing(world, dredger):
     asked = ask(dredger, 1.0, start=0, goal=1)
-    passages = PreparedNetwork.prepare(*world).passages(asked.pop("table"), **asked)
+    passages = prepare_profile_search(PreparedNetwork.prepare(*world), asked.pop("table"), **asked)
     depart = T0 + 4.0 * 3600.0
     free = passages.sail(depart)
     for known in (free.arrive, free.arrive + 3600.0, free.arrive - 1200.0):  # even a wrong one
@@ -142,10 +142,10 @@ def test_a_known_arrival_changes_nothing(world, dredger):
 
 
 def test_bounds_are_below_every_passage(world, dredger):
-    waters = PreparedNetwork.prepare(*world)
+    prepared = PreparedNetwork.prepare(*world)
     for load_factor in (0.0, 1.0):
         asked = ask(dredger, load_factor, start=0, goal=1)
-        passages = waters.passages(asked.pop("table"), **asked)
+        passages = prepare_profile_search(prepared, asked.pop("table"), **asked)
         for depart in T0 + 3600.0 * np.array([2.0, 8.0, 14.0]):
             found = passages.sail(depart)
             to_go = found.arrive - found.node_arrive
@@ -153,14 +153,14 @@ def test_bounds_are_below_every_passage(world, dredger):
 
 
 def test_strongest_currents_bound_every_direction(world):
-    waters = PreparedNetwork.prepare(*world)
-    values, index = waters.sea.values, waters.sea.channel_index
+    prepared = PreparedNetwork.prepare(*world)
+    values, index = prepared.sea.values, prepared.sea.channel_index
     u, v = values[:, :, index[codes.CURRENT_EAST]], values[:, :, index[codes.CURRENT_NORTH]]
     angle = 2.0 * np.pi * np.arange(CURRENT_DIRECTIONS) / CURRENT_DIRECTIONS
     for k, a in enumerate(angle):
         truth = (np.sin(a) * u + np.cos(a) * v).max(axis=1)
-        assert np.all(waters.strongest[:, k] >= truth - 1e-6)
-        assert np.all(waters.strongest[:, k] <= truth + 1e-4)
+        assert np.all(prepared.strongest[:, k] >= truth - 1e-6)
+        assert np.all(prepared.strongest[:, k] <= truth + 1e-4)
 
 
 def test_penalties_count_as_in_separate_searches():
@@ -170,7 +170,9 @@ def test_penalties_count_as_in_separate_searches():
     fields = make_fields(network, T0 + 3600.0 * np.arange(10), CURRENT_EAST=0.5, CURRENT_NORTH=0.2)
     table = steady(4.0)
     asked = {"start": 0, "goal": 2, "setting": 0, "limits": NO_LIMITS, "top_speed": 4.0}
-    found = PreparedNetwork.prepare(network, fields).passages(table, **asked).sail(T0 + 60.0)
+    found = prepare_profile_search(PreparedNetwork.prepare(network, fields), table, **asked).sail(
+        T0 + 60.0
+    )
     one = earliest_arrival(network, fields, table, depart=T0 + 60.0, **asked)
     assert found.nodes.tolist() == one.path.tolist() == [0, 3, 2]
     assert found.arrive == pytest.approx(one.arrive, abs=1e-9)
@@ -180,21 +182,25 @@ def test_a_way_no_tide_opens_is_known_before_searching():
     network = make_network([0.0, 0.0], [0.0, 0.1], [(0, 1)], depth=5.0)
     fields = make_fields(network, T0 + 600.0 * np.arange(20), WATER_LEVEL=0.5)
     asked = {"start": 0, "goal": 1, "setting": 0, "top_speed": 4.0}
-    waters = PreparedNetwork.prepare(network, fields)
-    shut = waters.passages(steady(4.0), limits=limits(depth=6.0), **asked)
+    prepared = PreparedNetwork.prepare(network, fields)
+    shut = prepare_profile_search(prepared, steady(4.0), limits=limits(depth=6.0), **asked)
     assert shut.shortest == np.inf
     assert not shut.sail(T0).found
-    assert waters.passages(steady(4.0), limits=limits(depth=5.4), **asked).sail(T0).found
+    assert (
+        prepare_profile_search(prepared, steady(4.0), limits=limits(depth=5.4), **asked)
+        .sail(T0)
+        .found
+    )
 
 
 def test_bad_questions():
     network = make_network([0.0, 0.0], [0.0, 0.1], [(0, 1)])
     fields = make_fields(network, T0 + 600.0 * np.arange(20), CURRENT_EAST=0.0, CURRENT_NORTH=0.0)
-    waters = PreparedNetwork.prepare(network, fields)
+    prepared = PreparedNetwork.prepare(network, fields)
     asked = {"setting": 0, "limits": NO_LIMITS, "top_speed": 4.0}
     with pytest.raises(InputError, match="no passages from node 0 to node 0"):
-        waters.passages(steady(4.0), start=0, goal=0, **asked)
-    passages = waters.passages(steady(4.0), start=0, goal=1, **asked)
+        prepare_profile_search(prepared, steady(4.0), start=0, goal=0, **asked)
+    passages = prepare_profile_search(prepared, steady(4.0), start=0, goal=1, **asked)
     with pytest.raises(InputError, match="do not ascend"):
         passages.profile([T0 + 60.0, T0])
     other = make_network([0.0, 0.0, 0.0], [0.0, 0.1, 0.2], [(0, 1)])
@@ -207,7 +213,7 @@ HOUR = 3600.0
 
 def passages_on(network, fields, table, **asked):
     asked = {"setting": 0, "limits": NO_LIMITS, "top_speed": 5.0, "start": 0, **asked}
-    passages = PreparedNetwork.prepare(network, fields).passages(table, **asked)
+    passages = prepare_profile_search(PreparedNetwork.prepare(network, fields), table, **asked)
     return passages, lambda t, **more: earliest_arrival(
         network, fields, table, depart=t, **asked, **more
     )

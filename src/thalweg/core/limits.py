@@ -1,0 +1,121 @@
+"""`Limits`: depth, wave height and wind speed that a ship must keep, and how they are tightened."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from thalweg.core.errors import InputError
+from thalweg.core.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Tightening:
+    """One step of a tightening schedule: how much stricter than asked a search keeps the limits.
+
+    Attributes
+    ----------
+    depth : float
+        Added to the required depth [m].
+    depth_share : float
+        Added to the required depth, as a share of it.
+    share : float
+        Taken off the limits of wave height and wind speed, as a share of them.
+    """
+
+    depth: float = 0.0
+    depth_share: float = 0.0
+    share: float = 0.0
+
+
+#: For searches on networks. They check limits at stations, which may be kilometres apart; the
+#: referee also checks between them.
+NETWORK_TIGHTENING: Final = (
+    Tightening(),
+    Tightening(depth=0.1, share=0.02),
+    Tightening(depth=0.3, share=0.05),
+    Tightening(depth=1.0, share=0.1),
+)
+
+#: For the refinement of routes, whose legs are checked several times in each cell of the fields.
+REFINEMENT_TIGHTENING: Final = tuple(
+    Tightening(depth_share=share, share=share) for share in (0.0, 0.005, 0.02, 0.06)
+)
+
+#: For the legs of a dredging project. A margin costs time at every tide, so steps are small, and
+#: only depth varies on short distances.
+SITE_LEG_TIGHTENING: Final = tuple(Tightening(depth=depth) for depth in (0.0, 0.05, 0.2, 0.5))
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits that hold at every point of a route.
+
+    Limits of motions are part of the ship's table; those of the chart (land, zones) are part of
+    the network.
+
+    Attributes
+    ----------
+    required_depth : float
+        Least water depth [m]: draught plus under-keel clearance; -inf if depth is not checked.
+    wave_height : float
+        Greatest significant wave height [m]; inf if there is no limit.
+    wind_speed : float
+        Greatest wind speed at 10 m, relative to the moving water [m/s]; inf if there is no limit.
+
+    Raises
+    ------
+    InputError
+        If a limit is not a number.
+    """
+
+    required_depth: float = -math.inf
+    wave_height: float = math.inf
+    wind_speed: float = math.inf
+
+    def __post_init__(self) -> None:
+        for name in ("required_depth", "wave_height", "wind_speed"):
+            value = float(getattr(self, name))
+            object.__setattr__(self, name, value)
+            if math.isnan(value):
+                raise InputError(
+                    f"The limit {name} is not a number.",
+                    "The required depth is in m, the wave height in m, the wind speed in m/s.",
+                    "Leave out what is not limited.",
+                )
+
+    @property
+    def array(self) -> FloatArray:
+        """The limits as kernels take them, in the order of ``LIMIT_*`` in `thalweg.kernels.codes`.
+
+        float64[3], a new array at each call.
+        """
+        return np.array([self.required_depth, self.wave_height, self.wind_speed])
+
+    @property
+    def depth_checked(self) -> bool:
+        """Whether a water depth is required."""
+        return math.isfinite(self.required_depth)
+
+    def tightened(self, step: Tightening) -> Limits:
+        """Return limits that are stricter by one step of a schedule."""
+        return Limits(
+            self.required_depth * (1.0 + step.depth_share) + step.depth,
+            self.wave_height * (1.0 - step.share),
+            self.wind_speed * (1.0 - step.share),
+        )
+
+    def relaxed(self, share: float) -> Limits:
+        """Return limits that are looser by a share of themselves, for lower bounds."""
+        depth = self.required_depth
+        factor = 1.0 + share
+        return Limits(
+            depth - share * abs(depth), self.wave_height * factor, self.wind_speed * factor
+        )
+
+    def with_required_depth(self, depth: float) -> Limits:
+        """Return the same limits with another required depth [m]."""
+        return replace(self, required_depth=depth)
