@@ -56,7 +56,7 @@ def seeds() -> tuple[Genome, ...]:
             depart=world.T0, setting=setting, limits=NO_LIMITS, top_speed=12.0,
         )  # fmt: skip
         ways.add(tuple(found.path))
-    lat, lon = network().station_lat, network().station_lon
+    lat, lon = network().stations.lat, network().stations.lon
     return tuple(
         Genome(lat[list(way)], lon[list(way)], np.full(len(way) - 1, setting))
         for way in sorted(ways)
