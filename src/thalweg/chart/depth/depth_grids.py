@@ -171,7 +171,7 @@ def make_depth_layer(
     if positive not in (None, "up", "down"):
         raise InputError(
             f"positive={positive!r} is not a direction.",
-            "It is 'up' for elevations or 'down' for depths.",
+            "It is 'up' or 'down' (elevations or depths).",
             "Give one of these.",
         )
     name, data = _open_source(source)
