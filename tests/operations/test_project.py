@@ -37,7 +37,8 @@ from thalweg.operations.dredging.verified_legs import (
     track_from_passage,
 )
 from thalweg.operations.examples.estuary import bed_depth
-from thalweg.operations.plots.project_plots import draw_routes
+from thalweg.operations.plots import draw_routes
+from thalweg.operations.result_files import write_project_files
 from thalweg.route import evaluate
 
 WEEK = 604800.0
@@ -244,7 +245,7 @@ def test_the_load_chosen_produces_most(result):
 
 
 def test_files_and_pictures(result, tmp_path):
-    files = result.write(tmp_path)
+    files = write_project_files(result, tmp_path)
     assert [file.name for file in files] == [
         "project.json", "cycles.csv", "project.png", "routes.png",
     ]  # fmt: skip

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from thalweg.core.units import HOUR, NAUTICAL_MILE, TONNE
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE, TONNE
 from thalweg.route import Route
 
 
@@ -123,3 +125,48 @@ def leg_energy(route: Route) -> float:
         return math.nan
     same = np.diff(route.samples["leg"]) == 0
     return float(np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(time), where=same))
+
+
+def finite_or_none(value: float) -> float | None:
+    """Return a number; None where it is not finite."""
+    return float(value) if math.isfinite(value) else None
+
+
+#: Columns of cycles.csv.
+CYCLE_COLUMNS = (
+    *("cycle", "start", "load_factor", "volume_m3", "loading_h", "sail_full", "full_h"),
+    *("full_waiting_h", "full_distance_km", "full_least_clearance_m", "unloading_h", "sail_empty"),
+    *("empty_h", "empty_waiting_h", "empty_distance_km", "empty_least_clearance_m", "end"),
+    *("production_m3_h", "mean_speed_kn", "fuel_t", "energy_gj"),
+)
+
+
+def cycle_record(cycle: DredgingCycle) -> dict[str, Any]:
+    """Return a cycle as one row of cycles.csv, by `CYCLE_COLUMNS`."""
+    data: dict[str, Any] = {
+        "cycle": cycle.number,
+        "start": format_time(cycle.start),
+        "load_factor": cycle.load_factor,
+        "volume_m3": round(cycle.volume, 3),
+        "loading_h": round(cycle.loading / HOUR, 4),
+        "unloading_h": round(cycle.unloading / HOUR, 4),
+        "end": format_time(cycle.end),
+        "production_m3_h": round(cycle.production * HOUR, 2),
+    }
+    for name, leg in (("full", cycle.out), ("empty", cycle.back)):
+        clearance = finite_or_none(leg.clearance)
+        data |= {
+            f"sail_{name}": format_time(leg.depart),
+            f"{name}_h": round(leg.duration / HOUR, 4),
+            f"{name}_waiting_h": round(leg.waiting / HOUR, 4),
+            f"{name}_distance_km": round(leg.distance / 1000.0, 3),
+            f"{name}_least_clearance_m": None if clearance is None else round(clearance, 3),
+        }
+    sailing = sum(leg.duration - leg.waiting for leg in cycle.legs)
+    fuel, energy = (
+        finite_or_none(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy")
+    )
+    data["mean_speed_kn"] = round(sum(leg.distance for leg in cycle.legs) / sailing / KNOT, 2)
+    data["fuel_t"] = None if fuel is None else round(fuel / TONNE, 3)
+    data["energy_gj"] = None if energy is None else round(energy / 1e9, 3)
+    return {key: data[key] for key in CYCLE_COLUMNS}

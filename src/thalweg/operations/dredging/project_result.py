@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from collections.abc import Mapping
@@ -13,11 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.time import format_time
-from thalweg.core.units import DAY, HOUR, KNOT, TONNE
-from thalweg.operations.dredging.cycles import DredgingCycle
+from thalweg.core.units import DAY, TONNE
+from thalweg.operations.dredging.cycles import DredgingCycle, cycle_record, finite_or_none
 from thalweg.operations.dredging.project import Project
-from thalweg.planning.report.output_files import make_folder
 from thalweg.ship import Ship
 from thalweg.ship.methods.engine.fuel_properties import halem_cost
 
@@ -144,22 +141,6 @@ class ProjectResult:
             Path(path).write_text(text + "\n", encoding="utf-8")
         return text
 
-    def write(self, folder: str | Path) -> list[Path]:
-        """Write project.json, cycles.csv, project.png and routes.png; return the files."""
-        from thalweg.operations.plots.project_plots import draw_project, draw_routes
-
-        folder = make_folder(folder)
-        self.to_json(folder / "project.json")
-        with (folder / "cycles.csv").open("w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, _COLUMNS)
-            writer.writeheader()
-            for run in self.runs:
-                writer.writerows({"run": run.name, **_cycle_data(c)} for c in run.cycles)
-        draw_project(self, folder / "project.png")
-        draw_routes(self, folder / "routes.png")
-        names = ("project.json", "cycles.csv", "project.png", "routes.png")
-        return [folder / name for name in names]
-
 
 def summarise_run(
     name: str,
@@ -188,7 +169,7 @@ def summarise_run(
         "distance_m": sum(leg.distance for leg in legs),
         "mean_load_factor": volume / (len(cycles) * project.work.hopper),
         **{key: value / duration for key, value in shares.items()},
-        "least_clearance_m": _finite_or_none(float(np.min([leg.clearance for leg in legs]))),
+        "least_clearance_m": finite_or_none(float(np.min([leg.clearance for leg in legs]))),
         **_energy_and_fuel(cycles, project, ship),
     }
     broken = sum(not leg.route.feasible for leg in legs)
@@ -211,12 +192,12 @@ def _energy_and_fuel(
     co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
     volume = sum(c.volume for c in cycles)
     return {
-        "energy_gj": _finite_or_none((propulsion + hotel + pumps) / 1e9),
-        "hotel_gj": None if math.isnan(propulsion) else _finite_or_none(hotel / 1e9),
-        "fuel_t": _finite_or_none(fuel / TONNE),
-        "co2_t": _finite_or_none(co2 / TONNE),
-        "co2_kg_m3": _finite_or_none(co2 / volume),
-        "cost": _finite_or_none(_cost(cycles, ship)),
+        "energy_gj": finite_or_none((propulsion + hotel + pumps) / 1e9),
+        "hotel_gj": None if math.isnan(propulsion) else finite_or_none(hotel / 1e9),
+        "fuel_t": finite_or_none(fuel / TONNE),
+        "co2_t": finite_or_none(co2 / TONNE),
+        "co2_kg_m3": finite_or_none(co2 / volume),
+        "cost": finite_or_none(_cost(cycles, ship)),
     }
 
 
@@ -236,59 +217,10 @@ def _cost(cycles: list[DredgingCycle], ship: Ship) -> float:
     return float(total)
 
 
-def _finite_or_none(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
-
-
 def _run_data(run: ProjectRun) -> dict[str, Any]:
     return {
         "totals": dict(run.totals),
         "feasible": run.feasible,
         "notes": list(run.notes),
-        "cycles": [_cycle_data(cycle) for cycle in run.cycles],
+        "cycles": [cycle_record(cycle) for cycle in run.cycles],
     }
-
-
-_COLUMNS = (
-    *("run", "cycle", "start", "load_factor", "volume_m3", "loading_h", "sail_full", "full_h"),
-    *("full_waiting_h", "full_distance_km", "full_least_clearance_m", "unloading_h", "sail_empty"),
-    *("empty_h", "empty_waiting_h", "empty_distance_km", "empty_least_clearance_m", "end"),
-    *("production_m3_h", "mean_speed_kn", "fuel_t", "energy_gj"),
-)
-
-
-def _cycle_data(cycle: DredgingCycle) -> dict[str, Any]:
-    """Return one row of cycles.csv, in the order of its columns."""
-    data: dict[str, Any] = {
-        "cycle": cycle.number,
-        "start": format_time(cycle.start),
-        "load_factor": cycle.load_factor,
-        "volume_m3": round(cycle.volume, 3),
-        "loading_h": round(cycle.loading / HOUR, 4),
-        "unloading_h": round(cycle.unloading / HOUR, 4),
-        "end": format_time(cycle.end),
-        "production_m3_h": round(cycle.production * HOUR, 2),
-    }
-    for name, leg in (("full", cycle.out), ("empty", cycle.back)):
-        clearance = _finite_or_none(leg.clearance)
-        data |= {
-            f"sail_{name}": format_time(leg.depart),
-            f"{name}_h": round(leg.duration / HOUR, 4),
-            f"{name}_waiting_h": round(leg.waiting / HOUR, 4),
-            f"{name}_distance_km": round(leg.distance / 1000.0, 3),
-            f"{name}_least_clearance_m": None if clearance is None else round(clearance, 3),
-        }
-    sailing = sum(leg.duration - leg.waiting for leg in cycle.legs)
-    fuel, energy = (
-        _finite_or_none(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy")
-    )
-    data["mean_speed_kn"] = round(sum(leg.distance for leg in cycle.legs) / sailing / KNOT, 2)
-    data["fuel_t"] = None if fuel is None else round(fuel / TONNE, 3)
-    data["energy_gj"] = None if energy is None else round(energy / 1e9, 3)
-    return {key: data[key] for key in _COLUMNS if key != "run"}
-
-
-def load_factor_counts(run: ProjectRun) -> tuple[list[float], list[int]]:
-    """Return the load factors of a run and how many cycles have each."""
-    values, counts = np.unique([cycle.load_factor for cycle in run.cycles], return_counts=True)
-    return values.tolist(), counts.tolist()
