@@ -98,7 +98,7 @@ def test_the_least_clearance_is_unknown_where_that_of_a_leg_is(result):
         legs={**known.legs, "under_keel_clearance": np.full(len(known.legs["length"]), np.nan)},
     )
     cycles[1] = replace(cycles[1], back=SailedLeg(blind, 0.0))
-    run = summarise_run("x", cycles, project=result.project, ship=result.world.ship)
+    run = summarise_run("x", cycles, project=result.project, ship=result.environment.ship)
     assert run.totals["least_clearance_m"] is None
 
 
@@ -172,7 +172,7 @@ def test_fuel_burnt_in_a_wait_is_counted_once():
         work = sum(cycle.loading + cycle.unloading for cycle in run.cycles)
         still = work + sum(leg.waiting for leg in legs)
         pumped = sum(1500e3 * c.loading + 2000e3 * c.unloading for c in run.cycles)
-        hotel = result.world.ship.waiting_fuel_rate * still
+        hotel = result.environment.ship.waiting_fuel_rate * still
         expected = sailing + hotel + pumped * 200.0 / 3.6e9  # 200 g/kWh
         assert run.totals["fuel_t"] == pytest.approx(expected / 1000.0, rel=1e-9)
 
@@ -228,7 +228,7 @@ def test_the_load_chosen_produces_most(result):
     """No other load, sailed from the same moment, moves more per time of its cycle."""
     from thalweg.operations.dredging.cycle_simulation import Simulator
 
-    world, work = result.world, result.project.work
+    world, work = result.environment, result.project.work
     ways = freeze_site_network(world, project_network(world), lambda text: None)
     simulator = Simulator(result.project, world, ways)
     first = result.optimised.cycles[0]
@@ -308,7 +308,7 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"unloading": {"rate_m3_s": -1}}, "unloading.rate_m3_s is -1"),
         ({"loading": {"minutes": [0, 10, 5], "share": [0, 0.5, 1]}}, "curve of loading"),
         ({"loading": {"rate": 3}}, "no entry of loading named 'rate'"),
-        ({"load_factors": [0.0]}, "nothing is moved"),
+        ({"load_factors": [0.0]}, "one of them above 0"),
         ({"load_factors": [0.5, 1.2]}, "load_factors is"),
         ({"days": -1}, "days is -1"),
         ({"load": [95.0, 3.0]}, "load"),
@@ -323,7 +323,7 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"start": 20260501}, "start is the number 20260501"),
         ({"volumes": 1}, "no project entry named 'volumes'"),
         ({"start": None}, "lacks start"),
-        ({"base_case": {"route": [[51.7, 3.5]]}}, "no way"),
+        ({"base_case": {"route": [[51.7, 3.5]]}}, "has one place"),
         ({"base_case": {"route": [[51.7, 3.5], [51.6596, 3.6514]]}}, "starts 7,"),
         ({"base_case": {"route": [[51.7449, 3.579], [51.7, 3.5]]}}, "ends 11,"),
         ({"base_case": {"route": [[51.7, 3.5], [51.8, 3.5]], "load_factor": 0}}, "load_factor is"),
@@ -436,7 +436,7 @@ def test_ways_are_drawn_over_no_water_where_the_chart_has_land(result):
     land = Chart.from_geojson({"type": "Polygon", "coordinates": [ring]}).with_depth(
         bed_depth, spacing_deg=0.001
     )
-    figure = draw_routes(replace(result, world=replace(result.world, chart=land)))
+    figure = draw_routes(replace(result, environment=replace(result.environment, chart=land)))
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())
 

@@ -165,7 +165,7 @@ def open_ship(arguments: argparse.Namespace) -> Ship:
     return ship
 
 
-def parse_place(text: str) -> Position:
+def position_from_text(text: str) -> Position:
     """Return the position (lat, lon) [deg] that a text states.
 
     Raises

@@ -98,7 +98,7 @@ def _analyse_record(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
 
     _check_options(arguments, ("map",), "a record", "variables of a model run")
     record = read_record(arguments.file, unit=arguments.unit, days_since=arguments.days_since)
-    place = option_values.parse_place(arguments.at) if arguments.at else record.position
+    place = option_values.position_from_text(arguments.at) if arguments.at else record.position
     if place is None:
         raise InputError(
             "The position of the record is not given.",

@@ -112,7 +112,7 @@ def _series(constants: Constituents, times: Any, at: str | None) -> dict[str, An
         )
     from thalweg.sea import Sea
 
-    lat, lon = option_values.parse_place(at)
+    lat, lon = option_values.position_from_text(at)
     found = Sea.from_tides(constants).series(names, times, np.array([lat]), np.array([lon]))
     if all(np.isnan(v).all() for v in found.values()):
         raise InputError(

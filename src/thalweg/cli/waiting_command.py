@@ -177,7 +177,9 @@ def _trips(arguments: argparse.Namespace) -> list[TripTable]:
 
 
 def _ends(arguments: argparse.Namespace) -> tuple[Position, Position]:
-    return option_values.parse_place(arguments.start), option_values.parse_place(arguments.goal)
+    return option_values.position_from_text(arguments.start), option_values.position_from_text(
+        arguments.goal
+    )
 
 
 def _ships(arguments: argparse.Namespace) -> tuple[Ship, Ship]:

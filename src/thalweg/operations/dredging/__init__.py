@@ -1,7 +1,13 @@
 """Dredging projects: load, sail full, unload, sail empty, until a volume is moved."""
 
 from thalweg.operations.dredging.loading_curves import LoadingCurve
-from thalweg.operations.dredging.project import BaseCase, Project, Sites, WorkScope
+from thalweg.operations.dredging.project import (
+    BaseCase,
+    Project,
+    SiteNetworkOptions,
+    Sites,
+    WorkScope,
+)
 from thalweg.operations.dredging.project_environment import (
     ProjectEnvironment,
     freeze_site_network,
@@ -22,6 +28,7 @@ __all__ = [
     "ProjectEnvironment",
     "ProjectResult",
     "ProjectRun",
+    "SiteNetworkOptions",
     "Sites",
     "WorkScope",
     "example_file",

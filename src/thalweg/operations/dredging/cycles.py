@@ -1,4 +1,4 @@
-"""Cycles of a project as the referee found them."""
+"""Cycles of a dredging project, with legs evaluated by the referee."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ import numpy as np
 
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE, TONNE
+from thalweg.planning.report.provenance import finite_or_none
 from thalweg.route import Route
 
 
 @dataclass(frozen=True, eq=False)
 class SailedLeg:
-    """One way between the sites.
+    """One leg between the sites.
 
     Attributes
     ----------
     route : Route
-        As the referee sailed it.
+        As evaluated by the referee.
     energy : float
-        Brake energy under way, without hotel load [J]; NaN if the ship's power is unknown.
+        Brake energy, without hotel load [J]; NaN if the ship's power is unknown.
     """
 
     route: Route
@@ -30,7 +31,7 @@ class SailedLeg:
 
     @property
     def depart(self) -> float:
-        """When the ship is ready to leave [s since 1970-01-01T00:00Z]."""
+        """Time at which the ship is ready to leave [s since 1970-01-01T00:00Z]."""
         return self.route.depart
 
     @property
@@ -45,12 +46,12 @@ class SailedLeg:
 
     @property
     def waiting(self) -> float:
-        """Time lain still [s]."""
+        """Waiting time at waypoints [s]."""
         return self.route.waiting_h * HOUR
 
     @property
     def distance(self) -> float:
-        """Length of the way [m]."""
+        """Length of the route [m]."""
         return self.route.distance_nm * NAUTICAL_MILE
 
     @property
@@ -61,7 +62,7 @@ class SailedLeg:
 
     @property
     def fuel(self) -> float:
-        """Fuel burnt under way, waits and hotel load included [kg]; NaN if unknown."""
+        """Fuel, waits and hotel load included [kg]; NaN if unknown."""
         tonnes = self.route.fuel_t
         return math.nan if tonnes is None else TONNE * tonnes
 
@@ -81,13 +82,13 @@ class DredgingCycle:
     number : int
         From 1.
     start : float
-        When loading begins [s since 1970-01-01T00:00Z].
+        Start of loading [s since 1970-01-01T00:00Z].
     load_factor : float
     volume : float
-        Moved [m3].
+        Volume moved [m3].
     loading, unloading : float
         [s].
-    out, back : Leg
+    out, back : SailedLeg
     """
 
     number: int
@@ -101,7 +102,7 @@ class DredgingCycle:
 
     @property
     def end(self) -> float:
-        """When the ship is back at the loading site [s since 1970-01-01T00:00Z]."""
+        """Time at which the ship is back at the loading site [s since 1970-01-01T00:00Z]."""
         return self.back.arrive
 
     @property
@@ -111,12 +112,12 @@ class DredgingCycle:
 
     @property
     def legs(self) -> tuple[SailedLeg, SailedLeg]:
-        """Both ways."""
+        """The legs out and back."""
         return self.out, self.back
 
 
 def leg_energy(route: Route) -> float:
-    """Return the brake energy of a route [J]: power at the referee's samples over their time.
+    """Return the brake energy of a route [J], the integral of power over the referee's samples.
 
     NaN if the ship's power is unknown anywhere.
     """
@@ -125,11 +126,6 @@ def leg_energy(route: Route) -> float:
         return math.nan
     same = np.diff(route.samples["leg"]) == 0
     return float(np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(time), where=same))
-
-
-def finite_or_none(value: float) -> float | None:
-    """Return a number; None where it is not finite."""
-    return float(value) if math.isfinite(value) else None
 
 
 #: Columns of cycles.csv.

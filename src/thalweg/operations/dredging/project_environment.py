@@ -100,7 +100,7 @@ class ProjectEnvironment:
         ship = self.ship.with_load_factor(load_factor)
         limits = self.needs.limits.copy()
         if math.isfinite(limits[codes.LIMIT_REQUIRED_DEPTH]):
-            keel = self.min_ukc + self.sites.margin
+            keel = self.min_ukc + self.sites.network.margin
             limits[codes.LIMIT_REQUIRED_DEPTH] = ship.draught + keel
         setting = len(ship.speeds) - 1
         top = ship.top_speed(setting)
@@ -202,10 +202,13 @@ def project_network(world: ProjectEnvironment) -> Network:
     sites, chart = world.sites, world.chart
     model = world.sea.mesh()
     if model is None:
-        return lattice(chart, sites.load, sites.unload, spacing=sites.spacing, directions=32)
+        spacing = sites.network.spacing
+        return lattice(chart, sites.load, sites.unload, spacing=spacing, directions=32)
     lat, lon, faces = _mesh_near_sites(model.lat, model.lon, model.triangles, sites)
     network = sampled_on_triangle_sides(
-        mesh(chart, lat, lon, faces, largest_spacing=sites.spacing, rings=sites.rings)
+        mesh(
+            chart, lat, lon, faces, largest_spacing=sites.network.spacing, rings=sites.network.rings
+        )
     )
     ends = [_node_at(network, place) for place in (sites.load, sites.unload)]
     return replace(network, meta=replace(network.meta, start=ends[0], goal=ends[1]))
@@ -218,7 +221,7 @@ def _mesh_near_sites(
     direct_way = float(distance(*sites.load, *sites.unload))
     to_load = distance(lat, lon, *sites.load)
     to_unload = distance(lat, lon, *sites.unload)
-    use = to_load + to_unload <= sites.detour * direct_way
+    use = to_load + to_unload <= sites.network.detour * direct_way
     use &= np.minimum(to_load, to_unload) > _SAME_PLACE
     number = np.full(lat.size, -1, np.int64)
     number[use] = 2 + np.arange(int(use.sum()))

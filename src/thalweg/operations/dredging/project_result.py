@@ -1,4 +1,4 @@
-"""What came of a project: totals, the table of van Halem's study, and files."""
+"""Result of a dredging project: runs, totals, and the table of van Halem's study."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.units import DAY, TONNE
-from thalweg.operations.dredging.cycles import DredgingCycle, cycle_record, finite_or_none
+from thalweg.operations.dredging.cycles import DredgingCycle, cycle_record
 from thalweg.operations.dredging.project import Project
+from thalweg.planning.report.provenance import finite_or_none
 from thalweg.ship import Ship
 from thalweg.ship.methods.engine.fuel_properties import halem_cost
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 WEEK = 7.0 * DAY
 _PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel, where the ship file tells none
 
-#: Rows of the table: key, words, how to print.
+#: Rows of the table: key, label, format.
 TABLE_ROWS = (
     ("production_m3_week", "production [1000 m3/week]", lambda v: f"{v / 1000:.1f}"),
     ("duration_days", "duration", lambda v: "{} d {} h".format(*divmod(round(24 * v), 24))),
@@ -51,12 +52,12 @@ TABLE_ROWS = (
 
 @dataclass(frozen=True, eq=False)
 class ProjectRun:
-    """One way of sailing the project, to its end.
+    """The project sailed to its end with one strategy.
 
     Attributes
     ----------
     name : str
-    cycles : tuple of Cycle
+    cycles : tuple of DredgingCycle
     totals : mapping of str to float or None
         By the keys of `TABLE_ROWS`; None where unknown.
     notes : tuple of str
@@ -75,21 +76,21 @@ class ProjectRun:
 
 @dataclass(frozen=True, eq=False)
 class ProjectResult:
-    """A project as it was sailed, and what it was compared with.
+    """A project with the optimised run and the base case.
 
     Attributes
     ----------
     project : Project
-        What was asked.
-    world : World
+        The definition of the project.
+    environment : ProjectEnvironment
         Ship, sea and chart.
-    optimised : Run
-    base : Run or None
+    optimised : ProjectRun
+    base : ProjectRun or None
     provenance : mapping
     """
 
     project: Project
-    world: ProjectEnvironment
+    environment: ProjectEnvironment
     optimised: ProjectRun
     base: ProjectRun | None = None
     provenance: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
@@ -100,7 +101,7 @@ class ProjectResult:
         return (self.optimised,) if self.base is None else (self.base, self.optimised)
 
     def gains(self) -> dict[str, float]:
-        """Return what is gained over the base case; empty without one."""
+        """Return the gains over the base case, as shares; empty without one."""
         if self.base is None:
             return {}
         old, new = self.base.totals, self.optimised.totals
@@ -115,18 +116,18 @@ class ProjectResult:
         }
 
     def table(self) -> list[list[str]]:
-        """Return the table of van Halem (2019), Table 5.1, as text: a head and rows."""
+        """Return the table of van Halem (2019), Table 5.1, as text: a header and rows."""
         columns = [dict(run.totals) for run in self.runs]
         columns[-1].update(self.gains())
         rows = [["", *(run.name for run in self.runs)]]
-        for key, words, written in TABLE_ROWS:
+        for key, label, text_of in TABLE_ROWS:
             values = [column.get(key) for column in columns]
             if any(value is not None for value in values):
-                rows.append([words, *("" if v is None else written(v) for v in values)])
+                rows.append([label, *("" if v is None else text_of(v) for v in values)])
         return rows
 
     def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain data for a JSON answer."""
+        """Return the result as plain data for JSON."""
         return {
             "project": self.project.to_dict(),
             "runs": {run.name: _run_data(run) for run in self.runs},
@@ -135,7 +136,7 @@ class ProjectResult:
         }
 
     def to_json(self, path: str | Path | None = None) -> str:
-        """Return (and write) everything as JSON."""
+        """Return the result as JSON text, and write it if a path is given."""
         text = json.dumps(self.as_dict(), indent=2, allow_nan=False)
         if path is not None:
             Path(path).write_text(text + "\n", encoding="utf-8")
@@ -150,7 +151,7 @@ def summarise_run(
     ship: Ship,
     notes: tuple[str, ...] = (),
 ) -> ProjectRun:
-    """Sum cycles up."""
+    """Return a run with the totals of its cycles."""
     duration = cycles[-1].end - cycles[0].start
     legs = [leg for cycle in cycles for leg in cycle.legs]
     volume = sum(cycle.volume for cycle in cycles)

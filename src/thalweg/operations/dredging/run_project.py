@@ -280,7 +280,7 @@ def _provenance(world: ProjectEnvironment, ways: SiteNetwork) -> dict[str, Any]:
             "kind": network.meta.kind,
             "nodes": int(network.n_nodes),
             "edges": int(network.n_edges),
-            "rings": world.sites.rings,
+            "rings": world.sites.network.rings,
         },
         "assumptions": list(world.needs.notes),
     }

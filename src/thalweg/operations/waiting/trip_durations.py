@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import format_position
-from thalweg.core.time import format_time
+from thalweg.core.time import TimeLike, format_time
 from thalweg.core.types import FloatArray
 from thalweg.operations.waiting.departures import Departures
 from thalweg.operations.waiting.trip_table import TripTable
@@ -115,6 +115,28 @@ def trip_table(
         current=_first_current(environment, pieces, times),
         periodic=departures.period is not None,
     )
+
+
+def trip_table_of_window(
+    route: RouteLike,
+    *,
+    start: TimeLike,
+    end: TimeLike | None = None,
+    period: float | None = None,
+    step: float = 60.0,
+    **options: Any,
+) -> TripTable:
+    """Sail one trip for every departure of a window; the former signature of `trip_table`.
+
+    Parameters
+    ----------
+    route : Track, Route, path, or iterable of (lat, lon)
+    start, end, period, step
+        As in `Departures`.
+    **options
+        As in `trip_table`.
+    """
+    return trip_table(route, departures=Departures(start, end, period, step), **options)
 
 
 def check_depth_available(environment: SailingEnvironment) -> None:
