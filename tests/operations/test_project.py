@@ -348,7 +348,7 @@ def test_a_dry_site_is_told_with_its_best_moment():
 
 
 def test_a_clearance_no_tide_gives_says_when_it_is_highest_and_what_is_missing():
-    with pytest.raises(NoRouteError, match="No tide opens a way") as caught:
+    with pytest.raises(NoRouteError, match="no route at any tide") as caught:
         sail(min_ukc_m=6.0, load_factors=[0.5, 1.0])
     details = caught.value.details
     # 5.0 m of draught and 6.02 m of clearance and margin against bar and tide: 7.86 m + 1.81 m
@@ -382,7 +382,7 @@ def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
     with pytest.raises(OutsidePeriodError) as caught:
         run_project(project, ship=ship, sea=sea, chart=chart)
     assert "The data end 2026-01-01T11:00:00Z." in caught.value.possible
-    assert "nothing from 2026-01-01T01:30:00Z to 2026-01-01T10:00:00Z" in caught.value.possible
+    assert "no data from 2026-01-01T01:30:00Z to 2026-01-01T10:00:00Z" in caught.value.possible
 
 
 @pytest.mark.parametrize(
@@ -486,16 +486,16 @@ def test_the_clearance_that_a_ship_file_asks_is_kept(tmp_path):
     asked = deep_sea(tmp_path / "bed.nc", bed=True) | {"ship": data, "load_factors": [0.5, 1.0]}
     result = sail(**asked, min_ukc_m=None)
     assert {cycle.load_factor for cycle in result.optimised.cycles} == {0.5}  # 15 m less 5 m
-    assert "Load factors above 0.5 have no way at any tide." in result.optimised.notes
+    assert "Load factors above 0.5 have no route at any tide." in result.optimised.notes
     assert {c.load_factor for c in sail(**asked, min_ukc_m=1.0).optimised.cycles} == {1.0}
 
 
 def test_sites_parted_by_what_no_data_know_are_told(tmp_path):
     for bed_too in (False, True):
         asked = deep_sea(tmp_path / f"wall{bed_too}.nc", bed=bed_too, wall=True)
-        with pytest.raises(NoRouteError, match="No tide opens") as caught:
+        with pytest.raises(NoRouteError, match="no route at any tide") as caught:
             sail(**asked, min_ukc_m=None)
-        assert "not joined by water that the data know" in caught.value.possible
+        assert "not connected by water of known depth" in caught.value.possible
 
 
 def test_no_sea_is_never_assumed():
