@@ -122,7 +122,7 @@ def _analyse_record(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
                 "values than constants to find.",
                 "Use a part of the record with fewer gaps, or fewer constituents.",
             )
-    return analysis, f"{record.told} at {place[0]:.4f}, {place[1]:.4f}"
+    return analysis, f"{record.description} at {place[0]:.4f}, {place[1]:.4f}"
 
 
 def _analyse_model(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
@@ -131,7 +131,7 @@ def _analyse_model(arguments: argparse.Namespace) -> tuple[TideAnalysis, str]:
 
     _check_options(arguments, ("at", "unit", "days_since"), "a model run", "a record")
     analysis = tidal_analysis(
-        Sea.open(arguments.file, mapping=option_values.variable_mapping(arguments)),
+        Sea.open(arguments.file, mapping=option_values.variable_mapping(arguments)).layers,
         constituents=arguments.constituents,
         rayleigh=arguments.rayleigh,
         progress=_progress(arguments),
