@@ -130,7 +130,10 @@ def _add_price_options(group: Any) -> None:
         help="price of fuel inside emission control areas divided by the price outside",
     )
     group.add_argument(
-        "--time-price", type=float, metavar="USD", help="cost of time, besides fuel [USD per hour]"
+        "--time-price",
+        type=float,
+        metavar="USD",
+        help="cost of time in addition to fuel [USD per hour]",
     )
     group.add_argument(
         "--forbid",

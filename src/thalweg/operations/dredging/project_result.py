@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from thalweg.operations.dredging.project_environment import ProjectEnvironment
 
 WEEK = 7.0 * DAY
-_PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel, where the ship file tells none
+_PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel; default without a value in the ship file
 
 #: Rows of the table: key, label, format.
 TABLE_ROWS = (
@@ -182,7 +182,7 @@ def summarise_run(
 def _energy_and_fuel(
     cycles: list[DredgingCycle], project: Project, ship: Ship
 ) -> dict[str, float | None]:
-    """Return energy, fuel, CO2 and cost; None where the ship file does not tell."""
+    """Return energy, fuel, CO2 and cost; None where the ship file lacks data."""
     work, own = project.work, ship.specific_fuel_consumption
     hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
     pumps = sum(c.loading * work.loading.power + c.unloading * work.unloading.power for c in cycles)
