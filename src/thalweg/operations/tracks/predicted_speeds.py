@@ -170,7 +170,5 @@ def _load_factors(log: TrackLog, segments: MeasuredSegments, ship: Ship) -> Floa
     if "draught" not in log.values or deep <= light:
         return assumed
     measured = (segment_means(log, segments, "draught") - light) / (deep - light)
-    rounded = np.round(
-        np.clip(measured, 0.0, 1.0), 2
-    )  # few distinct loads, each computed once
+    rounded = np.round(np.clip(measured, 0.0, 1.0), 2)  # few distinct loads, each computed once
     return np.where(np.isfinite(measured), rounded, assumed)
