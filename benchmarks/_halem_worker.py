@@ -1,4 +1,4 @@
-"""Run by a Python that has HALEM 1.0.3: its rotating flow on 625 nodes, times as JSON."""
+"""Times of HALEM 1.0.3 in a rotating flow on 625 nodes, as JSON; run by a Python with HALEM."""
 
 import json
 import sys
@@ -10,7 +10,7 @@ from halem import BaseRoadmap, HALEM_time, functions
 
 T0 = "01/01/2019 00:00:00"
 DEPTH = 1000.0
-SPEED = 4.0  # what his rule for shallow water must leave of the ship's speed [m/s]
+SPEED = 4.0  # speed of the ship after HALEM's correction for shallow water [m/s]
 
 
 def speed_left(speed):

@@ -5,12 +5,13 @@ English Channel to New York through wind and currents on a raster of half a degr
 hours, with the table of a bulk carrier with Kwon's speed loss. The targets are 1.5 s for the
 evaluations of a route of about 200 points and 4 s for a whole run of NSGA-II, on two cores, warm.
 
-Sea and ship are looked up at the middle of every piece of a leg. Two routes are evaluated: one of
-201 waypoints, whose 200 legs are two pieces each (the fewest there are), and one of 41 waypoints,
-such as evolution keeps, with about as many pieces as the other has legs. What is printed are
-waypoints and pieces. NSGA-II begins with the one of 41.
+Sea and ship are sampled at the middle of every segment of a leg. Two routes are evaluated: one of
+201 waypoints, whose 200 legs have two segments each (the minimum), and one of 41 waypoints, as
+evolution uses, with about as many segments as the other has legs. The numbers of waypoints and
+segments are printed. NSGA-II starts with the route of 41 waypoints.
 
-The jet and eddies is judged by the referee: hypervolume to (32 h, 32 t), target 162.85 in a minute.
+The fronts of the case "jet and eddies" are evaluated by the referee: hypervolume to (32 h, 32 t),
+target 162.85 in one minute.
 
     python benchmarks/evolution.py [--skip-fronts]
 """
@@ -101,7 +102,7 @@ def timed(label: str, target: float, work, *, runs: int = 3) -> None:
             cpu.append(time.process_time() - spent)
     print(
         f"{label}: best {min(wall):.2f} s, median {sorted(wall)[runs // 2]:.2f} s "
-        f"({min(cpu):.2f} s of processor time), target {target:g} s; {what}"
+        f"({min(cpu):.2f} s of CPU time), target {target:g} s; {what}"
     )
 
 
@@ -156,12 +157,12 @@ def fronts() -> None:
         spent, begun = time.process_time(), time.perf_counter()
         front = work()
         wall, cpu = time.perf_counter() - begun, time.process_time() - spent
-        told = np.array([jet.refereed(genome) for genome in front.genomes])
-        good = told[told[:, 2] == 0.0]
+        scores = np.array([jet.refereed(genome) for genome in front.genomes])
+        good = scores[scores[:, 2] == 0.0]
         volume = hypervolume(good[:, :2], jet.REFERENCE)
         print(
             f"{name}: hypervolume {volume:.2f} by the referee, {len(front)} tracks "
-            f"({len(told) - len(good)} refused), {wall:.1f} s ({cpu:.1f} s of processor time)",
+            f"({len(scores) - len(good)} rejected), {wall:.1f} s ({cpu:.1f} s of CPU time)",
             flush=True,
         )
 

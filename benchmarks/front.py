@@ -1,7 +1,7 @@
-"""The front of time against cost on 10^4 nodes with 32 directions and 12 settings, on one core.
+"""The Pareto front of time and cost on 10^4 nodes with 32 directions and 12 settings, on one core.
 
-The jet and eddies of the tests: a grid of 101 x 101 nodes, 1-minute bins over 32 hours (of the
-case; it is shrunk 100 times in length and time). Memory is that of the whole process.
+The case "jet and eddies" of the tests: a grid of 101 x 101 nodes, 1-minute bins over 32 hours (of
+the case, which is scaled down by 100 in length and time). Memory is that of the whole process.
 
     python benchmarks/front.py [--reach 3] [--bin-min 1.0] [--spacing 5] [--runs 3] [--no-lower]
 """
@@ -43,7 +43,7 @@ def search(grid: world.Grid, given: tuple, bin_min: float, lower: bool) -> Netwo
     )
 
 
-def tell(found: NetworkFront, seconds: list[float], what: str) -> None:
+def print_front(found: NetworkFront, seconds: list[float], what: str) -> None:
     work = found.work
     print(
         f"{what}: median {statistics.median(seconds):.2f} s (best {min(seconds):.2f}), "
@@ -74,7 +74,7 @@ def main() -> None:
             begin = time.process_time()
             found = search(grid, given, options.bin_min, lower)
             seconds.append(time.process_time() - begin)
-        tell(found, seconds, "front and lower front" if lower else "front (target 8 s)")
+        print_front(found, seconds, "front and lower front" if lower else "front (target 8 s)")
     for hours in (20.0, 24.0, 28.0):
         until = hours * world.HOUR
         cost = found.cost[found.time <= until].min()
@@ -83,7 +83,7 @@ def main() -> None:
             f"lower {world.tonnes(found.lower_at(until)):.4f} t"
         )
     if found.lower_time.size:
-        print(f"  gap: median {np.median(found.gap):.2%}, most {found.gap.max():.2%}")
+        print(f"  gap: median {np.median(found.gap):.2%}, maximum {found.gap.max():.2%}")
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     print(f"  peak memory {peak:.2f} GB")
 

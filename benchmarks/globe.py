@@ -1,7 +1,7 @@
-"""The globe network: built once, loaded, asked for a voyage, searched, and its ways round.
+"""The global network: construction, loading, search, and alternative routes.
 
-Targets: GSHHG i at level 4 with 6 coast levels built under 20 s, loaded under 1 s. The thesis'
-approach in a published prototype: 33 s to build, queries of 2 to 90 ms.
+Targets: GSHHG i at level 4 with 6 coast levels built in 20 s, loaded in 1 s. A published prototype
+of the method: 33 s to build, queries of 2 to 90 ms.
 
     python benchmarks/globe.py [--resolution i]
 """
@@ -41,7 +41,7 @@ def main() -> None:
     globe_grid.make_grid(chart, globe_grid.GridResolution(2, 1))  # compiles or loads the kernels
     print(f"grid of GSHHG {options.resolution}, level 4 + 6")
     grid = timed("built", globe_grid.make_grid, chart, globe_grid.GridResolution())
-    print(f"  {len(grid.lat):,} nodes, {len(grid.pairs.first):,} legs, {grid.rejected:,} refused")
+    print(f"  {len(grid.lat):,} nodes, {len(grid.pairs.first):,} legs, {grid.rejected:,} rejected")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "grid.npz"
         grid._save(path, grid)
@@ -58,7 +58,7 @@ def main() -> None:
             f"  {network.n_nodes:,} nodes, {network.n_edges:,} edges, "
             f"{distance[goal] / 1852:.1f} nm"
         )
-        ways = timed("ways round", alternative_paths, network, chart)
+        ways = timed("alternatives", alternative_paths, network, chart)
         print("  " + ", ".join(f"{w.length / 1852:.1f} nm {w.canals}" for w in ways))
         ways = timed("without canals", paths_without_canals, network, chart)
         print("  " + ", ".join(f"{w.length / 1852:.1f} nm {w.canals}" for w in ways))

@@ -1,8 +1,8 @@
-"""HALEM 1.0.3 and Thalweg on the same rotating flow: preparation and query, end to end.
+"""HALEM 1.0.3 and Thalweg in the same rotating flow: time of preparation and query.
 
     python benchmarks/halem_peer.py [--halem-python PATH]
 
-Without a Python that has HALEM, one is made in a temporary environment (needs the package index).
+Without `--halem-python`, HALEM is installed into a temporary environment (needs the package index).
 The flow is van Halem's first case (u = 2 cos(pi lat), v = -2 cos(pi lon), ship 4 m/s) on 625 nodes
 0.05 degrees apart, three rings of neighbours; its certified optimum is 26240.46 s.
 """
@@ -37,7 +37,7 @@ WORKER = Path(__file__).with_name("_halem_worker.py")
 
 
 def degrees(lat, lon):
-    """Positions on the equator as degrees of van Halem's sphere, so that both worlds are one."""
+    """Return positions near the equator as degrees on van Halem's sphere, for equal distances."""
     return lat * PER_LAT / METRES_PER_DEGREE + 0.5, lon * PER_LON / METRES_PER_DEGREE + 0.5
 
 
@@ -57,7 +57,7 @@ def rotating_sea():
 
 
 def ours(directions):
-    """Network, frozen sea and search, from nothing but formulas."""
+    """Build the network, freeze the sea and search; return (nodes, passage time [s])."""
     south_west, north_east = position(-0.1, -0.1), position(1.1, 1.1)
     chart = Chart.open_water(south_west[0], north_east[0], south_west[1], north_east[1])
     ship = Ship.simple(speed_kn=4.0 / KNOT, draught_m=1.5)

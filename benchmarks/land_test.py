@@ -1,13 +1,13 @@
-"""Does a leg touch land? Ours against shapely's prepared geometries, in one run.
+"""Land test of legs, compared with prepared geometries of shapely in the same run.
 
 Run ``python benchmarks/land_test.py [--resolution i] [--legs 100000] [--check 100000]``.
 
-The peer gets the land as one prepared geometry and legs as ready-made lines: geodesics densified
-every 20 km for the timing (making them is not timed), every 2 km for the comparison. The coast's
-edges are straight in longitude and latitude for both. A leg on which they differ is settled by
-densifying it every 100 m and asking shapely again: a geodesic densified every 2 km strays 8 cm
-and more from the true one, ours 3 mm (legs above 159 km that pass the coast nearer than the
-kernel can tell are cut into pieces of the exact geodesic).
+shapely receives the land as one prepared geometry and the legs as lines: geodesics densified every
+20 km for the timing (their construction is not timed), every 2 km for the comparison. The edges of
+the coast are straight in longitude and latitude in both. Where the results differ, the leg is
+densified every 100 m and tested with shapely again: a geodesic densified every 2 km deviates by 8
+cm and more from the true one, that of Thalweg by 3 mm (legs above 159 km that pass the coast nearer
+than the accuracy of the kernel are divided into segments of the exact geodesic).
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ def run(resolution, count, check):
         peer = median_time(lambda li=lines: shapely.intersects(land, li), 3) / 5000
         each = seconds / count
         print(
-            f"{name:>12}: {each * 1e6:7.3f} us a leg, shapely prepared {peer * 1e6:7.2f} us "
-            f"(lines ready-made): {peer / each:5.0f} x; blocked {ours.mean():.0%}"
+            f"{name:>12}: {each * 1e6:7.3f} us per leg, shapely prepared {peer * 1e6:7.2f} us "
+            f"(without making lines): {peer / each:5.0f} x; blocked {ours.mean():.0%}"
         )
         agree(chart, land, tuple(x[: check // 2] for x in legs), name)
 
@@ -89,7 +89,7 @@ def agree(chart, land, legs, name):
     settled = [k for k in differ if not settles(land, tuple(x[k : k + 1] for x in legs), ours[k])]
     print(
         f"{name:>12}: {len(ours)} legs, {len(differ)} differ from lines densified every 2 km, "
-        f"{len(settled)} disagreements after densifying those every 100 m"
+        f"{len(settled)} differ after densifying these every 100 m"
     )
     for k in settled[:5]:
         print("   ", [float(x[k]) for x in legs], "ours", bool(ours[k]))

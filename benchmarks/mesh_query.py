@@ -1,13 +1,13 @@
 """One query on a tidal mesh of 50,000 nodes: current, level, bed, flats that dry, waiting allowed.
 
 The mesh is triangular, three rings of neighbours (24 directions), sampled once per spacing; 30 h of
-a rotary M2 tide in half-hour steps. Asked: under 50 ms for one query, warm. "Prepared" queries keep
-what never changes between departures (`thalweg.search.prepared_network`), as a project of many
-trips does; the plain query gathers it anew every time.
+a rotary M2 tide in half-hour steps. Target: 50 ms for one query with compiled kernels. "Prepared"
+queries reuse all data that do not depend on the departure (`thalweg.search.prepared_network`), as a
+project of many trips does; the plain query prepares them each time.
 
     python benchmarks/mesh_query.py [--nodes 50000] [--runs 20] [--places 5] [--quick]
 
-Times are those of one core. Prepared queries are asked between several pairs of places.
+Times are CPU times of one core. Prepared queries run between several pairs of places.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ CHANNELS = (codes.CURRENT_EAST, codes.CURRENT_NORTH, codes.WATER_LEVEL, codes.BE
 
 
 def tidal_mesh(nodes: int):
-    """Return a network of about so many nodes over a square of sea."""
+    """Return a network of about this number of nodes over a square of sea."""
     side = round(math.sqrt(nodes * math.sqrt(3.0) / 2.0))
     rows = round(nodes / side)
     y, x = np.mgrid[0:rows, 0:side].astype(float)
@@ -64,7 +64,7 @@ def tidal_sea(network) -> StationFields:
 
 
 def steady() -> TableArrays:
-    """Return the table of a ship of one speed."""
+    """Return the table of a ship with one speed."""
     none = np.full((1, 6), -1, np.int64)
     zeros = np.zeros((1, 6))
     sizes = np.full((1, 6), 2, np.int64)
@@ -96,7 +96,7 @@ def main() -> None:
     east = deep[network.lon[deep] > np.quantile(network.lon, 0.85)]
     pairs = [(int(rng.choice(west)), int(rng.choice(east))) for _ in range(options.runs + 1)]
     departs = rng.uniform(3600.0, 12.0 * 3600.0, len(pairs))
-    told(
+    print_times(
         "plain query",
         [
             timed(
@@ -114,7 +114,7 @@ def main() -> None:
         passages = prepare_profile_search(prepared, steady(), start=start, goal=goal, **given)
         print(f"preparing a pair of places {1e3 * (time.process_time() - began):.0f} ms")
         runs += [timed(lambda t=t, p=passages: p.sail(t)) for t in departs]
-    told("prepared query", runs)
+    print_times("prepared query", runs)
 
 
 def timed(query) -> tuple[float, int]:
@@ -123,11 +123,11 @@ def timed(query) -> tuple[float, int]:
     return 1e3 * (time.process_time() - began), found.settled
 
 
-def told(what: str, runs: list[tuple[float, int]]) -> None:
-    taken = [ms for ms, _ in runs[1:]]  # the first one of all compiles or loads
+def print_times(what: str, runs: list[tuple[float, int]]) -> None:
+    taken = [ms for ms, _ in runs[1:]]  # the first query compiles or loads
     settled = statistics.median(n for _, n in runs[1:])
     print(
-        f"{what}: median {statistics.median(taken):.1f} ms, least {min(taken):.1f}, most "
+        f"{what}: median {statistics.median(taken):.1f} ms, minimum {min(taken):.1f}, maximum "
         f"{max(taken):.1f} (target 50), {settled:.0f} nodes settled"
     )
 

@@ -1,11 +1,11 @@
-"""van Halem's dredging project from end to end: 425,500 m3, 11 loads, 35 days of 10-minute fields.
+"""The dredging project of van Halem, complete: 425,500 m3, 11 loads, 35 days of 10-minute fields.
 
     python benchmarks/project.py [--quick]
 
 The water is the synthetic estuary of the package (some 6,000 nodes, three rings of neighbours, M2
-and S2), the ship that of van Halem (2019) with squat. Told are the times of every stage on this
-machine, how many routes were searched, and the table of his study. Then single queries on a network
-of 50,000 nodes, warm.
+and S2), the ship that of van Halem (2019) with squat. Printed are the time of every stage on this
+computer, the number of routes searched, and the table of his study; then the times of single
+queries on a network of 50,000 nodes with compiled kernels.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from thalweg.core.limits import Limits
 from thalweg.kernels import codes
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.network.triangular_mesh.mesh_builder import mesh
-from thalweg.operations.dredging import run_project as running
-from thalweg.operations.dredging.project_inputs import (
+from thalweg.operations.dredging import (
     example_file,
     open_project,
     open_project_inputs,
+    run_project,
 )
 from thalweg.operations.examples.estuary import synthetic_estuary
 from thalweg.search import PreparedNetwork, ProfileSearch, prepare_profile_search
 
 
 class Clock:
-    """Tells how long each stage took, on the clock and on all cores."""
+    """Prints the wall-clock time and the CPU time of each stage."""
 
     def __init__(self) -> None:
         self.begin = self.last = time.perf_counter()
@@ -46,30 +46,30 @@ class Clock:
 
 
 def whole_project(volume: float | None) -> None:
-    """Run the example project once, warm, and tell its table."""
+    """Run the example project once with compiled kernels, and print its table."""
     project = open_project(example_file())
     if volume is not None:
         project = replace(project, work=replace(project.work, volume=volume), days=10.0)
     ship, sea, chart = open_project_inputs(project)
     searches = counted_searches()
     for turn in ("first, may compile", "warm"):
-        if turn != "warm":  # a tenth of a day of work compiles all there is
+        if turn != "warm":  # a small project compiles all kernels
             small = replace(project, work=replace(project.work, volume=4000.0), days=2.0)
-            running.run_project(small, ship=ship, sea=sea, chart=chart)
+            run_project(small, ship=ship, sea=sea, chart=chart)
             continue
         searches.clear()
         clock = Clock()
-        result = running.run_project(replace(project, base=None), ship=ship, sea=sea, chart=chart)
-        clock.lap("project, optimised, every leg refereed")
+        result = run_project(replace(project, base=None), ship=ship, sea=sea, chart=chart)
+        clock.lap("project, optimised, all legs evaluated")
     legs = 2 * len(result.optimised.cycles)
     print(f"{legs} legs sailed, {len(searches)} time-dependent routes searched")
-    full = running.run_project(project, ship=ship, sea=sea, chart=chart)
+    full = run_project(project, ship=ship, sea=sea, chart=chart)
     for row in full.table():
         print("  " + f"{row[0]:<34}" + "".join(f"{cell:>14}" for cell in row[1:]))
 
 
 def counted_searches() -> list[float]:
-    """Count searches from here on."""
+    """Return a list that receives the departure of every later search."""
     counted: list[float] = []
     plain = ProfileSearch.sail
 
@@ -82,7 +82,7 @@ def counted_searches() -> list[float]:
 
 
 def single_queries(spacing: float) -> None:
-    """Tell how long one query takes, warm, on a large network."""
+    """Print the time of one query on a large network with compiled kernels."""
     estuary = synthetic_estuary(spacing)
     nodes = estuary.sea.mesh()
     lat = np.concatenate([[estuary.load[0], estuary.unload[0]], nodes.lat])
@@ -112,7 +112,7 @@ def single_queries(spacing: float) -> None:
                 times.append(1000.0 * (time.thread_time() - first))
             print(
                 f"load {load:.1f}, {turn}: median {statistics.median(times):.1f} ms of CPU, "
-                f"least {min(times):.1f}, most {max(times):.1f} of {len(times)} departures"
+                f"minimum {min(times):.1f}, maximum {max(times):.1f} of {len(times)} departures"
             )
 
 

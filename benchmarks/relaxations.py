@@ -1,14 +1,15 @@
 """Edge relaxations per second of the time-dependent search, on one core.
 
 A regular network of 10^6 nodes and 16 directions with currents, wind, waves and water level in
-eight channels and eight times; every edge is sampled at both ends and, where it is longer than the
-spacing's diagonal, in its middle; a depth limit and a wave limit are checked at every sample; speed
-comes from a table of Kwon's kind on wind speed and wind angle. Everything is made as plain arrays.
+eight channels and eight times. Every edge is sampled at both ends and, if it is longer than the
+diagonal of the spacing, at its midpoint. Every sample is checked against a depth limit and a wave
+limit. The speed is a table of wind speed and wind angle as in Kwon's method. All inputs are plain
+arrays.
 
     python benchmarks/relaxations.py [--side 1000] [--times 8] [--runs 3]
 
-"Relaxed" counts every edge that leaves a settled node, once. Most of these are dismissed by a
-bound before the sea is sampled; "sailed" counts the others.
+"Relaxed" counts every edge that leaves a settled node, once. Most of these are rejected by a bound
+before the sea is sampled; "sailed" counts the others.
 """
 
 from __future__ import annotations
@@ -150,7 +151,7 @@ def main() -> None:
         )
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     print(
-        f"median {statistics.median(relaxed):.1f} million relaxations a second (target 10), of "
+        f"median {statistics.median(relaxed):.1f} million relaxations per second (target 10), of "
         f"which {statistics.median(sailed):.2f} million sailed; peak memory {memory:.2f} GB "
         "(target < 2)"
     )

@@ -1,7 +1,8 @@
-"""Ships: time and memory of tables, error against the methods, direct evaluation, kernel look-up.
+"""Ships: time, memory and error of performance tables, direct evaluation, kernel look-up.
 
-Run ``python benchmarks/ship_tables.py [--quick]``; prints medians of CPU time. Asked: a table
-in 3 s and 64 MB at 1 % (99th percentile), 10^6 conditions directly in 5 s, a look-up in 150 ns.
+Run ``python benchmarks/ship_tables.py [--quick]``; prints medians of CPU time. Targets: a table in
+3 s and 64 MB with an error of 1 % (99th percentile), 10^6 conditions directly in 5 s, a look-up in
+150 ns.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ def _cpu(function, repeats: int) -> float:
 
 
 def _build(ship: Ship) -> None:
-    """Build the table anew, whatever is kept on disk."""
+    """Build the table without the cache on disk."""
     if isinstance(ship.model, ResistanceModel):
         tabulate_balance(ship.model, ship.loading.load_factor, 0.01)
     else:
@@ -97,7 +98,7 @@ def table_rows(repeats: int) -> None:
 
 
 def fuel_rows() -> None:
-    print("\ntables of fuel: the full ship and JBC, holding speeds")
+    print("\nfuel tables: the full ship and JBC at ordered speeds")
     held = {key: value for key, value in Ship.load("jbc").data.items() if key != "powers_kw"}
     for name, data in {
         "full ship": {**FULL, "speeds_kn": [8, 10, 12, 13.5]},

@@ -1,7 +1,7 @@
-"""Tides: harmonic analysis of a model run, and the sea that comes of it.
+"""Tides: harmonic analysis of a model run, and sampling of the predicted sea.
 
-Run ``python benchmarks/tides.py [--quick]``; prints seconds of wall clock. Asked: 5,000 nodes and
-35 days of 10-min currents and levels analysed in 3 minutes on 2 cores.
+Run ``python benchmarks/tides.py [--quick]``; prints seconds of wall-clock time. Target: 5,000 nodes
+and 35 days of 10-minute currents and levels analysed in 3 minutes on 2 cores.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ START = 1.7e9
 
 
 def main() -> None:
-    """Print what each part takes."""
+    """Print the time of each part."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
     nodes = 500 if parser.parse_args().quick else 5000
@@ -41,7 +41,7 @@ def main() -> None:
     level[rng.random(level.shape) < 1e-3] = np.nan
     began = time.perf_counter()
     analyse(times, {nm.WATER_LEVEL: level}, lat=lat, lon=lon)
-    print(f"level, every node with gaps of its own{time.perf_counter() - began:7.2f} s")
+    print(f"level, each node with different gaps  {time.perf_counter() - began:7.2f} s")
 
     sea = Sea.from_tides(found)
     inside = 51.1 + 0.8 * rng.random(nodes), 2.1 + 0.8 * rng.random(nodes)

@@ -1,4 +1,4 @@
-"""``thalweg plan`` across the North Atlantic as a whole process: first run and later ones."""
+"""``thalweg plan`` across the North Atlantic as a whole process: first run and later runs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def main():
     environment = {**os.environ, **caches}
     cold = run(environment)
     warm = [run(environment) for _ in range(5)]
-    print(f"first run, nothing compiled or cached: {cold:.2f} s")
+    print(f"first run (compiles the kernels): {cold:.2f} s")
     print(f"later runs: {statistics.median(warm):.2f} s (median of 5, from {min(warm):.2f} s)")
     shutil.rmtree(folder)
 

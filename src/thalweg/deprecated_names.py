@@ -57,7 +57,7 @@ MOVED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
         "draw_tracks": ("thalweg.operations.plots.track_plot", "draw_tracks"),
     },
     "thalweg.operations.trips": {
-        "trip_table": ("thalweg.operations.waiting.trip_durations", "trip_table"),
+        "trip_table": ("thalweg.operations.waiting.trip_durations", "trip_table_of_window"),
     },
     "thalweg.operations.waiting_picture": {
         "draw_waiting": ("thalweg.operations.plots.waiting_plot", "draw_waiting"),

@@ -136,7 +136,7 @@ def test_inspect(capsys, currents):
         (["--ship", "SHIP", "--calm", "--fill", "tea=2"], 2, "currents=0"),
         (["--ship", "SHIP", "--calm", "--fill", "wind=0"], 2, "Both --calm and --fill"),
         (["--ship", "SHIP", "--calm", "--map", "eastward_wind=u"], 2, "Both --calm and --map"),
-        (["--ship", "SHIP", "--sea", "storm", "--average-over", "5"], 2, "storm is none"),
+        (["--ship", "SHIP", "--sea", "storm", "--average-over", "5"], 2, "given without a file"),
         (["--ship", "SHIP", "--sea", "CURRENTS", "--fill", "waves=-1"], 2, "between 0 and"),
     ],
 )

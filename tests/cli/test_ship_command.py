@@ -9,8 +9,9 @@ import sys
 import pytest
 from matplotlib.figure import Figure
 
-from thalweg.cli.ship_command import add_ship_command, merged_notes, parse_speeds
+from thalweg.cli.ship_command import add_command, parse_speeds
 from thalweg.cli.ship_plots import _resistance
+from thalweg.cli.ship_sheet_table import merged_notes
 from thalweg.core.errors import InputError, ModelRangeError
 
 KEYS = {
@@ -30,7 +31,7 @@ models: {calm_water: holtrop_mennen_1982, waves: stawave_1, wind: ittc}
 
 def _run(capsys, *words):
     parser = argparse.ArgumentParser()
-    add_ship_command(parser.add_subparsers())
+    add_command(parser.add_subparsers())
     arguments = parser.parse_args(["ship", *map(str, words)])
     assert arguments.run(arguments) == 0
     return capsys.readouterr().out
@@ -62,7 +63,7 @@ def test_speeds_are_read(text, speeds):
     ["", "x", "8:", "0:4", "-3", "9:8", "1:9999:0.001", "8:16:1e-320", "nan", "8:9,1"],
 )
 def test_speeds_that_are_none_are_refused(text):
-    with pytest.raises(InputError, match="are not speeds"):
+    with pytest.raises(InputError, match="is not understood"):
         parse_speeds(text)
 
 
@@ -214,7 +215,7 @@ def test_a_folder_that_cannot_be_written_is_said(capsys, ship_file, tmp_path):
 
 def test_the_library_is_listed(capsys):
     assert "handysize-bulker" in _run(capsys, "--list").split()
-    with pytest.raises(InputError, match="No ship is named"):
+    with pytest.raises(InputError, match="No ship is given"):
         _run(capsys)
 
 

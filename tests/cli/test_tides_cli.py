@@ -228,5 +228,5 @@ def test_a_prediction_makes_its_folder_and_refuses_a_position_that_means_nothing
     out = tmp_path / "new" / "tide.csv"
     assert tide("predict", gauge, *span, "--out", out) == 0
     assert len(out.read_text().splitlines()) == 8
-    with pytest.raises(InputError, match="holds one place"):
+    with pytest.raises(InputError, match="constants at a single place"):
         tide("predict", gauge, *span, "--at", "51,3")

@@ -137,7 +137,7 @@ def test_areas_across_the_antimeridian():
         ([LOADING], "no area for unloading"),
         ([], "no area for loading and none for unloading"),
         ([LOADING, box(4.0, 52.0, 5.0, 52.2, activity="unloading", name="beach")], "overlap"),
-        ([LOADING, UNLOADING, box(6, 52, 7, 53)], "Area 3 does not tell"),
+        ([LOADING, UNLOADING, box(6, 52, 7, 53)], "Area 3 has no activity"),
         ([LOADING, box(6, 52, 7, 53, activity="unlaoding")], "unloading"),
         ([{"type": "Point", "coordinates": [1, 2]}], "no area"),
     ],

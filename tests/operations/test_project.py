@@ -37,7 +37,8 @@ from thalweg.operations.dredging.verified_legs import (
     track_from_passage,
 )
 from thalweg.operations.examples.estuary import bed_depth
-from thalweg.operations.plots.project_plots import draw_routes
+from thalweg.operations.plots import draw_routes
+from thalweg.operations.result_files import write_project_files
 from thalweg.route import evaluate
 
 WEEK = 604800.0
@@ -97,7 +98,7 @@ def test_the_least_clearance_is_unknown_where_that_of_a_leg_is(result):
         legs={**known.legs, "under_keel_clearance": np.full(len(known.legs["length"]), np.nan)},
     )
     cycles[1] = replace(cycles[1], back=SailedLeg(blind, 0.0))
-    run = summarise_run("x", cycles, project=result.project, ship=result.world.ship)
+    run = summarise_run("x", cycles, project=result.project, ship=result.environment.ship)
     assert run.totals["least_clearance_m"] is None
 
 
@@ -171,7 +172,7 @@ def test_fuel_burnt_in_a_wait_is_counted_once():
         work = sum(cycle.loading + cycle.unloading for cycle in run.cycles)
         still = work + sum(leg.waiting for leg in legs)
         pumped = sum(1500e3 * c.loading + 2000e3 * c.unloading for c in run.cycles)
-        hotel = result.world.ship.waiting_fuel_rate * still
+        hotel = result.environment.ship.waiting_fuel_rate * still
         expected = sailing + hotel + pumped * 200.0 / 3.6e9  # 200 g/kWh
         assert run.totals["fuel_t"] == pytest.approx(expected / 1000.0, rel=1e-9)
 
@@ -227,7 +228,7 @@ def test_the_load_chosen_produces_most(result):
     """No other load, sailed from the same moment, moves more per time of its cycle."""
     from thalweg.operations.dredging.cycle_simulation import Simulator
 
-    world, work = result.world, result.project.work
+    world, work = result.environment, result.project.work
     ways = freeze_site_network(world, project_network(world), lambda text: None)
     simulator = Simulator(result.project, world, ways)
     first = result.optimised.cycles[0]
@@ -244,7 +245,7 @@ def test_the_load_chosen_produces_most(result):
 
 
 def test_files_and_pictures(result, tmp_path):
-    files = result.write(tmp_path)
+    files = write_project_files(result, tmp_path)
     assert [file.name for file in files] == [
         "project.json", "cycles.csv", "project.png", "routes.png",
     ]  # fmt: skip
@@ -307,7 +308,7 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"unloading": {"rate_m3_s": -1}}, "unloading.rate_m3_s is -1"),
         ({"loading": {"minutes": [0, 10, 5], "share": [0, 0.5, 1]}}, "curve of loading"),
         ({"loading": {"rate": 3}}, "no entry of loading named 'rate'"),
-        ({"load_factors": [0.0]}, "nothing is moved"),
+        ({"load_factors": [0.0]}, "one of them above 0"),
         ({"load_factors": [0.5, 1.2]}, "load_factors is"),
         ({"days": -1}, "days is -1"),
         ({"load": [95.0, 3.0]}, "load"),
@@ -322,7 +323,7 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"start": 20260501}, "start is the number 20260501"),
         ({"volumes": 1}, "no project entry named 'volumes'"),
         ({"start": None}, "lacks start"),
-        ({"base_case": {"route": [[51.7, 3.5]]}}, "no way"),
+        ({"base_case": {"route": [[51.7, 3.5]]}}, "has one place"),
         ({"base_case": {"route": [[51.7, 3.5], [51.6596, 3.6514]]}}, "starts 7,"),
         ({"base_case": {"route": [[51.7449, 3.579], [51.7, 3.5]]}}, "ends 11,"),
         ({"base_case": {"route": [[51.7, 3.5], [51.8, 3.5]], "load_factor": 0}}, "load_factor is"),
@@ -347,7 +348,7 @@ def test_a_dry_site_is_told_with_its_best_moment():
 
 
 def test_a_clearance_no_tide_gives_says_when_it_is_highest_and_what_is_missing():
-    with pytest.raises(NoRouteError, match="No tide opens a way") as caught:
+    with pytest.raises(NoRouteError, match="no route at any tide") as caught:
         sail(min_ukc_m=6.0, load_factors=[0.5, 1.0])
     details = caught.value.details
     # 5.0 m of draught and 6.02 m of clearance and margin against bar and tide: 7.86 m + 1.81 m
@@ -381,7 +382,7 @@ def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
     with pytest.raises(OutsidePeriodError) as caught:
         run_project(project, ship=ship, sea=sea, chart=chart)
     assert "The data end 2026-01-01T11:00:00Z." in caught.value.possible
-    assert "nothing from 2026-01-01T01:30:00Z to 2026-01-01T10:00:00Z" in caught.value.possible
+    assert "no data from 2026-01-01T01:30:00Z to 2026-01-01T10:00:00Z" in caught.value.possible
 
 
 @pytest.mark.parametrize(
@@ -414,7 +415,7 @@ def test_a_base_case_that_leaves_the_data_says_where():
     chart = Chart.open_water(51.0, 52.0, 3.0, 4.0)  # wider than the sea, which ends at 3.724 E
     with pytest.raises(NoRouteError, match="base case") as caught:
         run_project(project, ship=ship, sea=Sea.layered(sea, bed()), chart=chart)
-    assert "not known on its route at 51.72" in caught.value.possible
+    assert "on its route at 51.72" in caught.value.possible and "not known" in caught.value.possible
     assert caught.value.details["nearest"][1] == pytest.approx(3.724, abs=0.005)
 
 
@@ -435,7 +436,7 @@ def test_ways_are_drawn_over_no_water_where_the_chart_has_land(result):
     land = Chart.from_geojson({"type": "Polygon", "coordinates": [ring]}).with_depth(
         bed_depth, spacing_deg=0.001
     )
-    figure = draw_routes(replace(result, world=replace(result.world, chart=land)))
+    figure = draw_routes(replace(result, environment=replace(result.environment, chart=land)))
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())
 
@@ -485,16 +486,16 @@ def test_the_clearance_that_a_ship_file_asks_is_kept(tmp_path):
     asked = deep_sea(tmp_path / "bed.nc", bed=True) | {"ship": data, "load_factors": [0.5, 1.0]}
     result = sail(**asked, min_ukc_m=None)
     assert {cycle.load_factor for cycle in result.optimised.cycles} == {0.5}  # 15 m less 5 m
-    assert "Load factors above 0.5 have no way at any tide." in result.optimised.notes
+    assert "Load factors above 0.5 have no route at any tide." in result.optimised.notes
     assert {c.load_factor for c in sail(**asked, min_ukc_m=1.0).optimised.cycles} == {1.0}
 
 
 def test_sites_parted_by_what_no_data_know_are_told(tmp_path):
     for bed_too in (False, True):
         asked = deep_sea(tmp_path / f"wall{bed_too}.nc", bed=bed_too, wall=True)
-        with pytest.raises(NoRouteError, match="No tide opens") as caught:
+        with pytest.raises(NoRouteError, match="no route at any tide") as caught:
             sail(**asked, min_ukc_m=None)
-        assert "not joined by water that the data know" in caught.value.possible
+        assert "not connected by water of known depth" in caught.value.possible
 
 
 def test_no_sea_is_never_assumed():

@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -61,13 +62,12 @@ def test_the_true_factor_and_speeds_are_found(analysis):
 @pytest.mark.parametrize("seed", range(4))
 def test_speed_noise_is_within_the_stated_errors(seed):
     track = synthetic_track(
-        CYCLE,
+        replace(CYCLE, position_noise_m=10.0),
         sea=TIDAL,
         start="2026-01-01",
         cycles=10,
         interval_s=240.0,
         current_factor=0.7,
-        position_noise_m=10.0,
         speed_noise=0.03,
         seed=seed,
     )
@@ -141,19 +141,19 @@ def test_currents_that_are_unknown_are_told_and_left_out(made):
     assert found.calibration.legs == 12
     assert found.calibration.factor == pytest.approx(1.4, abs=0.03)
     assert found.spreads()["currents"].count == 12 and found.spreads()["still water"].count == 24
-    assert any("tells no current" in note for note in found.notes)
+    assert any("has no current" in note for note in found.notes)
 
 
 def test_still_water_tells_no_factor(made):
     found = analyse_tracks(made.frame, CYCLE.areas, sea=Sea.calm())
     assert found.calibration is None
-    assert any("cannot be told" in note for note in found.notes)
+    assert any("not determined" in note for note in found.notes)
 
 
 def test_gaps_in_a_track_are_told(made):
     frame = made.frame.drop(index=range(100, 130))
     found = analyse_tracks(frame, CYCLE.areas, sea=TIDAL)
-    assert any("was not seen" in note for note in found.notes)
+    assert any("No positions for" in note for note in found.notes)
     assert found.calibration.factor == pytest.approx(1.4, abs=0.02)
 
 
@@ -209,18 +209,18 @@ def test_a_line_is_found_again(x, slope, offset):
 
 
 def test_over_ground_undoes_through_water(analysis):
-    pieces = analysis.pieces
+    segments = analysis.segments
     for factor in (0.0, 1.0, 1.7):
-        water = np.abs(pieces.ground - factor * pieces.current)
-        assert speeds_over_ground(pieces, water, factor) == pytest.approx(pieces.speed)
-    assert np.isnan(speeds_over_ground(pieces, 1e-3, 5.0)).any()
-    legs = leg_speeds(pieces, pieces.speed)
-    assert calibrate(pieces.part(pieces.leg < 2)) is None and len(legs) == 24
+        water = np.abs(segments.ground - factor * segments.current)
+        assert speeds_over_ground(segments, water, factor) == pytest.approx(segments.speed)
+    assert np.isnan(speeds_over_ground(segments, 1e-3, 5.0)).any()
+    legs = leg_speeds(segments, segments.speed)
+    assert calibrate(segments.part(segments.leg < 2)) is None and len(legs) == 24
 
 
 @pytest.mark.parametrize("stops", range(70, 75))  # minute in which it stops
 def test_a_ship_that_lies_dead_still_on_its_way_has_no_course_there(stops):
-    """Nine minutes are no wait, but may hold a piece of no length: its leg is still compared."""
+    """Nine minutes are no wait, but may hold a segment of no length: its leg is still compared."""
     minutes = np.arange(0.0, 180.0)
     way = np.interp(minutes, [30, stops, stops + 9, stops + 49], [0.0, 0.5, 0.5, 1.0])
     table = pd.DataFrame(
@@ -230,25 +230,27 @@ def test_a_ship_that_lies_dead_still_on_its_way_has_no_course_there(stops):
         warnings.simplefilter("error")
         found = analyse_tracks(table, CYCLE.areas, sea=TIDAL)
     legs = found.leg_frame()
-    assert len(legs) == 1 and (found.pieces.speed > 0.0).all()
+    assert len(legs) == 1 and (found.segments.speed > 0.0).all()
     length = float(distance(52.3, 4.0, 52.1, 4.2))
-    # of the stop some minutes may be left, in the pieces that sail on
+    # of the stop some minutes may be left, in the segments that sail on
     assert 0.95 * length / (93.0 * 60.0) < legs.speed_kn[0] * KNOT < length / (80.0 * 60.0)
     assert np.isfinite(legs["currents [kn]"][0])
 
 
 def test_tracks_that_cannot_be_made():
     asked = {"sea": TIDAL, "start": 0.0}
-    for wrong in ({"cycles": 0}, {"interval_s": 0.0}, {"position_noise_m": -1.0}):
+    for wrong in ({"cycles": 0}, {"interval_s": 0.0}, {"speed_noise": -1.0}):
         with pytest.raises(InputError):
             synthetic_track(CYCLE, **asked, **wrong)
-    with pytest.raises(InputError, match="is no cycle"):
+    with pytest.raises(InputError, match="three radii apart"):
         SyntheticCycle((52.0, 4.0), (52.0, 4.01))
+    with pytest.raises(InputError, match="position_noise_m"):
+        replace(CYCLE, position_noise_m=-1.0)
     slow = SyntheticCycle((52.3, 4.0), (52.1, 4.2), full_kn=1.0)
     with pytest.raises(NoRouteError):
         synthetic_track(slow, sea=TIDAL, start=0.0, current_factor=3.0)
     nowhere = Sea.from_functions(
         {n: (lambda t, la, lo: 0.0 * la) for n in (EAST, NORTH)}, area=(0.0, 1.0, 0.0, 1.0)
     )
-    with pytest.raises(InputError, match="does not tell the current"):
+    with pytest.raises(InputError, match="has no current"):
         synthetic_track(CYCLE, sea=nowhere, start=0.0)

@@ -92,7 +92,7 @@ def test_the_command_line_keeps_and_marks_it_and_says_where_nothing_is_kept(
         "--depart", "2026-01-01T00:00Z", "--objective", "front", "--json",
     ]  # fmt: skip
     for stage, code in (("searching the front", 0), ("building", 130)):
-        monkeypatch.setattr("thalweg.cli.options.progress_callback", lambda _, s=stage: at(s))
+        monkeypatch.setattr("thalweg.cli.option_values.progress_callback", lambda _, s=stage: at(s))
         assert main(command) == code
         told = capsys.readouterr()
         if code == 0:

@@ -7,8 +7,7 @@ from functools import cache
 import numpy as np
 
 from thalweg.core.geodesy import direct
-from thalweg.operations.waiting.trip_durations import trip_table
-from thalweg.operations.waiting.trip_table import TripTable
+from thalweg.operations.waiting import Departures, TripTable, trip_table
 from thalweg.sea import Sea
 from thalweg.sea.models.stratified_coast import TidalEllipse, stratified_coast_current
 from thalweg.ship import Ship
@@ -66,7 +65,7 @@ def nourishment(scenario: TidalEllipse, *, rudder: bool = True) -> tuple[TripTab
         return 8.0 + 12.0 * (COAST[1] - lon) / (COAST[1] - far[1])
 
     sea = waters(scenario, decay=50e3, depth=depth)
-    asked = {"sea": sea, "start": 0.0, "period": TIDE, "step": 300.0}
+    asked = {"sea": sea, "departures": Departures(0.0, period=TIDE, step=300.0)}
     full, empty = dredger(5.0, rudder=rudder), dredger(2.0, rudder=rudder)
     there = trip_table([far, COAST], ship=full, name="there", **asked).refined(10)
     back = trip_table([COAST, far], ship=empty, name="back", **asked).refined(10)

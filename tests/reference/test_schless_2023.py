@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tests.reference.schless_2023 import COAST, GENERATOR, TIDE, dredger, offshore, waters
-from thalweg.operations.waiting.trip_durations import trip_table
+from thalweg.operations.waiting import Departures, trip_table
 from thalweg.sea.models.stratified_coast import TIDAL_ELLIPSES
 from thalweg.ship.methods.propulsion.propulsion_factors import Efficiencies
 from thalweg.ship.methods.resistance.holtrop_form import hull_form, wetted_surface
@@ -144,9 +144,7 @@ def test_table_4_6():
         [offshore(STEPS * STEP), COAST],
         ship=dredger(5.0),
         sea=sea,
-        start=0.0,
-        period=TIDE,
-        step=0.25 * TIDE,
+        departures=Departures(0.0, period=TIDE, step=0.25 * TIDE),
     )
     energy = (table.energy + GENERATOR * table.duration) / 3.6e6
     assert energy == pytest.approx([7896.24, 7736.08, 8348.65, 8431.31], rel=9e-3)

@@ -1,28 +1,38 @@
-"""``thalweg demo``: the main job on a real coastline and the embedded storm."""
+"""``thalweg demo``: an example voyage on a real coastline through a modelled storm."""
 
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from thalweg.cli import options, plan_command
+from thalweg.cli import option_values
+from thalweg.cli.first_run import announce_compilation
+from thalweg.cli.tables import print_plan, print_written
 from thalweg.kernels.compilation import warm_up
+
+if TYPE_CHECKING:
+    from thalweg.planning import Plan
+    from thalweg.route import Route
 
 
 def add_command(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "demo",
-        help="cross the North Atlantic round the embedded storm",
-        description="Plan Halifax to Bishop Rock through a modelled storm on its real track.",
+        help="example: plan a North Atlantic crossing that avoids a storm",
+        description="Plan Halifax to Bishop Rock through a modelled storm on its recorded track, "
+        "and compare the route with one that ignores the weather.",
     )
-    parser.add_argument("--out", default="demo", metavar="DIR", help="folder for the result")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument(
+        "--out", default="demo", metavar="DIR", help="folder for files and plots (default: demo)"
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as one JSON object")
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Plan the demonstration voyage, and say what the storm costs a ship that ignores it."""
+    """Plan the example voyage, write its files, and compare it with the weather-blind route."""
+    announce_compilation(search=True)
     warm_up.start_compiling("thalweg.planning.compile_kernels")
     from thalweg.chart import Chart
     from thalweg.planning import plan as make_plan
@@ -33,20 +43,19 @@ def run(arguments: argparse.Namespace) -> int:
 
     folder = make_folder(arguments.out)
     ship, sea, chart = Ship.load("handysize-bulker"), Sea.storm(), Chart.gshhg("i")
-    progress = options.progress_callback(arguments)
+    progress = option_values.progress_callback(arguments)
     found = make_plan(demo_voyage(), ship=ship, sea=sea, chart=chart, progress=progress)
     files = found.write(folder)
     if arguments.json:
         print(found.to_json())
         return 0
-    plan_command.print_plan(found)
+    print_plan(found)
     _print_comparison(found, weather_blind(found, ship=ship, sea=sea, chart=chart))
-    for path in files:
-        print(f"wrote {path}")
+    print_written(files)
     return 0
 
 
-def _print_comparison(found: Any, blind: Any) -> None:
+def _print_comparison(found: Plan, blind: Route) -> None:
     waves = "sea_surface_wave_significant_height"
     worst, worst_blind = (float(route.samples[waves].max()) for route in (found.best, blind))
     print(

@@ -1,4 +1,4 @@
-"""``thalweg evaluate``: the referee scores a route from a file."""
+"""``thalweg evaluate``: evaluate a route from a file."""
 
 from __future__ import annotations
 
@@ -6,37 +6,47 @@ import argparse
 import json
 from typing import Any
 
-from thalweg.cli import options
-from thalweg.cli.plan_command import print_waypoints
+from thalweg.cli import option_values, options
+from thalweg.cli.first_run import announce_compilation
+from thalweg.cli.tables import print_route, print_written
 
 
 def add_command(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "evaluate",
-        help="score a route from a CSV, GeoJSON or GPX file",
-        description="Re-sail a route in small steps with the ship's own physics.",
+        help="time, fuel and limits of a route from a file",
+        description="Sail a given route in small steps with the ship's own models, and report its "
+        "time, fuel, under-keel clearance and violated limits.",
+        epilog="Example: thalweg evaluate route.gpx --ship handysize-bulker --sea forecast.nc",
     )
-    parser.add_argument("route", metavar="ROUTE")
-    options.add_ship_and_chart_options(parser)
-    parser.add_argument("--depart", metavar="T", help="departure; the file's own time when absent")
-    parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed through water")
+    parser.add_argument("route", metavar="ROUTE", help="route file: CSV, GeoJSON or GPX")
+    options.add_ship_and_chart_options(parser, default_ukc="0")
+    parser.add_argument(
+        "--depart", metavar="TIME", help="departure (ISO 8601, UTC); default: that of the file"
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="KN",
+        help="ordered speed through calm water [kn]; default: those of the file, else of the ship",
+    )
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate, print and write."""
+    """Evaluate the route, print it and write its files."""
+    announce_compilation()
     from thalweg.planning.plan_data import route_dict
-    from thalweg.planning.report.output_files import make_folder, write_route
-    from thalweg.route import evaluate as score
+    from thalweg.planning.report.output_files import write_route
+    from thalweg.route import evaluate
 
-    if arguments.out:
-        make_folder(arguments.out)
-    route = score(
+    option_values.prepare_output_folder(arguments)
+    route = evaluate(
         arguments.route,
-        ship=options.open_ship(arguments),
-        sea=options.open_sea(arguments),
-        chart=options.open_chart(arguments),
+        ship=option_values.open_ship(arguments),
+        sea=option_values.open_sea(arguments),
+        chart=option_values.open_chart(arguments),
         depart=arguments.depart,
         speed_kn=arguments.speed,
         min_ukc=arguments.ukc or 0.0,
@@ -46,24 +56,6 @@ def run(arguments: argparse.Namespace) -> int:
         found = {**route_dict(route, "given"), "notes": list(route.assumptions)}
         print(json.dumps(found, indent=2, allow_nan=False))
         return 0
-    _print_route(route)
-    for path in files:
-        print(f"wrote {path}")
+    print_route(route)
+    print_written(files)
     return 0
-
-
-def _print_route(route: Any) -> None:
-    from rich.console import Console
-    from rich.markup import escape
-
-    console = Console()
-    print_waypoints(console, route.waypoints(), "the route as given")
-    waits = f" with {route.waiting_h:.2f} h waiting" if route.waiting_h > 0.0 else ""
-    fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
-    console.print(f"[bold]{route.time_h:.2f} h{waits}, {route.distance_nm:.1f} nm{fuel}[/bold]")
-    for violation in route.violations:
-        console.print(f"[red]violation:[/red] {escape(str(violation))}", soft_wrap=True)
-    if route.feasible:
-        console.print("Every limit is kept.")
-    for note in route.assumptions:
-        console.print(f"[yellow]note:[/yellow] {escape(note)}", soft_wrap=True)

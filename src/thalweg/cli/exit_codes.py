@@ -1,4 +1,4 @@
-"""The one table from errors to exit codes and to what is printed."""
+"""Exit codes of the command line, and how errors are printed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 from thalweg.core.errors import CoverageError, NoRouteError, ThalwegError
 
 SUCCESS, BAD_INPUT, NO_COVERAGE, NO_ROUTE = 0, 2, 3, 4
-INTERRUPTED = 130  # by Ctrl-C, as shells tell it
+INTERRUPTED = 130  # after Ctrl-C, as shells do
 
 
 def exit_code(error: ThalwegError) -> int:
@@ -21,7 +21,14 @@ def exit_code(error: ThalwegError) -> int:
 
 
 def print_error(error: ThalwegError, *, as_json: bool) -> int:
-    """Print an error for a person on stderr, or for a program on stdout; return its exit code."""
+    """Print an error and return its exit code.
+
+    Parameters
+    ----------
+    error : ThalwegError
+    as_json : bool
+        True: one JSON object on stdout. False: text on stderr.
+    """
     if as_json:
         print(json.dumps(error.as_dict(), indent=2, allow_nan=False))
         return exit_code(error)
@@ -29,6 +36,6 @@ def print_error(error: ThalwegError, *, as_json: bool) -> int:
     lines += [text for text in (error.possible, error.remedy) if text]
     if isinstance(error, NoRouteError) and error.reasons:
         counts = ", ".join(f"{reason}: {count}" for reason, count in error.reasons.items())
-        lines.append(f"Legs refused: {counts}.")
+        lines.append(f"Legs rejected: {counts}.")
     print("\n  ".join(lines), file=sys.stderr)
     return exit_code(error)

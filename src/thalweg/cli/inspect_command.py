@@ -1,4 +1,4 @@
-"""``thalweg inspect``: what was recognised in a met-ocean file, and what not."""
+"""``thalweg inspect``: list what was recognised in a met-ocean file."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import argparse
 import json
 from typing import Any
 
-from thalweg.cli import options
+from thalweg.cli import option_values, options
+from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError
 
 
@@ -14,30 +15,37 @@ def add_command(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "inspect",
-        help="say what a met-ocean file holds",
-        description="Print what was recognised in a file, its coverage, steps and gaps.",
+        help="list the variables, coverage and gaps of a met-ocean file",
+        description="List the variables that were recognised in a file and those that were not, "
+        "with their coverage, time steps and gaps.",
+        epilog="Example: thalweg inspect forecast.nc --out results",
     )
-    parser.add_argument("file", nargs="+", metavar="FILE")
+    parser.add_argument(
+        "file", nargs="+", metavar="FILE", help="met-ocean file (NetCDF, GRIB, Zarr)"
+    )
     options.add_mapping_option(parser)
-    parser.add_argument("--time", metavar="T", help="time of the map; the most eventful by default")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    parser.add_argument("--out", metavar="DIR", help="folder for the map")
+    parser.add_argument(
+        "--time",
+        metavar="TIME",
+        help="time of the map (ISO 8601, UTC); default: the time with the highest values",
+    )
+    options.add_output_options(parser, "the map (sea.png)")
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Inspect, print and draw."""
+    """Inspect the files, print what was found and draw the map."""
     from thalweg.planning.report.output_files import draw_sea, make_folder
     from thalweg.sea import Sea
 
     if arguments.time and not arguments.out:
         raise InputError(
-            "--time is that of the map, and no map is asked for.",
-            "The map is drawn into the folder of --out.",
-            "Add --out DIR, or leave --time out.",
+            "--time is given without --out.",
+            "It is the time of the map, which is written into the folder of --out.",
+            "Add --out DIR, or omit --time.",
         )
     folder = make_folder(arguments.out) if arguments.out else None
-    sea = Sea.open(*arguments.file, mapping=options.variable_mapping(arguments))
+    sea = Sea.open(*arguments.file, mapping=option_values.variable_mapping(arguments))
     found = sea.describe().as_dict()
     if arguments.json:
         print(json.dumps(found, indent=2, allow_nan=False))
@@ -45,15 +53,15 @@ def run(arguments: argparse.Namespace) -> int:
         _print_inspection(found)
     if folder:
         shown = sea.member(0) if sea.members else sea
-        picture = draw_sea(shown, folder / "sea.png", time=arguments.time)
+        plot = draw_sea(shown, folder / "sea.png", time=arguments.time)
         if not arguments.json:
-            print(f"wrote {picture}")
+            print_written([plot])
     return 0
 
 
 def _print_inspection(found: dict[str, Any]) -> None:
     if found["members"]:
-        print(f"Ensemble of {found['members']} members, of which the first is shown")
+        print(f"Ensemble of {found['members']} members; the first is shown")
     print("Recognised")
     for row in _merged(found["recognised"], ("file_variables", "units", "how")):
         names = ", ".join(row["file_variables"])
@@ -61,23 +69,23 @@ def _print_inspection(found: dict[str, Any]) -> None:
         for variable in row["variables"]:
             print(f"    {variable}")
     print("Coverage")
-    for row in _merged(found["coverage"], _EXTENT):
-        print(f"  {_extent(row)}")
+    for row in _merged(found["coverage"], _EXTENT_KEYS):
+        print(f"  {_extent_text(row)}")
         for variable in row["variables"]:
             missing = found["missing_fraction"].get(f"{row['source']}: {variable}", 0.0)
-            share = f", {100 * missing:.1f} % of the places without a value" if missing else ""
+            share = f", no value at {100 * missing:.1f} % of the positions" if missing else ""
             print(f"    {variable}{share}")
     for gap in found["gaps"]:
-        print(f"Gap: nothing from {gap['after']} to {gap['before']}")
+        print(f"Gap: no data from {gap['after']} to {gap['before']}")
     for row in found["ignored"]:
         print(f"Ignored {row['variable']}: {row['reason']}")
 
 
-_EXTENT = ("source", "south", "north", "west", "east", "start", "end", "step_s", "spacing_deg")
+_EXTENT_KEYS = ("source", "south", "north", "west", "east", "start", "end", "step_s", "spacing_deg")
 
 
 def _merged(rows: list[dict[str, Any]], keys: tuple[str, ...]) -> list[dict[str, Any]]:
-    """Return one row for all that agree in some keys, with their variables listed."""
+    """Return one row for all rows with the same values of some keys, with their variables."""
     groups: dict[str, dict[str, Any]] = {}
     for row in rows:
         group = groups.setdefault(repr([row[key] for key in keys]), {**row, "variables": []})
@@ -85,7 +93,7 @@ def _merged(rows: list[dict[str, Any]], keys: tuple[str, ...]) -> list[dict[str,
     return list(groups.values())
 
 
-def _extent(row: dict[str, Any]) -> str:
+def _extent_text(row: dict[str, Any]) -> str:
     parts = [
         f"latitude {row['south']:.2f} to {row['north']:.2f}",
         f"longitude {row['west']:.2f} to {row['east']:.2f}",

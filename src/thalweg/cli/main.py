@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -22,13 +21,14 @@ from thalweg.cli import (
     waiting_command,
 )
 from thalweg.cli.exit_codes import INTERRUPTED, print_error
+from thalweg.cli.options import accept_negative_positions
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
 _COMMANDS = (
     plan_command.add_command,
     evaluate_command.add_command,
     inspect_command.add_command,
-    ship_command.add_ship_command,
+    ship_command.add_command,
     tides_command.add_command,
     project_command.add_command,
     waiting_command.add_command,
@@ -38,10 +38,10 @@ _COMMANDS = (
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose complaints are errors like all others."""
+    """A parser that raises `InputError` for a command line that it cannot read."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise `InputError` in place of leaving the process."""
+        """Raise `InputError` instead of ending the process."""
         raise InputError(
             f"The command line is not understood: {message}.",
             " ".join(self.format_usage().split()),
@@ -53,15 +53,17 @@ def build_parser() -> Parser:
     """Return the parser of the whole command line."""
     parser = Parser(
         prog="thalweg",
-        description="Voyage optimisation for ships: routes and speeds through moving water.",
+        description="Voyage optimisation for ships: routes and speeds in currents, tides, wind and "
+        "waves.",
+        epilog="Exit codes: 0 done, 2 bad input, 3 no coverage by the data, 4 no route. "
+        "'thalweg COMMAND --help' describes a command.",
     )
     parser.add_argument("--version", action="version", version=f"thalweg {_version()}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for add_command in _COMMANDS:
         add_command(commands)
     for sub in commands.choices.values():
-        # A position such as -33.9,151.2 is an argument, not an option.
-        sub._negative_number_matcher = re.compile(r"^-\d[\d.]*([,;\s].*)?$")
+        accept_negative_positions(sub)
     return parser
 
 
@@ -71,7 +73,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        Arguments; those of the process when not given.
+        Arguments; default: those of the process.
 
     Returns
     -------
@@ -93,7 +95,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         except ThalwegError as error:
             return print_error(error, as_json=as_json or getattr(arguments, "json", False))
         except BrokenPipeError:
-            # nobody reads on: what is still to be flushed must not complain at the exit
+            # the reader of the output has closed it: the flush at exit must not raise again
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
         except KeyboardInterrupt:

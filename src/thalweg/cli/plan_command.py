@@ -1,19 +1,21 @@
-"""``thalweg plan``: from two places to a refereed route."""
+"""``thalweg plan``: plan a voyage between two places."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thalweg.cli import options
+from thalweg.cli import option_values, options
 from thalweg.cli.exit_codes import INTERRUPTED, NO_ROUTE, SUCCESS
+from thalweg.cli.first_run import announce_compilation
+from thalweg.cli.tables import print_plan, print_written
 from thalweg.kernels.compilation import warm_up
 
 if TYPE_CHECKING:
-    from thalweg.planning import Plan, Voyage
-
-_MAX_ROWS = 30
+    from thalweg.planning import Voyage
+    from thalweg.sea import Sea
 
 
 def add_command(commands: Any) -> None:
@@ -21,99 +23,166 @@ def add_command(commands: Any) -> None:
     parser = commands.add_parser(
         "plan",
         help="plan a voyage",
-        description="Plan a voyage between two places: positions (52.0N 4.1E as one argument, "
-        "or 52.0,4.1), port names or UN/LOCODEs.",
+        description="Plan a voyage between two places. A place is a position (52.0,4.1, or "
+        "'52.0N 4.1E' as one argument), a port name or a UN/LOCODE.",
+        epilog="Example: thalweg plan NLRTM GBSOU --ship handysize-bulker --sea forecast.nc "
+        "--depart 2026-01-01T06:00Z --objective fuel --out results",
     )
-    parser.add_argument("start", metavar="FROM")
-    parser.add_argument("goal", metavar="TO")
-    parser.add_argument("--via", action="append", default=[], metavar="P", help="pass this place")
-    options.add_ship_and_chart_options(parser)
-    when = parser.add_mutually_exclusive_group()
-    when.add_argument("--depart", metavar="T", help="departure, ISO 8601 UTC")
-    when.add_argument("--depart-window", nargs=2, metavar=("T1", "T2"), help="best departure in it")
-    parser.add_argument("--arrive-by", metavar="T", help="latest arrival")
+    parser.add_argument("start", metavar="FROM", help="place of departure")
+    parser.add_argument("goal", metavar="TO", help="destination")
+    parser.add_argument(
+        "--via",
+        action="append",
+        default=[],
+        metavar="PLACE",
+        help="place to pass; repeat it for several, in their order",
+    )
+    options.add_ship_and_chart_options(parser, default_ukc="that of the ship file")
+    _add_time_options(parser)
+    _add_objective_options(parser)
+    _add_network_options(parser)
+    _add_price_options(parser.add_argument_group("fuel, cost, canals"))
+    parser.set_defaults(run=run)
+
+
+def _add_time_options(parser: argparse.ArgumentParser) -> None:
+    departure = parser.add_mutually_exclusive_group()
+    departure.add_argument(
+        "--depart",
+        metavar="TIME",
+        help="departure (ISO 8601, UTC), for example 2026-01-01T06:00Z; default: the first time "
+        "in the sea data, or now for a sea without times",
+    )
+    departure.add_argument(
+        "--depart-window",
+        nargs=2,
+        metavar=("FIRST", "LAST"),
+        help="find the best departure between two times (ISO 8601, UTC)",
+    )
+    parser.add_argument("--arrive-by", metavar="TIME", help="latest arrival (ISO 8601, UTC)")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="KN",
+        help="ordered speed through calm water [kn]; default: the speeds of the ship file",
+    )
+    parser.add_argument(
+        "--wait",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="whether the ship may stop and wait (default: it may)",
+    )
+
+
+def _add_objective_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--objective",
         default="time",
         metavar="time|distance|fuel|energy|cost|co2|front",
-        help="what to make least; energy: propulsion and hotel load; cost: fuel, time and dues, or "
-        "time and cubed speed by the ship file's costs where fuel has no price; front: the whole "
-        "trade of time against fuel or cost",
+        help="quantity to minimise (default: time). energy: propulsion and hotel load. cost: fuel, "
+        "time and dues; where fuel has no price, time and cubed speed at the costs of the ship "
+        "file. front: all trade-offs of time against fuel or cost (the Pareto front)",
     )
-    parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed through water")
     parser.add_argument(
-        "--wait", action=argparse.BooleanOptionalAction, default=True, help="may stop and wait"
+        "--method",
+        default="default",
+        metavar="default|exact|nsga2|spea2|mpaes",
+        help="how a front is found: exact: the front on the network alone; nsga2, spea2, mpaes: "
+        "evolutionary methods, for comparison",
     )
-    parser.add_argument("--network", default="auto", metavar="auto|lattice|mesh|globe")
-    parser.add_argument("--resolution", type=float, metavar="NM", help="spacing of the network")
-    parser.add_argument("--seed", type=int, default=0)
-    _add_trade_options(parser.add_argument_group("fuel, cost, canals"))
-    parser.set_defaults(run=run)
+    parser.add_argument(
+        "--ensemble",
+        nargs="?",
+        const="mean",
+        metavar="mean|cvar",
+        help="choose the route over all members of an ensemble forecast, by the mean (default) or "
+        "by the mean of the worst tenth (cvar)",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="seed of random numbers (default: 0)"
+    )
 
 
-def _add_trade_options(group: Any) -> None:
-    group.add_argument("--fuel-price", type=float, metavar="USD", help="price of a tonne of fuel")
+def _add_network_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--network",
+        default="auto",
+        metavar="auto|lattice|mesh|globe",
+        help="network to search: a regular grid around the route (lattice), the mesh of the sea "
+        "data (mesh), or a global grid (globe); default: auto",
+    )
+    parser.add_argument(
+        "--resolution",
+        type=float,
+        metavar="NM",
+        help="spacing of the network [nm], 0.001 to 300; default: from the length of the voyage",
+    )
+
+
+def _add_price_options(group: Any) -> None:
+    group.add_argument(
+        "--fuel-price", type=float, metavar="USD", help="price of fuel [USD per tonne]"
+    )
     group.add_argument(
         "--eca-price-factor",
         type=float,
         metavar="F",
-        help="price of fuel inside emission control areas over the price outside",
+        help="price of fuel inside emission control areas divided by the price outside",
     )
-    group.add_argument("--time-price", type=float, metavar="USD", help="what an hour costs besides")
+    group.add_argument(
+        "--time-price",
+        type=float,
+        metavar="USD",
+        help="cost of time in addition to fuel [USD per hour]",
+    )
     group.add_argument(
         "--forbid",
         action="append",
         default=[],
         metavar="CANAL",
-        help="a canal, several with commas, or all; may be given again",
-    )
-    group.add_argument("--method", default="default", metavar="default|exact|nsga2|spea2|mpaes")
-    group.add_argument(
-        "--ensemble",
-        nargs="?",
-        const="mean",
-        metavar="mean|cvar",
-        help="choose over all members of a forecast by the mean or the mean of the worst tenth",
+        help="canal that the ship may not use, for example suez,panama, or all; may be repeated",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Plan, print and write."""
+    """Plan the voyage, print it and write its files."""
+    announce_compilation(search=True)
     warm_up.start_compiling("thalweg.planning.compile_kernels")
     from thalweg.planning import plan
-    from thalweg.planning.report.output_files import make_folder
 
-    if arguments.out:
-        make_folder(arguments.out)
-    ship, sea = options.open_ship(arguments), options.open_sea(arguments)
+    option_values.prepare_output_folder(arguments)
+    ship, sea = option_values.open_ship(arguments), option_values.open_sea(arguments)
     try:
         found = plan(
             _voyage(arguments, sea),
             ship=ship,
             sea=sea,
-            chart=options.open_chart(arguments),
+            chart=option_values.open_chart(arguments),
             network=arguments.network,
-            resolution=options.resolution_m(arguments.resolution),
-            progress=options.progress_callback(arguments),
+            resolution=option_values.resolution_m(arguments.resolution),
+            progress=option_values.progress_callback(arguments),
         )
     except KeyboardInterrupt:
-        print("stopped: there was no plan yet, nothing is kept", file=sys.stderr)
+        print("stopped before a plan was found: nothing is kept", file=sys.stderr)
         return INTERRUPTED
     files = found.write(arguments.out) if arguments.out else []
     if arguments.json:
         print(found.to_json())
     else:
         print_plan(found)
-        each = [path for path in files if path.parent.name == "routes"]
-        for path in files:
-            if path not in each:
-                print(f"wrote {path}")
-        if each:
-            print(f"wrote {each[0].parent} ({len(each)} files)")
+        _print_files(files)
     return SUCCESS if found.best.feasible else NO_ROUTE
 
 
-def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:
+def _print_files(files: list[Path]) -> None:
+    """Print the files written; the folder alone for those of the single routes of a front."""
+    routes = [path for path in files if path.parent.name == "routes"]
+    print_written(path for path in files if path not in routes)
+    if routes:
+        print(f"wrote {routes[0].parent} ({len(routes)} files)")
+
+
+def _voyage(arguments: argparse.Namespace, sea: Sea) -> Voyage:
     from thalweg.planning import Voyage
 
     depart = arguments.depart
@@ -140,145 +209,9 @@ def _voyage(arguments: argparse.Namespace, sea: Any) -> Voyage:
     )
 
 
-def _first_time(sea: Any) -> float:
-    """Without --depart: the first moment of the data, or now where the sea has no period."""
+def _first_time(sea: Sea) -> float:
+    """Return the first time of the sea data, or now for a sea without times."""
     import time
 
     starts = [row.start for row in sea.coverage() if row.start is not None]
     return max(starts) if starts else float(round(time.time()))
-
-
-def print_plan(plan: Plan) -> None:
-    """Print a plan for a person."""
-    from rich.console import Console
-
-    console = Console()
-    best = plan.best
-    print_waypoints(console, best.waypoints(), _title(plan))
-    parts = [f"{best.time_h:.2f} h", f"{best.distance_nm:.1f} nm"]
-    if best.fuel_t is not None:
-        parts.append(f"{best.fuel_t:.1f} t fuel")
-    if best.cost is not None:
-        parts.append(f"{best.cost:,.0f} {best.currency}")
-    if best.energy_mwh is not None and plan.voyage.objective == "energy":
-        parts.append(f"{best.energy_mwh:.2f} MWh")
-    if best.co2_t is not None and plan.voyage.objective == "co2":
-        parts.append(f"{best.co2_t:.1f} t CO2")
-    if best.waiting_h > 0:
-        parts.append(f"{best.waiting_h:.2f} h waiting")
-    console.print("[bold]" + ", ".join(parts) + "[/bold]")
-    console.print(
-        f"Lower bound {plan.lower_bound:.2f} {plan.unit}, gap {100 * plan.gap:.1f} % "
-        f"[dim]({plan.proof.kind})[/dim]; no route at all is better than "
-        f"{plan.proof.certain:.2f} {plan.unit}.",
-        soft_wrap=True,
-    )
-    if plan.front is not None:
-        print_front(console, plan)
-    for note in plan.notes:
-        console.print(f"[yellow]note:[/yellow] {note}", soft_wrap=True)
-
-
-def print_front(console: Any, plan: Plan) -> None:
-    """Print the routes of a front, and what they save over the weather-blind route."""
-    import numpy as np
-    from rich import box
-    from rich.table import Table
-
-    from thalweg.core.pareto_fronts import evenly_spaced_subset
-
-    front = plan.front
-    assert front is not None  # checked by the caller
-    title = f"{front.criterion} against time ({front.unit})"
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
-    for name in ("h", front.criterion, "nm", "wait h", "gap %", "from", "way"):
-        justify = "left" if name in ("from", "way") else "right"
-        table.add_column(name, justify=justify, no_wrap=name != "way")  # type: ignore[arg-type]
-    rows = sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"]))
-    shown = evenly_spaced_subset(
-        np.array([row["time_h"] for row in rows]),
-        np.array([row[front.column] for row in rows]),
-        _MAX_ROWS,
-    )
-    for row in (rows[index] for index in shown):
-        gap = "" if row["gap"] is None else f"{100 * row['gap']:.1f}"
-        value = f"{row[front.column]:,.2f}"
-        table.add_row(
-            f"{row['time_h']:.2f}", value, f"{row['distance_nm']:.0f}", f"{row['waiting_h']:.1f}",
-            gap, row["stage"], row["way"],
-        )  # fmt: skip
-    console.print(table)
-    if len(rows) > len(shown):
-        console.print(f"{len(shown)} of {len(rows)} routes; all are in front.csv with --out DIR.")
-    for line in _savings(plan):
-        console.print(line, soft_wrap=True)
-
-
-def _savings(plan: Plan) -> list[str]:
-    """Say what the front saves over the weather-blind route at its highest and lowest speed."""
-    comparison = plan.front.comparison if plan.front is not None else None
-    if comparison is None or plan.front is None:
-        return []
-    lines = []
-    for row in {id(row): row for row in (comparison.rows[0], comparison.rows[-1])}.values():
-        saved = []
-        if row["saved"] is not None and row["saved"] > 0.0:
-            saved.append(
-                f"{row['saved']:,.2f} {plan.front.unit} ({row['saved_percent']:.1f} %) in its time"
-            )
-        if row["saved_h"] is not None and row["saved_h"] > 0.0:
-            saved.append(f"{row['saved_h']:.2f} h for what it burns")
-        lines.append(
-            f"Weather-blind at {row['speed_kn']:.1f} kn: {row['time_h']:.2f} h, "
-            f"{row['value']:,.2f} {plan.front.unit}"
-            + ("" if row["feasible"] else " (breaks a limit)")
-            + (f"; the front saves {', or '.join(saved)}." if saved else ".")
-        )
-    return lines
-
-
-def print_waypoints(console: Any, waypoints: list[dict[str, Any]], title: str) -> None:
-    """Print the table of a route's waypoints, narrow enough for any terminal."""
-    from rich import box
-    from rich.table import Table
-
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
-    table.add_column("waypoint", no_wrap=True)
-    table.add_column("UTC", no_wrap=True)
-    for name in ("course", "nm", "stw", "sog", "wait", "ukc"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for row in _shortened([_cells(row) for row in waypoints]):
-        table.add_row(*row)
-    console.print(table)
-
-
-def _title(plan: Plan) -> str:
-    return f"{plan.provenance['from']} to {plan.provenance['to']}, least {plan.voyage.objective}"
-
-
-def _cells(row: dict[str, Any]) -> list[str]:
-    def number(key: str, digits: int) -> str:
-        value = row.get(key)
-        return "" if value is None else f"{value:.{digits}f}"
-
-    lat, lon = row["lat"], row["lon"]
-    course = number("course_deg", 0)
-    return [
-        f"{abs(lat):6.3f}{'N' if lat >= 0 else 'S'} {abs(lon):7.3f}{'E' if lon >= 0 else 'W'}",
-        str(row["time"] or "")[5:16].replace("T", " "),
-        f"{int(course) % 360:03d}" if course else "",
-        number("distance_nm", 1),
-        number("speed_through_water_kn", 1),
-        number("speed_over_ground_kn", 1),
-        number("waiting_h", 2) if row.get("waiting_h") else "",
-        number("ukc_m", 1),
-    ]
-
-
-def _shortened(rows: list[list[str]]) -> list[list[str]]:
-    """Leave out the middle of a long table; the files hold all of it."""
-    if len(rows) <= _MAX_ROWS:
-        return rows
-    half = _MAX_ROWS // 2
-    dots = [f"... {len(rows) - 2 * half} more", *[""] * (len(rows[0]) - 1)]
-    return [*rows[:half], dots, *rows[-half:]]

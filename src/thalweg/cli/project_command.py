@@ -1,66 +1,48 @@
-"""``thalweg project``: a dredging project, cycle by cycle."""
+"""``thalweg project``: simulate a dredging project cycle by cycle."""
 
 from __future__ import annotations
 
 import argparse
 from typing import Any
 
-from thalweg.cli import options
+from thalweg.cli import option_values, options
 from thalweg.cli.exit_codes import NO_ROUTE, SUCCESS
+from thalweg.cli.first_run import announce_compilation
+from thalweg.cli.operations_tables import print_project
+from thalweg.cli.tables import print_written
 
 
 def add_command(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "project",
-        help="sail a dredging project: load, sail full, unload, sail empty",
-        description="Sail a dredging project to its end, in every cycle with the load and the ways "
-        "that produce most, beside a base case.",
+        help="simulate a dredging project: load, sail full, unload, sail empty",
+        description="Simulate a dredging project until its volume is moved. Each cycle takes the "
+        "load and the routes with the highest production; the result is compared with a base case.",
+        epilog="Example: thalweg project example --out results",
     )
-    parser.add_argument("file", metavar="FILE", help="project file (YAML), or 'example'")
-    parser.add_argument("--out", metavar="DIR", help="folder for files and pictures")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument(
+        "file", metavar="FILE", help="project file (YAML); 'example': that of the package"
+    )
+    options.add_output_options(parser, "project.json, cycles.csv, project.png and routes.png")
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Sail, print and write."""
-    from thalweg.operations.dredging.project_inputs import open_project, open_project_inputs
-    from thalweg.operations.dredging.run_project import run_project
-    from thalweg.planning.report.output_files import make_folder
+    """Simulate the project, print its table and write its files."""
+    announce_compilation()
+    from thalweg.operations.dredging import open_project, open_project_inputs, run_project
+    from thalweg.operations.result_files import write_project_files
 
-    if arguments.out:
-        make_folder(arguments.out)
+    option_values.prepare_output_folder(arguments)
     project = open_project(arguments.file)
     ship, sea, chart = open_project_inputs(project)
-    tell = options.progress_callback(arguments)
-    result = run_project(project, ship=ship, sea=sea, chart=chart, progress=tell)
-    files = result.write(arguments.out) if arguments.out else []
+    progress = option_values.progress_callback(arguments)
+    result = run_project(project, ship=ship, sea=sea, chart=chart, progress=progress)
+    files = write_project_files(result, arguments.out) if arguments.out else []
     if arguments.json:
         print(result.to_json())
     else:
         print_project(result)
-        for path in files:
-            print(f"wrote {path}")
+        print_written(files)
     return SUCCESS if result.optimised.feasible else NO_ROUTE
-
-
-def print_project(result: Any) -> None:
-    """Print a project's table for a person."""
-    from rich import box
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.table import Table
-
-    console = Console()
-    head, *rows = result.table()
-    table = Table(title=escape(result.project.name), title_justify="left", box=box.SIMPLE_HEAD)
-    table.add_column(head[0])
-    for name in head[1:]:
-        table.add_column(name, justify="right")
-    for row in rows:
-        table.add_row(*(escape(cell) for cell in row))
-    console.print(table)
-    notes = [note for run in result.runs for note in run.notes]
-    for note in dict.fromkeys(notes + list(result.provenance["assumptions"])):
-        console.print(f"[yellow]note:[/yellow] {escape(note)}", soft_wrap=True)

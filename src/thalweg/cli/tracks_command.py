@@ -1,183 +1,147 @@
-"""``thalweg tracks``: cut AIS or log tracks into activities and hold a model against them."""
+"""``thalweg tracks``: find the activities in AIS or log tracks and compare speed models."""
 
 from __future__ import annotations
 
 import argparse
 import json
-import math
 from typing import TYPE_CHECKING, Any
 
-from thalweg.cli import options
+from thalweg.cli import option_values, options
+from thalweg.cli.operations_tables import print_track_analysis
+from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
 
 if TYPE_CHECKING:
     from thalweg.operations.tracks.track_analysis import TrackAnalysis
-    from thalweg.sea import Sea
 
 
 def add_command(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "tracks",
-        help="cut a measured track into activities and compare it with a model",
-        description="Cut an AIS or log track (CSV) into loading, sailing and unloading by areas.",
+        help="find the activities in a measured track and compare its speeds with models",
+        description="Divide an AIS or log track (CSV) into loading, sailing full, unloading, "
+        "sailing empty and waiting, by the areas of work. With a sea, compare the measured speeds "
+        "with models.",
+        epilog="Example: thalweg tracks ais.csv --areas areas.geojson --sea tide.nc --out results",
     )
-    parser.add_argument("file", metavar="FILE", help="CSV with time, lat, lon and maybe more")
-    parser.add_argument("--areas", required=True, metavar="FILE", help="GeoJSON of the areas")
-    parser.add_argument("--vessel", metavar="ID", help="which ship, if there are several")
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        help="CSV with columns for time, lat and lon; optional: speed, course, draught, power, "
+        "vessel",
+    )
+    parser.add_argument(
+        "--areas",
+        required=True,
+        metavar="FILE",
+        help="GeoJSON polygons with the property activity: loading, unloading or waiting",
+    )
+    _add_reading_options(parser)
+    _add_division_options(parser)
+    options.add_sea_options(parser)
+    parser.add_argument(
+        "--ship", metavar="NAME|FILE", help="ship model to compare (needs --sea or --calm)"
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="KN",
+        help="ordered speed of that ship [kn]; default: its setting nearest to the measured speed",
+    )
+    options.add_output_options(
+        parser, "activities.csv, legs.csv, cycles.csv, tracks.json and tracks.png"
+    )
+    parser.set_defaults(run=run)
+
+
+def _add_reading_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--vessel", metavar="ID", help="MMSI or name of the ship, if the file has several"
+    )
     parser.add_argument(
         "--column",
         nargs="+",
         action="extend",
         default=[],
         metavar="WHAT=NAME",
-        help="which column is time, lat, lon, speed, course, draught, power or vessel",
+        help="column that holds time, lat, lon, speed, course, draught, power or vessel, for "
+        "example --column time=t_gps lat=y",
     )
-    parser.add_argument("--time-format", metavar="FORMAT", help="as of strptime")
-    parser.add_argument("--longest-gap", type=float, default=30.0, metavar="MIN")
-    parser.add_argument("--fastest", type=float, default=40.0, metavar="KN")
     parser.add_argument(
-        "--slow", type=float, default=2.0, metavar="KN", help="slower on the way is waiting"
+        "--time-format",
+        metavar="FORMAT",
+        help="format of the times as in strptime, for example '%%d/%%m/%%Y %%H:%%M:%%S'; default: "
+        "recognised",
     )
-    options.add_sea_options(parser)
-    parser.add_argument("--ship", metavar="NAME|FILE", help="ship model to compare (needs --sea)")
-    parser.add_argument("--speed", type=float, metavar="KN", help="ordered speed of the ship")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    parser.add_argument("--out", metavar="DIR", help="folder for files and pictures")
-    parser.set_defaults(run=run)
+
+
+def _add_division_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--longest-gap",
+        type=float,
+        default=30.0,
+        metavar="MIN",
+        help="time between positions that counts as a gap [min] (default: 30)",
+    )
+    parser.add_argument(
+        "--fastest",
+        type=float,
+        default=40.0,
+        metavar="KN",
+        help="highest possible speed between two positions [kn] (default: 40); positions that "
+        "need more are left out",
+    )
+    parser.add_argument(
+        "--slow",
+        type=float,
+        default=2.0,
+        metavar="KN",
+        help="outside the areas, a lower speed over ground than this counts as waiting [kn] "
+        "(default: 2)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Analyse, print and write."""
-    from thalweg.operations.tracks.activities import SegmentationRules
-    from thalweg.operations.tracks.track_analysis import analyse_tracks
-    from thalweg.operations.tracks.track_cleaning import CleaningRules
-    from thalweg.ship import Ship
-
-    if arguments.out:
-        from thalweg.planning.report.output_files import make_folder
-
-        make_folder(arguments.out)
+    """Analyse the track, print its tables and write its files."""
+    option_values.prepare_output_folder(arguments)
     if arguments.ship and not (arguments.sea or arguments.calm):
         raise InputError(
-            "A ship is to be compared, but no sea is given.",
+            "--ship is given, but no sea is given.",
             "The ship model needs the currents (and its weather) along the track.",
-            "Add --sea FILE..., or ask for --calm.",
+            "Add --sea FILE..., or --calm.",
         )
-    analysis = analyse_tracks(
+    analysis = _analysis(arguments)
+    files: list[str] = []
+    if arguments.out:
+        from thalweg.operations.result_files import write_track_files
+
+        files = [str(path) for path in write_track_files(analysis, arguments.out)]
+    if arguments.json:
+        print(json.dumps({**analysis.as_dict(), "files": files}, indent=2, allow_nan=False))
+        return 0
+    print_track_analysis(analysis)
+    print_written(files)
+    return 0
+
+
+def _analysis(arguments: argparse.Namespace) -> TrackAnalysis:
+    from thalweg.operations.tracks import CleaningRules, SegmentationRules, analyse_tracks
+    from thalweg.ship import Ship
+
+    example = "lat=y"
+    return analyse_tracks(
         arguments.file,
         arguments.areas,
-        sea=_sea(arguments),
+        sea=option_values.open_sea(arguments) if arguments.sea or arguments.calm else None,
         ship=Ship.load(arguments.ship) if arguments.ship else None,
         speed_kn=arguments.speed,
         cutting=SegmentationRules(slow=arguments.slow * KNOT),
         cleaning=CleaningRules(
             longest_gap=60.0 * arguments.longest_gap, fastest=arguments.fastest * KNOT
         ),
-        columns=_columns(arguments.column),
+        columns=option_values.parse_pairs("--column", arguments.column, "WHAT=NAME", example),
         vessel=arguments.vessel,
         time_format=arguments.time_format,
     )
-    files = _write(analysis, arguments.out) if arguments.out else []
-    if arguments.json:
-        print(json.dumps({**analysis.as_dict(), "files": files}, indent=2, allow_nan=False))
-        return 0
-    _print_analysis(analysis)
-    for path in files:
-        print(f"wrote {path}")
-    return 0
-
-
-def _sea(arguments: argparse.Namespace) -> Sea | None:
-    return options.open_sea(arguments) if arguments.sea or arguments.calm else None
-
-
-def _columns(texts: list[str]) -> dict[str, str]:
-    pairs = [text.partition("=") for text in texts]
-    for what, equals, name in pairs:
-        if not (what and equals and name):
-            raise InputError(
-                f"--column {what}{equals}{name} is not understood.",
-                "It is written WHAT=NAME, such as lat=y.",
-                "Write it that way.",
-            )
-    return {what: name for what, _, name in pairs}
-
-
-def _write(analysis: TrackAnalysis, out: str) -> list[str]:
-    from pathlib import Path
-
-    from thalweg.operations.plots.track_plot import draw_tracks
-
-    folder = Path(out)
-    folder.mkdir(parents=True, exist_ok=True)
-    frames = {
-        "activities.csv": analysis.activity_frame(),
-        "legs.csv": analysis.leg_frame(),
-        "cycles.csv": analysis.cycle_frame(),
-    }
-    for name, frame in frames.items():
-        frame.to_csv(folder / name, index=False, date_format="%Y-%m-%dT%H:%M:%SZ")
-    text = json.dumps(analysis.as_dict(), indent=2, allow_nan=False)
-    (folder / "tracks.json").write_text(text, encoding="utf-8")
-    draw_tracks(analysis, folder / "tracks.png")
-    return [str(folder / name) for name in (*frames, "tracks.json", "tracks.png")]
-
-
-def _print_analysis(analysis: TrackAnalysis) -> None:
-    from rich.console import Console
-
-    found, console = analysis.as_dict(), Console(markup=False)  # names may have brackets in them
-    console.print(
-        f"{found['vessel'] or 'ship'}: {found['start']} to {found['end']}, "
-        f"{found['positions']} positions, {found['cycles']['count']} whole cycles "
-        f"({found['cycles']['per_week']:.1f} a week)"
-    )
-    for note in found["notes"]:
-        console.print(f"note: {note}", soft_wrap=True, highlight=False)
-    _print_activities(console, found)
-    _print_models(console, found)
-
-
-def _print_activities(console: Any, found: dict[str, Any]) -> None:
-    from rich.table import Table
-
-    table = Table(title="activities")
-    for name in ("activity", "count", "mean, h", "std, h", "sum, h", "share"):
-        table.add_column(name, justify="left" if name == "activity" else "right", no_wrap=True)
-    for row in found["activities"]:
-        table.add_row(
-            row["activity"],
-            str(row["count"]),
-            *(_number(row[key]) for key in ("mean_h", "std_h", "sum_h")),
-            f"{100.0 * row['share']:.1f} %",
-        )
-    console.print(table)
-    for kind, row in found["speeds"].items():
-        deviation = _number(row["std_kn"])
-        console.print(f"{kind}: {row['mean_kn']:.2f} ± {deviation} kn over {row['legs']} legs")
-
-
-def _print_models(console: Any, found: dict[str, Any]) -> None:
-    from rich.table import Table
-
-    table = Table(title="modelled against measured speeds of the legs")
-    for name in ("model", "legs", "slope", "intercept, kn", "r2", "RMSE_rel, %"):
-        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
-    for name, row in found["models"].items():
-        intercept = None if row["intercept"] is None else row["intercept"] / KNOT
-        values = (row["slope"], intercept, row["r2"], row["rmse_rel"])
-        table.add_row(name, str(row["count"]), *(_number(v) for v in values))
-    console.print(table)
-    fit = found["calibration"]
-    if fit is not None:
-        speeds = ", ".join(f"{kind} {v / KNOT:.2f} kn" for kind, v in fit["speeds"].items())
-        console.print(
-            f"factor on the currents {fit['factor']:.3f} ± {fit['factor_error']:.3f} "
-            f"(slope of one: {_number(fit['slope_one'])}); through water: {speeds}"
-        )
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None or not math.isfinite(value) else f"{value:.2f}"

@@ -1,4 +1,4 @@
-"""``thalweg waiting``: what it saves to wait for a better current before each trip."""
+"""``thalweg waiting``: savings of waiting for a better current before each trip."""
 
 from __future__ import annotations
 
@@ -9,87 +9,137 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.cli import options
+from thalweg.cli import option_values, options
+from thalweg.cli.first_run import announce_compilation
+from thalweg.cli.operations_tables import print_waiting_study
+from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, inverse
-from thalweg.core.time import format_time, parse_time
+from thalweg.core.time import parse_time
 from thalweg.core.units import HOUR
 
 if TYPE_CHECKING:
+    from thalweg.chart import Chart
     from thalweg.operations.waiting.trip_table import TripTable
-    from thalweg.operations.waiting.waiting_study import WaitingStudy
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
 SCENARIOS = ("neap", "neap-to-mean", "mean-to-spring", "spring")
-TABLE_REFINEMENT = 30  #: departures that are planned for each that is sailed
-_SLOW = 1.5  # how much longer than in still water a trip may take, for the length of the tables
+TABLE_REFINEMENT = 30  #: departures of the plan for each departure that is simulated
+_MAX_DURATION_RATIO = 1.5  # trip duration over that in still water, for the length of the tables
+_WAITS = 13  # longest waits that are compared
 
 
 def add_command(commands: Any) -> None:
     """Add the command to the parser."""
     parser = commands.add_parser(
         "waiting",
-        help="what waiting for a better current saves on repeated trips",
-        description="Sail to and fro between two positions, with and without waiting for the tide.",
+        help="energy saved by waiting for a better current on repeated trips",
+        description="Sail to and fro between two positions, with and without waiting for the tide, "
+        "and compare the energy.",
+        epilog="Example: thalweg waiting 52.1,3.97 52.1,4.26 --ship vox-olympia --north-sea neap "
+        "--depart 2026-01-01 --hotel-kw 0",
     )
-    parser.add_argument("start", metavar="FROM", help="LAT,LON where the ship loads")
-    parser.add_argument("goal", metavar="TO", help="LAT,LON where it unloads")
-    options.add_ship_and_chart_options(parser)
+    parser.add_argument("start", metavar="FROM", help="LAT,LON [deg] where the ship loads")
+    parser.add_argument("goal", metavar="TO", help="LAT,LON [deg] where the ship unloads")
+    options.add_ship_and_chart_options(parser, default_ukc="the clearance is not checked")
+    parser.add_argument(
+        "--ship-back",
+        metavar="NAME|FILE",
+        help="ship for the way back (empty); default: that of --ship",
+    )
     parser.add_argument(
         "--north-sea",
         choices=SCENARIOS,
         metavar="|".join(SCENARIOS),
         help="instead of --sea: the analytic tide along a straight coast at TO, 25 m deep",
     )
-    parser.add_argument("--depart", required=True, metavar="T", help="ready for the first trip")
-    parser.add_argument("--cycles", type=int, default=5, metavar="N", help="0: one way only")
-    parser.add_argument("--most-wait", type=float, default=12.4, metavar="H", help="before a trip")
-    parser.add_argument("--starts", type=int, metavar="N", help="spread over one tide of 12.42 h")
-    parser.add_argument("--hotel-kw", type=float, metavar="KW", help="by default that of the ship")
-    parser.add_argument("--ship-back", metavar="NAME|FILE", help="the ship as it sails back")
-    parser.add_argument(
-        "--step", type=float, default=5.0, metavar="MIN", help="of the departures sailed"
-    )
+    _add_study_options(parser)
     parser.set_defaults(run=run)
 
 
+def _add_study_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--depart",
+        required=True,
+        metavar="TIME",
+        help="time at which the ship is ready for the first trip (ISO 8601, UTC)",
+    )
+    parser.add_argument(
+        "--cycles",
+        type=int,
+        default=5,
+        metavar="N",
+        help="number of cycles of two trips (default: 5); 0: a single trip from FROM to TO",
+    )
+    parser.add_argument(
+        "--most-wait",
+        type=float,
+        default=12.4,
+        metavar="H",
+        help="longest wait before each trip [h] (default: 12.4)",
+    )
+    parser.add_argument(
+        "--starts",
+        type=int,
+        metavar="N",
+        help="number of starts, evenly spread over one tide of 12.42 h; default: 1, or 4 with "
+        "--north-sea",
+    )
+    parser.add_argument(
+        "--hotel-kw",
+        type=float,
+        metavar="KW",
+        help="hotel power, used all the time [kW]; default: that of the ship file",
+    )
+    parser.add_argument(
+        "--step",
+        type=float,
+        default=5.0,
+        metavar="MIN",
+        help="time between the departures that are simulated [min] (default: 5)",
+    )
+
+
 def run(arguments: argparse.Namespace) -> int:
-    """Study, print and write."""
-    from thalweg.operations.waiting.waiting_study import break_even_power, waiting_study
+    """Compare the departure rules, print the savings and write the files."""
+    _check(arguments)
+    announce_compilation()
+    from thalweg.operations.waiting import break_even_power, waiting_study
     from thalweg.sea.models.stratified_coast import M2_PERIOD
 
-    _check(arguments)
-    if arguments.out:
-        from thalweg.planning.report.output_files import make_folder
-
-        make_folder(arguments.out)
+    option_values.prepare_output_folder(arguments)
     trips = _trips(arguments)
     count = arguments.starts or (4 if arguments.north_sea else 1)
-    starts = parse_time(arguments.depart) + np.arange(count) * M2_PERIOD / count
-    waits = np.linspace(0.0, arguments.most_wait * HOUR, 13)
+    starts = (parse_time(arguments.depart) + np.arange(count) * M2_PERIOD / count).tolist()
+    waits = np.linspace(0.0, arguments.most_wait * HOUR, _WAITS)
     hotel = _hotel_power(arguments)
-    study = waiting_study(trips, starts=starts.tolist(), max_waits=waits, hotel_power=hotel)
-    even = {
+    study = waiting_study(trips, starts=starts, max_waits=waits, hotel_power=hotel)
+    break_even = {
         rule: [
-            break_even_power(trips, start=float(s), max_wait=float(waits[-1]), rule=rule)
-            for s in starts
+            break_even_power(trips, start=start, max_wait=float(waits[-1]), rule=rule)
+            for start in starts
         ]
         for rule in ("current", "optimum")
     }
-    files = _write(study, arguments) if arguments.out else []
+    files: list[str] = []
+    if arguments.out:
+        from thalweg.operations.result_files import write_waiting_files
+
+        title = f"{arguments.start} to {arguments.goal}"
+        files = [str(path) for path in write_waiting_files(study, arguments.out, title=title)]
     if arguments.json:
-        kilowatts = {r: [_kilowatts(p) for p in powers] for r, powers in even.items()}
+        kilowatts = {r: [_kilowatts(p) for p in powers] for r, powers in break_even.items()}
         found = {**study.as_dict(), "break_even_kw": kilowatts, "files": files}
         print(json.dumps(found, indent=2, allow_nan=False))
         return 0
-    _print_study(study, even)
-    for path in files:
-        print(f"wrote {path}")
+    print_waiting_study(study, break_even)
+    print_written(files)
     return 0
 
 
 def _check(arguments: argparse.Namespace) -> None:
+    """Raise `InputError` for numbers out of range and for options that contradict each other."""
     for name, value, least in (
         ("--cycles", arguments.cycles, 0),
         ("--starts", 1 if arguments.starts is None else arguments.starts, 1),
@@ -98,94 +148,101 @@ def _check(arguments: argparse.Namespace) -> None:
     ):
         if not (math.isfinite(value) and value >= least):
             raise InputError(
-                f"{name} {value:g} cannot be.", f"It is at least {least:g}.", "Correct it."
+                f"{name} is {value:g}.", f"It is at least {least:g}.", f"Correct {name}."
             )
     if arguments.north_sea and (arguments.sea or arguments.calm):
-        raise InputError("Both --north-sea and --sea or --calm are given.", "", "Choose one.")
+        raise InputError(
+            f"Both --north-sea and {'--sea' if arguments.sea else '--calm'} are given.",
+            "Each of them defines the whole sea.",
+            "Choose one.",
+        )
     for name in ("fill", "map", "average_over"):
         if arguments.north_sea and getattr(arguments, name):
+            option = f"--{name.replace('_', '-')}"
             raise InputError(
-                f"--{name.replace('_', '-')} is given with --north-sea.",
+                f"{option} is given with --north-sea.",
                 "The analytic tide has no wind and no waves, and is averaged over the draught.",
-                "Leave it out, or give a sea of your own (--sea).",
+                f"Omit {option}, or give your own sea (--sea).",
             )
 
 
-def _place(text: str) -> Position:
-    from thalweg.core.geodesy import parse_position
+def _trips(arguments: argparse.Namespace) -> list[TripTable]:
+    """Return the tables of all trips, in the order in which they are sailed."""
+    there, back = _ships(arguments)
+    ends, chart = _ends(arguments), option_values.open_chart(arguments)
+    outward = _trip(arguments, "there", there, ends, chart)
+    if arguments.cycles == 0:
+        return [outward]
+    return [outward, _trip(arguments, "back", back, ends[::-1], chart)] * arguments.cycles
 
-    position = parse_position(text)
-    if position is None:
-        raise InputError(
-            f"{text!r} is not a position.",
-            "A position is LAT,LON in degrees, such as 52.1,3.97.",
-            "Write it that way.",
-            value=text,
-        )
-    return position
+
+def _ends(arguments: argparse.Namespace) -> tuple[Position, Position]:
+    return option_values.position_from_text(arguments.start), option_values.position_from_text(
+        arguments.goal
+    )
 
 
 def _ships(arguments: argparse.Namespace) -> tuple[Ship, Ship]:
-    """Return the ship as it sails there (full) and back (empty)."""
+    """Return the ship for the way there (full) and back (empty)."""
     from thalweg.ship import Ship
 
-    there = options.open_ship(arguments)
+    there = option_values.open_ship(arguments)
     if arguments.load_factor is None:
         there = there.with_load_factor(1.0)
     back = Ship.load(arguments.ship_back or arguments.ship)
     return there, back.with_load_factor(0.0)
 
 
-def _trips(arguments: argparse.Namespace) -> list[TripTable]:
-    from thalweg.operations.waiting.trip_durations import trip_table
+def _trip(
+    arguments: argparse.Namespace,
+    name: str,
+    ship: Ship,
+    track: tuple[Position, Position],
+    chart: Chart,
+) -> TripTable:
+    """Return the table of one trip along a straight leg."""
+    from thalweg.operations.waiting import Departures, trip_table
     from thalweg.sea.models.stratified_coast import M2_PERIOD
 
-    ends = _place(arguments.start), _place(arguments.goal)
-    start = parse_time(arguments.depart)
-    chart = options.open_chart(arguments)
-    one_way = arguments.cycles == 0
-    period = M2_PERIOD if arguments.north_sea else None
-    legs = zip(("there", "back"), _ships(arguments), (ends, ends[::-1]))
-    tables = []
-    for name, ship, track in list(legs)[: 1 if one_way else 2]:
-        way = [value for place in track for value in place]
-        if bool(chart.legs_blocked(*way).any()):
-            raise InputError(
-                f"The straight way between {arguments.start} and {arguments.goal} is blocked.",
-                "Land or a closed zone lies on it.",
-                "Choose positions with open water between them, or --coast none.",
-            )
-        tables.append(
-            trip_table(
-                track,
-                ship=ship,
-                sea=_sea(arguments, ends, ship.draught),
-                start=start,
-                end=None if period else start + _window(arguments, way, ship),
-                period=period,
-                step=60.0 * arguments.step,
-                chart=chart,
-                min_ukc=arguments.ukc,
-                name=name,
-            ).refined(TABLE_REFINEMENT)
+    if bool(chart.legs_blocked(*track[0], *track[1]).any()):
+        raise InputError(
+            f"The straight leg between {arguments.start} and {arguments.goal} is blocked.",
+            "It crosses land or a closed zone.",
+            "Choose positions with open water between them, or --coast none.",
         )
-    return tables if one_way else tables * arguments.cycles
+    start, step = parse_time(arguments.depart), 60.0 * arguments.step
+    departures = (
+        Departures(start, period=M2_PERIOD, step=step)
+        if arguments.north_sea
+        else Departures(start, end=start + _window(arguments, track, ship), step=step)
+    )
+    return trip_table(
+        track,
+        ship=ship,
+        sea=_sea(arguments, ship.draught),
+        departures=departures,
+        chart=chart,
+        min_ukc=arguments.ukc,
+        name=name,
+    ).refined(TABLE_REFINEMENT)
 
 
-def _window(arguments: argparse.Namespace, way: list[float], ship: Ship) -> float:
-    """Return how long departures are needed [s]."""
-    longest = _SLOW * float(inverse(*way)[0]) / float(ship.speeds[-1])
+def _window(arguments: argparse.Namespace, track: tuple[Position, Position], ship: Ship) -> float:
+    """Return for how long departures are needed [s]."""
+    longest = _MAX_DURATION_RATIO * float(inverse(*track[0], *track[1])[0]) / float(ship.speeds[-1])
     trips = max(1, 2 * arguments.cycles)
     return trips * (longest + arguments.most_wait * HOUR)
 
 
-def _sea(arguments: argparse.Namespace, ends: tuple[Position, Position], draught: float) -> Sea:
+def _sea(arguments: argparse.Namespace, draught: float) -> Sea:
+    """Return the sea of the files, or the analytic tide averaged over a draught [m]."""
     if not arguments.north_sea:
-        return options.open_sea(arguments)
+        return option_values.open_sea(arguments)
     from thalweg.sea import Sea
     from thalweg.sea.models.current_profiles import WaterColumn
     from thalweg.sea.models.stratified_coast import stratified_coast_current
 
+    ends = _ends(arguments)
     onshore = float(np.degrees(inverse(*ends[0], *ends[1])[2]))
     current = stratified_coast_current(
         arguments.north_sea,
@@ -199,56 +256,11 @@ def _sea(arguments: argparse.Namespace, ends: tuple[Position, Position], draught
 
 
 def _hotel_power(arguments: argparse.Namespace) -> float:
+    """Return the hotel power [W]."""
     if arguments.hotel_kw is not None:
         return 1000.0 * float(arguments.hotel_kw)
-    return options.open_ship(arguments).hotel_power
+    return option_values.open_ship(arguments).hotel_power
 
 
 def _kilowatts(power: float) -> float | None:
     return round(power / 1000.0, 3) if math.isfinite(power) else None
-
-
-def _write(study: WaitingStudy, arguments: argparse.Namespace) -> list[str]:
-    from pathlib import Path
-
-    from thalweg.operations.plots.waiting_plot import draw_waiting
-
-    folder = Path(arguments.out)
-    folder.mkdir(parents=True, exist_ok=True)
-    study.to_frame().to_csv(folder / "waiting.csv", index=False)
-    text = json.dumps(study.as_dict(), indent=2, allow_nan=False)
-    (folder / "waiting.json").write_text(text, encoding="utf-8")
-    draw_waiting(study, folder / "waiting.png", title=f"{arguments.start} to {arguments.goal}")
-    return [str(folder / name) for name in ("waiting.csv", "waiting.json", "waiting.png")]
-
-
-def _print_study(study: WaitingStudy, even: dict[str, list[float]]) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    hotel = study.hotel_power / 1000.0
-    table = Table(title=f"energy against not waiting [%], hotel power {hotel:g} kW")
-    for name in ("ready", "rule"):
-        table.add_column(name, no_wrap=True)
-    shown = range(3, len(study.max_waits), 3)
-    for j in shown:
-        table.add_column(f"{study.max_waits[j] / HOUR:.1f} h", justify="right")
-    table.add_column("all [h]", justify="right", no_wrap=True)
-    table.add_column("even [kW]", justify="right", no_wrap=True)
-    for i, start in enumerate(study.starts):
-        for rule in ("none", "current", "next trip", "optimum"):
-            change = 100.0 * (0.0 - study.saving(rule)[i])
-            power = even[rule][i] if rule in even else math.nan
-            table.add_row(
-                format_time(float(start))[5:16] if rule == "none" else "",
-                rule,
-                *("" if rule == "none" else f"{change[j]:+.2f}" for j in shown),
-                f"{study.plans[rule][i][-1].duration / HOUR:.1f}",
-                "" if math.isnan(power) else f"{power / 1000.0:.1f}",
-            )
-    console = Console()
-    console.print(table)
-    console.print(
-        f"{len(study.trips)} trips. Columns: longest wait before each trip. all: from ready to the "
-        "last arrival, longest wait allowed. even: hotel power above which that saves nothing."
-    )

@@ -1,1 +1,40 @@
-"""Dredging projects: cycles of loading, sailing and dumping, planned and simulated."""
+"""Dredging projects: load, sail full, unload, sail empty, until a volume is moved."""
+
+from thalweg.operations.dredging.loading_curves import LoadingCurve
+from thalweg.operations.dredging.project import (
+    BaseCase,
+    Project,
+    SiteNetworkOptions,
+    Sites,
+    WorkScope,
+)
+from thalweg.operations.dredging.project_environment import (
+    ProjectEnvironment,
+    freeze_site_network,
+    project_network,
+)
+from thalweg.operations.dredging.project_inputs import (
+    example_file,
+    open_project,
+    open_project_inputs,
+)
+from thalweg.operations.dredging.project_result import ProjectResult, ProjectRun
+from thalweg.operations.dredging.run_project import run_project
+
+__all__ = [
+    "BaseCase",
+    "LoadingCurve",
+    "Project",
+    "ProjectEnvironment",
+    "ProjectResult",
+    "ProjectRun",
+    "SiteNetworkOptions",
+    "Sites",
+    "WorkScope",
+    "example_file",
+    "freeze_site_network",
+    "open_project",
+    "open_project_inputs",
+    "project_network",
+    "run_project",
+]

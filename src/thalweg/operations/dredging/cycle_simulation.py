@@ -1,4 +1,4 @@
-"""Simulating a project: cycle after cycle, each with the load that produces most."""
+"""Simulation of a project cycle by cycle, each with the load of the highest production."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from thalweg.sea import standard_names as nm
 from thalweg.sea.inspection import data_gaps
 from thalweg.search import NetworkPassage, ProfileSearch
 
-_MIN_VOLUME_SHARE = 1e-6  # share of a hopper that is still worth a cycle
+_MIN_VOLUME_SHARE = 1e-6  # share of a hopper below which the remaining volume is ignored
 
 
 @dataclass(frozen=True, eq=False)
 class RoundTrip:
-    """The passages of one load: from the loading site with it, and back empty."""
+    """The passages of one load: out with the load, and back empty."""
 
     load_factor: float
     full: ProfileSearch
@@ -36,7 +36,7 @@ class RoundTrip:
     last_duration: dict[str, float] = field(default_factory=dict)
 
     def sail(self, which: str, depart: float, arrive_by: float) -> NetworkPassage:
-        """Search a passage, "full" or "empty"; the last one's time is the first guess."""
+        """Return a passage, "full" or "empty"; the duration of the last one is the first guess."""
         passages: ProfileSearch = getattr(self, which)
         guess = self.last_duration.get(which, math.inf)
         found = passages.sail(depart, known=depart + 1.15 * guess + 300.0, arrive_by=arrive_by)
@@ -46,7 +46,7 @@ class RoundTrip:
 
 
 class LoadOption(NamedTuple):
-    """One load for the next cycle, and the most it could produce [m3/s]."""
+    """One load for the next cycle, and an upper bound of its production [m3/s]."""
 
     bound: float
     volume: float
@@ -55,7 +55,7 @@ class LoadOption(NamedTuple):
 
 
 class LoadChoice(NamedTuple):
-    """A load that was looked at: production [m3/s], its option, the passage with it."""
+    """An evaluated load: production [m3/s], its option, the passage with it."""
 
     production: float
     option: LoadOption
@@ -63,19 +63,19 @@ class LoadChoice(NamedTuple):
 
 
 class Simulator:
-    """Sails a project cycle by cycle over one set of ways.
+    """Simulates a project cycle by cycle on one network.
 
     Parameters
     ----------
     project : Project
-    world : World
-    ways : Ways
+    world : ProjectEnvironment
+    ways : SiteNetwork
     factors : sequence of float, optional
-        Loads to choose from; those of the project when not given.
+        Loads to choose from; default: those of the project.
     tell : callable, optional
-        Called with a short text now and then.
+        Called with a short text every ten cycles.
     name : str, optional
-        What errors call it.
+        Name of the run, for errors.
     """
 
     def __init__(
@@ -101,18 +101,18 @@ class Simulator:
 
     @property
     def possible(self) -> list[float]:
-        """Loads that have a way at some tide."""
+        """Loads that have a route at some tide."""
         return [
             b.load_factor for b in self.both if max(b.full.shortest, b.empty.shortest) < math.inf
         ]
 
     def run(self) -> list[DredgingCycle]:
-        """Sail until the volume is moved.
+        """Return the cycles until the volume is moved.
 
         Raises
         ------
         OutsidePeriodError
-            If it is not moved by the end of the period looked at.
+            If it is not moved by the end of the period.
         """
         project, work = self.project, self.project.work
         cycles: list[DredgingCycle] = []
@@ -130,7 +130,7 @@ class Simulator:
         return cycles
 
     def _options(self, left: float) -> list[LoadOption]:
-        """Return the loads for the next cycle, the most promising first."""
+        """Return the loads for the next cycle, by descending upper bound of production."""
         work = self.project.work
         found = []
         for both in self.both:
@@ -140,7 +140,7 @@ class Simulator:
             fastest += work.loading.time(share) + work.unloading.time(share)
             if fastest < math.inf:
                 found.append(LoadOption(volume / fastest, volume, share, both))
-        # of loads that all hold what is left, the lightest
+        # of the loads that hold the remaining volume, the lightest
         enough = [o for o in found if o.volume >= left]
         found = [o for o in found if o.volume < left] + enough[:1]
         return sorted(found, key=lambda o: -o.bound)
@@ -158,7 +158,7 @@ class Simulator:
         return best
 
     def _evaluate_option(self, time: float, option: LoadOption, least: float) -> LoadChoice | None:
-        """Search a cycle; None if it does not produce more than ``least`` [m3/s]."""
+        """Return a searched cycle; None if it does not produce more than ``least`` [m3/s]."""
         work, both = self.project.work, option.both
         longest = option.volume / least if least > 0.0 else math.inf
         unloading = work.unloading.time(option.share)
@@ -173,7 +173,7 @@ class Simulator:
         return LoadChoice(option.volume / (empty.arrive - time), option, full)
 
     def _sail(self, number: int, time: float, choice: LoadChoice) -> DredgingCycle | None:
-        """Let the referee sail both legs of a cycle; None if the data end before."""
+        """Return a cycle with both legs evaluated by the referee; None if the data end before."""
         work, option = self.project.work, choice.option
         loading, unloading = work.loading.time(option.share), work.unloading.time(option.share)
         load_factor = option.both.load_factor
@@ -200,7 +200,7 @@ class Simulator:
         return OutsidePeriodError(
             f"By {format_time(project.end)} only {moved:,.0f} of {project.work.volume:,.0f} m3 "
             f"can be moved{which}.",
-            f"The last cycle that is sailed out ends {format_time(time)}."
+            f"The last complete cycle ends {format_time(time)}."
             + data_gap_text(self.sailor.world, (project.start, project.end)),
             "Give more days (and data for them), or a smaller volume.",
             moved_m3=moved,
@@ -208,18 +208,18 @@ class Simulator:
 
 
 def data_gap_text(world: ProjectEnvironment, period: tuple[float, float]) -> str:
-    """Return sentences on what a period lacks: the end of the data, gaps in them; maybe none."""
+    """Return sentences on the end of the data and their gaps in a period; may be empty."""
     sea = world.sea
     needed = {nm.CHANNEL_VARIABLES[channel] for channel in world.needs.channels}
     ends = [r.end for r in sea.coverage() if r.end is not None and r.variable in needed]
     last = min(ends, default=math.inf)
-    told = [f" The data end {format_time(last)}."] if last < period[1] else []
-    told += [
-        f" They tell nothing from {format_time(gap.after)} to {format_time(gap.before)}."
+    sentences = [f" The data end {format_time(last)}."] if last < period[1] else []
+    sentences += [
+        f" There are no data from {format_time(gap.after)} to {format_time(gap.before)}."
         for gap in data_gaps(sea.layers)
         if gap.before > period[0] and gap.after < period[1]
     ]
-    return "".join(told)
+    return "".join(sentences)
 
 
 def _batches(options: list[LoadOption], size: int) -> Iterator[list[LoadOption]]:

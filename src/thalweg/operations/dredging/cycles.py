@@ -1,26 +1,29 @@
-"""Cycles of a project as the referee found them."""
+"""Cycles of a dredging project, with legs evaluated by the referee."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from thalweg.core.units import HOUR, NAUTICAL_MILE, TONNE
+from thalweg.core.time import format_time
+from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE, TONNE
+from thalweg.planning.report.provenance import finite_or_none
 from thalweg.route import Route
 
 
 @dataclass(frozen=True, eq=False)
 class SailedLeg:
-    """One way between the sites.
+    """One leg between the sites.
 
     Attributes
     ----------
     route : Route
-        As the referee sailed it.
+        As evaluated by the referee.
     energy : float
-        Brake energy under way, without hotel load [J]; NaN if the ship's power is unknown.
+        Brake energy, without hotel load [J]; NaN if the ship's power is unknown.
     """
 
     route: Route
@@ -28,7 +31,7 @@ class SailedLeg:
 
     @property
     def depart(self) -> float:
-        """When the ship is ready to leave [s since 1970-01-01T00:00Z]."""
+        """Time at which the ship is ready to leave [s since 1970-01-01T00:00Z]."""
         return self.route.depart
 
     @property
@@ -43,12 +46,12 @@ class SailedLeg:
 
     @property
     def waiting(self) -> float:
-        """Time lain still [s]."""
+        """Waiting time at waypoints [s]."""
         return self.route.waiting_h * HOUR
 
     @property
     def distance(self) -> float:
-        """Length of the way [m]."""
+        """Length of the route [m]."""
         return self.route.distance_nm * NAUTICAL_MILE
 
     @property
@@ -59,7 +62,7 @@ class SailedLeg:
 
     @property
     def fuel(self) -> float:
-        """Fuel burnt under way, waits and hotel load included [kg]; NaN if unknown."""
+        """Fuel, waits and hotel load included [kg]; NaN if unknown."""
         tonnes = self.route.fuel_t
         return math.nan if tonnes is None else TONNE * tonnes
 
@@ -79,13 +82,13 @@ class DredgingCycle:
     number : int
         From 1.
     start : float
-        When loading begins [s since 1970-01-01T00:00Z].
+        Start of loading [s since 1970-01-01T00:00Z].
     load_factor : float
     volume : float
-        Moved [m3].
+        Volume moved [m3].
     loading, unloading : float
         [s].
-    out, back : Leg
+    out, back : SailedLeg
     """
 
     number: int
@@ -99,7 +102,7 @@ class DredgingCycle:
 
     @property
     def end(self) -> float:
-        """When the ship is back at the loading site [s since 1970-01-01T00:00Z]."""
+        """Time at which the ship is back at the loading site [s since 1970-01-01T00:00Z]."""
         return self.back.arrive
 
     @property
@@ -109,12 +112,12 @@ class DredgingCycle:
 
     @property
     def legs(self) -> tuple[SailedLeg, SailedLeg]:
-        """Both ways."""
+        """The legs out and back."""
         return self.out, self.back
 
 
 def leg_energy(route: Route) -> float:
-    """Return the brake energy of a route [J]: power at the referee's samples over their time.
+    """Return the brake energy of a route [J], the integral of power over the referee's samples.
 
     NaN if the ship's power is unknown anywhere.
     """
@@ -123,3 +126,43 @@ def leg_energy(route: Route) -> float:
         return math.nan
     same = np.diff(route.samples["leg"]) == 0
     return float(np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(time), where=same))
+
+
+#: Columns of cycles.csv.
+CYCLE_COLUMNS = (
+    *("cycle", "start", "load_factor", "volume_m3", "loading_h", "sail_full", "full_h"),
+    *("full_waiting_h", "full_distance_km", "full_least_clearance_m", "unloading_h", "sail_empty"),
+    *("empty_h", "empty_waiting_h", "empty_distance_km", "empty_least_clearance_m", "end"),
+    *("production_m3_h", "mean_speed_kn", "fuel_t", "energy_gj"),
+)
+
+
+def cycle_record(cycle: DredgingCycle) -> dict[str, Any]:
+    """Return a cycle as one row of cycles.csv, by `CYCLE_COLUMNS`."""
+    data: dict[str, Any] = {
+        "cycle": cycle.number,
+        "start": format_time(cycle.start),
+        "load_factor": cycle.load_factor,
+        "volume_m3": round(cycle.volume, 3),
+        "loading_h": round(cycle.loading / HOUR, 4),
+        "unloading_h": round(cycle.unloading / HOUR, 4),
+        "end": format_time(cycle.end),
+        "production_m3_h": round(cycle.production * HOUR, 2),
+    }
+    for name, leg in (("full", cycle.out), ("empty", cycle.back)):
+        clearance = finite_or_none(leg.clearance)
+        data |= {
+            f"sail_{name}": format_time(leg.depart),
+            f"{name}_h": round(leg.duration / HOUR, 4),
+            f"{name}_waiting_h": round(leg.waiting / HOUR, 4),
+            f"{name}_distance_km": round(leg.distance / 1000.0, 3),
+            f"{name}_least_clearance_m": None if clearance is None else round(clearance, 3),
+        }
+    sailing = sum(leg.duration - leg.waiting for leg in cycle.legs)
+    fuel, energy = (
+        finite_or_none(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy")
+    )
+    data["mean_speed_kn"] = round(sum(leg.distance for leg in cycle.legs) / sailing / KNOT, 2)
+    data["fuel_t"] = None if fuel is None else round(fuel / TONNE, 3)
+    data["energy_gj"] = None if energy is None else round(energy / 1e9, 3)
+    return {key: data[key] for key in CYCLE_COLUMNS}

@@ -1,4 +1,4 @@
-"""How long a hopper takes to fill and to empty: constant rates, and curves that bend."""
+"""Loading and unloading times of a hopper: constant rates and loading curves."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.operations.dredging.project_validation import positive_number
 
 _KEYS = ("rate_m3_s", "minutes", "share", "power_kw", "fixed_minutes")
 
 
 @dataclass(frozen=True)
 class LoadingCurve:
-    """Loading or unloading: which share of the hopper is done after which time.
+    """Loading or unloading: share of the hopper against time.
 
     Attributes
     ----------
@@ -25,14 +26,14 @@ class LoadingCurve:
     share : tuple of float
         Share of the hopper loaded (or unloaded) by then, from 0 to 1, ascending; linear between.
     power : float
-        Power of pumps and winches meanwhile [W].
+        Power of pumps and winches during the work [W].
     fixed : float
-        Time it takes besides, whatever the load: coupling, turning [s].
+        Additional time that does not depend on the load: coupling, turning [s].
 
     Notes
     -----
-    A curve that bends is loading with overflow: water leaves over the weir and with it more and
-    more of the fines, so the last tenth of a load takes longer than the first.
+    A curve with a decreasing slope describes loading with overflow: water and fines leave over the
+    weir, so that the last tenth of a load takes longer than the first.
     """
 
     seconds: tuple[float, ...]
@@ -44,19 +45,19 @@ class LoadingCurve:
     def constant(
         cls, rate: float, hopper: float, *, power: float = 0.0, fixed: float = 0.0
     ) -> LoadingCurve:
-        """Return pumping at one rate [m3/s] of a hopper [m3].
+        """Return the curve of a constant rate [m3/s] for a hopper [m3].
 
         Raises
         ------
         InputError
             If the rate is not a positive number.
         """
-        _positive("rate_m3_s", rate, "m3/s")
+        rate = positive_number({"rate_m3_s": rate}, "rate_m3_s")
         return cls((0.0, hopper / rate), (0.0, 1.0), power, fixed)
 
     @classmethod
     def from_data(cls, data: Any, hopper: float, what: str) -> LoadingCurve:
-        """Read a rate [m3/s], or a mapping with a rate or a curve, and powers.
+        """Return the curve of a rate [m3/s], or of a mapping with a rate or a curve, and powers.
 
         Parameters
         ----------
@@ -70,26 +71,27 @@ class LoadingCurve:
         Raises
         ------
         InputError
-            For rates that are not positive, curves that do not rise from 0 to 1, unknown keys.
+            For rates that are not positive, curves that do not increase from 0 to 1, unknown keys.
         """
+        name = f"{what}.rate_m3_s"
         given = data if isinstance(data, Mapping) else {"rate_m3_s": data}
         for key in given:
             if key not in _KEYS:
                 raise unknown_name_error(f"entry of {what}", str(key), _KEYS)
         more = {
-            "power": 1000.0 * _number(f"{what}.power_kw", given.get("power_kw", 0.0)),
-            "fixed": 60.0 * _number(f"{what}.fixed_minutes", given.get("fixed_minutes", 0.0)),
+            "power": 1000.0 * _non_negative(f"{what}.power_kw", given.get("power_kw", 0.0)),
+            "fixed": 60.0 * _non_negative(f"{what}.fixed_minutes", given.get("fixed_minutes", 0.0)),
         }
         if "rate_m3_s" in given and "minutes" not in given:
-            _positive(f"{what}.rate_m3_s", given["rate_m3_s"], "m3/s")
-            return cls.constant(float(given["rate_m3_s"]), hopper, **more)
+            rate = positive_number({name: given["rate_m3_s"]}, name)
+            return cls.constant(rate, hopper, **more)
         minutes, share = given.get("minutes"), given.get("share")
         _check_curve(what, minutes, share, "rate_m3_s" in given)
         seconds = tuple(60.0 * float(m) for m in minutes)  # type: ignore[union-attr]
         return cls(seconds, tuple(float(s) for s in share), **more)  # type: ignore[union-attr]
 
     def time(self, share: float) -> float:
-        """Return how long a share of the hopper takes [s]; 0 for nothing."""
+        """Return the time for a share of the hopper [s]; 0 for an empty hopper."""
         if share <= 0.0:
             return 0.0
         return self.fixed + float(np.interp(share, self.share, self.seconds))
@@ -107,26 +109,20 @@ class LoadingCurve:
         return data
 
 
-def _positive(name: str, value: Any, unit: str) -> None:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or value <= 0.0:
-        raise InputError(
-            f"{name} is {value!r}.", "It is a number above zero.", f"Give it in {unit}.", field=name
-        )
-
-
-def _number(name: str, value: Any) -> float:
+def _non_negative(name: str, value: Any) -> float:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not math.isfinite(value) or value < 0.0:
-        raise InputError(f"{name} is {value!r}.", "It is a number, zero or more.", "", field=name)
+        raise InputError(f"{name} is {value!r}.", "It is zero or more.", "Correct it.", field=name)
     return float(value)
 
 
 def _check_curve(what: str, minutes: Any, share: Any, rate_too: bool) -> None:
-    """Raise unless two lists make a curve from nothing to a full hopper."""
+    """Raise `InputError` unless two lists make a curve from an empty to a full hopper."""
     if rate_too:
         raise InputError(
-            f"The {what} has both a rate and a curve.", "", "Keep rate_m3_s, or minutes and share."
+            f"The {what} has both a rate and a curve.",
+            "It has one of them.",
+            "Keep rate_m3_s, or minutes and share.",
         )
     lists = all(isinstance(x, Sequence) and not isinstance(x, str) for x in (minutes, share))
     sound = lists and len(minutes) == len(share) >= 2
@@ -141,7 +137,7 @@ def _check_curve(what: str, minutes: Any, share: Any, rate_too: bool) -> None:
     if not sound:
         raise InputError(
             f"The curve of {what} cannot be used: minutes {minutes!r}, share {share!r}.",
-            "Two lists of one length that rise, from 0 minutes and share 0 to share 1.",
-            "Write for example minutes: [0, 30, 60] and share: [0, 0.7, 1].",
+            "They are two increasing lists of equal length, from 0 minutes and share 0 to share 1.",
+            "Write, for example, minutes: [0, 30, 60] and share: [0, 0.7, 1].",
             field=what,
         )

@@ -1,4 +1,4 @@
-"""`Project`: a dredging project in plain data that a YAML file can hold."""
+"""`Project`: the definition of a dredging project, read from and written to YAML."""
 
 from __future__ import annotations
 
@@ -24,46 +24,36 @@ from thalweg.operations.dredging.project_validation import (
 
 LARGEST_FILE = 1_000_000  #: bytes
 BEST_LOAD_FACTOR = "best"
-_SITE_TOLERANCE = 250.0  # how far from the sites the route of the base case may start and end [m]
+_SITE_TOLERANCE = 250.0  # largest distance of the ends of the base case's route to the sites [m]
 
 
 @dataclass(frozen=True)
-class Sites:
-    """Where a dredger loads and unloads, and how the water between is divided.
+class SiteNetworkOptions:
+    """How the water between two sites is divided into a network.
 
     Attributes
     ----------
-    load, unload : (lat, lon)
-        [deg].
-    min_ukc : float or None
-        Least under-keel clearance [m]; None: that of the ship file (0 if it states none), and no
-        clearance is looked at if no data tell any depth.
     margin : float
-        Clearance planned beyond it [m], for what the network does not see between its nodes.
+        Depth planned in addition to the required depth [m], for shallows between the nodes.
     spacing : float or None
-        Spacing of the network [m]; that of the sea's own mesh when None.
+        Spacing of the network [m]; None: that of the sea's own mesh.
     rings : int
-        Neighbours a node is joined to: 1, 2 or 3 rings of triangles.
+        Neighbours a node is connected to: 1, 2 or 3 rings of triangles.
     detour : float
-        Water is looked at where the way over it is at most so many times the direct distance.
+        Greatest length of a route through a node, as a multiple of the direct distance.
 
     Raises
     ------
     InputError
-        For a clearance, margin, spacing, number of rings or detour that cannot be.
+        For a margin, spacing, number of rings or detour out of range.
     """
 
-    load: Position
-    unload: Position
-    min_ukc: float | None = None
     margin: float = 0.01
     spacing: float | None = None
     rings: int = 3
     detour: float = 3.0
 
     def __post_init__(self) -> None:
-        if self.min_ukc is not None:
-            check_clearance("min_ukc_m", self.min_ukc)
         check_clearance("margin_m", self.margin)
         if self.spacing is not None:
             positive_number({"spacing_m": self.spacing}, "spacing_m")
@@ -78,16 +68,45 @@ class Sites:
 
 
 @dataclass(frozen=True)
+class Sites:
+    """Where a dredger loads and unloads.
+
+    Attributes
+    ----------
+    load, unload : (lat, lon)
+        [deg].
+    min_ukc : float or None
+        Minimum under-keel clearance [m]; None: that of the ship file (0 if it states none). Without
+        any depth in the data the clearance is not checked.
+    network : SiteNetworkOptions
+
+    Raises
+    ------
+    InputError
+        For a clearance out of range.
+    """
+
+    load: Position
+    unload: Position
+    min_ukc: float | None = None
+    network: SiteNetworkOptions = field(default_factory=SiteNetworkOptions)
+
+    def __post_init__(self) -> None:
+        if self.min_ukc is not None:
+            check_clearance("min_ukc_m", self.min_ukc)
+
+
+@dataclass(frozen=True)
 class WorkScope:
-    """What is moved, and how fast.
+    """The volume to move, and the rates of loading and unloading.
 
     Attributes
     ----------
     volume : float
-        To be moved in all [m3].
+        Total volume to move [m3].
     hopper : float
         Volume of a full load [m3].
-    loading, unloading : Pumping
+    loading, unloading : LoadingCurve
     load_factors : tuple of float
         Shares of a full load to choose from, ascending, 0 to 1.
     """
@@ -101,14 +120,14 @@ class WorkScope:
 
 @dataclass(frozen=True)
 class BaseCase:
-    """The project without planning: one charted way, waiting for its shallowest place.
+    """The project without optimisation: one charted route, with waits for its shallowest place.
 
     Attributes
     ----------
     route : tuple of (lat, lon)
         From the loading site to the unloading site [deg].
     load_factor : float or "best"
-        One load throughout, or in every cycle the one that produces most.
+        The same load in all cycles, or in each cycle the one with the highest production.
     """
 
     route: tuple[Position, ...]
@@ -123,16 +142,16 @@ class Project:
     ----------
     name : str
     sites : Sites
-    work : Work
+    work : WorkScope
     start, days : float
-        When it begins [s since 1970-01-01T00:00Z] and for how long it is looked ahead [days].
+        Start [s since 1970-01-01T00:00Z] and longest duration [days].
     ship : str or mapping
-        A ship of the library, a ship file, or what such a file holds.
-    world : mapping
-        Where the sea and the chart come from: ``sea`` (files, or "synthetic-estuary"), ``tides``
-        (predict from the tides of the files), ``map``, ``depth``, ``zones``, ``coast``.
+        A ship of the library, a ship file, or the content of a ship file.
+    data_sources : mapping
+        Sources of the sea and the chart: ``sea`` (files, or "synthetic-estuary"), ``tides``
+        (predict from the tides in the files), ``map``, ``depth``, ``zones``, ``coast``.
     base : BaseCase or None
-        What to compare with.
+        The case to compare with.
     """
 
     name: str
@@ -141,23 +160,23 @@ class Project:
     start: float
     days: float
     ship: str | Mapping[str, Any] = "hopper-dredger"
-    world: Mapping[str, Any] = field(default_factory=dict)
+    data_sources: Mapping[str, Any] = field(default_factory=dict)
     base: BaseCase | None = None
 
     @property
     def end(self) -> float:
-        """The last moment looked at [s since 1970-01-01T00:00Z]."""
+        """End of the period [s since 1970-01-01T00:00Z]."""
         return self.start + self.days * DAY
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Project:
-        """Build a project from plain data.
+        """Return a project from plain data, as a project file holds it.
 
         Raises
         ------
         InputError
-            For unknown or missing entries, volumes and rates that are not positive, places, times
-            and load factors that cannot be.
+            For unknown or missing entries, volumes and rates that are not positive, and invalid
+            places, times and load factors.
         """
         _check_keys(data)
         volume, hopper = positive_number(data, "volume_m3"), positive_number(data, "hopper_m3")
@@ -176,23 +195,23 @@ class Project:
             start=parse_start(data["start"]),
             days=parse_days(data),
             ship=data.get("ship", "hopper-dredger"),
-            world={key: _plain_value(data[key]) for key in _ENVIRONMENT_KEYS if key in data},
+            data_sources={key: _plain_value(data[key]) for key in _SOURCE_KEYS if key in data},
             base=_base_case(data.get("base_case"), sites),
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain data, as `from_dict` reads it."""
+        """Return the project as plain data that `from_dict` reads."""
         sites, work = self.sites, self.work
         data: dict[str, Any] = {
             "name": self.name,
             "ship": dict(self.ship) if isinstance(self.ship, Mapping) else self.ship,
-            **self.world,
+            **self.data_sources,
             "load": list(sites.load),
             "unload": list(sites.unload),
             "min_ukc_m": sites.min_ukc,
-            "margin_m": sites.margin,
-            "rings": sites.rings,
-            "detour": sites.detour,
+            "margin_m": sites.network.margin,
+            "rings": sites.network.rings,
+            "detour": sites.network.detour,
             "volume_m3": work.volume,
             "hopper_m3": work.hopper,
             "loading": work.loading.to_data(),
@@ -201,8 +220,8 @@ class Project:
             "start": format_time(self.start),
             "days": self.days,
         }
-        if sites.spacing is not None:
-            data["spacing_m"] = sites.spacing
+        if sites.network.spacing is not None:
+            data["spacing_m"] = sites.network.spacing
         if self.base is not None:
             route = [list(place) for place in self.base.route]
             data["base_case"] = {"route": route, "load_factor": self.base.load_factor}
@@ -210,28 +229,42 @@ class Project:
 
     @classmethod
     def load(cls, path: str | Path) -> Project:
-        """Read a project from a YAML or JSON file; its files are looked for beside it.
+        """Read a project from a YAML or JSON file; paths in it may be relative to its folder.
 
         Raises
         ------
         InputError
-            If the file is missing, too large, not YAML/JSON, or says something impossible.
+            If the file is missing, too large, not YAML/JSON, or has invalid entries.
         """
         from thalweg.core.strict_yaml import parse_yaml
 
         path = Path(path)
         if not path.is_file():
-            raise InputError(f"There is no project file {path}.", "", "Check the path.")
+            raise InputError(
+                f"The project file {path} does not exist.",
+                "A project file is YAML or JSON; 'example' is that of the package.",
+                "Check the path.",
+            )
         if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path} is too large for a project file.", "At most 1 MB.", "")
+            raise InputError(
+                f"{path} is too large for a project file.",
+                "A project file has at most 1 MB.",
+                "Check the path.",
+            )
         try:
             text = path.read_text(encoding="utf-8")
         except UnicodeDecodeError:
-            raise InputError(f"{path} is not text in UTF-8.", "", "Save it as UTF-8.") from None
+            raise InputError(
+                f"{path} is not text in UTF-8.",
+                "A project file is YAML or JSON.",
+                "Save it as UTF-8.",
+            ) from None
         data = parse_yaml(text, "project", path.name)
         if not isinstance(data, dict):
             raise InputError(
-                f"{path} holds no project.", f"Entries: {', '.join(_ALLOWED_KEYS)}.", ""
+                f"{path} does not contain a project.",
+                f"Entries: {', '.join(_ALLOWED_KEYS)}.",
+                "Add them.",
             )
         return cls.from_dict(_with_files_beside(data, path.parent))
 
@@ -243,13 +276,13 @@ class Project:
         Path(path).write_text(text, encoding="utf-8")
 
 
-_ENVIRONMENT_KEYS = ("sea", "tides", "map", "depth", "zones", "coast")
+_SOURCE_KEYS = ("sea", "tides", "map", "depth", "zones", "coast")
 _REQUIRED_KEYS = ("load", "unload", "volume_m3", "hopper_m3", "loading", "unloading", "start")
 _ALLOWED_KEYS = (
     *("name", "ship"),
     *_REQUIRED_KEYS,
     *("days", "min_ukc_m", "margin_m", "load_factors", "spacing_m", "rings", "detour"),
-    *_ENVIRONMENT_KEYS,
+    *_SOURCE_KEYS,
     "base_case",
 )
 
@@ -272,18 +305,20 @@ def _sites(data: Mapping[str, Any]) -> Sites:
     load, unload = parse_place(data["load"], "load"), parse_place(data["unload"], "unload")
     if load == unload:
         raise InputError(
-            "Loading and unloading site are the same place.",
-            "A project sails between two.",
+            "The loading site and the unloading site are the same place.",
+            "A project sails between two places.",
             "Give two places.",
         )
     return Sites(
         load=load,
         unload=unload,
         min_ukc=data.get("min_ukc_m"),
-        margin=data.get("margin_m", 0.01),
-        spacing=data.get("spacing_m"),
-        rings=data.get("rings", 3),
-        detour=data.get("detour", 3.0),
+        network=SiteNetworkOptions(
+            margin=data.get("margin_m", 0.01),
+            spacing=data.get("spacing_m"),
+            rings=data.get("rings", 3),
+            detour=data.get("detour", 3.0),
+        ),
     )
 
 
@@ -304,7 +339,7 @@ def _base_case(data: Any, sites: Sites) -> BaseCase | None:
     )
     if len(route) < 2:
         raise InputError(
-            "The route of the base case is no way.", "Two places or more.", "Add the others."
+            "The route of the base case has one place.", "It has two or more.", "Add the others."
         )
     factor = data.get("load_factor", 1.0)
     if factor != BEST_LOAD_FACTOR:
@@ -312,8 +347,8 @@ def _base_case(data: Any, sites: Sites) -> BaseCase | None:
         if not number or not 0.0 < factor <= 1.0:
             raise InputError(
                 f"base_case.load_factor is {factor!r}.",
-                "It lies above 0 and up to 1, or is 'best': in every cycle what produces most.",
-                "",
+                "It is a number above 0 and up to 1, or 'best' for the highest production.",
+                "Correct it.",
                 field="base_case.load_factor",
             )
         factor = float(factor)
@@ -327,21 +362,21 @@ def _check_ends(route: tuple[Position, ...], sites: Sites) -> None:
         if away > _SITE_TOLERANCE:
             raise InputError(
                 f"The route of the base case {which} {away:,.0f} m from the site.",
-                "It leads from the loading site to the unloading site.",
-                f"Let it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
+                "It runs from the loading site to the unloading site.",
+                f"Make it {which.removesuffix('s')} at {site[0]:g}, {site[1]:g}.",
                 field="base_case.route",
             )
 
 
 def _plain_value(value: Any) -> Any:
-    """Return paths as the text that files hold."""
+    """Return a value with paths as text, as a project file holds it."""
     if isinstance(value, (list, tuple)):
         return [_plain_value(one) for one in value]
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 def _with_files_beside(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the data with the files it names taken from beside the project file, if there."""
+    """Return the data with file names relative to the project file resolved, if they exist."""
 
     def found(name: Any) -> Any:
         if isinstance(name, (list, tuple)):

@@ -1,4 +1,4 @@
-"""The water of a project: networks, the frozen sea, and the ship at every load."""
+"""Environment of a project: networks between the sites, the frozen sea, the ship at each load."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     from thalweg.ship import PerformanceTable, Ship
 
 
-LINE = "line"  #: kind of the network of a charted way
-_LINE_SPACING = 300.0  # of the nodes of a charted way [m]
-_BED_SAMPLES = 8  # looks at the bed per spacing of the network
+LINE = "line"  #: kind of the network of a fixed route
+_LINE_SPACING = 300.0  # of the nodes of a fixed route [m]
+_BED_SAMPLES = 8  # samples of the bed per spacing of the network
 _SAME_PLACE = 1.0  # [m]
 _CHUNK = 200_000
 
@@ -49,17 +49,17 @@ MessageCallback = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class ProjectEnvironment:
-    """What a project is sailed in.
+    """Sites, period, ship, sea and chart of a project.
 
     Attributes
     ----------
     sites : Sites
     period : tuple of float
-        First and last moment looked at [s since 1970-01-01T00:00Z].
+        Start and end [s since 1970-01-01T00:00Z].
     ship : Ship
     sea : Sea
     chart : Chart
-    needs : Needs
+    needs : Requirements
         Channels of the sea and limits of the full ship.
     """
 
@@ -74,7 +74,7 @@ class ProjectEnvironment:
     def open(
         cls, sites: Sites, period: tuple[float, float], *, ship: Ship, sea: Sea, chart: Chart
     ) -> ProjectEnvironment:
-        """Find what the ship needs of the sea.
+        """Return the environment, with the requirements of the ship on the sea.
 
         Raises
         ------
@@ -87,12 +87,12 @@ class ProjectEnvironment:
 
     @property
     def min_ukc(self) -> float:
-        """Least under-keel clearance [m]: that of the sites, else the ship file's own."""
+        """Minimum under-keel clearance [m]: that of the sites; default: that of the ship file."""
         return required_under_keel_clearance(_voyage(self.sites, self.period), self.ship)
 
     @property
     def bed_is_static(self) -> bool:
-        """Whether every source of the bed's depth holds at all times."""
+        """Whether the depth of the bed does not depend on time in any source."""
         rows = [row for row in self.sea.coverage() if row.variable == nm.BED_DEPTH]
         return bool(rows) and all(row.start is None for row in rows)
 
@@ -101,7 +101,7 @@ class ProjectEnvironment:
         ship = self.ship.with_load_factor(load_factor)
         limits = self.needs.limits
         if limits.depth_checked:
-            keel = self.min_ukc + self.sites.margin
+            keel = self.min_ukc + self.sites.network.margin
             limits = limits.with_required_depth(ship.draught + keel)
         setting = len(ship.speeds) - 1
         top = ship.top_speed(setting)
@@ -110,7 +110,7 @@ class ProjectEnvironment:
 
 
 def _voyage(sites: Sites, period: tuple[float, float]) -> Voyage:
-    """Return what is asked of the sea, as a voyage asks it."""
+    """Return a voyage between the sites, for the requirements on the sea."""
     return Voyage(start=sites.load, goal=sites.unload, depart=period[0], min_ukc_m=sites.min_ukc)
 
 
@@ -138,7 +138,7 @@ class SiteNetwork:
     ----------
     network : Network
         ``meta.start`` is the loading site, ``meta.goal`` the unloading site.
-    waters : Waters
+    waters : PreparedNetwork
     """
 
     network: Network
@@ -164,7 +164,7 @@ class SiteNetwork:
 
     @cached_property
     def length(self) -> float:
-        """Distance between the sites as the crow flies [m]."""
+        """Direct distance between the sites [m]."""
         lat, lon = self.network.lat, self.network.lon
         a, b = self.network.meta.start, self.network.meta.goal
         return float(distance(lat[a], lon[a], lat[b], lon[b]))
@@ -192,8 +192,8 @@ def freeze_site_network(
     if size > MEMORY_LIMIT:
         raise InputError(
             f"The sea at {len(lat):,} places and {steps:,} times takes {size / 1e9:.1f} GB.",
-            f"At most {MEMORY_LIMIT / 1e9:.0f} GB are taken.",
-            "Look fewer days ahead, or give a coarser spacing_m or a smaller detour.",
+            f"The limit is {MEMORY_LIMIT / 1e9:.0f} GB.",
+            "Give fewer days, a coarser spacing_m or a smaller detour.",
         )
     tell(f"freezing the sea at {len(lat):,} places and {steps:,} times")
     fields = world.sea.freeze_stations(lat, lon, *world.period, channels, extra=extra)
@@ -201,14 +201,17 @@ def freeze_site_network(
 
 
 def project_network(world: ProjectEnvironment) -> Network:
-    """Build the network between the sites: the sea's own mesh where it has one, else a lattice."""
+    """Return the network between the sites: the mesh of the sea if it has one, else a lattice."""
     sites, chart = world.sites, world.chart
     model = world.sea.mesh()
     if model is None:
-        return lattice(chart, sites.load, sites.unload, spacing=sites.spacing, directions=32)
+        spacing = sites.network.spacing
+        return lattice(chart, sites.load, sites.unload, spacing=spacing, directions=32)
     lat, lon, faces = _mesh_near_sites(model.lat, model.lon, model.triangles, sites)
     network = sampled_on_triangle_sides(
-        mesh(chart, lat, lon, faces, largest_spacing=sites.spacing, rings=sites.rings)
+        mesh(
+            chart, lat, lon, faces, largest_spacing=sites.network.spacing, rings=sites.network.rings
+        )
     )
     ends = [_node_at(network, place) for place in (sites.load, sites.unload)]
     return replace(network, meta=replace(network.meta, start=ends[0], goal=ends[1]))
@@ -217,11 +220,11 @@ def project_network(world: ProjectEnvironment) -> Network:
 def _mesh_near_sites(
     lat: FloatArray, lon: FloatArray, triangles: NDArray[np.int64], sites: Sites
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Return the nodes of a model around the sites, after the sites themselves."""
+    """Return the sites, the nodes of a model around them, and the triangles between these."""
     direct_way = float(distance(*sites.load, *sites.unload))
     to_load = distance(lat, lon, *sites.load)
     to_unload = distance(lat, lon, *sites.unload)
-    use = to_load + to_unload <= sites.detour * direct_way
+    use = to_load + to_unload <= sites.network.detour * direct_way
     use &= np.minimum(to_load, to_unload) > _SAME_PLACE
     number = np.full(lat.size, -1, np.int64)
     number[use] = 2 + np.arange(int(use.sum()))
@@ -229,11 +232,11 @@ def _mesh_near_sites(
         raise InputError(
             "The mesh of the sea has no nodes around the sites, which are "
             f"{direct_way:,.0f} m apart.",
-            f"It holds {lat.size} nodes between {lat.min():.3f} and {lat.max():.3f} N, "
+            f"It has {lat.size} nodes between {lat.min():.3f} and {lat.max():.3f} N, "
             f"{lon.min():.3f} and {lon.max():.3f} E.",
             "Choose sites inside it, farther apart than its nodes.",
         )
-    # a triangle counts where all its nodes do; those at a site itself are taken for that site
+    # triangles whose nodes are all used; a node at a site is replaced by that site
     for place, node in ((to_load, 0), (to_unload, 1)):
         number[place <= _SAME_PLACE] = node
     faces = number[triangles]
@@ -252,7 +255,7 @@ def _node_at(network: Network, place: Position) -> int:
     if away[nearest] > _SAME_PLACE:
         raise InputError(
             f"The site {place[0]:.4f}, {place[1]:.4f} is not on navigable water.",
-            "It lies on land, in a no-go zone or outside the chart.",
+            "It is on land, in a no-go zone or outside the chart.",
             "Move it.",
         )
     return nearest
@@ -293,7 +296,7 @@ def _resampled_route(route: Sequence[Position]) -> tuple[FloatArray, FloatArray]
 
 
 def with_bed_depth(world: ProjectEnvironment, network: Network) -> Network:
-    """Return the network with the least depth of the sea's bed along every edge."""
+    """Return the network with the least depth of the bed of the sea along every edge."""
     tails, heads = network.tails(), network.graph.target
     once = tails < heads
     pair = tails[once].astype(np.int64) * network.n_nodes + heads[once]

@@ -1,4 +1,4 @@
-"""From the entries of a project file to a ship, a sea and a chart."""
+"""Ship, sea and chart that a project file names."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-ESTUARY = "synthetic-estuary"  #: a made-up world, named in place of files
+ESTUARY = "synthetic-estuary"  #: a synthetic sea and chart, named instead of files
 EXAMPLE = "example"  #: the name of the example project
 COASTLINE_RESOLUTIONS = ("c", "l", "i", "h", "f", "none")
 
@@ -27,7 +27,7 @@ def example_file() -> Path:
 
 
 def open_project(path: str | Path) -> Project:
-    """Read a project file; ``example`` is the one of the package."""
+    """Return the project of a file; ``example`` is the project of the package."""
     return Project.load(example_file() if str(path) == EXAMPLE else path)
 
 
@@ -37,7 +37,7 @@ def open_project_inputs(project: Project) -> tuple[Ship, Sea, Chart]:
     Raises
     ------
     InputError
-        If nothing names a sea, or an entry is not understood.
+        If no sea is named, or an entry is not understood.
     """
     from thalweg.ship import Ship
 
@@ -46,31 +46,31 @@ def open_project_inputs(project: Project) -> tuple[Ship, Sea, Chart]:
         if isinstance(project.ship, Mapping)
         else Ship.load(project.ship)
     )
-    if project.world.get("sea") != ESTUARY:
-        return ship, _sea(project.world), _chart(project.world, None)
+    if project.data_sources.get("sea") != ESTUARY:
+        return ship, _sea(project.data_sources), _chart(project.data_sources, None)
     from thalweg.operations.examples.estuary import synthetic_estuary
 
-    _refuse_beside_estuary(project.world)
+    _check_estuary_sources(project.data_sources)
     estuary = synthetic_estuary()
-    return ship, estuary.sea, _chart(project.world, estuary.chart)
+    return ship, estuary.sea, _chart(project.data_sources, estuary.chart)
 
 
-def _sea(world: Mapping[str, Any]) -> Sea:
+def _sea(sources: Mapping[str, Any]) -> Sea:
     from thalweg.sea import Sea
 
-    files, mapping, tides = _as_list(world.get("sea")), world.get("map"), world.get("tides")
+    files, mapping, tides = _as_list(sources.get("sea")), sources.get("map"), sources.get("tides")
     if not files or not all(files):
         raise InputError(
             "The project names no sea.",
             f"sea: is a file, a list of files, or {ESTUARY}.",
-            "Add it: weather and tides are never assumed.",
+            "Add it: Thalweg never assumes weather and tides.",
             field="sea",
         )
     _check_names("sea", files, f"It is a file, a list of files, or {ESTUARY}.")
     if not (mapping is None or isinstance(mapping, Mapping)):
         raise InputError(
             f"map is {mapping!r}.",
-            "It says what is what in the files, such as map: {crs: 'EPSG:32611'}.",
+            "It names the variable of each quantity, such as map: {crs: 'EPSG:32611'}.",
             "Write it that way.",
             field="map",
         )
@@ -87,33 +87,36 @@ def _check_names(what: str, given: list[Any], possible: str) -> None:
         raise InputError(f"{what} is {given!r}.", possible, "Write it that way.", field=what)
 
 
-def _refuse_beside_estuary(world: Mapping[str, Any]) -> None:
-    """Raise `InputError` for entries that a made-up world has no use for."""
+def _check_estuary_sources(sources: Mapping[str, Any]) -> None:
+    """Raise `InputError` for entries that have no effect on the synthetic estuary."""
     for what in ("map", "tides", "coast"):
-        if world.get(what) not in (None, False, "none"):
+        if sources.get(what) not in (None, False, "none"):
             raise InputError(
                 f"{what} is given for the {ESTUARY}.",
-                "It has its own tides and rim, and no files.",
-                f"Leave {what} out, or name a sea of your own.",
+                "The estuary has its own tides and coast, and no files.",
+                f"Omit {what}, or name your own sea.",
                 field=what,
             )
 
 
-def _chart(world: Mapping[str, Any], chart: Chart | None) -> Chart:
+def _chart(sources: Mapping[str, Any], chart: Chart | None) -> Chart:
     from thalweg.chart import Chart
 
-    coast = world.get("coast", "i")
+    coast = sources.get("coast", "i")
     coast = "none" if coast is None or coast is False else str(coast)
     if coast not in COASTLINE_RESOLUTIONS:
         raise InputError(
-            f"coast is {coast!r}.", f"One of {', '.join(COASTLINE_RESOLUTIONS)}.", "", field="coast"
+            f"coast is {coast!r}.",
+            f"It is one of {', '.join(COASTLINE_RESOLUTIONS)}.",
+            "Choose one.",
+            field="coast",
         )
     if chart is None:
         whole = (-90.0, 90.0, -180.0, 180.0)
         chart = Chart.open_water(*whole) if coast == "none" else Chart.gshhg(coast)
-    for path in _as_list(world.get("depth")):
+    for path in _as_list(sources.get("depth")):
         chart = chart.with_depth(path)
-    for path in _as_list(world.get("zones")):
+    for path in _as_list(sources.get("zones")):
         chart = chart.with_zones(path)
     return chart
 

@@ -1,8 +1,7 @@
-"""What came of a project: totals, the table of van Halem's study, and files."""
+"""Result of a dredging project: runs, totals, and the table of van Halem's study."""
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from collections.abc import Mapping
@@ -13,11 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.time import format_time
-from thalweg.core.units import DAY, HOUR, KNOT, TONNE
-from thalweg.operations.dredging.cycles import DredgingCycle
+from thalweg.core.units import DAY, TONNE
+from thalweg.operations.dredging.cycles import DredgingCycle, cycle_record
 from thalweg.operations.dredging.project import Project
-from thalweg.planning.report.output_files import make_folder
+from thalweg.planning.report.provenance import finite_or_none
 from thalweg.ship import Ship
 from thalweg.ship.methods.engine.fuel_properties import halem_cost
 
@@ -25,9 +23,9 @@ if TYPE_CHECKING:
     from thalweg.operations.dredging.project_environment import ProjectEnvironment
 
 WEEK = 7.0 * DAY
-_PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel, where the ship file tells none
+_PRIME_MOVER_SFOC = 195.0  # g/kWh, medium-speed Diesel; default without a value in the ship file
 
-#: Rows of the table: key, words, how to print.
+#: Rows of the table: key, label, format.
 TABLE_ROWS = (
     ("production_m3_week", "production [1000 m3/week]", lambda v: f"{v / 1000:.1f}"),
     ("duration_days", "duration", lambda v: "{} d {} h".format(*divmod(round(24 * v), 24))),
@@ -54,12 +52,12 @@ TABLE_ROWS = (
 
 @dataclass(frozen=True, eq=False)
 class ProjectRun:
-    """One way of sailing the project, to its end.
+    """The project sailed to its end with one strategy.
 
     Attributes
     ----------
     name : str
-    cycles : tuple of Cycle
+    cycles : tuple of DredgingCycle
     totals : mapping of str to float or None
         By the keys of `TABLE_ROWS`; None where unknown.
     notes : tuple of str
@@ -78,21 +76,21 @@ class ProjectRun:
 
 @dataclass(frozen=True, eq=False)
 class ProjectResult:
-    """A project as it was sailed, and what it was compared with.
+    """A project with the optimised run and the base case.
 
     Attributes
     ----------
     project : Project
-        What was asked.
-    world : World
+        The definition of the project.
+    environment : ProjectEnvironment
         Ship, sea and chart.
-    optimised : Run
-    base : Run or None
+    optimised : ProjectRun
+    base : ProjectRun or None
     provenance : mapping
     """
 
     project: Project
-    world: ProjectEnvironment
+    environment: ProjectEnvironment
     optimised: ProjectRun
     base: ProjectRun | None = None
     provenance: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
@@ -103,7 +101,7 @@ class ProjectResult:
         return (self.optimised,) if self.base is None else (self.base, self.optimised)
 
     def gains(self) -> dict[str, float]:
-        """Return what is gained over the base case; empty without one."""
+        """Return the gains over the base case, as shares; empty without one."""
         if self.base is None:
             return {}
         old, new = self.base.totals, self.optimised.totals
@@ -118,18 +116,18 @@ class ProjectResult:
         }
 
     def table(self) -> list[list[str]]:
-        """Return the table of van Halem (2019), Table 5.1, as text: a head and rows."""
+        """Return the table of van Halem (2019), Table 5.1, as text: a header and rows."""
         columns = [dict(run.totals) for run in self.runs]
         columns[-1].update(self.gains())
         rows = [["", *(run.name for run in self.runs)]]
-        for key, words, written in TABLE_ROWS:
+        for key, label, text_of in TABLE_ROWS:
             values = [column.get(key) for column in columns]
             if any(value is not None for value in values):
-                rows.append([words, *("" if v is None else written(v) for v in values)])
+                rows.append([label, *("" if v is None else text_of(v) for v in values)])
         return rows
 
     def as_dict(self) -> dict[str, Any]:
-        """Return everything as plain data for a JSON answer."""
+        """Return the result as plain data for JSON."""
         return {
             "project": self.project.to_dict(),
             "runs": {run.name: _run_data(run) for run in self.runs},
@@ -138,27 +136,11 @@ class ProjectResult:
         }
 
     def to_json(self, path: str | Path | None = None) -> str:
-        """Return (and write) everything as JSON."""
+        """Return the result as JSON text, and write it if a path is given."""
         text = json.dumps(self.as_dict(), indent=2, allow_nan=False)
         if path is not None:
             Path(path).write_text(text + "\n", encoding="utf-8")
         return text
-
-    def write(self, folder: str | Path) -> list[Path]:
-        """Write project.json, cycles.csv, project.png and routes.png; return the files."""
-        from thalweg.operations.plots.project_plots import draw_project, draw_routes
-
-        folder = make_folder(folder)
-        self.to_json(folder / "project.json")
-        with (folder / "cycles.csv").open("w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, _COLUMNS)
-            writer.writeheader()
-            for run in self.runs:
-                writer.writerows({"run": run.name, **_cycle_data(c)} for c in run.cycles)
-        draw_project(self, folder / "project.png")
-        draw_routes(self, folder / "routes.png")
-        names = ("project.json", "cycles.csv", "project.png", "routes.png")
-        return [folder / name for name in names]
 
 
 def summarise_run(
@@ -169,7 +151,7 @@ def summarise_run(
     ship: Ship,
     notes: tuple[str, ...] = (),
 ) -> ProjectRun:
-    """Sum cycles up."""
+    """Return a run with the totals of its cycles."""
     duration = cycles[-1].end - cycles[0].start
     legs = [leg for cycle in cycles for leg in cycle.legs]
     volume = sum(cycle.volume for cycle in cycles)
@@ -188,7 +170,7 @@ def summarise_run(
         "distance_m": sum(leg.distance for leg in legs),
         "mean_load_factor": volume / (len(cycles) * project.work.hopper),
         **{key: value / duration for key, value in shares.items()},
-        "least_clearance_m": _finite_or_none(float(np.min([leg.clearance for leg in legs]))),
+        "least_clearance_m": finite_or_none(float(np.min([leg.clearance for leg in legs]))),
         **_energy_and_fuel(cycles, project, ship),
     }
     broken = sum(not leg.route.feasible for leg in legs)
@@ -200,7 +182,7 @@ def summarise_run(
 def _energy_and_fuel(
     cycles: list[DredgingCycle], project: Project, ship: Ship
 ) -> dict[str, float | None]:
-    """Return energy, fuel, CO2 and cost; None where the ship file does not tell."""
+    """Return energy, fuel, CO2 and cost; None where the ship file lacks data."""
     work, own = project.work, ship.specific_fuel_consumption
     hotel = ship.hotel_power * (cycles[-1].end - cycles[0].start)
     pumps = sum(c.loading * work.loading.power + c.unloading * work.unloading.power for c in cycles)
@@ -211,12 +193,12 @@ def _energy_and_fuel(
     co2 = at_work * ship.fuel_terms.carbon_outside + sum(leg.co2 for c in cycles for leg in c.legs)
     volume = sum(c.volume for c in cycles)
     return {
-        "energy_gj": _finite_or_none((propulsion + hotel + pumps) / 1e9),
-        "hotel_gj": None if math.isnan(propulsion) else _finite_or_none(hotel / 1e9),
-        "fuel_t": _finite_or_none(fuel / TONNE),
-        "co2_t": _finite_or_none(co2 / TONNE),
-        "co2_kg_m3": _finite_or_none(co2 / volume),
-        "cost": _finite_or_none(_cost(cycles, ship)),
+        "energy_gj": finite_or_none((propulsion + hotel + pumps) / 1e9),
+        "hotel_gj": None if math.isnan(propulsion) else finite_or_none(hotel / 1e9),
+        "fuel_t": finite_or_none(fuel / TONNE),
+        "co2_t": finite_or_none(co2 / TONNE),
+        "co2_kg_m3": finite_or_none(co2 / volume),
+        "cost": finite_or_none(_cost(cycles, ship)),
     }
 
 
@@ -236,59 +218,10 @@ def _cost(cycles: list[DredgingCycle], ship: Ship) -> float:
     return float(total)
 
 
-def _finite_or_none(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
-
-
 def _run_data(run: ProjectRun) -> dict[str, Any]:
     return {
         "totals": dict(run.totals),
         "feasible": run.feasible,
         "notes": list(run.notes),
-        "cycles": [_cycle_data(cycle) for cycle in run.cycles],
+        "cycles": [cycle_record(cycle) for cycle in run.cycles],
     }
-
-
-_COLUMNS = (
-    *("run", "cycle", "start", "load_factor", "volume_m3", "loading_h", "sail_full", "full_h"),
-    *("full_waiting_h", "full_distance_km", "full_least_clearance_m", "unloading_h", "sail_empty"),
-    *("empty_h", "empty_waiting_h", "empty_distance_km", "empty_least_clearance_m", "end"),
-    *("production_m3_h", "mean_speed_kn", "fuel_t", "energy_gj"),
-)
-
-
-def _cycle_data(cycle: DredgingCycle) -> dict[str, Any]:
-    """Return one row of cycles.csv, in the order of its columns."""
-    data: dict[str, Any] = {
-        "cycle": cycle.number,
-        "start": format_time(cycle.start),
-        "load_factor": cycle.load_factor,
-        "volume_m3": round(cycle.volume, 3),
-        "loading_h": round(cycle.loading / HOUR, 4),
-        "unloading_h": round(cycle.unloading / HOUR, 4),
-        "end": format_time(cycle.end),
-        "production_m3_h": round(cycle.production * HOUR, 2),
-    }
-    for name, leg in (("full", cycle.out), ("empty", cycle.back)):
-        clearance = _finite_or_none(leg.clearance)
-        data |= {
-            f"sail_{name}": format_time(leg.depart),
-            f"{name}_h": round(leg.duration / HOUR, 4),
-            f"{name}_waiting_h": round(leg.waiting / HOUR, 4),
-            f"{name}_distance_km": round(leg.distance / 1000.0, 3),
-            f"{name}_least_clearance_m": None if clearance is None else round(clearance, 3),
-        }
-    sailing = sum(leg.duration - leg.waiting for leg in cycle.legs)
-    fuel, energy = (
-        _finite_or_none(sum(getattr(leg, x) for leg in cycle.legs)) for x in ("fuel", "energy")
-    )
-    data["mean_speed_kn"] = round(sum(leg.distance for leg in cycle.legs) / sailing / KNOT, 2)
-    data["fuel_t"] = None if fuel is None else round(fuel / TONNE, 3)
-    data["energy_gj"] = None if energy is None else round(energy / 1e9, 3)
-    return {key: data[key] for key in _COLUMNS if key != "run"}
-
-
-def load_factor_counts(run: ProjectRun) -> tuple[list[float], list[int]]:
-    """Return the load factors of a run and how many cycles have each."""
-    values, counts = np.unique([cycle.load_factor for cycle in run.cycles], return_counts=True)
-    return values.tolist(), counts.tolist()

@@ -1,4 +1,4 @@
-"""Entries of a project as they stand in its file: numbers, places and times, checked one by one."""
+"""Validation of the entries of a project file: numbers, places and times."""
 
 from __future__ import annotations
 
@@ -13,11 +13,16 @@ from thalweg.core.geodesy import Position, check_position
 from thalweg.core.time import parse_time
 
 MAX_LOAD_FACTORS = 201
-MAX_DAYS = 4000.0  #: that can be looked ahead
+MAX_DAYS = 4000.0  #: longest period of a project
 
 
 def parse_load_factors(value: Any) -> tuple[float, ...]:
-    """Return load factors, ascending: a list, or a number of even steps from 0 to 1."""
+    """Return load factors, ascending, from a list or a number of evenly spaced values from 0 to 1.
+
+    Raises
+    ------
+    InputError
+    """
     if isinstance(value, int) and not isinstance(value, bool) and 2 <= value <= MAX_LOAD_FACTORS:
         return tuple(round(float(x), 12) for x in np.linspace(0.0, 1.0, value))
     listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value)
@@ -26,18 +31,23 @@ def parse_load_factors(value: Any) -> tuple[float, ...]:
     ):
         raise InputError(
             f"load_factors is {value!r}.",
-            f"A list of shares from 0 to 1, or how many even steps (2 to {MAX_LOAD_FACTORS}).",
+            f"It is a list of shares from 0 to 1, or a number of values (2 to {MAX_LOAD_FACTORS}).",
             "Write load_factors: 11.",
             field="load_factors",
         )
     found = tuple(sorted({float(x) for x in value}))
     if found[-1] <= 0.0 or len(found) > MAX_LOAD_FACTORS:
-        raise InputError("With no load nothing is moved.", "", "Give a load factor above 0.")
+        raise InputError(
+            f"load_factors is {value!r}.",
+            f"It has at most {MAX_LOAD_FACTORS} values, one of them above 0.",
+            "Correct load_factors.",
+            field="load_factors",
+        )
     return found
 
 
 def parse_start(value: Any) -> float:
-    """Return a start [s]; a bare number is refused: 20260501 would be seconds since 1970."""
+    """Return a start [s since 1970-01-01T00:00Z]; a number such as 20260501 is not accepted."""
     if isinstance(value, (int, float)):
         raise InputError(
             f"start is the number {value!r}.",
@@ -49,11 +59,11 @@ def parse_start(value: Any) -> float:
 
 
 def parse_days(data: Mapping[str, Any]) -> float:
-    """Return how many days are looked ahead."""
+    """Return the longest duration of a project [days]; 35 if none is given."""
     days = positive_number(data, "days", 35.0)
     if days > MAX_DAYS:
         raise InputError(
-            f"days is {days:g}.", f"At most {MAX_DAYS:g} are looked ahead.", "Look fewer days."
+            f"days is {days:g}.", f"It is at most {MAX_DAYS:g}.", "Give fewer days.", field="days"
         )
     return days
 
@@ -67,13 +77,19 @@ def parse_place(value: Any, what: str) -> Position:
         if isinstance(error, InputError):
             raise
         raise InputError(
-            f"{what} is {value!r}.", "A place is [lat, lon] in degrees.", "", field=what
+            f"{what} is {value!r}.", "A place is [lat, lon] in degrees.", "Correct it.", field=what
         ) from None
 
 
-def positive_number(data: Mapping[str, Any], name: str, otherwise: float | None = None) -> float:
-    """Return the number above zero under a name."""
-    value = data.get(name, otherwise)
+def positive_number(data: Mapping[str, Any], name: str, default: float | None = None) -> float:
+    """Return the positive number under a name.
+
+    Raises
+    ------
+    InputError
+        If it is missing without a default, or not a positive finite number.
+    """
+    value = data.get(name, default)
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not math.isfinite(value) or value <= 0.0:  # type: ignore[arg-type]
         raise InputError(
@@ -83,7 +99,7 @@ def positive_number(data: Mapping[str, Any], name: str, otherwise: float | None 
 
 
 def check_clearance(name: str, value: Any) -> None:
-    """Raise `InputError` for a depth that no clearance has [m]."""
+    """Raise `InputError` unless a clearance is from 0 to 100 m."""
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not 0.0 <= value < 100.0:
         raise InputError(f"{name} is {value!r}.", "It is 0 to 100 m.", "Correct it.", field=name)

@@ -1,4 +1,4 @@
-"""`run_project`: from a project to cycles, tables and pictures, and the checks before it."""
+"""`run_project`: simulation of a dredging project, with checks of the sites before it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 OPTIMISED, BASE_CASE = "optimised", "base case"
-_MAX_BISECTIONS = 24  # of a depth, to the millimetre
+_MAX_BISECTIONS = 24  # of a depth; accurate to a millimetre
 _MAX_DEPTH = 200.0  # [m]
 
 
@@ -46,42 +46,43 @@ def run_project(
     chart: Chart,
     progress: Callable[[str], None] | None = None,
 ) -> ProjectResult:
-    """Sail a project to its end: in every cycle the load and the ways that produce most.
+    """Simulate a project to its end, in each cycle with the load and routes that produce most.
 
     Parameters
     ----------
     project : Project
     ship : Ship
-        Its load decides draught and speed.
+        Draught and speed depend on its load.
     sea : Sea
-        For the whole period of the project. A mesh of its own becomes the network.
+        For the whole period of the project. If it has a mesh, that is the network.
     chart : Chart
         Land, zones and depth.
     progress : callable, optional
-        Called with a short text now and then.
+        Called with a short text at each stage.
 
     Returns
     -------
     ProjectResult
-        With the base case beside it, if the project has one.
+        With the base case, if the project has one.
 
     Raises
     ------
     InputError
-        If a site is dry or on land, the hopper is more than the ship holds, or the sea at the
+        If a site is dry or on land, the hopper exceeds the capacity of the ship, or the sea at the
         network takes too much memory.
     NoRouteError
-        If no load has a way at any tide; it says when the water is highest and what is missing.
+        If there is no route at any tide for any load; states the highest water and missing depth.
     OutsidePeriodError
         If the volume is not moved by the end of the project's period.
 
     Notes
     -----
-    A cycle's production is its volume over the time from the beginning of loading until the ship is
-    back to load again. For every load factor the ways there and back are searched exactly on the
-    network (`thalweg.search.profile_search`) and the highest production is taken, as by van Halem
-    (2019), section 3.2.1. The choice is greedy: a cycle does not make way for a better one after
-    it. Every leg is then sailed by the referee in fine steps; its times are those of the project.
+    The production of a cycle is its volume divided by the time from the start of loading until the
+    ship is back at the loading site. For every load factor the legs out and back are searched
+    exactly on the network (`thalweg.search.profile_search`), and the load with the highest
+    production is taken, as in van Halem (2019), section 3.2.1. The choice is greedy: the effect on
+    later cycles is ignored. The referee then evaluates every leg in small steps; its times are
+    those of the project.
     """
     tell: MessageCallback = progress or (lambda text: None)
     voyage = Voyage(start=project.sites.load, goal=project.sites.unload, depart=project.start)
@@ -120,14 +121,14 @@ def _simulate_run(
     notes: tuple[str, ...] = ()
     shut = [x for x in factors if x > max(possible)]
     if shut:
-        notes = (f"Load factors above {max(possible):g} have no way at any tide.",)
+        notes = (f"Load factors above {max(possible):g} have no route at any tide.",)
     cycles = simulator.run()
     return summarise_run(name, cycles, project=project, ship=world.ship, notes=notes)
 
 
 def _check_hopper(hopper: float, ship: Ship) -> None:
     capacity = ship.loading.capacity
-    if hopper > capacity * (1.0 + 1e-9):  # never of a capacity that is not known
+    if hopper > capacity * (1.0 + 1e-9):  # False if the capacity is NaN (unknown)
         raise InputError(
             f"hopper_m3 is {hopper:g}.",
             f"The ship {ship.name!r} holds {capacity:g} m3 at load factor 1.",
@@ -137,13 +138,13 @@ def _check_hopper(hopper: float, ship: Ship) -> None:
 
 
 def check_sites(world: ProjectEnvironment) -> None:
-    """Raise `InputError` for sites that are on land or fall too dry for the empty ship always."""
+    """Raise `InputError` for sites on land, or too shallow for the empty ship at every tide."""
     sites, chart = world.sites, world.chart
     for what, place in (("loading", sites.load), ("unloading", sites.unload)):
         if not bool(np.all(chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
             raise InputError(
                 f"The {what} site {format_position(*place)} is on land or in a no-go zone.",
-                "A site is navigable water of the chart.",
+                "A site must be navigable water on the chart.",
                 "Move it.",
                 field=what,
             )
@@ -158,8 +159,8 @@ def _check_depth(world: ProjectEnvironment, what: str, place: Position) -> None:
     if not np.isfinite(depth).any():
         raise InputError(
             f"The depth at the {what} site {format_position(*place)} is not known.",
-            "Chart or sea tell the depth of the water at both sites.",
-            "Move it into the data.",
+            "The chart or the sea must provide the depth at both sites.",
+            "Move it into the area of the data.",
             field=what,
         )
     best = int(np.nanargmax(depth))
@@ -195,36 +196,36 @@ def _depth_at(world: ProjectEnvironment, place: Position) -> tuple[np.ndarray, n
 def no_passage_error(
     world: ProjectEnvironment, ways: SiteNetwork, load_factor: float, name: str
 ) -> NoRouteError:
-    """Build the error for a project whose lightest load has no way at any tide.
+    """Return the error for a project without a route at any tide for its lightest load.
 
-    It names the shallowest place that every way must pass, when the water is highest there, and
-    how much is missing.
+    It states the shallowest place that every route must pass, when the water is highest there, and
+    the missing depth.
     """
     loaded = world.loaded(load_factor)
     required = loaded.required_depth
     open_to = _passable_depth(ways, loaded) if math.isfinite(required) else -math.inf
-    asked = f"No tide opens a way with load factor {load_factor:g} ({name})."
+    asked = f"There is no route at any tide with load factor {load_factor:g} ({name})."
     if not math.isfinite(open_to):
         unknown = _first_unknown_depth(ways.network) if ways.network.meta.kind == LINE else None
         if unknown is not None:
             return NoRouteError(
                 asked,
-                f"The depth of the water is not known on its route at {format_position(*unknown)}.",
-                "Correct base_case.route, or give data that reach there.",
+                f"The depth of the water on its route at {format_position(*unknown)} is not known.",
+                "Correct base_case.route, or give data that cover it.",
                 nearest=unknown,
             )
         return NoRouteError(
             asked,
-            "The sites are not joined by water that the data know.",
+            "The sites are not connected by water of known depth.",
             "Check the chart, the data and the detour.",
         )
     place, when = _bottleneck(ways, open_to)
     return NoRouteError(
         asked,
-        f"The best way is {required - open_to:.2f} m too shallow: at {format_position(*place)} the "
-        f"water is highest {format_time(when)}, {open_to:.2f} m deep, and the ship needs "
+        f"The best route is {required - open_to:.2f} m too shallow: at {format_position(*place)} "
+        f"the water is highest {format_time(when)}, {open_to:.2f} m deep, and the ship needs "
         f"{required:.2f} m.",
-        "Load less, ask less clearance, or choose another site.",
+        "Load less, require less clearance, or choose another site.",
         missing_m=required - open_to,
         highest=format_time(when),
         nearest=place,
@@ -232,7 +233,7 @@ def no_passage_error(
 
 
 def _passable_depth(ways: SiteNetwork, loaded: Any) -> float:
-    """Return the greatest depth that some way has all along at its highest tides [m]."""
+    """Return the greatest depth that some route has everywhere at its highest tides [m]."""
     low, high = -_MAX_DEPTH, _MAX_DEPTH
     limits = loaded.limits
 
@@ -249,7 +250,7 @@ def _passable_depth(ways: SiteNetwork, loaded: Any) -> float:
 
 
 def _first_unknown_depth(network: Network) -> Position | None:
-    """Return where the first edge begins whose depth is not known, from the loading site on."""
+    """Return the start of the first edge of unknown depth, counted from the loading site."""
     unknown = np.flatnonzero(np.isnan(network.edges.depth))
     if not len(unknown):
         return None
@@ -258,7 +259,7 @@ def _first_unknown_depth(network: Network) -> Position | None:
 
 
 def _bottleneck(ways: SiteNetwork, depth: float) -> tuple[Position, float]:
-    """Return the node whose greatest depth is just that of the best way, and when it has it."""
+    """Return the shallowest node of the best route, and the time of its highest water."""
     waters, network = ways.waters, ways.network
     sea = waters.sea
     charted = network.edges.depth + sea.highest[network.graph.target]
@@ -284,7 +285,7 @@ def _provenance(world: ProjectEnvironment, ways: SiteNetwork) -> dict[str, Any]:
             "kind": network.meta.kind,
             "nodes": int(network.n_nodes),
             "edges": int(network.n_edges),
-            "rings": world.sites.rings,
+            "rings": world.sites.network.rings,
         },
         "assumptions": list(world.needs.notes),
     }

@@ -1,4 +1,4 @@
-"""From a search to a leg that keeps every limit in the referee's fine steps."""
+"""Legs that keep every limit in the small steps of the referee, planned again if needed."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from thalweg.route import Route, Track, evaluate
 from thalweg.route.referee.limit_checks import is_data_gap
 from thalweg.search import NetworkPassage, ProfileSearch
 
-LARGEST_STEP = 600.0  #: twice the referee's coarser step at most [m]
-_CROSS_TRACK_TOLERANCE = 0.5  # nodes so near the line between their neighbours are no waypoints [m]
+LARGEST_STEP = 600.0  #: twice the longest step of the referee [m]
+_CROSS_TRACK_TOLERANCE = 0.5  # nodes nearer to the line between waypoints are left out [m]
 
 
 class SiteLegPlanner:
-    """Sails legs over one set of ways and lets the referee judge them.
+    """Plans legs on one network and evaluates them with the referee.
 
     Parameters
     ----------
-    world : World
-    ways : Ways
+    world : ProjectEnvironment
+    ways : SiteNetwork
     """
 
     def __init__(self, world: ProjectEnvironment, ways: SiteNetwork) -> None:
@@ -66,23 +66,23 @@ class SiteLegPlanner:
         outward: bool,
         passage: NetworkPassage | None = None,
     ) -> SailedLeg | None:
-        """Sail one leg; with more water planned for, while the referee finds a limit broken.
+        """Return one leg; with more depth required while the referee finds a limit broken.
 
         Parameters
         ----------
         load_factor : float
         depart : float
-            When the ship is ready [s since 1970-01-01T00:00Z].
+            Time at which the ship is ready [s since 1970-01-01T00:00Z].
         outward : bool
             From the loading site to the unloading site, or back.
-        passage : Passage, optional
-            What a search has found already.
+        passage : NetworkPassage, optional
+            The result of a search already made.
 
         Returns
         -------
-        Leg or None
-            None when there is no way before the data end. A leg that cannot be made to keep every
-            limit is returned as it is; its route tells what is broken.
+        SailedLeg or None
+            None if there is no route before the data end. If no attempt keeps every limit, the
+            first leg is returned; its route lists the violations.
         """
         loaded, best = self.loaded(load_factor), None
         for step in range(len(SITE_LEG_TIGHTENING)):
@@ -99,7 +99,7 @@ class SiteLegPlanner:
         return SailedLeg(best, leg_energy(best))
 
     def _evaluated_passage(self, passage: NetworkPassage, loaded: LoadedShip) -> Route:
-        """Score a passage by its corners; by all its nodes where these just leave the data."""
+        """Return the route by the corners of a passage; by all nodes where these leave the data."""
         route = self._evaluated_track(
             track_from_passage(self.ways, passage, loaded.setting), loaded
         )
@@ -124,7 +124,7 @@ class SiteLegPlanner:
 def track_from_passage(
     ways: SiteNetwork, passage: NetworkPassage, setting: int, *, corners: bool = True
 ) -> Track:
-    """Return the track of a passage, by its corners or all its nodes; waits below 1 s are none."""
+    """Return the track of a passage by its corners or all its nodes, without waits below 1 s."""
     wait = np.maximum(0.0, passage.node_depart - passage.node_arrive)
     wait[-1] = 0.0
     wait = np.where(wait < 1.0, 0.0, wait)
@@ -136,9 +136,7 @@ def track_from_passage(
 
 
 def _essential_nodes(lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-    """Return which nodes of a way are needed so that it stays within `_CROSS_TRACK_TOLERANCE` of
-    all of them.
-    """
+    """Return the nodes to keep so that the track is within `_CROSS_TRACK_TOLERANCE` of all."""
     points = conformal_unit_vectors(lat, lon)
     keep = np.zeros(len(lat), bool)
     keep[[0, -1]] = True

@@ -1,1 +1,1 @@
-"""Synthetic worlds and tracks for examples and tutorials."""
+"""Made-up seas and tracks for tests, tutorials and examples."""

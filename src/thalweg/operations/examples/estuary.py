@@ -1,8 +1,8 @@
 """A synthetic estuary: a drying bank, a gully behind it, and the tides M2 and S2.
 
-Nothing in it is surveyed. It has what makes dredging projects hard: the short way runs over a bank
-that dries, the long way round through a gully with a bar that a full ship passes only above a
-certain level. Distances and depths are those of van Halem (2019), section 3.2.3.
+The estuary is not surveyed. The direct route crosses a bank that dries; the detour passes a gully
+with a bar that a full ship passes only above a certain water level. Distances and depths are those
+of van Halem (2019), section 3.2.3.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm
 from thalweg.sea.tides.constituents import Constituents
 
-CENTRE: Final = (51.70, 3.55)  #: origin of the plane below [deg]
+CENTRE: Final = (51.70, 3.55)  #: origin of the local plane [deg]
 HALF_WIDTH, HALF_HEIGHT = 12.0, 10.0  # of the domain [km]
 _KM_NORTH = 111.25  # of a degree of latitude here
 _KM_EAST = 111.41 * math.cos(math.radians(CENTRE[0]))
@@ -35,25 +35,25 @@ _LEVEL_CONSTITUENTS: Final = {
     "S2": (0.36, 118.0),
 }  # amplitude [m], phase lag [deg]
 _LAG = 20.0  # of the tide from west to east [deg]
-_STREAM_LEAD = 65.0  # of the stream before the level [deg]
+_CURRENT_LEAD = 65.0  # of the current before the level [deg]
 
 
 @dataclass(frozen=True)
 class Estuary:
-    """A small world to plan in.
+    """A synthetic sea and chart.
 
     Attributes
     ----------
     sea : Sea
-        Level and current, at any date, on a mesh.
+        Water level and current, at any date, on a mesh.
     chart : Chart
-        Depth below datum; no coastline but the rim.
+        Depth below datum; no coastline except the edge of the domain.
     load, unload : (lat, lon)
         A dredging area at sea and a place behind the bank [deg].
     gully_waypoints : tuple of (lat, lon)
-        The charted way from one to the other, round the bank and through the gully [deg].
+        The charted route from one to the other, through the gully [deg].
     bar : (lat, lon)
-        The shallowest place of that way [deg].
+        The shallowest place of that route [deg].
     """
 
     sea: Sea
@@ -70,7 +70,7 @@ def synthetic_estuary(spacing_m: float = 300.0) -> Estuary:
     Parameters
     ----------
     spacing_m : float
-        Side of the triangles [m], 100 to 2000; 300 m makes some 6,300 nodes.
+        Side of the triangles [m], 100 to 2000; 300 m gives about 6,300 nodes.
 
     Returns
     -------
@@ -84,13 +84,12 @@ def synthetic_estuary(spacing_m: float = 300.0) -> Estuary:
     Notes
     -----
     The level is M2 of 1.45 m and S2 of 0.36 m, 20 degrees later at the eastern rim than at the
-    western; the stream turns 65 degrees before the level and is stronger in deeper water. The crest
-    of the bank lies 0.3 m below datum (it dries), its saddle 4.3 m, the bar of the gully 7.86 m.
+    western; the current turns 65 degrees before the level and is stronger in deeper water. The
+    crest of the bank is 0.3 m below datum (it dries), its saddle 4.3 m, and the bar of the gully
+    7.86 m.
     """
     if not 100.0 <= spacing_m <= 2000.0:
-        raise InputError(
-            f"A spacing of {spacing_m:g} m cannot be.", "It lies between 100 and 2000 m.", ""
-        )
+        raise InputError(f"The spacing is {spacing_m:g} m.", "It is 100 to 2000 m.", "Correct it.")
     lat, lon = _nodes(spacing_m / 1000.0)
     chart = Chart.open_water(*_box()).with_depth(bed_depth, spacing_deg=0.0005)
     gully = ((2.0, 5.0), (-7.8, -0.4), (-7.8, -3.0), (-6.0, -4.3), (0.0, -4.8), (7.0, -4.5))
@@ -135,7 +134,7 @@ def _tidal_constants(lat: FloatArray, lon: FloatArray) -> Constituents:
     return Constituents(
         tuple(_LEVEL_CONSTITUENTS),
         {nm.WATER_LEVEL: amplitude, east: stream, north: 0.15 * stream},
-        {nm.WATER_LEVEL: phase, east: phase - _STREAM_LEAD, north: phase - _STREAM_LEAD},
+        {nm.WATER_LEVEL: phase, east: phase - _CURRENT_LEAD, north: phase - _CURRENT_LEAD},
         {nm.WATER_LEVEL: 0.0 * ones, east: 0.0 * ones, north: 0.0 * ones},
         lat,
         lon,

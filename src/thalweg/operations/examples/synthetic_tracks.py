@@ -1,4 +1,4 @@
-"""Made tracks with known truth: a dredger sails cycles through a given sea."""
+"""Synthetic tracks with known activities: a dredger sails cycles through a given sea."""
 
 from __future__ import annotations
 
@@ -20,24 +20,26 @@ if TYPE_CHECKING:
 
     from thalweg.sea import Sea
 
-_STEPS_PER_MESSAGE = 4  # of the ship for each message
-_MAX_TRIP_DURATION = 14.0 * 86400.0  # a trip may take [s]
+_STEPS_PER_MESSAGE = 4  # steps of the ship between two messages
+_MAX_TRIP_DURATION = 14.0 * 86400.0  # [s]
 
 
 @dataclass(frozen=True)
 class SyntheticCycle:
-    """What a ship repeats.
+    """The cycle that a ship repeats, and how it is recorded.
 
     Attributes
     ----------
     loading_place, unloading_place : (float, float)
-        Middles of the areas (lat, lon) [deg].
+        Centres of the areas (lat, lon) [deg].
     full_kn, empty_kn : float
         Speeds through water [kn].
     loading_h, unloading_h : float
-        Time of work [h]; while loading the ship trails to and fro at 1.5 kn.
+        Duration [h]; while loading the ship sails to and fro at 1.5 kn.
     radius_nm : float
-        Of the areas [nm].
+        Radius of the areas [nm].
+    position_noise_m : float
+        Standard deviation of each recorded coordinate [m].
     """
 
     loading_place: Position
@@ -47,6 +49,7 @@ class SyntheticCycle:
     loading_h: float = 1.5
     unloading_h: float = 1.0
     radius_nm: float = 0.6
+    position_noise_m: float = 5.0
 
     def __post_init__(self) -> None:
         check_position(*self.loading_place, "loading place")
@@ -55,8 +58,14 @@ class SyntheticCycle:
         numbers = (self.full_kn, self.empty_kn, self.loading_h, self.unloading_h, self.radius_nm)
         if not all(math.isfinite(n) and n > 0.0 for n in numbers) or apart < 3 * self.radius_nm:
             raise InputError(
-                f"{self} is no cycle.",
+                f"The cycle is {self}.",
                 "All numbers are positive and the places at least three radii apart.",
+                "Correct it.",
+            )
+        if not 0.0 <= self.position_noise_m < 1e4:
+            raise InputError(
+                f"position_noise_m is {self.position_noise_m!r}.",
+                "It is 0 to 10 km.",
                 "Correct it.",
             )
 
@@ -74,17 +83,17 @@ class SyntheticCycle:
 
 @dataclass(frozen=True, eq=False)
 class SyntheticTrack:
-    """A made track and the truth behind it.
+    """A synthetic track with its true activities.
 
     Attributes
     ----------
     frame : DataFrame
-        Columns time, lat, lon, speed_kn, course_deg, draught_m, mmsi, as AIS would tell.
+        Columns time, lat, lon, speed_kn, course_deg, draught_m, mmsi, as in AIS.
     truth : DataFrame
         One row for each activity: kind, start, end.
-    cycle : Cycle
+    cycle : SyntheticCycle
     current_factor : float
-        By which the ship felt more current than the sea tells.
+        True current divided by that of the sea.
     """
 
     frame: pd.DataFrame
@@ -101,26 +110,23 @@ def synthetic_track(
     cycles: int = 10,
     interval_s: float = 60.0,
     current_factor: float = 1.0,
-    position_noise_m: float = 5.0,
     speed_noise: float = 0.0,
     seed: int = 0,
 ) -> SyntheticTrack:
-    """Sail cycles through a sea and write down what AIS would tell.
+    """Return the track of a ship that sails cycles through a sea, as AIS records it.
 
     Parameters
     ----------
-    cycle : Cycle
+    cycle : SyntheticCycle
     sea : Sea
-        Its currents are felt ``current_factor`` times.
+        Its currents are multiplied by ``current_factor``.
     start : time
-        Beginning of the first loading.
+        Start of the first loading.
     cycles : int
-        How often, at least 1; the last ends with the ship back in the loading area.
+        Number of cycles, at least 1; the last ends with the ship in the loading area.
     interval_s : float
-        Between messages [s].
+        Time between messages [s].
     current_factor : float
-    position_noise_m : float
-        Standard deviation of each coordinate [m].
     speed_noise : float
         Standard deviation of the speed through water from trip to trip, as a share of it.
     seed : int
@@ -132,15 +138,15 @@ def synthetic_track(
     Raises
     ------
     NoRouteError
-        If the ship cannot get ahead against the current.
+        If the ship makes no progress against the current.
     InputError
-        If a number makes no sense, or the sea does not tell the currents on the way.
+        If a number is out of range, or the sea has no currents on the route.
     """
-    noises = (position_noise_m, speed_noise)
-    if cycles < 1 or not interval_s > 0.0 or not all(0.0 <= n < 1e4 for n in noises):
+    if cycles < 1 or not interval_s > 0.0 or not 0.0 <= speed_noise < 1e4:
         raise InputError(
-            f"{cycles} cycles every {interval_s} s with noise {noises} make no track.",
-            "At least one cycle, a positive interval and no negative noise.",
+            f"A track has {cycles} cycles, an interval of {interval_s} s and a speed noise of "
+            f"{speed_noise}.",
+            "It has at least one cycle, a positive interval and no negative noise.",
             "Correct them.",
         )
     maker = _TrackSynthesiser(cycle, sea, current_factor, interval_s / _STEPS_PER_MESSAGE)
@@ -151,19 +157,19 @@ def synthetic_track(
         time = maker.trip(time, "sailing full", 1.0 + speed_noise * random.normal())
         time = maker.work(time, cycle.unloading_h, cycle.unloading_place, "unloading", 0.0)
         time = maker.trip(time, "sailing empty", 1.0 + speed_noise * random.normal())
-    return maker.written(interval_s, position_noise_m, random)
+    return maker.track(random)
 
 
 class _TrackSynthesiser:
-    """Sails and keeps what was sailed."""
+    """Computes positions in small steps and records them."""
 
     def __init__(self, cycle: SyntheticCycle, sea: Sea, factor: float, step: float) -> None:
         self.cycle, self.sea, self.factor, self.step = cycle, sea, factor, step
         self.rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
-        self.told: list[dict[str, Any]] = []
+        self.activities: list[dict[str, Any]] = []
 
     def work(self, time: float, hours: float, place: Position, kind: str, speed: float) -> float:
-        """Stay around a place, to and fro at a speed, beginning and ending there."""
+        """Record work around a place, to and fro at a speed, and return when it ends."""
         count = max(2, math.ceil(hours * HOUR / self.step))
         at = np.arange(count, dtype=np.float64) * self.step
         reach = 0.5 * self.cycle.radius_nm * 1852.0
@@ -173,15 +179,15 @@ class _TrackSynthesiser:
         return time + count * self.step
 
     def trip(self, time: float, kind: str, share: float) -> float:
-        """Sail the geodesic between the places in small steps."""
+        """Record the geodesic between the places in small steps, and return the arrival."""
         full = kind == "sailing full"
         ends = (self.cycle.loading_place, self.cycle.unloading_place)
         start, goal = ends if full else ends[::-1]
         speed = (self.cycle.full_kn if full else self.cycle.empty_kn) * KNOT * share
         length, course, _ = (float(v) for v in inverse(*start, *goal))
-        way, done, passed = [], 0.0, 0.0
+        distances, done, passed = [], 0.0, 0.0
         while done < length:
-            way.append(done)
+            distances.append(done)
             lat, lon = direct(*start, course, done)
             done += self.step * self._speed_made_good(
                 time + passed, float(lat), float(lon), goal, speed
@@ -189,20 +195,22 @@ class _TrackSynthesiser:
             passed += self.step
             if passed > _MAX_TRIP_DURATION:
                 raise _no_progress_error(start, goal)
-        lat, lon = direct(*start, course, np.array(way))
-        self._record(time + self.step * np.arange(len(way), dtype=np.float64), lat, lon, kind)
+        lat, lon = direct(*start, course, np.array(distances))
+        self._record(time + self.step * np.arange(len(distances), dtype=np.float64), lat, lon, kind)
         return time + passed
 
     def _speed_made_good(
         self, time: float, lat: float, lon: float, goal: Position, speed: float
     ) -> float:
-        told = self.sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], time, lat, lon)
-        flow = self.factor * complex(float(told[EASTWARD_CURRENT]), float(told[NORTHWARD_CURRENT]))
+        sampled = self.sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], time, lat, lon)
+        flow = self.factor * complex(
+            float(sampled[EASTWARD_CURRENT]), float(sampled[NORTHWARD_CURRENT])
+        )
         if not math.isfinite(abs(flow)):
             raise InputError(
-                f"The sea does not tell the current at {lat:.3f}, {lon:.3f}.",
-                "A made track needs currents on all its way.",
-                "Use another sea, or fill it (Sea.filled).",
+                f"The sea has no current at {lat:.3f}, {lon:.3f}.",
+                "A synthetic track needs currents on its whole route.",
+                "Use another sea, or fill values (Sea.filled).",
             )
         course = float(inverse(lat, lon, *goal)[1])
         turned = flow * complex(math.sin(course), -math.cos(course))  # along, to starboard
@@ -214,18 +222,18 @@ class _TrackSynthesiser:
     def _record(self, time: FloatArray, lat: FloatArray, lon: FloatArray, kind: str) -> None:
         self.rows.append((time, lat, lon))
         end = float(time[-1]) + self.step
-        self.told.append({"kind": kind, "start": float(time[0]), "end": end})
+        self.activities.append({"kind": kind, "start": float(time[0]), "end": end})
 
-    def written(self, interval: float, noise: float, random: np.random.Generator) -> SyntheticTrack:
-        """Return what was sailed as messages."""
+    def track(self, random: np.random.Generator) -> SyntheticTrack:
+        """Return the recorded positions as messages."""
         import pandas as pd
 
         time, lat, lon = (np.concatenate(column) for column in zip(*self.rows))
         full = np.concatenate([np.full(len(r[0]), k % 4) for k, r in enumerate(self.rows)])
-        way, course, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
-        speed = np.append(way / np.diff(time), 0.0)
+        length, course, _ = inverse(lat[:-1], lon[:-1], lat[1:], lon[1:])
+        speed = np.append(length / np.diff(time), 0.0)
         take = np.arange(0, len(time), _STEPS_PER_MESSAGE)
-        shift = noise * random.normal(size=(2, len(take)))
+        shift = self.cycle.position_noise_m * random.normal(size=(2, len(take)))
         seen_lat, seen_lon = direct(
             lat[take], lon[take], np.arctan2(shift[0], shift[1]), np.hypot(*shift)
         )
@@ -240,16 +248,16 @@ class _TrackSynthesiser:
                 "mmsi": 244000000,
             }
         )
-        truth = pd.DataFrame(self.told)
+        truth = pd.DataFrame(self.activities)
         return SyntheticTrack(frame, truth, self.cycle, self.factor)
 
 
 def _no_progress_error(start: Position, goal: Position) -> NoRouteError:
     return NoRouteError(
-        f"The ship does not get from {start[0]:.3f}, {start[1]:.3f} to {goal[0]:.3f}, "
+        f"The ship makes no progress from {start[0]:.3f}, {start[1]:.3f} to {goal[0]:.3f}, "
         f"{goal[1]:.3f} against the current.",
-        "A made track has no waits for the tide.",
-        "Give it more speed or a weaker current.",
+        "A synthetic track has no waits for the tide.",
+        "Give the ship more speed, or a weaker current.",
     )
 
 

@@ -1,14 +1,14 @@
-"""`LegPlanner`: legs between named places, planned when they are asked for.
+"""`LegPlanner`: legs between any two places, planned on request.
 
-What a simulation of several vessels and sites asks of a planner: from here to there, now, with this
-load. Networks, frozen sea and searches are prepared once for each pair of places and kept.
+A simulation of vessels and sites asks for a leg from one place to another, at the present time and
+load. The network, the frozen sea and the searches of each pair of places are prepared once.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -19,13 +19,13 @@ from thalweg.core.geodesy import Position, check_position, distance, format_posi
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.units import DAY
 from thalweg.operations.dredging.cycles import SailedLeg
-from thalweg.operations.dredging.project import Sites
+from thalweg.operations.dredging.project import SiteNetworkOptions, Sites
 from thalweg.operations.dredging.project_environment import (
     ProjectEnvironment,
     freeze_site_network,
     project_network,
 )
-from thalweg.operations.dredging.project_validation import MAX_DAYS
+from thalweg.operations.dredging.project_validation import MAX_DAYS, check_clearance
 from thalweg.operations.dredging.verified_legs import SiteLegPlanner
 from thalweg.planning.request.coverage_check import check_argument_types
 from thalweg.planning.voyage import Voyage
@@ -47,25 +47,28 @@ class LegPlanner:
     ship : Ship
     sea : Sea
     chart : Chart
-    start, days : float
-        First moment [s since 1970-01-01T00:00Z] and length of the period [days].
-    sites : Sites
-        How the water is divided; its two places are those of the pair that is sailed.
+    period : tuple of float
+        Start and end [s since 1970-01-01T00:00Z].
+    min_ukc : float or None
+        Minimum under-keel clearance [m]; None: that of the ship file.
+    network : SiteNetworkOptions
+        How the water between two places is divided.
     load_steps : int
-        Loads are rounded up to this many even steps, so that a ship is never taken to lie less deep
-        than it does.
-    tell : callable
-        Called with a short text when something is prepared.
+        Loads are rounded up to a multiple of one over this number, so that the draught is never
+        underestimated.
+    progress : callable
+        Called with a short text when a network is prepared.
 
     Examples
     --------
     >>> from thalweg.operations.examples.estuary import synthetic_estuary
     >>> from thalweg import Ship
-    >>> world = synthetic_estuary(1500.0)
-    >>> ways = Fairways.open(
-    ...     ship=Ship.load("hopper-dredger"), sea=world.sea, chart=world.chart,
+    >>> estuary = synthetic_estuary(1500.0)
+    >>> planner = LegPlanner.open(
+    ...     ship=Ship.load("hopper-dredger"), sea=estuary.sea, chart=estuary.chart,
     ...     start="2026-05-01T00:00Z", days=1.0, min_ukc=1.0)
-    >>> leg = ways.sail(world.load, world.unload, depart="2026-05-01T01:00Z", load_factor=0.5)
+    >>> leg = planner.sail(
+    ...     estuary.load, estuary.unload, depart="2026-05-01T01:00Z", load_factor=0.5)
     >>> leg.clearance >= 1.0
     True
     """
@@ -73,11 +76,11 @@ class LegPlanner:
     ship: Ship
     sea: Sea
     chart: Chart
-    start: float
-    days: float
-    sites: Sites
+    period: tuple[float, float]
+    min_ukc: float | None = None
+    network: SiteNetworkOptions = field(default_factory=SiteNetworkOptions)
     load_steps: int = 10
-    tell: Callable[[str], None] = field(default=lambda text: None)
+    progress: Callable[[str], None] = field(default=lambda text: None)
 
     @classmethod
     def open(
@@ -89,100 +92,109 @@ class LegPlanner:
         start: TimeLike,
         days: float,
         min_ukc: float | None = None,
-        margin: float = 0.01,
-        spacing: float | None = None,
-        rings: int = 3,
-        detour: float = 3.0,
+        network: SiteNetworkOptions | None = None,
         load_steps: int = 10,
     ) -> LegPlanner:
-        """Return the fairways of a ship.
+        """Return the leg planner of a ship.
 
         Parameters
         ----------
         ship, sea, chart
             As for `thalweg.plan`.
         start : time
-            First moment that can be asked.
+            Start of the period.
         days : float
-            Length of the period.
-        min_ukc, margin, spacing, rings, detour
-            As in `thalweg.operations.dredging.project.Sites`.
+            Length of the period [days].
+        min_ukc : float, optional
+            Minimum under-keel clearance [m]; default: that of the ship file.
+        network : SiteNetworkOptions, optional
+            How the water between two places is divided.
         load_steps : int
             Steps of the load factor, 1 to 100.
 
         Raises
         ------
         InputError
-            For a period or number of steps that cannot be, or what `Sites` refuses.
+            For a period, clearance or number of steps out of range.
         """
         first = parse_time(start)
         voyage = Voyage(start=(0.0, 0.0), goal=(0.0, 1.0), depart=first, min_ukc_m=min_ukc)
         check_argument_types(voyage, ship, sea, chart)
         if not (isinstance(days, (int, float)) and 0.0 < days <= MAX_DAYS):
             raise InputError(
-                f"A period of {days!r} days cannot be.",
-                f"More than 0 and at most {MAX_DAYS:g}.",
+                f"The period is {days!r} days.",
+                f"It is more than 0 and at most {MAX_DAYS:g} days.",
                 "Correct it.",
             )
         whole = isinstance(load_steps, int) and not isinstance(load_steps, bool)
         if not (whole and 1 <= load_steps <= 100):
-            raise InputError(f"load_steps is {load_steps!r}.", "1 to 100.", "Give 10.")
-        nowhere = (math.nan, math.nan)
-        sites = Sites(nowhere, nowhere, min_ukc, margin, spacing, rings, detour)
-        return cls(ship, sea, chart, first, float(days), sites, load_steps)
+            raise InputError(
+                f"load_steps is {load_steps!r}.", "It is a number from 1 to 100.", "Give 10."
+            )
+        if min_ukc is not None:
+            check_clearance("min_ukc", min_ukc)
+        period = (first, first + float(days) * DAY)
+        return cls(ship, sea, chart, period, min_ukc, network or SiteNetworkOptions(), load_steps)
+
+    @property
+    def start(self) -> float:
+        """Start of the period [s since 1970-01-01T00:00Z]."""
+        return self.period[0]
 
     @property
     def end(self) -> float:
-        """Last moment of the period [s since 1970-01-01T00:00Z]."""
-        return self.start + self.days * DAY
+        """End of the period [s since 1970-01-01T00:00Z]."""
+        return self.period[1]
 
     def sail(
         self, origin: Position, destination: Position, *, depart: TimeLike, load_factor: float
     ) -> SailedLeg:
-        """Plan a leg with the earliest arrival, and let the referee sail it.
+        """Return the leg with the earliest arrival, evaluated by the referee.
 
         Parameters
         ----------
         origin, destination : (lat, lon)
-            [deg], a metre apart or more.
+            [deg], at least one metre apart.
         depart : time
-            When the ship is ready to leave.
+            Time at which the ship is ready to leave.
         load_factor : float
             0 empty to 1 full.
 
         Returns
         -------
-        Leg
-            With its route, waits included, least clearance, energy and fuel. Where the referee
-            finds a limit broken between the nodes whatever is tried, ``route.feasible`` is False.
+        SailedLeg
+            With its route (waits included), least clearance, energy and fuel. ``route.feasible`` is
+            False if the referee finds a limit broken between the nodes in every attempt.
 
         Raises
         ------
         InputError
-            For places on land, load factors that cannot be.
+            For places on land, or a load factor out of range.
         OutsidePeriodError
-            If the departure lies outside the period.
+            If the departure is outside the period.
         NoRouteError
-            If there is no way before the period ends.
+            If there is no route before the period ends.
         """
         time = parse_time(depart)
         if not self.start <= time < self.end:
             raise OutsidePeriodError(
-                f"The departure {format_time(time)} lies outside the period prepared.",
-                f"It runs from {format_time(self.start)} to {format_time(self.end)}.",
-                "Open fairways for a longer period.",
+                f"The departure {format_time(time)} is outside the period of the leg planner.",
+                f"It is from {format_time(self.start)} to {format_time(self.end)}.",
+                "Open a leg planner for a longer period.",
             )
         share = self._rounded(load_factor)
-        sailor, outward = self._site_planner_between(origin, destination)
-        leg = sailor.sail(share, time, outward=outward)
+        planner, outward = self._site_planner_between(origin, destination)
+        leg = planner.sail(share, time, outward=outward)
         if leg is None:
-            raise self._no_way(origin, destination, time, share)
+            raise self._no_route_error(origin, destination, time, share)
         return leg
 
     def _rounded(self, load_factor: float) -> float:
         if not 0.0 <= load_factor <= 1.0 + 1e-9:
             raise InputError(
-                f"The load factor is {load_factor!r}.", "0 (empty) to 1 (full).", "Correct it."
+                f"The load factor is {load_factor!r}.",
+                "It is 0 (empty) to 1 (full).",
+                "Correct it.",
             )
         return min(1.0, math.ceil(load_factor * self.load_steps - 1e-9) / self.load_steps)
 
@@ -193,42 +205,43 @@ class LegPlanner:
     def _site_planner_between(
         self, origin: Position, destination: Position
     ) -> tuple[SiteLegPlanner, bool]:
-        """Return what sails between two places, and whether they are in its order."""
+        """Return the leg planner between two places, and whether the places are in its order."""
         first = check_position(float(origin[0]), float(origin[1]), "origin")
         last = check_position(float(destination[0]), float(destination[1]), "destination")
         if float(distance(*first, *last)) < _SAME_PLACE:
             raise InputError(
-                f"A leg from {format_position(*first)} leads to itself.", "", "Give two places."
+                f"The leg from {format_position(*first)} ends at the same place.",
+                "Its ends are at least one metre apart.",
+                "Give two places.",
             )
         for pair, outward in (((first, last), True), ((last, first), False)):
             if pair in self._site_planners:
                 return self._site_planners[pair], outward
         self._check_water(first, "origin")
         self._check_water(last, "destination")
-        sites = replace(self.sites, load=first, unload=last)
-        period = (self.start, self.end)
-        world = ProjectEnvironment.open(
-            sites, period, ship=self.ship, sea=self.sea, chart=self.chart
+        sites = Sites(first, last, self.min_ukc, self.network)
+        environment = ProjectEnvironment.open(
+            sites, self.period, ship=self.ship, sea=self.sea, chart=self.chart
         )
-        ways = freeze_site_network(world, project_network(world), self.tell)
-        self._site_planners[first, last] = SiteLegPlanner(world, ways)
+        network = freeze_site_network(environment, project_network(environment), self.progress)
+        self._site_planners[first, last] = SiteLegPlanner(environment, network)
         return self._site_planners[first, last], True
 
     def _check_water(self, place: Position, what: str) -> None:
         if not bool(np.all(self.chart.is_navigable(np.array([place[0]]), np.array([place[1]])))):
             raise InputError(
                 f"The {what} {format_position(*place)} is on land or in a no-go zone.",
-                "A place is navigable water of the chart.",
+                "It must be navigable water on the chart.",
                 "Move it.",
                 field=what,
             )
 
-    def _no_way(
+    def _no_route_error(
         self, origin: Position, destination: Position, time: float, share: float
     ) -> NoRouteError:
         return NoRouteError(
-            f"No way from {format_position(*origin)} to {format_position(*destination)} with load "
-            f"factor {share:g}, leaving {format_time(time)}.",
-            f"The period prepared ends {format_time(self.end)}.",
-            "Load less, ask less clearance, or prepare a longer period.",
+            f"There is no route from {format_position(*origin)} to {format_position(*destination)} "
+            f"with load factor {share:g}, leaving {format_time(time)}.",
+            f"The period ends {format_time(self.end)}.",
+            "Load less, require less clearance, or open a leg planner for a longer period.",
         )

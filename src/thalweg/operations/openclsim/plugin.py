@@ -1,9 +1,9 @@
 """OpenCLSim vessels that sail Thalweg's routes (needs ``pip install "thalweg[openclsim]"``).
 
-`PlannedRouteMovable` is a mix-in for the classes of OpenCLSim: it takes the place of ``Movable``
-among the parts of a vessel. When an activity moves the vessel, the leg is planned for the
-simulation's present time and the vessel's present load; its duration, distance, waits, energy and
-fuel come from the plan, and are written to the vessel's log.
+`PlannedRouteMovable` is a mix-in class for OpenCLSim; it replaces ``Movable`` among the base
+classes of a vessel. When an activity moves the vessel, the leg is planned for the present time of
+the simulation and the present load of the vessel; its duration, distance, waits, energy and fuel
+are those of the plan and are written to the vessel's log.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ if TYPE_CHECKING:
 
 
 class PlannedRouteMovable(Movable):
-    """A part of an OpenCLSim vessel: it moves along Thalweg's routes.
+    """Mix-in class of an OpenCLSim vessel that moves along routes planned by Thalweg.
 
     Parameters
     ----------
-    leg_planner : Fairways
+    leg_planner : LegPlanner
         The ship, the sea and the chart. The simulation's clock (``env.now``) is in seconds since
-        1970-01-01T00:00Z, as OpenCLSim writes it to its logs.
+        1970-01-01T00:00Z, as in the logs of OpenCLSim.
     *args, **kwargs
-        For the other parts: ``env``, ``geometry``, ``capacity`` ...
+        For the other base classes: ``env``, ``geometry``, ``capacity`` ...
 
     Attributes
     ----------
-    legs : list of Leg
-        Everything sailed so far, in order, as the referee found it.
+    legs : list of SailedLeg
+        All legs sailed so far, in order, as evaluated by the referee.
 
     Notes
     -----
@@ -55,9 +55,9 @@ class PlannedRouteMovable(Movable):
 
     Examples
     --------
-    A vessel is put together as always in OpenCLSim::
+    A vessel is composed as usual in OpenCLSim::
 
-        Vessel = type("Vessel", (Identifiable, SailsFairways, Processor, LoadingFunction,
+        Vessel = type("Vessel", (Identifiable, PlannedRouteMovable, Processor, LoadingFunction,
                                  UnloadingFunction, HasContainer, HasResource, Log), {})
     """
 
@@ -68,7 +68,7 @@ class PlannedRouteMovable(Movable):
 
     @property
     def load_factor(self) -> float:
-        """Level over capacity of the container, or the load of the ship without one."""
+        """Level of the container over its capacity; the ship's own load without a container."""
         container = getattr(self, "container", None)
         if container is None:
             return self.leg_planner.ship.loading.load_factor
@@ -80,12 +80,12 @@ class PlannedRouteMovable(Movable):
         return float(self.leg_planner.ship.with_load_factor(self.load_factor).speeds[-1])
 
     def plan_leg(self, destination: Any, origin: Any = None) -> SailedLeg:
-        """Return the leg that would be sailed now.
+        """Return the leg for a departure at the present time.
 
         Parameters
         ----------
         destination, origin : geometry or object with one
-            Points (lon, lat); the vessel's own place when no origin is given.
+            Points (lon, lat); default of the origin: the position of the vessel.
         """
         here = _position(self.geometry if origin is None else origin)
         there = _position(destination)
@@ -94,13 +94,13 @@ class PlannedRouteMovable(Movable):
         )
 
     def compute_distance(self, origin: Any, destination: Any) -> float:
-        """Return the length of the route that would be sailed now [m]."""
+        """Return the length of the route for a departure at the present time [m]."""
         if _same_position(origin, destination):
             return 0.0
         return self.plan_leg(destination, origin).distance
 
     def compute_duration(self, origin: Any, destination: Any, engine_order: float = 1.0) -> float:
-        """Return how long the route would take now, waits included [s]."""
+        """Return the duration for a departure at the present time, waits included [s]."""
         _check_order(engine_order)
         return (
             0.0
@@ -111,16 +111,16 @@ class PlannedRouteMovable(Movable):
     def move(
         self, destination: Any = None, duration: float | None = None, engine_order: Any = None
     ) -> Generator[Any, Any, None]:
-        """Sail to a destination along the route planned now; yields the times it takes.
+        """Sail to a destination along a route planned for the present time, as a SimPy process.
 
-        A given duration is taken at its word, as OpenCLSim does.
+        If a duration is given, the move takes that time, as in OpenCLSim.
 
         Raises
         ------
         InputError
-            For an engine order other than 1: the ship sails as its model says.
+            For an engine order other than 1.
         NoRouteError, CoverageError
-            If there is no way, or not within the data.
+            If there is no route, or the data do not cover it.
         """
         _check_order(1.0 if engine_order is None else engine_order)
         if destination is None or duration is not None or _same_position(self, destination):
@@ -179,7 +179,7 @@ def _same_position(origin: Any, destination: Any) -> bool:
 def _check_order(engine_order: float) -> None:
     if engine_order != 1.0:
         raise InputError(
-            f"An engine order of {engine_order!r} is asked of a vessel on Thalweg's routes.",
-            "It sails at the highest setting of its ship.",
-            "Give the ship other speeds (Ship.with_speeds).",
+            f"The engine order is {engine_order!r}.",
+            "A vessel on planned routes sails at the highest setting of its ship.",
+            "Omit the engine order, and give the ship other speeds (Ship.with_speeds).",
         )

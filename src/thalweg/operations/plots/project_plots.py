@@ -1,4 +1,4 @@
-"""Pictures of a project: production over time, tides and waiting, loads, and the bundle of ways."""
+"""Plots of a dredging project: production over time, tides and waits, loads, and routes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ACTIVITIES = {
 }
 _UNKNOWN = "#d9d4c8"  # land, and where no depth is known
 _FIRST_DAYS = 4.0  # shown hour by hour
-_MAX_LINES = 600  # ways drawn of each run
+_MAX_LINES = 600  # cycles drawn of each run
 
 
 def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
@@ -33,7 +33,7 @@ def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
     ----------
     result : ProjectResult
     path : path, optional
-        Where to save the picture (PNG).
+        File to save the plot to (PNG).
 
     Returns
     -------
@@ -72,7 +72,7 @@ def _draw_volume(result: ProjectResult, axes: Any) -> None:
 
 
 def _draw_first_days(result: ProjectResult, axes: Any) -> None:
-    """Draw what is done in the first days, under the water level."""
+    """Draw the activities of the first days, with the water level."""
     start = result.project.start
     end = min(start + _FIRST_DAYS * DAY, max(run.cycles[-1].end for run in result.runs))
     for row, run in enumerate(result.runs):
@@ -94,7 +94,7 @@ def _draw_first_days(result: ProjectResult, axes: Any) -> None:
 
 
 def _activity_periods(run: ProjectRun) -> dict[str, list[tuple[float, float]]]:
-    """Return when each activity begins and ends; waits along a way are put where they happen."""
+    """Return start and end of each activity; waits on a route at the time they take place."""
     spans: dict[str, list[tuple[float, float]]] = {name: [] for name in _ACTIVITIES}
     for cycle in run.cycles:
         spans["loading"].append((cycle.start, cycle.start + cycle.loading))
@@ -112,7 +112,7 @@ def _activity_periods(run: ProjectRun) -> dict[str, list[tuple[float, float]]]:
 def _water_level(result: ProjectResult, times: np.ndarray) -> np.ndarray:
     from thalweg.sea import standard_names as nm
 
-    sea, (lat, lon) = result.world.sea, result.project.sites.unload
+    sea, (lat, lon) = result.environment.sea, result.project.sites.unload
     if nm.WATER_LEVEL not in sea.variables:
         return np.full(times.shape, np.nan)
     where = np.full(times.shape, lat), np.full(times.shape, lon)
@@ -126,14 +126,12 @@ def _legend_patch(colour: str, label: str) -> Any:
 
 
 def _draw_load_factors(result: ProjectResult, axes: Any) -> None:
-    from thalweg.operations.dredging.project_result import load_factor_counts
-
     factors = np.array(result.project.work.load_factors)
     width = min(0.08, 0.4 * float(np.diff(factors).min())) if len(factors) > 1 else 0.04
     shift = -0.5 * width * (len(result.runs) - 1)
     for number, run in enumerate(result.runs):
-        values, counts = load_factor_counts(run)
-        at = np.array(values) + shift + number * width
+        values, counts = np.unique([c.load_factor for c in run.cycles], return_counts=True)
+        at = values + shift + number * width
         axes.bar(at, counts, width=width, color=_COLOURS.get(run.name), label=run.name)
     axes.set(xlabel="load factor", ylabel="cycles", xlim=(-0.1, 1.1))
     axes.legend(fontsize=8, frameon=False)
@@ -157,13 +155,13 @@ def _draw_time_shares(result: ProjectResult, axes: Any) -> None:
 def draw_routes(
     result: ProjectResult, path: str | Path | None = None, *, colour: str = "time"
 ) -> Any:
-    """Draw every way sailed over the depth of the water, coloured by time or by load.
+    """Draw all routes over the depth of the water, coloured by time or by load.
 
     Parameters
     ----------
     result : ProjectResult
     path : path, optional
-        Where to save the picture (PNG).
+        File to save the plot to (PNG).
     colour : {"time", "load"}
         Days since the start, or the load factor.
 
@@ -222,12 +220,12 @@ def _draw_route_bundle(run: ProjectRun, axes: Any, colour: str, last: float) -> 
 
 
 def _draw_depth(result: ProjectResult, axes: Any) -> Any:
-    """Draw the depth of chart or sea behind the ways; nothing where the chart lets no ship."""
+    """Draw the depth of chart or sea behind the routes; blank where ships may not sail."""
     from thalweg.sea import standard_names as nm
 
     (west, east), (south, north) = axes.get_xlim(), axes.get_ylim()
     lon, lat = np.meshgrid(np.linspace(west, east, 160), np.linspace(south, north, 160))
-    chart, sea = result.world.chart, result.world.sea
+    chart, sea = result.environment.chart, result.environment.sea
     depth = np.full(lat.shape, np.nan)
     if chart.has_depth:
         depth = np.asarray(chart.depths.at(lat, lon), float)

@@ -1,4 +1,4 @@
-"""Pictures of a track analysis: the map with its activities, times, speeds, and the spread."""
+"""Plots of a track analysis: map of the activities, durations, speeds, modelled speeds."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ def draw_tracks(analysis: TrackAnalysis, path: str | Path | None = None) -> Any:
     ----------
     analysis : TrackAnalysis
     path : path, optional
-        Where to save the picture (PNG).
+        File to save the plot to (PNG).
 
     Returns
     -------
     matplotlib.figure.Figure
         Map of the track by activity with the areas; hours of each activity; speeds of the legs in
         the order they were sailed; and modelled against measured speeds of the legs for the best
-        model there is.
+        model.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -51,10 +51,10 @@ def draw_tracks(analysis: TrackAnalysis, path: str | Path | None = None) -> Any:
     figure = Figure(figsize=(11, 8.2), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 2)
-    _map(analysis, axes[0, 0])
-    _hours(analysis, axes[0, 1])
-    _speeds(analysis, axes[1, 0])
-    _spread(analysis, axes[1, 1])
+    _draw_map(analysis, axes[0, 0])
+    _draw_durations(analysis, axes[0, 1])
+    _draw_speeds(analysis, axes[1, 0])
+    _draw_agreement(analysis, axes[1, 1])
     for one in axes.flat:
         one.grid(alpha=0.3, lw=0.4)
         one.tick_params(labelsize=7)
@@ -66,7 +66,7 @@ def draw_tracks(analysis: TrackAnalysis, path: str | Path | None = None) -> Any:
     return figure
 
 
-def _map(analysis: TrackAnalysis, axes: Any) -> None:
+def _draw_map(analysis: TrackAnalysis, axes: Any) -> None:
     log = analysis.log
     lon = np.degrees(np.unwrap(np.radians(log.lon)))
     seen = set()
@@ -95,7 +95,7 @@ def _map(analysis: TrackAnalysis, axes: Any) -> None:
     axes.legend(fontsize=7, frameon=False)
 
 
-def _hours(analysis: TrackAnalysis, axes: Any) -> None:
+def _draw_durations(analysis: TrackAnalysis, axes: Any) -> None:
     start = analysis.log.time[0]
     for kind, colour in ACTIVITY_COLOURS.items():
         found = [a for a in analysis.activities if a.kind == kind and (a.whole or kind == UNSEEN)]
@@ -104,13 +104,13 @@ def _hours(analysis: TrackAnalysis, axes: Any) -> None:
             hours = [a.duration / HOUR for a in found]
             axes.plot(days, hours, "o", ms=3, color=colour, label=f"{kind} ({len(found)})")
     axes.set_xlabel("day of the track")
-    axes.set_ylabel("length of the activity [h]")
+    axes.set_ylabel("duration of the activity [h]")
     axes.set_ylim(0.0, 1.3 * max(axes.get_ylim()[1], 0.1))
-    axes.set_title("whole activities")
+    axes.set_title("complete activities")
     axes.legend(fontsize=7, frameon=False, ncols=2, loc="upper left")
 
 
-def _speeds(analysis: TrackAnalysis, axes: Any) -> None:
+def _draw_speeds(analysis: TrackAnalysis, axes: Any) -> None:
     legs = analysis.leg_frame()
     start = analysis.log.time[0]
     for kind in (SAILING_FULL, SAILING_EMPTY):
@@ -131,16 +131,16 @@ def _speeds(analysis: TrackAnalysis, axes: Any) -> None:
     axes.legend(fontsize=7, frameon=False, loc="upper left")
 
 
-def _spread(analysis: TrackAnalysis, axes: Any) -> None:
-    pieces, models = analysis.pieces, analysis.models
+def _draw_agreement(analysis: TrackAnalysis, axes: Any) -> None:
+    segments, models = analysis.segments, analysis.models
     order = ("calibrated", "currents", "still water")
     best = next((n for n in ("ship, calibrated", "ship", *order) if n in models), None)
-    if best is None or not len(pieces):
+    if best is None or not len(segments):
         axes.set_title("no sailing to compare")
         return
-    measured = leg_speeds(pieces, pieces.speed) / KNOT
-    modelled = leg_speeds(pieces, models[best]) / KNOT
-    _, kind = pieces.sum_by_leg(pieces.kind.astype(np.float64))
+    measured = leg_speeds(segments, segments.speed) / KNOT
+    modelled = leg_speeds(segments, models[best]) / KNOT
+    _, kind = segments.sum_by_leg(segments.kind.astype(np.float64))
     for index, name in enumerate((SAILING_FULL, SAILING_EMPTY)):
         here = (kind > 0.0) == bool(index)
         axes.plot(

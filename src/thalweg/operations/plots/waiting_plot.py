@@ -1,4 +1,4 @@
-"""Picture of a waiting study: savings, energy, way against time, and the trips themselves."""
+"""Plots of a waiting study: savings, energy, position against time, and the trips."""
 
 from __future__ import annotations
 
@@ -23,16 +23,15 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
     ----------
     study : WaitingStudy
     path : path, optional
-        Where to save the picture (PNG).
+        File to save the plot to (PNG).
     title : str
 
     Returns
     -------
     matplotlib.figure.Figure
-        Four panels: change of energy against allowed wait (each start, the rule of Schless dashed,
-        the best for the next trip dotted, the optimum drawn through); energy by start; where the
-        ship is against time, without waiting and at the longest allowed wait; and what one trip
-        takes against its departure.
+        Four panels: change of energy against the allowed wait for each start (rule of Schless
+        dashed, best for the next trip dotted, optimum solid); energy by start; position against
+        time for each rule at the longest wait; and energy of one trip against its departure.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -40,10 +39,10 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
     figure = Figure(figsize=(11, 7.6), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(2, 2)
-    _savings(study, axes[0, 0])
-    _bars(study, axes[0, 1])
+    _draw_savings(study, axes[0, 0])
+    _draw_energy(study, axes[0, 1])
     _draw_space_time_lines(study, axes[1, 0])
-    _trips(study, axes[1, 1])
+    _draw_trips(study, axes[1, 1])
     for one in axes.flat:
         one.grid(alpha=0.3, lw=0.4)
         one.tick_params(labelsize=7)
@@ -57,7 +56,7 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
     return figure
 
 
-def _savings(study: WaitingStudy, axes: Any) -> None:
+def _draw_savings(study: WaitingStudy, axes: Any) -> None:
     hours = study.max_waits / HOUR
     for i, start in enumerate(study.starts):
         colour = _COLOURS[i % len(_COLOURS)]
@@ -68,11 +67,11 @@ def _savings(study: WaitingStudy, axes: Any) -> None:
     axes.axhline(0.0, color="0.3", lw=0.6)
     axes.set_xlabel("allowed wait before each trip [h]")
     axes.set_ylabel("change of energy [%]")
-    axes.set_title("dashed: best current at departure; dotted: next trip; drawn: optimum")
+    axes.set_title("dashed: best current at departure; dotted: next trip; solid: optimum")
     axes.legend(fontsize=7, frameon=False, title="ready for the first trip", title_fontsize=7)
 
 
-def _bars(study: WaitingStudy, axes: Any) -> None:
+def _draw_energy(study: WaitingStudy, axes: Any) -> None:
     rules = tuple(study.plans)
     places = np.arange(len(study.starts), dtype=float)
     for k, rule in enumerate(rules):
@@ -95,8 +94,8 @@ def _draw_space_time_lines(study: WaitingStudy, axes: Any) -> None:
         hours, place = _draw_space_time_line(study, study.plans[rule][0][-1], names)
         axes.plot(hours, place, color=_COLOURS[k], lw=1.1, label=rule)
     axes.set_xlabel(f"hours since {format_time(float(study.starts[0]))[:16]}")
-    axes.set_ylabel("share of the way")
-    axes.set_title(f"where the ship is ({' and '.join(names)}), longest wait allowed")
+    axes.set_ylabel("share of the route")
+    axes.set_title(f"position of the ship ({' and '.join(names)}), longest wait allowed")
     axes.set_ylim(-0.05, 1.2)
     axes.legend(fontsize=7, frameon=False, ncols=4, loc="upper center")
 
@@ -104,19 +103,19 @@ def _draw_space_time_lines(study: WaitingStudy, axes: Any) -> None:
 def _draw_space_time_line(
     study: WaitingStudy, plan: WaitingPlan, names: list[str]
 ) -> tuple[Any, Any]:
-    hours, place = [0.0], [float(_from(study, 0, names))]
+    hours, place = [0.0], [float(_end_of_departure(study, 0, names))]
     for k, (leave, reach) in enumerate(zip(plan.departs, plan.arrives)):
-        begin = _from(study, k, names)
+        begin = _end_of_departure(study, k, names)
         hours += [(leave - plan.start) / HOUR, (reach - plan.start) / HOUR]
         place += [float(begin), float(1 - begin)]
     return np.array(hours), np.array(place)
 
 
-def _from(study: WaitingStudy, trip: int, names: list[str]) -> int:
+def _end_of_departure(study: WaitingStudy, trip: int, names: list[str]) -> int:
     return names.index(study.trips[trip].name) % 2
 
 
-def _trips(study: WaitingStudy, axes: Any) -> None:
+def _draw_trips(study: WaitingStudy, axes: Any) -> None:
     shown = {trip.name: trip for trip in study.trips}
     other = axes.twinx()
     for k, (name, trip) in enumerate(shown.items()):

@@ -1,8 +1,8 @@
-"""Cutting a track into activities: loading, sailing full, unloading, sailing empty, waiting.
+"""Activities of a track: loading, sailing full, unloading, sailing empty, waiting.
 
-As van Halem (2019, section 4.1.2) did for 184 cycles: inside an area a ship does what the area is
-for; between areas it sails full if it loaded last and empty if it unloaded last. Besides there are
-waits on the way, trips that come back to where they began, and gaps.
+After van Halem (2019, section 4.1.2): inside an area the activity is that of the area; between
+areas the ship sails full after loading and empty after unloading. Further activities are waits
+between areas, trips that return to the same area, and gaps.
 """
 
 from __future__ import annotations
@@ -28,17 +28,18 @@ _SAILING: Final = {(LOADING, UNLOADING): SAILING_FULL, (UNLOADING, LOADING): SAI
 
 @dataclass(frozen=True)
 class SegmentationRules:
-    """How a track is cut.
+    """Rules for dividing a track into activities.
 
     Attributes
     ----------
     slow : float
-        Outside the areas, slower than this [m/s] is waiting or manoeuvring ...
+        Outside the areas, a lower speed over ground than this [m/s] is waiting or manoeuvring if it
+        lasts at least ``min_wait``.
     min_wait : float
-        ... if it lasts this long [s].
+        Shortest wait outside the areas [s].
     short_trip : float
-        A ship that leaves an area and comes back to one of the same kind within this time [s] is
-        taken never to have left.
+        An absence from an area that ends in an area of the same kind within this time [s] counts as
+        work in the area.
     """
 
     slow: float = 2.0 * KNOT
@@ -49,27 +50,27 @@ class SegmentationRules:
         values = (self.slow, self.min_wait, self.short_trip)
         if not all(np.isfinite(v) and v >= 0.0 for v in values):
             raise InputError(
-                f"A track cannot be cut by {self}.", "The numbers are not negative.", "Correct it."
+                f"The rules are {self}.", "The numbers are not negative.", "Correct them."
             )
 
 
 @dataclass(frozen=True)
 class Activity:
-    """A stretch of a track in which a ship does one thing.
+    """A part of a track with one activity.
 
     Attributes
     ----------
     kind : str
         One of ``ACTIVITIES``.
     start, end : float
-        [s since 1970-01-01T00:00Z]; half-way between the positions on either side.
+        [s since 1970-01-01T00:00Z]; half-way between the neighbouring positions.
     first, last : int
-        Its first and last position in the track.
+        Index of its first and last position in the track.
     trip : int
         Number of the trip between areas it belongs to (its sailing and its waits); -1 for none.
     whole : bool
-        Whether the track tells all of it: it is not cut off by the ends of the track or by a gap,
-        and there is no gap in it in which the ship may have left and come back.
+        Whether it is complete: not cut off by the ends of the track or by a gap, and without a gap
+        in which the ship may have left and returned.
     """
 
     kind: str
@@ -82,30 +83,30 @@ class Activity:
 
     @property
     def duration(self) -> float:
-        """Its length [s]."""
+        """Duration [s]."""
         return self.end - self.start
 
 
 def find_activities(
     log: TrackLog, areas: WorkAreas, *, rules: SegmentationRules | None = None
 ) -> tuple[Activity, ...]:
-    """Cut a track into activities.
+    """Divide a track into activities.
 
     Parameters
     ----------
     log : TrackLog
-    areas : Areas
-    rules : CuttingRules, optional
+    areas : WorkAreas
+    rules : SegmentationRules, optional
 
     Returns
     -------
     tuple of Activity
-        In order of time, without holes between them.
+        In order of time, covering the whole track.
 
     Raises
     ------
     InputError
-        If the ship never comes into an area for loading or unloading.
+        If the ship is never in an area for loading or unloading.
     """
     rules = rules or SegmentationRules()
     where = areas.at(log.lat, log.lon)
@@ -115,7 +116,7 @@ def find_activities(
     ):
         raise InputError(
             "The ship is never in an area for loading or unloading.",
-            f"The track runs from {log.lat.min():.3f} to {log.lat.max():.3f} N and from "
+            f"The track extends from {log.lat.min():.3f} to {log.lat.max():.3f} N and from "
             f"{log.lon.min():.3f} to {log.lon.max():.3f} E.",
             "Check the areas (longitude first in GeoJSON) and the ship.",
         )
@@ -124,8 +125,8 @@ def find_activities(
     return tuple(_activities(log, kinds, trips, whole, away))
 
 
-def _constant_stretches(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]:
-    """Return (first, last) of stretches of equal keys."""
+def _constant_runs(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]:
+    """Return (first, last) of runs of equal keys."""
     found, at = [], 0
     for _, group in itertools.groupby(keys):
         count = len(list(group))
@@ -137,13 +138,13 @@ def _constant_stretches(keys: list[tuple[object, ...]]) -> list[tuple[int, int]]
 def _classify_positions(
     log: TrackLog, where: NDArray[np.int8], rules: SegmentationRules
 ) -> tuple[list[str], list[int], list[bool]]:
-    """Return the activity, trip and wholeness of every position."""
+    """Return the activity, the trip and the completeness of every position."""
     count = len(log)
     kinds = [AREA_KINDS[w] if w in (0, 1) else "" for w in where.tolist()]
     trips, whole = [-1] * count, [True] * count
     slow = _waiting_positions(log, where, rules)
     number = 0
-    for first, last in _constant_stretches([(k,) for k in kinds]):
+    for first, last in _constant_runs([(k,) for k in kinds]):
         if kinds[first]:
             continue
         before = kinds[first - 1] if first > 0 else ""
@@ -164,7 +165,7 @@ def _classify_positions(
 
 
 def _activity_between(before: str, after: str) -> str:
-    """Return what a ship does between areas of two kinds; at the ends of a track one is unknown."""
+    """Return the activity between areas of two kinds; at the ends of a track one is unknown."""
     if before and after:
         return _SAILING.get((before, after), AWAY)
     if before or after:
@@ -176,11 +177,11 @@ def _activity_between(before: str, after: str) -> str:
 def _waiting_positions(
     log: TrackLog, where: NDArray[np.int8], rules: SegmentationRules
 ) -> NDArray[np.bool_]:
-    """Return where the ship waits outside the areas of work."""
+    """Return whether the ship waits outside the areas for loading and unloading."""
     waiting = where == AREA_KINDS.index(WAITING)
     slow = (log.speeds() < rules.slow) & (where < 0)
     edges = _interval_boundaries(log)
-    for first, last in _constant_stretches([(bool(s),) for s in slow]):
+    for first, last in _constant_runs([(bool(s),) for s in slow]):
         if slow[first] and edges[last + 1] - edges[first] < rules.min_wait:
             slow[first : last + 1] = False
     return np.asarray(slow | waiting)
@@ -199,14 +200,14 @@ def _activities(
     whole: list[bool],
     away: NDArray[np.bool_],
 ) -> list[Activity]:
-    """Return stretches of one activity; intervals in which the ship was not seen apart.
+    """Return the activities; intervals without observation are activities of their own.
 
-    What holds an interval of ``away``, a gap long enough for a trip, is not whole.
+    An activity with an interval of ``away``, a gap long enough for a trip, is not complete.
     """
     segment = np.concatenate([[0], np.cumsum(_unobserved_intervals(log, kinds))]).tolist()
     edges = _interval_boundaries(log)
     found: list[Activity] = []
-    for first, last in _constant_stretches(list(zip(kinds, trips, segment))):
+    for first, last in _constant_runs(list(zip(kinds, trips, segment))):
         start, end = float(edges[first]), float(edges[last + 1])
         if first > 0 and segment[first] != segment[first - 1]:
             start = float(log.time[first])
@@ -215,18 +216,18 @@ def _activities(
         if last + 1 < len(kinds) and segment[last + 1] != segment[last]:
             end = float(log.time[last])
         inside = first > 0 and last + 1 < len(kinds)
-        told = (
+        observed = (
             inside and segment[first] == segment[first - 1] and segment[last] == segment[last + 1]
         )
-        complete = told and all(whole[first : last + 1]) and not away[first:last].any()
+        complete = observed and all(whole[first : last + 1]) and not away[first:last].any()
         found.append(Activity(kinds[first], start, end, first, last, trips[first], complete))
     return found
 
 
 def _unobserved_intervals(log: TrackLog, kinds: list[str]) -> NDArray[np.bool_]:
-    """Return the intervals in which a broken track does not tell what the ship did.
+    """Return the intervals of a broken track in which the activity is unknown.
 
-    A gap with the same area of work at both ends belongs to that work.
+    A gap with the same work area at both ends belongs to that work.
     """
     work = np.array([k in (LOADING, UNLOADING) for k in kinds])
     same = np.array([a == b for a, b in itertools.pairwise(kinds)], dtype=bool)

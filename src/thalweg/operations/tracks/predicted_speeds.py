@@ -1,4 +1,4 @@
-"""What a ship model says of a measured track: its speed at ordered settings or measured powers."""
+"""Speeds that a ship model predicts along a measured track, by setting or by measured power."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     from thalweg.ship import Ship
 
 _MAX_BISECTIONS = 40
-_MAX_SPEED = 25.0  #: a speed through water that is looked for at a power [m/s]
+_MAX_SPEED = 25.0  #: highest speed through water considered at a power [m/s]
 
 
 def predicted_speeds_through_water(
-    pieces: MeasuredSegments, ship: Ship, sea: Sea, *, speed_kn: float | None = None
+    segments: MeasuredSegments, ship: Ship, sea: Sea, *, speed_kn: float | None = None
 ) -> FloatArray:
-    """Return the speed through water [m/s] that a ship model gives on every piece.
+    """Return the speed through water [m/s] that a ship model gives on every segment.
 
     Parameters
     ----------
-    pieces : Pieces
+    segments : MeasuredSegments
     ship : Ship
         Full while sailing full (load factor 1), empty while sailing empty (0).
     sea : Sea
@@ -50,14 +50,14 @@ def predicted_speeds_through_water(
     Returns
     -------
     ndarray
-        NaN where the sea does not tell what the model needs.
+        NaN where the sea lacks data that the model needs.
     """
-    found = np.full(len(pieces), np.nan)
-    for kind, (loaded, setting) in ordered_settings(pieces, ship, speed_kn=speed_kn).items():
-        mine = pieces.kind == SAILING_KINDS.index(kind)
+    found = np.full(len(segments), np.nan)
+    for kind, (loaded, setting) in ordered_settings(segments, ship, speed_kn=speed_kn).items():
+        mine = segments.kind == SAILING_KINDS.index(kind)
         world = make_sailing_environment(loaded, with_wind_speed(loaded, sea), None)
         check_depth_available(world)
-        here = pieces.part(mine)
+        here = segments.part(mine)
         found[mine] = solve_sailing_state(
             world, _segment_points(here, setting), here.time
         ).speed_through_water
@@ -65,16 +65,17 @@ def predicted_speeds_through_water(
 
 
 def ordered_settings(
-    pieces: MeasuredSegments, ship: Ship, *, speed_kn: float | None = None
+    segments: MeasuredSegments, ship: Ship, *, speed_kn: float | None = None
 ) -> dict[str, tuple[Ship, int]]:
-    """Return the loaded ship and its setting for each activity there is; as in
-    `predicted_speeds_through_water`.
+    """Return the loaded ship and its setting for each activity that occurs.
+
+    Parameters as in `predicted_speeds_through_water`.
     """
     found = {}
-    wanted = mean_speeds(pieces, 1.0)
-    wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(pieces, 0.0))
+    wanted = mean_speeds(segments, 1.0)
+    wanted = np.where(np.isfinite(wanted), wanted, mean_speeds(segments, 0.0))
     for index, load_factor in ((0, 1.0), (1, 0.0)):
-        mine = pieces.kind == index
+        mine = segments.kind == index
         if not mine.any():
             continue
         loaded = ship.with_load_factor(load_factor)
@@ -86,7 +87,7 @@ def ordered_settings(
 
 
 def speeds_at_measured_power(
-    log: TrackLog, pieces: MeasuredSegments, ship: Ship, sea: Sea
+    log: TrackLog, segments: MeasuredSegments, ship: Ship, sea: Sea
 ) -> FloatArray | None:
     """Return the speed through water [m/s] at the measured power, as Schless (2023) validated.
 
@@ -94,9 +95,9 @@ def speeds_at_measured_power(
     ----------
     log : TrackLog
         With ``power``, the brake power [W]; its ``draught``, where known, sets the load factor.
-    pieces : Pieces
+    segments : MeasuredSegments
     ship : Ship
-        Made from its resistance.
+        A model composed of resistance and propulsion.
     sea : Sea
         With what the resistance needs (wind, waves, depth).
 
@@ -104,56 +105,56 @@ def speeds_at_measured_power(
     -------
     ndarray or None
         NaN where the power or the sea is unknown or no speed up to 25 m/s takes that power; None if
-        the log tells no power or the ship does not know its resistance.
+        the log has no power or the model of the ship has no resistance.
 
     Notes
     -----
-    The ship is taken to head along its course over ground. By bisection, as the power of a ship in
-    shallow water may jump.
+    The heading is assumed to be the course over ground. By bisection, because power against speed
+    may be discontinuous in shallow water.
     """
     if "power" not in log.values or not ship.is_resistance_based:
         return None
-    power = segment_means(log, pieces, "power")
+    power = segment_means(log, segments, "power")
     world = make_sailing_environment(ship, with_wind_speed(ship, sea), None)
     check_depth_available(world)
-    points = _segment_points(pieces, 0)
-    met = _conditions(world, points, pieces.time)
-    met = met.with_values(load_factor=_load_factors(log, pieces, ship))
-    low, high = np.zeros(len(pieces)), np.full(len(pieces), _MAX_SPEED)
+    points = _segment_points(segments, 0)
+    met = _conditions(world, points, segments.time)
+    met = met.with_values(load_factor=_load_factors(log, segments, ship))
+    low, high = np.zeros(len(segments)), np.full(len(segments), _MAX_SPEED)
     with np.errstate(invalid="ignore"):
         for _ in range(_MAX_BISECTIONS):
             middle = 0.5 * (low + high)
             needed = ship.power_at_speed(met, middle)
-            enough = ~(needed > power)  # beyond the range of a method: look lower
+            enough = ~(needed > power)  # also beyond the range of a method: search lower speeds
             low = np.where(enough & np.isfinite(needed), middle, low)
             high = np.where(enough & np.isfinite(needed), high, middle)
-        at_last = ship.power_at_speed(met, np.maximum(low, 1e-3))
-        close = (np.abs(at_last - power) < 0.02 * power) & (low > 0.0)
+        reached = ship.power_at_speed(met, np.maximum(low, 1e-3))
+        close = (np.abs(reached - power) < 0.02 * power) & (low > 0.0)
     return np.where(close, low, np.nan)
 
 
-def segment_means(log: TrackLog, pieces: MeasuredSegments, name: str) -> FloatArray:
-    """Return the mean over each piece of a measured value; NaN where it is not known at all."""
+def segment_means(log: TrackLog, segments: MeasuredSegments, name: str) -> FloatArray:
+    """Return the mean over each segment of a measured value; NaN where it is unknown."""
     values = log.values[name]
     known = np.isfinite(values)
     sums = np.append(0.0, np.cumsum(np.where(known, values, 0.0)))
     counts = np.append(0, np.cumsum(known))
-    first = np.searchsorted(log.time, pieces.time - 0.5 * pieces.took - 1e-6)
-    last = np.searchsorted(log.time, pieces.time + 0.5 * pieces.took + 1e-6)
+    first = np.searchsorted(log.time, segments.time - 0.5 * segments.took - 1e-6)
+    last = np.searchsorted(log.time, segments.time + 0.5 * segments.took + 1e-6)
     count = counts[last] - counts[first]
     return np.where(count > 0, (sums[last] - sums[first]) / np.maximum(count, 1), np.nan)
 
 
-def _segment_points(pieces: MeasuredSegments, setting: int) -> TrackPoints:
-    zero = np.zeros(len(pieces), dtype=np.int64)
+def _segment_points(segments: MeasuredSegments, setting: int) -> TrackPoints:
+    zero = np.zeros(len(segments), dtype=np.int64)
     return TrackPoints(
-        lat=pieces.lat,
-        lon=pieces.lon,
-        course=pieces.course,
+        lat=segments.lat,
+        lon=segments.lon,
+        course=segments.course,
         setting=zero + setting,
         leg=zero,
-        along=np.zeros(len(pieces)),
-        charted=np.full(len(pieces), math.inf),
+        along=np.zeros(len(segments)),
+        charted=np.full(len(segments), math.inf),
     )
 
 
@@ -162,12 +163,12 @@ def _conditions(world: SailingEnvironment, points: TrackPoints, time: FloatArray
     return conditions_at(world, points, time, sampled=sampled, depth=depth, heading=points.course)
 
 
-def _load_factors(log: TrackLog, pieces: MeasuredSegments, ship: Ship) -> FloatArray:
+def _load_factors(log: TrackLog, segments: MeasuredSegments, ship: Ship) -> FloatArray:
     """Return load factors: from the measured draught, else 1 while full and 0 while empty."""
-    assumed = np.where(pieces.kind == 0, 1.0, 0.0)
+    assumed = np.where(segments.kind == 0, 1.0, 0.0)
     deep, light = (ship.with_load_factor(f).draught for f in (1.0, 0.0))
     if "draught" not in log.values or deep <= light:
         return assumed
-    measured = (segment_means(log, pieces, "draught") - light) / (deep - light)
-    rounded = np.round(np.clip(measured, 0.0, 1.0), 2)  # a ship is floated anew for each
+    measured = (segment_means(log, segments, "draught") - light) / (deep - light)
+    rounded = np.round(np.clip(measured, 0.0, 1.0), 2)  # few distinct loads, each computed once
     return np.where(np.isfinite(measured), rounded, assumed)

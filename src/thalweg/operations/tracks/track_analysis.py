@@ -1,4 +1,4 @@
-"""Analysis of measured tracks: activities, cycles, and a model held against what was sailed."""
+"""Analysis of measured tracks: activities, cycles, and speed models compared with measurements."""
 
 from __future__ import annotations
 
@@ -58,41 +58,41 @@ WEEK = 168.0 * HOUR
 
 @dataclass(frozen=True, eq=False)
 class TrackAnalysis:
-    """What a track tells.
+    """The activities, segments and speed models of a track.
 
     Attributes
     ----------
     log : TrackLog
-    areas : Areas
+    areas : WorkAreas
     activities : tuple of Activity
-    pieces : Pieces
-        Of all sailing, without the ends of the legs.
+    segments : MeasuredSegments
+        Of all legs, without their ends.
     models : dict of str to float64 array (p,)
-        Speed over ground of each model on every piece [m/s]; NaN where it cannot tell.
+        Speed over ground of each model on every segment [m/s]; NaN where unknown.
     calibration : Calibration or None
-        None without currents, or if they cannot tell a factor.
+        None without currents, or if the currents do not determine a factor.
     notes : tuple of str
-        Everything that was assumed, dropped or could not be done.
+        Assumptions, rows left out, and what could not be computed.
     """
 
     log: TrackLog
     areas: WorkAreas
     activities: tuple[Activity, ...]
-    pieces: MeasuredSegments
+    segments: MeasuredSegments
     models: dict[str, FloatArray]
     calibration: Calibration | None
     notes: tuple[str, ...]
 
     def spreads(self) -> dict[str, AgreementStatistics]:
-        """Return how the mean speeds of the legs, modelled, lie against those measured."""
-        measured = leg_speeds(self.pieces, self.pieces.speed)
+        """Return the agreement of modelled with measured mean speeds of the legs, by model."""
+        measured = leg_speeds(self.segments, self.segments.speed)
         return {
-            name: agreement_statistics(measured, leg_speeds(self.pieces, model))
+            name: agreement_statistics(measured, leg_speeds(self.segments, model))
             for name, model in self.models.items()
         }
 
     def activity_frame(self) -> pd.DataFrame:
-        """Return one row for each activity: times, hours, trip, and whether it is whole."""
+        """Return one row for each activity: times, hours, trip, and whether it is complete."""
         import pandas as pd
 
         rows = [
@@ -111,14 +111,14 @@ class TrackAnalysis:
     def leg_frame(self) -> pd.DataFrame:
         """Return one row for each sailed leg: measured and modelled speeds, distance, errors.
 
-        ``rmse_rel`` of each model is taken over the pieces of the leg (Schless 2023, Table 4.8).
+        ``rmse_rel`` of each model is taken over the segments of the leg (Schless 2023, Table 4.8).
         """
         import pandas as pd
 
-        pieces, rows = self.pieces, []
-        for trip in np.unique(pieces.leg).tolist():
-            here = pieces.leg == trip
-            part = pieces.part(here)
+        segments, rows = self.segments, []
+        for trip in np.unique(segments.leg).tolist():
+            here = segments.leg == trip
+            part = segments.part(here)
             row = {
                 "trip": trip,
                 "activity": SAILING_KINDS[int(part.kind[0])],
@@ -134,7 +134,7 @@ class TrackAnalysis:
         return pd.DataFrame(rows)
 
     def cycle_frame(self) -> pd.DataFrame:
-        """Return one row for each whole cycle: hours of each activity, from loading to loading."""
+        """Return one row for each complete cycle, loading to loading: hours of each activity."""
         import pandas as pd
 
         rows = []
@@ -150,7 +150,7 @@ class TrackAnalysis:
     def statistics(self) -> pd.DataFrame:
         """Return for each activity: count, hours (mean, median, deviation, sum), share of time.
 
-        Mean, median and deviation are of whole stretches only; sum and share of all.
+        Mean, median and deviation are of complete activities only; sum and share of all.
         """
         import pandas as pd
 
@@ -210,32 +210,31 @@ def analyse_tracks(
     speed_kn: float | None = None,
     cutting: SegmentationRules | None = None,
     cleaning: CleaningRules | None = None,
-    piece_s: float = SEGMENT_DURATION,
+    segment_s: float = SEGMENT_DURATION,
     **reading: Any,
 ) -> TrackAnalysis:
-    """Cut a track into activities and hold models of its speed against what was measured.
+    """Divide a track into activities, and compare speed models with the measured speeds.
 
     Parameters
     ----------
     source : path, DataFrame or TrackLog
         The track; see `thalweg.operations.tracks.track_readers.read_tracks`, whose ``columns``,
         ``vessel`` and ``time_format`` may be given too.
-    areas : Areas, path or GeoJSON mapping
+    areas : WorkAreas, path or GeoJSON mapping
         See `thalweg.operations.tracks.work_areas.WorkAreas.read`.
     sea : Sea, optional
-        With currents: the models "currents" (as the sea tells them) and "calibrated" (times the
-        factor that fits best), both with the mean speed through water that belongs to them, beside
-        "still water".
+        With currents: the models "currents" (of the sea) and "calibrated" (times the factor that
+        fits best), both with their own mean speed through water, in addition to "still water".
     ship : Ship, optional
         With a sea: the model "ship", the ship's own speed in the conditions met, and "ship,
-        calibrated"; with measured powers and a ship made from its resistance "ship, measured
+        calibrated"; with measured powers and a model with resistance, "ship, measured
         power".
     speed_kn : float, optional
-        Ordered speed of the ship; by default that of its settings which lies nearest.
-    cutting : CuttingRules, optional
-    cleaning : Cleaning, optional
-    piece_s : float
-        Length of the pieces in which speeds are compared [s].
+        Ordered speed of the ship [kn]; default: its setting nearest to the measured speed.
+    cutting : SegmentationRules, optional
+    cleaning : CleaningRules, optional
+    segment_s : float
+        Length of the segments in which speeds are compared [s].
 
     Returns
     -------
@@ -246,7 +245,7 @@ def analyse_tracks(
     InputError
         If the track or the areas cannot be used.
     MissingVariableError
-        If the sea tells no currents, or not what the ship needs.
+        If the sea has no currents, or lacks data that the ship needs.
     """
     log = (
         source
@@ -255,47 +254,49 @@ def analyse_tracks(
     )
     places = areas if isinstance(areas, WorkAreas) else WorkAreas.read(areas)
     activities = find_activities(log, places, rules=cutting)
-    pieces = cut_segments(log, activities, sea=sea, length=piece_s)
+    segments = cut_segments(log, activities, sea=sea, length=segment_s)
     notes = [*log.notes, *_coverage_notes(activities)]
     calibration = None
     models = {
         "still water": speeds_over_ground(
-            _without_current(pieces), mean_speeds(_without_current(pieces), 0.0), 0.0
+            _without_current(segments), mean_speeds(_without_current(segments), 0.0), 0.0
         )
     }
     if sea is not None:
-        models["currents"] = speeds_over_ground(pieces, mean_speeds(pieces, 1.0), 1.0)
-        calibration = calibrate(pieces)
-        notes += _calibration_notes(pieces, calibration)
+        models["currents"] = speeds_over_ground(segments, mean_speeds(segments, 1.0), 1.0)
+        calibration = calibrate(segments)
+        notes += _calibration_notes(segments, calibration)
     if calibration is not None:
         factor = calibration.factor
-        models["calibrated"] = speeds_over_ground(pieces, mean_speeds(pieces, factor), factor)
+        models["calibrated"] = speeds_over_ground(segments, mean_speeds(segments, factor), factor)
     if sea is not None and ship is not None:
-        water = predicted_speeds_through_water(pieces, ship, sea, speed_kn=speed_kn)
-        models["ship"] = speeds_over_ground(pieces, water, 1.0)
+        water = predicted_speeds_through_water(segments, ship, sea, speed_kn=speed_kn)
+        models["ship"] = speeds_over_ground(segments, water, 1.0)
         notes += [
             f"The ship sails at its setting of {loaded.speeds[setting] / KNOT:.2f} kn while {kind}."
-            for kind, (loaded, setting) in ordered_settings(pieces, ship, speed_kn=speed_kn).items()
+            for kind, (loaded, setting) in ordered_settings(
+                segments, ship, speed_kn=speed_kn
+            ).items()
         ]
         if calibration is not None:
-            models["ship, calibrated"] = speeds_over_ground(pieces, water, calibration.factor)
-        powered = speeds_at_measured_power(log, pieces, ship, sea)
+            models["ship, calibrated"] = speeds_over_ground(segments, water, calibration.factor)
+        powered = speeds_at_measured_power(log, segments, ship, sea)
         if powered is not None:
-            models["ship, measured power"] = speeds_over_ground(pieces, powered, 1.0)
-    return TrackAnalysis(log, places, activities, pieces, models, calibration, tuple(notes))
+            models["ship, measured power"] = speeds_over_ground(segments, powered, 1.0)
+    return TrackAnalysis(log, places, activities, segments, models, calibration, tuple(notes))
 
 
-def _without_current(pieces: MeasuredSegments) -> MeasuredSegments:
-    return replace(pieces, current=np.zeros(len(pieces), dtype=np.complex128))
+def _without_current(segments: MeasuredSegments) -> MeasuredSegments:
+    return replace(segments, current=np.zeros(len(segments), dtype=np.complex128))
 
 
 def _coverage_notes(activities: tuple[Activity, ...]) -> list[str]:
-    """Say what of the track cannot be counted."""
+    """Return notes on gaps and on activities that are cut off."""
     cut = sum(1 for a in activities if not a.whole and a.kind != UNSEEN)
     unseen = [a.duration for a in activities if a.kind == UNSEEN]
     notes = []
     if unseen:
-        notes.append(f"For {sum(unseen) / HOUR:.1f} h in {len(unseen)} gaps the ship was not seen.")
+        notes.append(f"No positions for {sum(unseen) / HOUR:.1f} h in {len(unseen)} gaps.")
     if cut:
         notes.append(
             f"{cut} activities are cut off by gaps or the ends of the track; they count in sums, "
@@ -304,24 +305,24 @@ def _coverage_notes(activities: tuple[Activity, ...]) -> list[str]:
     return notes
 
 
-def _calibration_notes(pieces: MeasuredSegments, calibration: Calibration | None) -> list[str]:
+def _calibration_notes(segments: MeasuredSegments, calibration: Calibration | None) -> list[str]:
     notes = []
-    missing = int((~np.isfinite(pieces.current)).sum())
+    missing = int((~np.isfinite(segments.current)).sum())
     if missing:
         notes.append(
-            f"The sea tells no current at {missing} of {len(pieces)} pieces; legs with such a "
-            "piece are left out of the comparison with models that need it."
+            f"The sea has no current at {missing} of {len(segments)} segments; legs with such a "
+            "segment are left out of the comparison with models that need it."
         )
     if calibration is None:
         notes.append(
-            "The factor on the currents cannot be told: fewer than three legs with known currents, "
-            "or currents that do not differ enough."
+            "The factor on the currents is not determined: fewer than three legs with known "
+            "currents, or currents that do not differ enough."
         )
     return notes
 
 
 def _whole_cycles(activities: tuple[Activity, ...]) -> list[tuple[int, int]]:
-    """Return (first, one past last) activity of every whole cycle, from loading to loading."""
+    """Return (first, one past last) activity of every complete cycle, loading to loading."""
     starts = [i for i, a in enumerate(activities) if a.kind == LOADING]
     found = []
     for first, last in itertools.pairwise(starts):
@@ -333,7 +334,7 @@ def _whole_cycles(activities: tuple[Activity, ...]) -> list[tuple[int, int]]:
 
 
 def _json_value(value: Any) -> Any:
-    """Return numbers and texts that JSON can hold; None for what is unknown."""
+    """Return a value with numbers and texts that JSON accepts; None for unknown numbers."""
     if isinstance(value, dict):
         return {str(key): _json_value(v) for key, v in value.items()}
     if isinstance(value, (list, tuple)):

@@ -1,4 +1,4 @@
-"""Model against measurement: spread, errors, and the factor on the currents that fits best."""
+"""Modelled against measured speeds: agreement, and calibration of the currents by a factor."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.types import FloatArray
 from thalweg.operations.tracks.track_segments import SAILING_KINDS, MeasuredSegments
 
-_MIN_LEGS = 3  # points of a spread, legs of a calibration
+_MIN_LEGS = 3  # for statistics and for a calibration
 _MAX_ITERATIONS = 50
 _TOLERANCE = 1e-10
-LARGEST_FACTOR = 10.0  #: that a search for a slope of one looks at
+LARGEST_FACTOR = 10.0  #: of the search for a slope of one
 
 
 @dataclass(frozen=True)
 class AgreementStatistics:
-    """How modelled values lie against measured ones.
+    """Agreement of modelled with measured values.
 
     Attributes
     ----------
@@ -32,13 +32,13 @@ class AgreementStatistics:
     rmse : float
         Root of the mean square of modelled minus measured (Schless 2023, eq. 4.2).
     rmse_rel : float
-        The same over the mean of what was measured, in per cent (eq. 4.1).
+        The same over the mean of the measured values [%] (eq. 4.1).
     measured, modelled : float
         Means.
 
     Notes
     -----
-    All NaN that fewer than three values, or values without any spread, cannot tell. Slope,
+    NaN with fewer than three values, or values without any variation. Slope,
     intercept and r2 as in van Halem (2019), section 4.1.2, with measured values on the x-axis.
     """
 
@@ -101,41 +101,41 @@ class Calibration:
     legs: int
 
 
-def speeds_through_water(pieces: MeasuredSegments, factor: float) -> FloatArray:
+def speeds_through_water(segments: MeasuredSegments, factor: float) -> FloatArray:
     """Return speeds through water [m/s]: over ground less ``factor`` times the current."""
-    return np.abs(pieces.ground - factor * pieces.current)
+    return np.abs(segments.ground - factor * segments.current)
 
 
-def calibrate(pieces: MeasuredSegments) -> Calibration | None:
+def calibrate(segments: MeasuredSegments) -> Calibration | None:
     """Find the speeds through water and the factor on the currents by least squares.
 
-    Minimises the sum over pieces, weighted with their time, of
+    Minimises the sum over segments, weighted with their time, of
     ``(|over ground - factor * current| - speed of the activity) ** 2`` (Gauss-Newton).
 
     Returns
     -------
     Calibration or None
         None if fewer than three legs have known currents, or the currents do not differ enough to
-        tell a factor.
+        determine a factor.
 
     Notes
     -----
-    Standard errors take the legs, not the pieces, as independent (sandwich estimate by clusters,
+    Standard errors take the legs, not the segments, as independent (sandwich estimate by clusters,
     with the usual correction for few of them); wind, waves and a captain's choice act on a whole
     leg alike.
     """
-    pieces = pieces.part(np.isfinite(pieces.current))
-    legs = np.unique(pieces.leg)
+    segments = segments.part(np.isfinite(segments.current))
+    legs = np.unique(segments.leg)
     if len(legs) < _MIN_LEGS:
         return None
-    used = np.unique(pieces.kind)
-    groups = (pieces.kind[:, None] == used).astype(np.float64)
-    weight = pieces.took / pieces.took.mean()
+    used = np.unique(segments.kind)
+    groups = (segments.kind[:, None] == used).astype(np.float64)
+    weight = segments.took / segments.took.mean()
     factor = 1.0
     for _ in range(_MAX_ITERATIONS):
-        water = pieces.ground - factor * pieces.current
+        water = segments.ground - factor * segments.current
         speed = np.abs(water)
-        along = -(water.real * pieces.current.real + water.imag * pieces.current.imag) / speed
+        along = -(water.real * segments.current.real + water.imag * segments.current.imag) / speed
         design = np.column_stack([groups, -along])
         normal = design.T @ (weight[:, None] * design)
         if np.linalg.cond(normal) > 1e12:
@@ -145,7 +145,7 @@ def calibrate(pieces: MeasuredSegments) -> Calibration | None:
         if abs(change) < _TOLERANCE:
             break
     residual = speed - groups @ solved[:-1]
-    errors = _errors(design, weight * residual, np.linalg.inv(normal), pieces.leg)
+    errors = _errors(design, weight * residual, np.linalg.inv(normal), segments.leg)
     names = [SAILING_KINDS[k] for k in used]
     return Calibration(
         factor=factor,
@@ -153,7 +153,7 @@ def calibrate(pieces: MeasuredSegments) -> Calibration | None:
         speeds=dict(zip(names, solved[:-1].tolist())),
         speed_errors=dict(zip(names, errors[:-1].tolist())),
         residual=float(np.sqrt(np.average(residual**2, weights=weight))),
-        slope_one=_factor_for_unit_slope(pieces),
+        slope_one=_factor_for_unit_slope(segments),
         legs=len(legs),
     )
 
@@ -170,45 +170,47 @@ def _errors(
     return np.sqrt(np.diag(inverse @ (sums.T @ sums) @ inverse) * few)
 
 
-def mean_speeds(pieces: MeasuredSegments, factor: float) -> FloatArray:
-    """Return the mean speed through water of the activity of every piece [m/s]."""
-    speed = speeds_through_water(pieces, factor)
+def mean_speeds(segments: MeasuredSegments, factor: float) -> FloatArray:
+    """Return the mean speed through water of the activity of every segment [m/s]."""
+    speed = speeds_through_water(segments, factor)
     known = np.isfinite(speed)
-    took = np.where(known, pieces.took, 0.0)
-    way = np.bincount(pieces.kind, np.where(known, speed, 0.0) * took, minlength=len(SAILING_KINDS))
+    took = np.where(known, segments.took, 0.0)
+    length = np.bincount(
+        segments.kind, np.where(known, speed, 0.0) * took, minlength=len(SAILING_KINDS)
+    )
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(
-            (way / np.bincount(pieces.kind, took, minlength=len(SAILING_KINDS)))[pieces.kind]
+            (length / np.bincount(segments.kind, took, minlength=len(SAILING_KINDS)))[segments.kind]
         )
 
 
-def speeds_over_ground(pieces: MeasuredSegments, water: ArrayLike, factor: float) -> FloatArray:
+def speeds_over_ground(segments: MeasuredSegments, water: ArrayLike, factor: float) -> FloatArray:
     """Return the speed over ground [m/s] on the measured course at a speed through water.
 
     NaN where the ship cannot hold the course or the current is unknown.
     """
-    along_cross = factor * pieces.current * np.conj(pieces.ground / np.abs(pieces.ground))
+    along_cross = factor * segments.current * np.conj(segments.ground / np.abs(segments.ground))
     speed = np.asarray(water, dtype=np.float64)
     with np.errstate(invalid="ignore"):
         found = np.sqrt(speed**2 - along_cross.imag**2) + along_cross.real
         return np.where(found > 0.0, found, np.nan)
 
 
-def leg_speeds(pieces: MeasuredSegments, speed: ArrayLike) -> FloatArray:
-    """Return the speed over each leg [m/s]: its way over the time it takes at given speeds."""
-    way = pieces.speed * pieces.took
-    _, length = pieces.sum_by_leg(way)
-    _, time = pieces.sum_by_leg(way / np.asarray(speed, dtype=np.float64))
+def leg_speeds(segments: MeasuredSegments, speed: ArrayLike) -> FloatArray:
+    """Return the speed over each leg [m/s]: its length over its duration at given speeds."""
+    lengths = segments.speed * segments.took
+    _, length = segments.sum_by_leg(lengths)
+    _, time = segments.sum_by_leg(lengths / np.asarray(speed, dtype=np.float64))
     return np.asarray(length / time)
 
 
-def _factor_for_unit_slope(pieces: MeasuredSegments) -> float:
+def _factor_for_unit_slope(segments: MeasuredSegments) -> float:
     """Return the factor on the currents for which the legs' spread has a slope of one."""
-    measured = leg_speeds(pieces, pieces.speed)
+    measured = leg_speeds(segments, segments.speed)
 
     def excess(factor: float) -> float:
-        model = speeds_over_ground(pieces, mean_speeds(pieces, factor), factor)
-        return agreement_statistics(measured, leg_speeds(pieces, model)).slope - 1.0
+        model = speeds_over_ground(segments, mean_speeds(segments, factor), factor)
+        return agreement_statistics(measured, leg_speeds(segments, model)).slope - 1.0
 
     factors = np.linspace(0.0, LARGEST_FACTOR, 101)
     values = np.array([excess(float(f)) for f in factors])

@@ -1,4 +1,4 @@
-"""Cleaning of measured tracks: order, doubles, impossible jumps and gaps, all of it told."""
+"""Cleaning of measured tracks: order of time, repeated rows, outliers and gaps, with notes."""
 
 from __future__ import annotations
 
@@ -15,25 +15,23 @@ from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR, KNOT
 
-_MIN_UNDER_WAY_SPEED = (
-    2.0  #: speed of positions [m/s] from which on measured speeds are checked against it
-)
+_MIN_UNDER_WAY_SPEED = 2.0  #: measured speeds are checked above this speed of positions [m/s]
 _SPEED_RATIO_TOLERANCE = 0.2
 
 
 @dataclass(frozen=True)
 class CleaningRules:
-    """What counts as a gap and as an impossible jump.
+    """Rules for gaps and outliers.
 
     Attributes
     ----------
     longest_gap : float
-        Time between positions above which the track is taken to be broken [s].
+        Longest time between positions [s]; a longer one is a gap, and the track is broken there.
     fastest : float
-        Greatest speed between two positions [m/s]; positions that need more are outliers.
+        Highest speed between two positions [m/s]; positions that need more are outliers.
     max_outliers : int
-        So many positions in a row, and no more, are dropped as outliers; a longer run that lies
-        elsewhere is kept, and the track is taken to be broken before and after it.
+        At most this number of successive positions are dropped as outliers; a longer run elsewhere
+        is kept, and the track is broken before and after it.
     """
 
     longest_gap: float = 1800.0
@@ -44,8 +42,8 @@ class CleaningRules:
         good = all(math.isfinite(x) and x > 0.0 for x in (self.longest_gap, self.fastest))
         if not (good and self.max_outliers >= 0):
             raise InputError(
-                f"Tracks cannot be cleaned by {self}.",
-                "Gap and speed are positive numbers; outliers in a row are not negative.",
+                f"The rules are {self}.",
+                "Gap and speed are positive numbers; the number of outliers is not negative.",
                 "Correct them.",
             )
 
@@ -76,12 +74,12 @@ class TrackLog:
         [deg].
     values : dict of str to float64 array (n,)
         ``speed`` over ground [m/s], ``course`` [rad], ``draught`` [m], ``power`` [W], as far as
-        there are; NaN where unknown.
+        available; NaN where unknown.
     broken : bool array (n - 1,)
-        Intervals in which the ship was not seen: gaps, and jumps that no ship can make.
+        Intervals without observation: gaps, and jumps faster than the highest speed.
     vessel : str or None
     notes : tuple of str
-        What was assumed and what was done.
+        Assumptions and corrections.
     removed : dict of str to int
         Rows left out, by reason.
     """
@@ -101,7 +99,7 @@ class TrackLog:
     def speeds(self) -> FloatArray:
         """Return the speed over ground at every position [m/s].
 
-        As measured; where that is unknown, from the position before to the one after.
+        As measured; where unknown, from the position before to the position after.
         """
         before = np.maximum(np.arange(len(self)) - 1, 0)
         after = np.minimum(np.arange(len(self)) + 1, len(self) - 1)
@@ -121,16 +119,16 @@ def clean_track(
     source: str = "the track",
     notes: list[str] | None = None,
 ) -> TrackLog:
-    """Sort a track, drop what cannot be, and mark where it is broken.
+    """Sort a track by time, remove invalid positions, and mark where it is broken.
 
     Parameters
     ----------
     raw : RawTrack
-    rules : Cleaning
+    rules : CleaningRules
     vessel, source : str
         For messages.
     notes : list of str, optional
-        What was said already.
+        Notes of the reading.
 
     Returns
     -------
@@ -141,7 +139,7 @@ def clean_track(
     InputError
         If fewer than two positions remain.
     """
-    told, removed = list(notes or ()), {}
+    remarks, removed = list(notes or ()), {}
     for reason, step in (
         ("without a readable time", _has_time),
         ("without a position on the globe", _has_position),
@@ -151,11 +149,13 @@ def clean_track(
         raw = raw.part(keep)
     backwards = int((np.diff(raw.time) < 0.0).sum())
     if backwards:
-        told.append(f"Rows were not in order of time ({backwards} steps back); they were sorted.")
+        remarks.append(
+            f"Rows were not in order of time ({backwards} steps back); they were sorted."
+        )
     raw = raw.part(np.argsort(raw.time, kind="stable"))
     raw = _without_duplicate_times(raw, removed)
     keep, jumps = _reachable_positions(raw, rules)
-    removed["that no ship could reach"] = int((~keep).sum())
+    removed["out of reach at the highest speed"] = int((~keep).sum())
     raw, count = raw.part(keep), len(raw.time)
     if len(raw.time) < 2:
         raise InputError(
@@ -166,26 +166,26 @@ def clean_track(
         )
     gaps = np.diff(raw.time) > rules.longest_gap
     broken = gaps | jumps[keep][1:]
-    _add_notes(told, removed, raw, gaps, broken, rules)
+    _add_notes(remarks, removed, raw, gaps, broken, rules)
     lon = wrap_longitude(raw.lon)
     removed = {reason: rows for reason, rows in removed.items() if rows}
-    log = TrackLog(raw.time, raw.lat, lon, raw.values, broken, vessel, tuple(told), removed)
+    log = TrackLog(raw.time, raw.lat, lon, raw.values, broken, vessel, tuple(remarks), removed)
     return replace(log, notes=(*log.notes, *_speed_unit_warnings(log)))
 
 
 def _speed_unit_warnings(log: TrackLog) -> list[str]:
-    """Say if the speeds that were measured are not those of the positions."""
+    """Return a note if the measured speeds differ from those of the positions."""
     if "speed" not in log.values:
         return []
     moved = replace(log, values={}).speeds()
-    told = log.values["speed"]
-    fast = np.isfinite(told) & (moved > _MIN_UNDER_WAY_SPEED) & (told > 0.0)
-    ratio = float(np.median(told[fast] / moved[fast])) if fast.any() else 1.0
+    measured = log.values["speed"]
+    fast = np.isfinite(measured) & (moved > _MIN_UNDER_WAY_SPEED) & (measured > 0.0)
+    ratio = float(np.median(measured[fast] / moved[fast])) if fast.any() else 1.0
     if abs(ratio - 1.0) <= _SPEED_RATIO_TOLERANCE:
         return []
     return [
-        f"Measured speeds are {ratio:.2f} times those of the positions: is their unit right? "
-        "Legs are timed by positions alone."
+        f"Measured speeds are {ratio:.2f} times those of the positions: check their unit. "
+        "Speeds of legs use positions alone."
     ]
 
 
@@ -199,7 +199,7 @@ def _has_position(raw: RawTrack) -> NDArray[np.bool_]:
 
 
 def _without_duplicate_times(raw: RawTrack, removed: dict[str, int]) -> RawTrack:
-    """Keep the first row of every time."""
+    """Return the first row of every time."""
     first = np.append(True, np.diff(raw.time) > 0.0)[: len(raw.time)]
     of = np.maximum.accumulate(np.where(first, np.arange(len(first)), 0))
     same = (raw.lat == raw.lat[of]) & (raw.lon == raw.lon[of])
@@ -211,7 +211,7 @@ def _without_duplicate_times(raw: RawTrack, removed: dict[str, int]) -> RawTrack
 def _reachable_positions(
     raw: RawTrack, rules: CleaningRules
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return (positions to keep, whether a jump lies before each of those)."""
+    """Return (positions to keep, whether there is a jump before each of them)."""
     count = len(raw.time)
     keep, jumps = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
     if count < 2:
@@ -224,7 +224,7 @@ def _reachable_positions(
     if not long.any():
         long[np.argmax(ends - starts)] = True
     runs = list(zip(starts.tolist(), ends.tolist(), long.tolist()))
-    anchor = int(np.argmax(long))  # the first run that is surely no outlier
+    anchor = int(np.argmax(long))  # the first run that is long enough not to be an outlier
     first = runs[anchor][0]
     for start, end, _ in reversed(runs[:anchor]):
         keep[start:end] = _reachable(raw, end - 1, first, rules)
@@ -244,7 +244,7 @@ def _reachable(raw: RawTrack, i: int, j: int, rules: CleaningRules) -> bool:
 
 
 def _add_notes(
-    told: list[str],
+    remarks: list[str],
     removed: dict[str, int],
     raw: RawTrack,
     gaps: NDArray[np.bool_],
@@ -252,18 +252,18 @@ def _add_notes(
     rules: CleaningRules,
 ) -> None:
     if _removed_rows_text(removed):
-        told.append(_removed_rows_text(removed))
+        remarks.append(_removed_rows_text(removed))
     if gaps.any():
         lengths = np.diff(raw.time)[gaps]
         worst = int(np.argmax(np.where(gaps, np.diff(raw.time), 0.0)))
-        told.append(
+        remarks.append(
             f"{int(gaps.sum())} gaps of more than {rules.longest_gap / 60.0:g} min, "
             f"{lengths.sum() / HOUR:.1f} h in all, the longest {lengths.max() / HOUR:.1f} h from "
             f"{format_time(float(raw.time[worst]))}."
         )
     jumps = int((broken & ~gaps).sum())
     if jumps:
-        told.append(f"{jumps} jumps faster than {rules.fastest / KNOT:g} kn break the track.")
+        remarks.append(f"{jumps} jumps faster than {rules.fastest / KNOT:g} kn break the track.")
 
 
 def _removed_rows_text(removed: dict[str, int]) -> str:

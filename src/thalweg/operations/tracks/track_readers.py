@@ -1,6 +1,6 @@
-"""Ship tracks from CSV files or tables: AIS messages and logs, under whatever column names.
+"""Readers of ship tracks: AIS messages and logs in CSV files or tables.
 
-Nothing is dropped or assumed in silence: what was done stands in ``notes`` of the track.
+Every row left out and every assumption is recorded in ``notes`` of the track.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ COLUMN_NAMES: Final[dict[str, tuple[str, ...]]] = {
     "power": ("power", "engine_power", "shaft_power", "brake_power"),
     "vessel": ("mmsi", "imo", "vessel", "vessel_name", "ship", "ship_name", "name"),
 }
-#: what one unit of a column is in SI; the first of each is taken when the header tells none
+#: SI value of each unit; the first unit of a column is the default
 UNIT_FACTORS: Final[dict[str, dict[str, float]]] = {
     "speed": {"kn": KNOT, "kt": KNOT, "knots": KNOT, "m_s": 1.0, "ms": 1.0, "km_h": 1.0 / 3.6},
     "power": {"kw": 1e3, "w": 1.0, "mw": 1e6},
@@ -46,7 +46,7 @@ UNIT_FACTORS: Final[dict[str, dict[str, float]]] = {
     "lat": {"deg": 1.0},
     "lon": {"deg": 1.0},
 }
-#: values by which AIS says "not available"
+#: values above these mean "not available" in AIS
 NOT_AVAILABLE_THRESHOLDS: Final = {"speed": 102.25, "course": 359.999}
 _DATE_FORMATS: Final = ("%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%m-%d-%Y", "%d.%m.%Y")
 _TIME_FORMATS: Final = (" %H:%M:%S", " %H:%M", "")
@@ -66,21 +66,21 @@ def read_tracks(
     ----------
     source : path or DataFrame
         A CSV file (comma, semicolon or tab) or a table with columns for time, lat, lon and maybe
-        speed, course, draught, power and vessel, under any usual name; see ``COLUMN_NAMES``.
+        speed, course, draught, power and vessel, with usual names; see ``COLUMN_NAMES``.
     columns : mapping of str to str, optional
-        Which column is what, where the name does not tell: ``{"time": "t_gps"}``.
+        Columns with other names, such as ``{"time": "t_gps"}``.
     vessel : str or int, optional
-        Which ship, if there are several (MMSI or name).
+        MMSI or name of the ship, if there are several.
     time_format : str, optional
-        As of ``strptime``; by default ISO 8601, seconds or milliseconds since 1970, or day and
+        As in ``strptime``; by default ISO 8601, seconds or milliseconds since 1970, or day and
         month in the only order that is possible for all rows. Times without a zone are UTC.
-    cleaning : Cleaning, optional
-        What counts as a gap or an impossible jump.
+    cleaning : CleaningRules, optional
+        Rules for gaps and outliers.
 
     Returns
     -------
     TrackLog
-        Sorted, without double times and impossible positions; ``notes`` tells what was done.
+        Sorted, without repeated times and invalid positions; ``notes`` lists the corrections.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def _split_unit(column: str, kind: str) -> tuple[str, str | None]:
 
 
 def _columns(table: pd.DataFrame, given: dict[str, str], name: str) -> dict[str, str]:
-    """Return the column of every kind that there is."""
+    """Return the column of every kind that is present."""
     unknown = sorted(set(given) - set(COLUMN_NAMES))
     absent = sorted(column for column in given.values() if column not in table.columns)
     if unknown or absent:
@@ -164,11 +164,11 @@ def _columns(table: pd.DataFrame, given: dict[str, str], name: str) -> dict[str,
     missing = [kind for kind in ("time", "lat", "lon") if kind not in found]
     if missing:
         raise InputError(
-            f"No column of {name} tells {' or '.join(missing)}.",
-            f"Columns: {', '.join(map(str, table.columns))}; names that are known: "
+            f"{name} has no column for {' or '.join(missing)}.",
+            f"Columns: {', '.join(map(str, table.columns))}; recognised names: "
             + "; ".join(f"{kind}: {', '.join(COLUMN_NAMES[kind][:4])}" for kind in missing)
             + ".",
-            "Rename the columns, or say which is which (columns, or --column lat=NAME).",
+            "Rename the columns, or name them (columns, or --column lat=NAME).",
             missing=missing,
         )
     return found
@@ -203,7 +203,7 @@ def _one_vessel(
 
 
 def _numbers(column: pd.Series[Any], kind: str, header: str, notes: list[str]) -> FloatArray:
-    """Return a column as SI numbers; NaN where there is none."""
+    """Return a column in SI units; NaN where there is no number."""
     import pandas as pd
 
     values = pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
@@ -253,8 +253,8 @@ def _by_format(column: pd.Series[Any], time_format: str) -> FloatArray:
     except ValueError as error:
         raise InputError(
             f"The time format {time_format!r} cannot be used: {error}.",
-            "It is as of strptime.",
-            "Write for example '%d/%m/%Y %H:%M:%S'.",
+            "A format is written as for strptime.",
+            "Write, for example, '%d/%m/%Y %H:%M:%S'.",
         ) from error
 
 
@@ -264,7 +264,7 @@ def _epoch_seconds(numbers: FloatArray, header: str) -> FloatArray:
         if 1e8 <= size / scale < 1e10:
             return np.asarray(numbers / scale)
     raise InputError(
-        f"Numbers such as {size:g} in column {header!r} are no times.",
+        f"Numbers such as {size:g} in column {header!r} cannot be read as times.",
         "Numbers are read as seconds, milli-, micro- or nanoseconds since 1970-01-01T00:00Z.",
         "Write ISO 8601 times, such as 2026-01-01T06:30:00Z.",
     )
@@ -292,7 +292,7 @@ def _dates(column: pd.Series[Any], name: str, notes: list[str]) -> FloatArray:
             raise InputError(
                 f"The times of {name} can be read as {form} and as {other}.",
                 f"For example {str(column.iloc[0])!r}.",
-                "Say which it is (time_format, or --time-format).",
+                "State the format (time_format, or --time-format).",
             )
     notes.append(f"Times are read as {form}.")
     return first

@@ -1,4 +1,4 @@
-"""Short pieces of sailed legs: what was measured, and the current the sea tells there."""
+"""Segments of sailed legs: measured velocity, and the current of the sea."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from thalweg.ship.condition_variables import EASTWARD_CURRENT, NORTHWARD_CURRENT
 if TYPE_CHECKING:
     from thalweg.sea import Sea
 
-SEGMENT_DURATION = 300.0  #: usual length of a piece [s]: long against noise, short against tides
-STEADY_SPEED_SHARE = 0.8  #: share of a leg's median speed from which on it counts as free sailing
+SEGMENT_DURATION = 300.0  #: [s]; averages out noise and is short compared with the tide
+STEADY_SPEED_SHARE = 0.8  #: least share of a leg's median speed that counts as free sailing
 SAILING_KINDS = (SAILING_FULL, SAILING_EMPTY)
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredSegments:
-    """Pieces of legs, with p pieces in all.
+    """Segments of legs, p in total.
 
     Attributes
     ----------
     leg : int64 array (p,)
-        Number of the trip each piece belongs to.
+        Number of the trip of each segment.
     kind : int64 array (p,)
         Index into ``SAILING_KINDS`` (sailing full, sailing empty).
     time, took : float64 array (p,)
@@ -41,7 +41,7 @@ class MeasuredSegments:
     ground : complex128 array (p,)
         Velocity over ground, east + i north [m/s].
     current : complex128 array (p,)
-        Current, east + i north [m/s]; NaN where the sea does not tell.
+        Current, east + i north [m/s]; NaN where the sea has none.
     """
 
     leg: NDArray[np.int64]
@@ -67,7 +67,7 @@ class MeasuredSegments:
         return np.asarray(np.angle(1j * np.conj(self.ground)) % (2.0 * np.pi))
 
     def part(self, keep: NDArray[np.bool_]) -> MeasuredSegments:
-        """Return some of the pieces."""
+        """Return some of the segments."""
         names = ("leg", "kind", "time", "took", "lat", "lon", "ground", "current")
         return MeasuredSegments(**{name: getattr(self, name)[keep] for name in names})
 
@@ -85,7 +85,7 @@ def cut_segments(
     length: float = SEGMENT_DURATION,
     steady: bool = True,
 ) -> MeasuredSegments:
-    """Cut all sailing of a track into pieces.
+    """Cut all sailing of a track into segments.
 
     Parameters
     ----------
@@ -94,17 +94,17 @@ def cut_segments(
     sea : Sea, optional
         For the currents.
     length : float
-        Least length of a piece [s]; the last of a leg takes the rest.
+        Least length of a segment [s]; the last of a leg takes the rest.
     steady : bool
-        Leave out the ends of every leg, in which the ship gathers or loses way: all before the
-        first and after the last position with at least 80 % of the leg's median speed
+        Leave out the ends of every leg, where the ship accelerates or slows down: everything before
+        the first and after the last position with at least 80 % of the leg's median speed
         (the "free sailing" of Schless 2023, section 4.2, by its speed alone).
 
     Returns
     -------
-    Pieces
-        With the chords' velocities. Legs with fewer than two positions have none, and a ship that
-        ends a piece where it began it has no course: such pieces are left out.
+    MeasuredSegments
+        With the mean velocities. Legs with fewer than two positions have no segments, and segments
+        that end where they began (without a course) are left out.
     """
     speeds = log.speeds()
     rows = [
@@ -115,25 +115,25 @@ def cut_segments(
     ]
     table = np.array(rows, dtype=np.int64).reshape(-1, 4)
     leg, kind, first, last = table.T
-    way, course, _ = inverse(log.lat[first], log.lon[first], log.lat[last], log.lon[last])
-    moved = way > 0.0
+    distance, course, _ = inverse(log.lat[first], log.lon[first], log.lat[last], log.lon[last])
+    moved = distance > 0.0
     leg, kind, first, last = table[moved].T
-    way, course = way[moved], course[moved]
+    distance, course = distance[moved], course[moved]
     took = log.time[last] - log.time[first]
     middle = 0.5 * (log.time[first] + log.time[last])
     lat, lon = _midpoints(log, first, last)
-    ground = way / took * (np.sin(course) + 1j * np.cos(course))
+    ground = distance / took * (np.sin(course) + 1j * np.cos(course))
     current = np.full(len(leg), complex(np.nan, np.nan))
     if sea is not None and len(leg):
-        told = sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], middle, lat, lon)
-        current = told[EASTWARD_CURRENT] + 1j * told[NORTHWARD_CURRENT]
+        sampled = sea.sample([EASTWARD_CURRENT, NORTHWARD_CURRENT], middle, lat, lon)
+        current = sampled[EASTWARD_CURRENT] + 1j * sampled[NORTHWARD_CURRENT]
     return MeasuredSegments(leg, kind, middle, took, lat, lon, ground, current)
 
 
 def _segment_ends(
     log: TrackLog, activity: Activity, speeds: FloatArray, length: float, steady: bool
 ) -> list[tuple[int, int]]:
-    """Return (first, last) positions of the pieces of a leg."""
+    """Return (first, last) positions of the segments of a leg."""
     first, last = activity.first, activity.last
     if steady and last > first:
         seen = speeds[first : last + 1]
@@ -153,7 +153,7 @@ def _segment_ends(
 def _midpoints(
     log: TrackLog, first: NDArray[np.int64], last: NDArray[np.int64]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where the ship was half-way in time, between its own positions."""
+    """Return the positions half-distance in time, interpolated between measured positions."""
     middle = 0.5 * (log.time[first] + log.time[last])
     right = np.clip(np.searchsorted(log.time, middle), 1, len(log) - 1)
     share = (middle - log.time[right - 1]) / (log.time[right] - log.time[right - 1])

@@ -1,4 +1,4 @@
-"""Areas of work: polygons in which a ship loads, unloads or waits."""
+"""Work areas: polygons in which a ship loads, unloads or waits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from thalweg.core.geodesy import wrap_longitude
 
 LOADING, UNLOADING, WAITING = "loading", "unloading", "waiting"
 AREA_KINDS: Final = (LOADING, UNLOADING, WAITING)
-#: words in a property ``activity``, ``kind``, ``type`` or ``name`` that tell what an area is for
+#: words in the property ``activity``, ``kind``, ``type`` or ``name`` that state the activity
 AREA_KIND_BY_WORD: Final[dict[str, str]] = {
     **dict.fromkeys(("loading", "load", "dredging", "dredge", "borrow", "trailing"), LOADING),
     **dict.fromkeys(
@@ -30,17 +30,17 @@ AREA_KIND_BY_WORD: Final[dict[str, str]] = {
     ),
 }
 _PROPERTY_NAMES: Final = ("activity", "kind", "type", "name")
-_MIN_OVERLAP: Final = 1e-9  # of the smaller area: what is more than touching
+_MIN_OVERLAP: Final = 1e-9  # share of the smaller area from which two areas overlap
 
 
 @dataclass(frozen=True, eq=False)
 class WorkAreas:
-    """Polygons by kind.
+    """Polygons by activity.
 
     Attributes
     ----------
     shapes : dict of str to shapely geometry
-        One for each of "loading", "unloading" and "waiting" that there is, longitude first [deg].
+        One for each of "loading", "unloading" and "waiting" that exists, longitude first [deg].
     """
 
     shapes: dict[str, Any]
@@ -58,7 +58,7 @@ class WorkAreas:
         Raises
         ------
         InputError
-            If the file cannot be read, an area tells no activity, areas of different activities
+            If the file cannot be read, an area has no activity, areas of different activities
             overlap, or there is no area for loading or none for unloading.
         """
         import shapely
@@ -75,21 +75,21 @@ class WorkAreas:
         if missing:
             raise InputError(
                 f"There is no area for {' and none for '.join(missing)}.",
-                f"Areas are for: {', '.join(sorted(shapes)) or 'nothing'}.",
-                "Give polygons with a property activity: loading and activity: unloading.",
+                f"Activities of the areas: {', '.join(sorted(shapes)) or 'none'}.",
+                "Add polygons with the properties activity: loading and activity: unloading.",
             )
         _check_disjoint(names)
         return cls({kind: shapely.union_all(parts) for kind, parts in shapes.items()})
 
     def at(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.int8]:
-        """Return which area positions [deg] lie in: index into ``AREA_KINDS``, -1 for none."""
+        """Return the area of each position [deg]: index into ``AREA_KINDS``, -1 outside."""
         import shapely
 
         y, x = np.asarray(lat, dtype=np.float64), wrap_longitude(lon)
         where = np.full(y.shape, -1, dtype=np.int8)
         for kind, shape in self.shapes.items():
             shapely.prepare(shape)
-            for turn in (-360.0, 0.0, 360.0):  # outlines may run on beyond the antimeridian
+            for turn in (-360.0, 0.0, 360.0):  # outlines may cross the antimeridian
                 inside = shapely.intersects_xy(shape, x + turn, y)
                 where[inside] = AREA_KINDS.index(kind)
         return where
@@ -104,8 +104,8 @@ def _kind(properties: Mapping[str, Any], number: int) -> str:
         if text and key == "activity":
             raise unknown_name_error("activity of an area", text, AREA_KIND_BY_WORD)
     raise InputError(
-        f"Area {number} does not tell what it is for.",
-        f"A property {', '.join(_PROPERTY_NAMES[:-1])} or {_PROPERTY_NAMES[-1]} holds "
+        f"Area {number} has no activity.",
+        f"The property {', '.join(_PROPERTY_NAMES[:-1])} or {_PROPERTY_NAMES[-1]} holds "
         f"one of {', '.join(AREA_KINDS)}.",
         'Add "activity": "loading" (or "unloading", "waiting") to its properties.',
         area=number,
@@ -123,7 +123,7 @@ def _check_disjoint(names: list[tuple[str, str, Any]]) -> None:
                 raise InputError(
                     f"The areas {first!r} ({kind}) and {second!r} ({other}) overlap "
                     f"({share:.0f} % of the smaller).",
-                    "A position must tell one activity.",
-                    "Draw them apart.",
+                    "A position must belong to one activity.",
+                    "Draw areas that do not overlap.",
                     areas=[first, second],
                 )

@@ -1,7 +1,7 @@
-"""One trip along a fixed track for every departure: how long it takes and what it uses.
+"""Duration and energy of a trip along a fixed track, for many departures.
 
-All departures are sailed side by side through the same small steps with the ship's own formulas,
-as the referee does it for one, so that a table of thousands of departures costs about a second.
+All departures are computed together, in the same small steps and with the ship's own formulas, as
+the referee does for one departure. A table of thousands of departures takes about a second.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import format_position
-from thalweg.core.time import TimeLike, format_time, parse_time
+from thalweg.core.time import TimeLike, format_time
 from thalweg.core.types import FloatArray
+from thalweg.operations.waiting.departures import Departures
 from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.route.referee.evaluation import RouteLike, as_track, resolve_settings
 from thalweg.route.referee.leg_segments import TrackPieces, TrackPoints, cut_into_pieces
@@ -37,15 +38,12 @@ if TYPE_CHECKING:
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-MIN_STEPS = 100  #: of every trip
-MAX_DEPARTURES = 200_000  #: a table may hold
-_MAX_POINTS_PER_CHUNK: Final = 200_000  # looked at in one go
-_MAX_ITERATIONS: Final = 12  # of the iteration
+MIN_STEPS = 100  #: steps along every trip
+_MAX_POINTS_PER_CHUNK: Final = 200_000  # pieces times departures computed together
+_MAX_ITERATIONS: Final = 12
 _TIME_TOLERANCE: Final = 1e-3  # change of the time for a piece [s] that ends the iteration
-_IMPASSABLE_TIME: Final = 1e9  # stands for the time [s] for a piece that cannot be passed
-_CRAB_ITERATIONS: Final = (
-    3  # corrections of the crab angle; each makes the error some 50 times smaller
-)
+_IMPASSABLE_TIME: Final = 1e9  # time [s] given to a piece that cannot be passed
+_CRAB_ITERATIONS: Final = 3  # each reduces the error of the crab angle by a factor of about 50
 
 
 def trip_table(
@@ -53,41 +51,33 @@ def trip_table(
     *,
     ship: Ship,
     sea: Sea,
-    start: TimeLike,
-    end: TimeLike | None = None,
-    period: float | None = None,
-    step: float = 60.0,
+    departures: Departures,
     chart: Chart | None = None,
     min_ukc: float | None = None,
     name: str = "trip",
     setting: int = -1,
 ) -> TripTable:
-    """Sail one trip for every departure of a window.
+    """Sail one trip for every departure.
 
     Parameters
     ----------
     route : Track, Route, path, or iterable of (lat, lon)
-        What to sail, without waits.
+        The track, without waits.
     ship : Ship
-        Loaded as it sails this trip. Its power must be known. A ship file with
-        ``rudder: schless_2023`` gets that drag of the crab angle, too.
+        At the load of this trip. Its power must be known. A ship file with
+        ``rudder: schless_2023`` also gets that drag of the crab angle.
     sea : Sea
-    start, end : time
-        First and last departure.
-    period : float, optional
-        Instead of ``end``: the sea repeats itself after this time [s] (a single tide); the table
-        then goes round. The step is fitted to it.
-    step : float
-        Time between departures [s], above 0.
+    departures : Departures
     chart : Chart, optional
         For its depth.
     min_ukc : float, optional
-        Least under-keel clearance [m]; departures that would meet less are no departures. Static
-        draught; None: not looked at.
+        Minimum under-keel clearance [m] at static draught; departures with less are left out.
+        None: not checked.
     name : str
+        Name of the trip in tables and plots.
     setting : int
-        Speed setting of the ship on positions and files (whose waits and speeds are not taken); a
-        Track brings its own.
+        Speed setting of the ship, for positions and files (their waits and speeds are not used); a
+        `Track` has its own.
 
     Returns
     -------
@@ -96,89 +86,83 @@ def trip_table(
     Raises
     ------
     CoverageError
-        If the sea or the chart does not tell what the ship meets (`MissingVariableError` for a
-        variable, or the depth, that is in none of them).
+        If the sea or the chart lacks data that the ship needs (`MissingVariableError` for a
+        variable, or the depth, that none of them has).
     InputError
-        If the power of the ship is unknown, or the window or step makes no sense.
+        If the power of the ship is unknown.
 
     Notes
     -----
-    Midpoint rule over at least 100 equal steps: of order two in the length of the steps.
+    Midpoint rule over at least 100 equal steps: the error is of second order in their length.
     """
-    first = parse_time(start)
-    departs, step = _departures(first, end, period, step)
-    track = as_track(route, first)
+    track = as_track(route, departures.first)
     if not hasattr(route, "setting") and not hasattr(route, "track"):
         settings = np.full(len(track) - 1, setting)
         track = track.replaced(setting=settings, speed=None, wait=None)
     ship, track = resolve_settings(ship, track)
-    world = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
-    check_depth_available(world)
+    environment = make_sailing_environment(ship, with_wind_speed(ship, sea), chart)
+    check_depth_available(environment)
     pieces = cut_into_pieces(track, float(track.lengths.sum()) / MIN_STEPS, 1)
-    voyage = _TrackSimulation(world, pieces, _segment_midpoints(world, pieces), min_ukc)
-    duration, energy = voyage.sail(departs)
+    midpoints = _segment_midpoints(environment, pieces)
+    times = departures.times
+    duration, energy = _TrackSimulation(environment, pieces, midpoints, min_ukc).sail(times)
     return TripTable(
         name=name,
-        start=first,
-        step=step,
+        start=departures.first,
+        step=departures.fitted_step,
         duration=duration,
         energy=energy,
-        current=_first_current(world, pieces, departs),
-        periodic=period is not None,
+        current=_first_current(environment, pieces, times),
+        periodic=departures.period is not None,
     )
 
 
-def check_depth_available(world: SailingEnvironment) -> None:
-    """Refuse a world without depth for a ship whose speed depends on it.
+def trip_table_of_window(
+    route: RouteLike,
+    *,
+    start: TimeLike,
+    end: TimeLike | None = None,
+    period: float | None = None,
+    step: float = 60.0,
+    **options: Any,
+) -> TripTable:
+    """Sail one trip for every departure of a window; the former signature of `trip_table`.
+
+    Parameters
+    ----------
+    route : Track, Route, path, or iterable of (lat, lon)
+    start, end, period, step
+        As in `Departures`.
+    **options
+        As in `trip_table`.
+    """
+    return trip_table(route, departures=Departures(start, end, period, step), **options)
+
+
+def check_depth_available(environment: SailingEnvironment) -> None:
+    """Raise if the depth of the water is unknown and the ship's speed depends on it.
 
     Raises
     ------
     MissingVariableError
     """
-    if "depth" in world.ship.reads and not world.has_depth:
+    if "depth" in environment.ship.reads and not environment.has_depth:
         raise MissingVariableError(
-            f"The speed of the ship {world.ship.name!r} depends on the depth of the water.",
-            "Neither the sea nor a chart tells it.",
+            f"The speed of the ship {environment.ship.name!r} depends on the depth of the water.",
+            "Neither the sea nor a chart provides it.",
             "Add a sea with bed depth, or depth to the chart.",
             missing=["sea_floor_depth_below_geoid"],
         )
 
 
-def _departures(
-    first: float, end: TimeLike | None, period: float | None, step: float
-) -> tuple[FloatArray, float]:
-    if (end is None) == (period is None):
-        raise InputError(
-            "The departures of a trip need an end or a period.",
-            "Give either end, or period for a sea that repeats itself.",
-            "Give one of them.",
-        )
-    length = period if period is not None else parse_time(end) - first  # type: ignore[arg-type]
-    if not (math.isfinite(step) and step > 0.0 and math.isfinite(length) and length >= step):
-        raise InputError(
-            f"Departures every {step:g} s over {length:g} s make no table.",
-            "The step is positive and no longer than the window or period.",
-            "Correct them.",
-        )
-    count = round(length / step) if period is not None else int(length / step + 1e-9) + 1
-    if count > MAX_DEPARTURES:
-        raise InputError(
-            f"{count} departures are asked for.",
-            f"A table holds at most {MAX_DEPARTURES}.",
-            "Use a longer step or a shorter window.",
-        )
-    step = length / count if period is not None else step
-    return first + step * np.arange(count, dtype=np.float64), step
-
-
-def _segment_midpoints(world: SailingEnvironment, pieces: TrackPieces) -> TrackPoints:
-    """Return the middle of every piece, with the least depth charted along it."""
+def _segment_midpoints(environment: SailingEnvironment, pieces: TrackPieces) -> TrackPoints:
+    """Return the middle of every piece, with the least charted depth along it."""
     points = pieces.points(pieces.leg, pieces.start + 0.5 * pieces.step)
-    if world.chart is None or not world.charted:
+    if environment.chart is None or not environment.charted:
         return points
     low = pieces.points(pieces.leg, pieces.start)
     high = pieces.points(pieces.leg, pieces.start + pieces.step)
-    depth = world.chart.depths.along(low.lat, low.lon, high.lat, high.lon)
+    depth = environment.chart.depths.along(low.lat, low.lon, high.lat, high.lon)
     return replace(points, charted=np.asarray(depth, dtype=np.float64))
 
 
@@ -192,9 +176,9 @@ class _SpeedAndPower(NamedTuple):
 
 @dataclass(frozen=True)
 class _TrackSimulation:
-    """A track in pieces and what is sailed along it."""
+    """A track in pieces, and its simulation for many departures."""
 
-    world: SailingEnvironment
+    environment: SailingEnvironment
     pieces: TrackPieces
     middles: TrackPoints
     min_ukc: float | None
@@ -206,14 +190,14 @@ class _TrackSimulation:
         duration, energy = (np.concatenate(column) for column in zip(*parts))
         if np.isnan(energy).any():
             raise InputError(
-                f"The power of the ship {self.world.ship.name!r} is unknown.",
+                f"The power of the ship {self.environment.ship.name!r} is unknown.",
                 "Energy needs a ship with a power: a resistance or a fuel and engine description.",
                 "Choose a ship such as 'vox-olympia', or describe the engine in its file.",
             )
         return duration, energy
 
     def _sail(self, departs: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Sail some departures: find when every piece is passed, all at once, by iteration."""
+        """Return (time [s], energy [J]) of some departures, by fixed-point iteration."""
         shape = (len(self.pieces), len(departs))
         took = np.broadcast_to(self._guess(), shape).copy()
         power, unknown = np.zeros(shape), np.zeros(shape, dtype=bool)
@@ -227,7 +211,7 @@ class _TrackSimulation:
             active = active[~settled]
             if not active.size:
                 break
-        else:  # limits that are kept or broken by seconds: piece by piece
+        else:  # not converged (a limit holds or not within seconds): one piece after another
             self._sail_sequentially(departs, active, (took, power, unknown))
         passes = took < _IMPASSABLE_TIME
         under_way = np.vstack([np.ones((1, shape[1]), bool), np.cumprod(passes, axis=0)[:-1] > 0])
@@ -241,11 +225,11 @@ class _TrackSimulation:
 
     def _guess(self) -> FloatArray:
         """Return a first guess of the time for each piece [s], shape (pieces, 1)."""
-        usual = float(self.world.ship.speeds[self.middles.setting[0]])
+        usual = float(self.environment.ship.speeds[self.middles.setting[0]])
         return np.asarray(self.pieces.step[:, None] / (usual if usual > 0.0 else 5.0))
 
     def _segment_times(self, pieces: NDArray[np.int64], time: FloatArray) -> tuple[Any, ...]:
-        """Return (time [s], power [W], whether unknown) for pieces, in their middle at times."""
+        """Return (time [s], power [W], whether unknown) of pieces, evaluated at their midpoints."""
         here = self.middles.part(np.repeat(pieces, time.shape[1]))
         look = self._speed_and_power(here, time.reshape(-1))
         ground = look.speed_over_ground.reshape(time.shape)
@@ -256,7 +240,7 @@ class _TrackSimulation:
     def _sail_sequentially(
         self, departs: FloatArray, which: NDArray[np.int64], into: tuple[Any, ...]
     ) -> None:
-        """Sail departures piece after piece, each timed by the one before it."""
+        """Compute departures one piece after another, each from the time of the one before."""
         spent, clock = np.broadcast_to(self._guess()[0], which.shape), departs[which]
         before = self.pieces.step[0]
         for i, step in enumerate(self.pieces.step):
@@ -267,26 +251,26 @@ class _TrackSimulation:
                 column[i, which] = values[0]
 
     def _speed_and_power(self, here: TrackPoints, time: FloatArray) -> _SpeedAndPower:
-        """Return how the ship fares at points and times."""
-        motion = solve_sailing_state(self.world, here, time)
-        if self.world.ship.depends_on_crab_angle:
+        """Return speed over ground and power at points and times."""
+        motion = solve_sailing_state(self.environment, here, time)
+        if self.environment.ship.depends_on_crab_angle:
             motion, conditions = self._with_crab_angle(here, time, motion)
         else:
             conditions = self._conditions(here, time, motion)
-        power = np.asarray(self.world.ship.power(conditions, here.setting), dtype=np.float64)
+        power = np.asarray(self.environment.ship.power(conditions, here.setting), dtype=np.float64)
         unknown = np.isnan(motion.speed_through_water)
         for name in (EASTWARD_CURRENT, NORTHWARD_CURRENT):
             if name in motion.sampled:
                 unknown |= np.isnan(motion.sampled[name])
-        aground = motion.depth <= self.world.ship.draught
+        aground = motion.depth <= self.environment.ship.draught
         unknown &= ~aground
         passes = np.isfinite(motion.speed_over_ground) & ~aground
         for name in ("wave_height", "wind_speed"):
-            largest = getattr(self.world.ship.limits, name)
+            largest = getattr(self.environment.ship.limits, name)
             if math.isfinite(largest):
                 unknown |= np.isnan(conditions[name])
                 passes &= conditions[name] <= largest
-        safety = self.world.ship.limits.safety
+        safety = self.environment.ship.limits.safety
         if safety is not None:
             passes &= ~safety.forbids(
                 motion.speed_through_water,
@@ -296,12 +280,12 @@ class _TrackSimulation:
             )
         if self.min_ukc is not None:
             unknown |= np.isnan(motion.depth)
-            passes &= motion.depth - self.world.ship.draught >= self.min_ukc
+            passes &= motion.depth - self.environment.ship.draught >= self.min_ukc
         return _SpeedAndPower(np.where(passes, motion.speed_over_ground, 0.0), power, unknown)
 
     def _conditions(self, here: TrackPoints, time: FloatArray, motion: SailingState) -> Conditions:
         return conditions_at(
-            self.world,
+            self.environment,
             here,
             time,
             sampled=motion.sampled,
@@ -312,10 +296,10 @@ class _TrackSimulation:
     def _with_crab_angle(
         self, here: TrackPoints, time: FloatArray, motion: SailingState
     ) -> tuple[SailingState, Conditions]:
-        """Return the motion of a ship whose rudder drags when it crabs, and its conditions."""
+        """Return motion and conditions of a ship whose rudder drag depends on the crab angle."""
         east, north = np.sin(here.course), np.cos(here.course)
         along = across = np.zeros(len(here))
-        if self.world.has_current:
+        if self.environment.has_current:
             current = [motion.sampled[n] for n in (EASTWARD_CURRENT, NORTHWARD_CURRENT)]
             along = current[0] * east + current[1] * north
             across = current[0] * north - current[1] * east
@@ -324,7 +308,7 @@ class _TrackSimulation:
                 crab = -np.arcsin(across / motion.speed_through_water)
             motion = replace(motion, heading=(here.course + crab) % (2.0 * math.pi))
             conditions = self._conditions(here, time, motion).with_values(crab_angle=crab)
-            speed = self.world.ship.speed_through_water(conditions, here.setting)
+            speed = self.environment.ship.speed_through_water(conditions, here.setting)
             motion = replace(motion, speed_through_water=np.asarray(speed, dtype=np.float64))
         with np.errstate(invalid="ignore"):
             ground = along + np.sqrt(motion.speed_through_water**2 - across**2)
@@ -337,25 +321,25 @@ def _missing_data_error(here: TrackPoints, i: int, depart: float) -> CoverageErr
     place = format_position(float(here.lat[i]), float(here.lon[i]))
     left = format_time(depart)
     return CoverageError(
-        f"How the ship fares at {place} is not known, if it leaves at {left}.",
+        f"The speed of the ship at {place} is not known for the departure at {left}.",
         "The sea and the chart must cover the track for every departure and the trip after it, "
         "and the ship's model must hold there.",
-        "Use longer data or a shorter window, or ask for a filling by name (Sea.filled).",
+        "Use longer data, a shorter window, or fill values (Sea.filled).",
         depart=left,
         position=place,
     )
 
 
 def _first_current(
-    world: SailingEnvironment, pieces: TrackPieces, departs: FloatArray
+    environment: SailingEnvironment, pieces: TrackPieces, departs: FloatArray
 ) -> FloatArray:
     """Return the current at the place of departure along the first course [m/s]."""
-    if not world.has_current:
+    if not environment.has_current:
         return np.zeros(departs.shape)
     zero = np.zeros(1, dtype=np.int64)
     there = pieces.points(zero, np.zeros(1))
     sampled, _ = sample_sea_and_depth(
-        world, there.part(np.zeros(len(departs), dtype=np.int64)), departs
+        environment, there.part(np.zeros(len(departs), dtype=np.int64)), departs
     )
     east, north = sampled[EASTWARD_CURRENT], sampled[NORTHWARD_CURRENT]
     return np.asarray(east * np.sin(there.course[0]) + north * np.cos(there.course[0]))

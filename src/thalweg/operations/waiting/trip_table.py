@@ -1,4 +1,4 @@
-"""`TripTable`: what one trip takes for departures at equal steps of time."""
+"""`TripTable`: duration and energy of a trip for departures at equal steps of time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thalweg.core.types import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class TripTable:
-    """What one trip takes for departures at equal steps of time.
+    """Duration and energy of one trip for departures at equal steps of time.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class TripTable:
     current : float64 array (n,)
         Current at the place of departure along the first course [m/s], positive when it helps.
     periodic : bool
-        Whether the table goes round: the departure after the last is the first again.
+        Whether the table repeats: the departure after the last is the first again.
     """
 
     name: str
@@ -49,7 +49,7 @@ class TripTable:
 
     @property
     def steps(self) -> NDArray[np.int64]:
-        """Steps of the table until the ship can go on; -1 where the trip cannot be made."""
+        """Steps of the table until the ship is ready again; -1 where the trip cannot be made."""
         known = np.isfinite(self.duration)
         steps = np.ceil(np.where(known, self.duration, 0.0) / self.step - 1e-9)
         return np.where(known, steps, -1).astype(np.int64)
@@ -57,11 +57,16 @@ class TripTable:
     def refined(self, factor: int) -> TripTable:
         """Return the table with departures ``factor`` times as close together.
 
-        Between the departures that were sailed a cubic spline runs; beside departures that are
-        impossible it is a straight line, and between a possible and an impossible one nothing is.
+        Values between departures are interpolated with a cubic spline; linearly if the table has
+        impossible departures. Between a possible and an impossible departure none is possible.
+
+        Raises
+        ------
+        InputError
+            If the factor is less than 1.
         """
         if factor < 1:
-            raise InputError(f"A factor of {factor} refines nothing.", "1 or more.", "Correct it.")
+            raise InputError(f"The factor is {factor}.", "It is 1 or more.", "Correct it.")
         count = len(self) * factor if self.periodic else (len(self) - 1) * factor + 1
         at = np.arange(count, dtype=np.float64) / factor
         return replace(

@@ -1,22 +1,23 @@
-"""Waiting for a better current before sailing: what it saves, and what it costs.
+"""Departure rules: when to leave on each of several trips in tidal currents.
 
-Schless (2023), *Going with the flow*, let a dredger wait at either end of its trips until the
-current has turned in its favour. Here that rule stands beside two others, and the true optimum:
+In Schless (2023), *Going with the flow*, a dredger waits at either end of its trips until the
+current is favourable. That rule can be compared with two others and with the optimum:
 
 ``none``
     Sail as soon as the trip can be made.
 ``current``
-    The rule of Schless: of all moments within the allowed wait, leave when the current at the
-    place of departure helps most along the course. It looks neither at the current across nor at
-    what the ship meets later, and can lose energy.
+    The rule of Schless: within the allowed wait, leave when the current at the place of departure
+    is most favourable along the course. The rule ignores the cross current and all later currents,
+    and can lose energy.
 ``next trip``
-    Leave when the coming trip, with the wait before it, takes least energy. Never worse than
-    ``none`` for a single trip; over several it can be, as it does not see the trips after it.
+    Leave when the next trip, with the wait before it, needs least energy. Never worse than ``none``
+    for a single trip; over several trips it can be, because it ignores the trips after the next.
 ``optimum``
-    The best of all departures together, by dynamic programming from the last trip backwards.
+    The departures of all trips together that need least energy, by dynamic programming from the
+    last trip backwards.
 
-All of them choose from the same departures, those of the trip tables; a ship that is ready between
-two of them leaves at the next. On these departures the optimum is exact.
+All rules choose from the departures of the trip tables; a ship that is ready between two of them
+leaves at the later one. On these departures the optimum is exact.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ DEPARTURE_RULES: Final = ("none", "current", "next trip", "optimum")
 
 @dataclass(frozen=True)
 class WaitingPlan:
-    """When to leave on every trip, and what it takes in all.
+    """Departures of all trips, and the total energy.
 
     Attributes
     ----------
@@ -88,7 +89,7 @@ def plan_waiting(
     max_wait : float
         Longest wait before each trip [s], at least 0, counted from when the trip can be made.
     hotel_power : float
-        Power that is used all the time, waiting or not [W].
+        Power used all the time, also while waiting [W].
     rule : {"none", "current", "next trip", "optimum"}
 
     Returns
@@ -100,13 +101,13 @@ def plan_waiting(
     CoverageError
         If the tables end before the last trip does.
     InputError
-        If the tables do not go together, or a number makes no sense.
+        If the tables have different departures, or a number is out of range.
     """
     if rule not in DEPARTURE_RULES:
         raise unknown_name_error("waiting rule", rule, DEPARTURE_RULES)
-    board = _DepartureGrid.of(trips, max_wait if rule != "none" else 0.0, hotel_power)
-    first = board.index(parse_time(start))
-    return board.follow(rule, first, board.values() if rule == "optimum" else None)
+    grid = _DepartureGrid.of(trips, max_wait if rule != "none" else 0.0, hotel_power)
+    first = grid.index(parse_time(start))
+    return grid.follow(rule, first, grid.values() if rule == "optimum" else None)
 
 
 def optimum_energy(
@@ -116,8 +117,8 @@ def optimum_energy(
 
     Arguments as in `plan_waiting`; +inf for starts from which the tables end too early.
     """
-    board = _DepartureGrid.of(trips, max_wait, hotel_power)
-    return board.best_from(board.values()[0], trips[0])[: len(trips[0])]
+    grid = _DepartureGrid.of(trips, max_wait, hotel_power)
+    return grid.best_from(grid.values()[0], trips[0])[: len(trips[0])]
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +126,7 @@ class _DepartureGrid:
     """Trips over one grid of departures."""
 
     trips: tuple[TripTable, ...]
-    width: int  # steps a ship may wait
+    width: int  # longest wait [steps]
     hotel: float  # energy of one step of hotel load [J]
 
     @classmethod
@@ -138,12 +139,12 @@ class _DepartureGrid:
             if not (math.isfinite(value) and value >= 0.0):
                 raise InputError(
                     f"The {name} is {value!r} {unit}.",
-                    "It is a number that is not negative.",
+                    "It is zero or more.",
                     "Correct it.",
                 )
         table = trips[0]
         width = int(max_wait / table.step + 1e-9)
-        if table.periodic:  # after a whole period all is as before
+        if table.periodic:  # after a whole period the table repeats
             width = min(width, len(table) - 1)
         return cls(tuple(trips), min(width, len(table)), hotel_power * table.step)
 
@@ -159,7 +160,7 @@ class _DepartureGrid:
         return index
 
     def window(self, index: int, trip: TripTable) -> NDArray[np.int64]:
-        """Return the departures allowed to a ship that is ready at one."""
+        """Return the departures allowed for a ship that is ready at ``index``."""
         count = len(trip)
         possible = np.isfinite(trip.duration)
         if not possible.any():
@@ -180,10 +181,10 @@ class _DepartureGrid:
         return np.asarray(trip.energy[i] + self.hotel * time)
 
     def values(self) -> list[FloatArray]:
-        """Return for every trip the energy from each departure to the end, waits excluded.
+        """Return for every trip the energy from each departure to the end [J].
 
-        What is returned for a departure ``s`` carries the hotel energy of ``s`` steps on top, so
-        that the best departure of a window is its least value.
+        The hotel energy of ``s`` steps is added for a departure ``s``, so that the best departure
+        of a window is the one with the least value.
         """
         count = len(self.first)
         reach = 2 * count + self.width if self.first.periodic else count
@@ -216,12 +217,12 @@ class _DepartureGrid:
         least = _windowed_minimum(values, self.width)
         at = np.arange(len(values))
         ahead = np.where(np.isfinite(trip.duration[at % count]), at, len(values))
-        ahead = np.minimum.accumulate(ahead[::-1])[::-1]  # the next departure that is possible
+        ahead = np.minimum.accumulate(ahead[::-1])[::-1]  # the next possible departure
         padded = np.append(least, np.inf)
         return np.asarray(padded[ahead] - self.hotel * at)[:count]
 
     def follow(self, rule: str, index: int, values: list[FloatArray] | None) -> WaitingPlan:
-        """Sail all trips by a rule."""
+        """Return the plan of all trips by a rule, from the departure ``index``."""
         ready, energy = index, 0.0
         departs, arrives = [], []
         for k, trip in enumerate(self.trips):
@@ -258,8 +259,8 @@ class _DepartureGrid:
         last = float(table.times[-1])
         return CoverageError(
             f"No departure is left for a ship that is ready at {format_time(time)}.",
-            f"The trips are known for departures from {format_time(table.start)} to "
-            f"{format_time(last)}, and are not possible at all of them.",
+            f"The tables hold departures from {format_time(table.start)} to {format_time(last)}; "
+            "some of them may be impossible.",
             "Make the tables longer, allow less waiting or fewer trips.",
         )
 
@@ -267,13 +268,14 @@ class _DepartureGrid:
 def _no_departure_error(trip: TripTable) -> CoverageError:
     return CoverageError(
         f"The trip {trip.name!r} cannot be made at any of its {len(trip)} departures.",
-        "All of them meet too little water, too strong a current or weather beyond the limits.",
-        "Ask for less clearance, or choose another time, track or ship.",
+        "At each of them the water is too shallow, the current too strong or a weather limit "
+        "exceeded.",
+        "Require less clearance, or choose another time, track or ship.",
     )
 
 
 def _windowed_minimum(values: FloatArray, width: int) -> FloatArray:
-    """Return the least of each value and the ``width`` after it, by doubling windows."""
+    """Return the minimum of each value and the ``width`` values after it (doubling windows)."""
     least, span = values.copy(), 1
     while 2 * span <= width + 1:
         least[:-span] = np.minimum(least[:-span], least[span:])
@@ -286,11 +288,11 @@ def _windowed_minimum(values: FloatArray, width: int) -> FloatArray:
 
 def _check_trips(trips: Sequence[TripTable]) -> None:
     if not trips:
-        raise InputError("There are no trips.", "At least one is needed.", "Give some.")
+        raise InputError("No trips are given.", "At least one is needed.", "Give a trip table.")
     kinds = {(t.start, t.step, len(t), t.periodic) for t in trips}
     if len(kinds) > 1:
         raise InputError(
-            "The trips are not known for the same departures.",
-            "All tables must have one start, step, length and period.",
-            "Make them with the same start, end or period, and step.",
+            "The trip tables have different departures.",
+            "All tables must have the same start, step, length and period.",
+            "Compute them with the same Departures.",
         )

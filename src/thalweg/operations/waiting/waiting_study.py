@@ -1,4 +1,4 @@
-"""What waiting saves over a range of allowed waits, starts and hotel powers."""
+"""Savings of waiting for several starts, allowed waits and departure rules."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 KWH = 3.6e6  #: [J]
-MAX_PLANS = 20_000  #: a study may hold
+MAX_PLANS = 20_000  #: of a study
 _MIN_SAVING = 1e-9  # share of the energy that counts as a saving
 
 
@@ -113,7 +113,7 @@ def waiting_study(
     max_waits : array_like
         Longest wait before each trip [s].
     hotel_power : float
-        Power used all the time [W]; 0 for waiting that costs nothing.
+        Power used all the time [W]; 0: waiting needs no energy.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def waiting_study(
     CoverageError
         If the tables end too early.
     InputError
-        If there is nothing to study or more than 20,000 plans are asked for.
+        If there are no starts or waits, or more than 20,000 plans.
     """
     begin = np.array([parse_time(s) for s in starts], dtype=np.float64)
     waits = np.atleast_1d(np.asarray(max_waits, dtype=np.float64))
@@ -132,8 +132,8 @@ def waiting_study(
     if not 0 < count <= MAX_PLANS:
         raise InputError(
             f"{count} plans of waiting are asked for.",
-            f"A study holds 1 to {MAX_PLANS}.",
-            "Give at least one start and one allowed wait, and not too many.",
+            f"A study has 1 to {MAX_PLANS} plans: starts times waits times rules.",
+            "Give at least one start and one wait, and fewer if there are too many.",
         )
     plans = {
         rule: tuple(
@@ -167,7 +167,7 @@ def break_even_power(
     rule : str
         As in `plan_waiting`.
     largest : float
-        The greatest power looked at [W].
+        The highest power considered [W].
 
     Returns
     -------
@@ -176,10 +176,9 @@ def break_even_power(
 
     Notes
     -----
-    By bisection: at a higher hotel power every wait costs more, so what waits save shrinks. Under
-    the rules that ignore the hotel power the saving falls along a straight line. What a plan gains
-    only because its arrivals fall just before a departure of the tables is no saving: up to one
-    step of hotel power for each trip but the last is left out.
+    By bisection: the higher the hotel power, the smaller the saving; for the rules that ignore the
+    hotel power it decreases linearly. A gain that only comes from arrivals just before a departure
+    of the tables does not count: one step of hotel power for each trip but the last is subtracted.
     """
 
     def saves(power: float) -> bool:

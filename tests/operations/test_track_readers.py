@@ -113,7 +113,7 @@ def test_a_jump_out_and_back_is_dropped_and_a_jump_that_lasts_breaks_the_track()
     frame.loc[7, "lat"] += 1.0
     frame.loc[[12, 13], "lon"] += 2.0
     log = read_tracks(frame)
-    assert log.removed == {"that no ship could reach": 3}
+    assert log.removed == {"out of reach at the highest speed": 3}
     assert len(log) == 27 and not log.broken.any()
     away = straight(30)
     away.loc[15:, "lat"] += 1.0
@@ -154,12 +154,12 @@ def test_one_ship_of_several_must_be_chosen():
     [
         ("", "cannot be read"),
         ("a,b,c\n1,2,3\n", "time or lat or lon"),
-        ("time,lat\n2026-01-01,1\n", "No column"),
+        ("time,lat\n2026-01-01,1\n", "has no column for lon"),
         ("time,lat,lon\n2026-01-01,1,2\n", "Only 1 of the positions"),
         ("time,lat,lon\n", "Only 0 of the positions"),
         ("time,lat,lon\n03/04/2026 01:00,52,4\n04/04/2026 01:00,52,4.1\n", "can be read as"),
         ("time,lat,lon\nsoon,52,4\nlater,52,4.1\n", "cannot be read"),
-        ("time,lat,lon\n12.5,52,4\n13.5,52,4.1\n", "no times"),
+        ("time,lat,lon\n12.5,52,4\n13.5,52,4.1\n", "cannot be read as times"),
         ("time,lat,lon\n2026-01-01,520,4\n2026-01-02,520,4.1\n", "2 without a position"),
     ],
 )
@@ -201,4 +201,4 @@ def test_scattered_outliers_never_survive(bad, order, far):
     order.shuffle(rows)
     log = read_tracks(frame.iloc[rows])
     assert log.lat == pytest.approx(clean.lat.to_numpy())
-    assert log.removed.get("that no ship could reach", 0) == len(bad)
+    assert log.removed.get("out of reach at the highest speed", 0) == len(bad)

@@ -8,8 +8,7 @@ import pytest
 from thalweg.chart import Chart
 from thalweg.core.errors import CoverageError, InputError, MissingVariableError
 from thalweg.core.geodesy import distance
-from thalweg.operations.waiting.trip_durations import trip_table
-from thalweg.operations.waiting.trip_table import TripTable
+from thalweg.operations.waiting import Departures, TripTable, trip_table
 from thalweg.route import evaluate
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -52,9 +51,7 @@ def test_still_water_takes_length_over_speed():
         [WEST_END, EAST_END],
         ship=ship,
         sea=sea_of(depth=1e4),
-        start=0.0,
-        period=TIDE,
-        step=TIDE / 4,
+        departures=Departures(0.0, period=TIDE, step=TIDE / 4),
     )
     length = float(distance(*WEST_END, *EAST_END))
     assert table.duration == pytest.approx(length / ship.speeds[-1], rel=1e-4)
@@ -70,7 +67,10 @@ def test_a_tide_is_met_as_the_referee_meets_it():
         depth=lambda t, la, lo: 20.0 - 30.0 * (lo - 3.0),
     )
     table = trip_table(
-        [WEST_END, EAST_END], ship=ship, sea=sea, start=0.0, period=TIDE, step=TIDE / 12
+        [WEST_END, EAST_END],
+        ship=ship,
+        sea=sea,
+        departures=Departures(0.0, period=TIDE, step=TIDE / 12),
     )
     for depart, took in zip(table.times, table.duration):
         route = evaluate([WEST_END, EAST_END], ship=ship, sea=sea, depart=depart)
@@ -90,9 +90,7 @@ def test_a_bar_at_low_water_closes_departures():
         [WEST_END, EAST_END],
         ship=vox(),
         sea=sea,
-        start=0.0,
-        period=TIDE,
-        step=TIDE / 60,
+        departures=Departures(0.0, period=TIDE, step=TIDE / 60),
         min_ukc=1.5,
     )
     start, end = table.times, table.times + np.where(np.isfinite(table.duration), table.duration, 0)
@@ -107,7 +105,10 @@ def test_a_bar_at_low_water_closes_departures():
 
 def test_a_current_that_is_too_strong_is_no_departure_and_no_data_is_an_error():
     ahead = trip_table(
-        [WEST_END, EAST_END], ship=vox(), sea=sea_of(east=-9.0), start=0.0, period=TIDE, step=TIDE
+        [WEST_END, EAST_END],
+        ship=vox(),
+        sea=sea_of(east=-9.0),
+        departures=Departures(0.0, period=TIDE, step=TIDE),
     )
     assert np.isposinf(ahead.duration).all() and np.isposinf(ahead.energy).all()
     short = (
@@ -122,7 +123,12 @@ def test_a_current_that_is_too_strong_is_no_departure_and_no_data_is_an_error():
     ).filled(wind=0.0, waves=0.0)
     assert short.sample([EAST], 1e6, *WEST_END)[EAST] == 0.0
     with pytest.raises(CoverageError, match="not known"):
-        trip_table([WEST_END, EAST_END], ship=vox(), sea=both, start=0.0, end=7200.0, step=600.0)
+        trip_table(
+            [WEST_END, EAST_END],
+            ship=vox(),
+            sea=both,
+            departures=Departures(0.0, end=7200.0, step=600.0),
+        )
 
 
 def test_charted_depth_counts():
@@ -130,7 +136,8 @@ def test_charted_depth_counts():
         lambda lat, lon: np.where(lon > 3.1, 5.5, 20.0)
     )
     sea = Sea.calm()
-    asked = {"ship": vox(), "sea": sea, "start": 0.0, "period": TIDE, "step": TIDE, "chart": chart}
+    departures = Departures(0.0, period=TIDE, step=TIDE)
+    asked = {"ship": vox(), "sea": sea, "departures": departures, "chart": chart}
     assert np.isfinite(trip_table([WEST_END, EAST_END], **asked, min_ukc=0.4).duration).all()
     assert np.isinf(trip_table([WEST_END, EAST_END], **asked, min_ukc=0.6).duration).all()
 
@@ -144,9 +151,7 @@ def test_rudder_drag_slows_a_ship_that_crabs_and_only_then():
                 [WEST_END, EAST_END],
                 ship=s,
                 sea=sea_of(north=north),
-                start=0.0,
-                period=TIDE,
-                step=TIDE,
+                departures=Departures(0.0, period=TIDE, step=TIDE),
             ).duration[0]
             for s in (vox(), dragged)
         )
@@ -167,18 +172,21 @@ def test_rudder_drag_slows_a_ship_that_crabs_and_only_then():
 )
 def test_windows_that_make_no_table_are_refused(window):
     with pytest.raises(InputError):
-        trip_table([WEST_END, EAST_END], ship=vox(), sea=sea_of(), start=0.0, **window)
+        Departures(0.0, **window)
 
 
 def test_a_ship_without_power_is_refused():
     with pytest.raises(InputError, match="power"):
         trip_table(
-            [WEST_END, EAST_END], ship=Ship.simple(8.0), sea=Sea.calm(), start=0.0, period=TIDE
+            [WEST_END, EAST_END],
+            ship=Ship.simple(8.0),
+            sea=Sea.calm(),
+            departures=Departures(0.0, period=TIDE),
         )
 
 
 def test_a_ship_that_feels_the_bed_needs_its_depth():
-    asked = {"ship": vox(), "start": 0.0, "period": TIDE, "step": TIDE}
+    asked = {"ship": vox(), "departures": Departures(0.0, period=TIDE, step=TIDE)}
     with pytest.raises(MissingVariableError, match="depends on the depth"):
         trip_table([WEST_END, EAST_END], sea=Sea.calm(), **asked)
 
@@ -203,7 +211,10 @@ def test_what_a_ship_must_not_do_in_waves_closes_a_departure():
     ship = Ship.from_dict(data)
     sea = rising_waves(lambda t: t / 4000.0, from_deg=90.0, period=7.0)
     table = trip_table(
-        [WEST_END, EAST_END], ship=ship, sea=sea, start=0.0, end=16_000.0, step=2000.0
+        [WEST_END, EAST_END],
+        ship=ship,
+        sea=sea,
+        departures=Departures(0.0, end=16_000.0, step=2000.0),
     )
     allowed = [
         evaluate([WEST_END, EAST_END], ship=ship, sea=sea, depart=float(t)).feasible
@@ -218,7 +229,10 @@ def test_a_limit_that_is_reached_under_way_closes_a_departure():
     closes = 20_000.0
     sea = rising_waves(lambda t: 4.0 + (t - closes) / 1e4, from_deg=270.0, period=8.0)
     table = trip_table(
-        [WEST_END, EAST_END], ship=vox(), sea=sea, start=0.0, end=25_000.0, step=50.0
+        [WEST_END, EAST_END],
+        ship=vox(),
+        sea=sea,
+        departures=Departures(0.0, end=25_000.0, step=50.0),
     )
     took = table.duration[0]
     sure = table.times + took < closes - 60.0

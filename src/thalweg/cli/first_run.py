@@ -1,0 +1,28 @@
+"""A message on the first run, which compiles the numerical kernels for this computer."""
+
+from __future__ import annotations
+
+import sys
+
+from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
+
+_SEARCH_COMPILED = "warm"  # marker of `thalweg.kernels.compilation.warm_up`
+
+
+def announce_compilation(*, search: bool = False) -> None:
+    """Print one line on stderr if kernels will be compiled in this run.
+
+    Parameters
+    ----------
+    search : bool
+        Whether the command needs the search, the largest part of the kernels.
+    """
+    if (COMPILED_FOLDER / _SEARCH_COMPILED).exists():
+        return
+    if search or not any(COMPILED_FOLDER.rglob("*.nbc")):
+        print(
+            "First run: compiling the numerical kernels for this computer (1 to 3 minutes). "
+            f"They are kept in {COMPILED_FOLDER.parent}; later runs start at once.",
+            file=sys.stderr,
+            flush=True,
+        )

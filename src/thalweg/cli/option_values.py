@@ -1,0 +1,253 @@
+"""From the values of shared options to objects: sea, ship, chart, position, output folder."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from thalweg.cli.options import FILLABLE
+from thalweg.core.errors import InputError
+from thalweg.core.units import NAUTICAL_MILE
+
+if TYPE_CHECKING:
+    from thalweg.chart import Chart
+    from thalweg.core.geodesy import Position
+    from thalweg.sea import Sea
+    from thalweg.ship import Ship
+
+
+def parse_pairs(option: str, texts: Sequence[str], form: str, example: str) -> dict[str, str]:
+    """Return the pairs of an option that is written NAME=VALUE, several times.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option, for the message.
+    texts : sequence of str
+        What was given.
+    form, example : str
+        How a pair is written, and an example, for the message.
+
+    Raises
+    ------
+    InputError
+        If one of them is not a pair.
+    """
+    pairs = [text.partition("=") for text in texts]
+    for name, equals, value in pairs:
+        if not (name and equals and value):
+            raise InputError(
+                f"{option} {name}{equals}{value} is not understood.",
+                f"It is written {form}, such as {example}.",
+                "Write it that way.",
+            )
+    return {name: value for name, _, value in pairs}
+
+
+def variable_mapping(arguments: argparse.Namespace) -> dict[str, str]:
+    """Return the variable of each quantity as ``--map`` states it.
+
+    Raises
+    ------
+    InputError
+        If a part of it is not NAME=VARIABLE.
+    """
+    example = "eastward_wind=u or crs=EPSG:32611"
+    return parse_pairs("--map", arguments.map, "NAME=VARIABLE", example)
+
+
+def open_sea(arguments: argparse.Namespace) -> Sea:
+    """Return the sea that the options name.
+
+    Raises
+    ------
+    InputError
+        If no sea is named, or options contradict each other.
+    """
+    from thalweg.sea import Sea
+
+    policies = dict(_parse_fill_policy(text) for text in arguments.fill)
+    _check_options(arguments)
+    if not arguments.calm and not arguments.sea:
+        raise InputError(
+            "No sea is given.",
+            "Thalweg never assumes calm weather.",
+            "Give --sea FILE..., --sea storm, or --calm.",
+        )
+    if arguments.calm:
+        return _check_ensemble_choice(Sea.calm(), arguments)
+    files = [name for name in arguments.sea if name != "storm"]
+    options: dict[str, Any] = {
+        "mapping": variable_mapping(arguments),
+        "draught_m": arguments.average_over,
+    }
+    layers = [Sea.open(*files, **options)] if files else []
+    if len(files) > 1 and getattr(arguments, "ensemble", None) and not layers[0].members:
+        layers = [Sea.ensemble(*files, **options)]
+    if "storm" in arguments.sea:
+        layers.append(Sea.storm())
+    sea = layers[0] if len(layers) == 1 else Sea.layered(*layers)
+    sea = _check_ensemble_choice(sea, arguments)
+    return sea.filled(**policies) if policies else sea
+
+
+def _check_options(arguments: argparse.Namespace) -> None:
+    """Raise `InputError` for options that have no effect on the sea that is named."""
+    of_files = [("--map", arguments.map), ("--average-over", arguments.average_over is not None)]
+    for option, given in [("--sea", arguments.sea), ("--fill", arguments.fill), *of_files]:
+        if arguments.calm and given:
+            raise InputError(
+                f"Both --calm and {option} are given.",
+                "A calm sea has no wind, waves or currents anywhere.",
+                "Choose one.",
+            )
+    for option, given in of_files:
+        if given and arguments.sea and set(arguments.sea) == {"storm"}:
+            raise InputError(
+                f"{option} is given without a file.",
+                "It applies to files; the modelled storm of the package is not a file.",
+                f"Omit {option}, or add a file to --sea.",
+            )
+
+
+def _check_ensemble_choice(sea: Sea, arguments: argparse.Namespace) -> Sea:
+    """Return a sea; raise `InputError` if ``--ensemble`` is given and it has no members."""
+    if getattr(arguments, "ensemble", None) and not sea.members:
+        raise InputError(
+            "--ensemble needs a forecast with several members, but the sea has none.",
+            "A file may have a dimension of members (number, realization, ...), or there is one "
+            "file for each member.",
+            "Give such files with --sea, or omit --ensemble.",
+        )
+    return sea
+
+
+def _parse_fill_policy(text: str) -> tuple[str, float | str]:
+    name, _, value = text.partition("=")
+    try:
+        if name not in FILLABLE:
+            raise ValueError
+        return name, value if (name, value) == ("waves", "wind") else float(value)
+    except ValueError:
+        raise InputError(
+            f"--fill {text} is not understood.",
+            f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, waves=wind.",
+            "Write it that way.",
+        ) from None
+
+
+def open_chart(arguments: argparse.Namespace) -> Chart:
+    """Return the chart that the options name."""
+    from thalweg.chart import Chart
+
+    if arguments.coast == "none":
+        chart = Chart.open_water(-90.0, 90.0, -180.0, 180.0)
+    else:
+        chart = Chart.gshhg(arguments.coast)
+    for path in arguments.depth:
+        chart = chart.with_depth(path)
+    for path in arguments.zones:
+        chart = chart.with_zones(path)
+    return chart
+
+
+def open_ship(arguments: argparse.Namespace) -> Ship:
+    """Return the ship that the options name, at the load they state."""
+    from thalweg.ship import Ship
+
+    ship = Ship.load(arguments.ship)
+    if arguments.load_factor is not None:
+        ship = ship.with_load_factor(arguments.load_factor)
+    return ship
+
+
+def position_from_text(text: str) -> Position:
+    """Return the position (lat, lon) [deg] that a text states.
+
+    Raises
+    ------
+    InputError
+        If it is not a position; names of ports are not accepted here.
+    """
+    from thalweg.core.geodesy import parse_position
+
+    position = parse_position(text)
+    if position is None:
+        raise InputError(
+            f"{text!r} is not a position.",
+            "A position is LAT,LON in degrees, such as 52.1,3.97 or 52.1N 3.97E.",
+            "Write it that way.",
+            value=text,
+        )
+    return float(position[0]), float(position[1])
+
+
+def resolution_m(value_nm: float | None) -> float | None:
+    """Return a resolution in metres from one in nautical miles.
+
+    Raises
+    ------
+    InputError
+        If it is not between 0.001 and 300 nm.
+    """
+    if value_nm is None:
+        return None
+    if not 0.001 <= value_nm <= 300:
+        raise InputError(
+            f"The resolution is {value_nm:g} nm.",
+            "It is between 0.001 and 300 nm.",
+            "Correct --resolution.",
+        )
+    return value_nm * NAUTICAL_MILE
+
+
+def prepare_output_folder(arguments: argparse.Namespace) -> None:
+    """Create the folder of ``--out``, before any work is done.
+
+    Raises
+    ------
+    InputError
+        If it cannot be created or written.
+    """
+    if arguments.out:
+        from thalweg.planning.report.output_files import make_folder
+
+        make_folder(arguments.out)
+
+
+def prepare_output_file(path: str) -> Path:
+    """Create the folder of an output file, before any work is done, and return its path.
+
+    Raises
+    ------
+    InputError
+        If the path is a folder, or its folder cannot be created or written.
+    """
+    from thalweg.planning.report.output_files import make_folder
+
+    target = Path(path)
+    if target.is_dir():
+        raise InputError(
+            f"{path} is a folder.", "--out is a file here.", "Add the name of a file to it."
+        )
+    make_folder(target.parent)
+    return target
+
+
+def rounded(value: float) -> float | None:
+    """Return a number with six decimals for JSON; None where it is not finite."""
+    return round(float(value), 6) if math.isfinite(value) else None
+
+
+def progress_callback(arguments: argparse.Namespace) -> Callable[[str], None] | None:
+    """Return a function that prints progress on stderr; None for JSON or without a terminal."""
+    if arguments.json or not sys.stderr.isatty():
+        return None
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    return lambda text: console.print(f"[dim]{text}[/dim]")

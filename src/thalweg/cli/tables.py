@@ -1,0 +1,194 @@
+"""Tables of plans and routes on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from thalweg.planning import Plan
+    from thalweg.route import Route
+
+_MAX_ROWS = 30
+_WAYPOINT_COLUMNS = ("waypoint", "UTC", "course", "nm", "stw", "sog", "wait", "ukc")
+
+
+def new_table(title: str, columns: Sequence[str], *, left: Sequence[str], wrap: str = "") -> Any:
+    """Return an empty rich table.
+
+    Parameters
+    ----------
+    title : str
+    columns : sequence of str
+        Heads of the columns.
+    left : sequence of str
+        Columns that are aligned to the left; the others hold numbers.
+    wrap : str, optional
+        The column whose cells may be broken into several lines.
+    """
+    from rich import box
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 0, 0, 1))
+    for name in columns:
+        justify: Any = "left" if name in left else "right"
+        table.add_column(name, justify=justify, no_wrap=name != wrap)
+    return table
+
+
+def print_notes(console: Any, notes: Iterable[str]) -> None:
+    """Print notes, each on a line of its own."""
+    from rich.markup import escape
+
+    for note in notes:
+        console.print(f"[yellow]note:[/yellow] {escape(note)}", soft_wrap=True)
+
+
+def print_written(files: Iterable[Any]) -> None:
+    """Print the names of the files that were written."""
+    for path in files:
+        print(f"wrote {path}")
+
+
+def print_plan(plan: Plan) -> None:
+    """Print the waypoints, totals, bounds and notes of a plan."""
+    from rich.console import Console
+
+    console = Console()
+    title = f"{plan.provenance['from']} to {plan.provenance['to']}, least {plan.voyage.objective}"
+    print_waypoints(console, plan.best.waypoints(), title)
+    console.print(f"[bold]{', '.join(_plan_totals(plan))}[/bold]")
+    console.print(
+        f"Lower bound {plan.lower_bound:.2f} {plan.unit}, gap {100 * plan.gap:.1f} % "
+        f"[dim]({plan.proof.kind})[/dim]; absolute lower bound "
+        f"{plan.proof.certain:.2f} {plan.unit}.",
+        soft_wrap=True,
+    )
+    if plan.front is not None:
+        print_front(console, plan)
+    print_notes(console, plan.notes)
+
+
+def _plan_totals(plan: Plan) -> list[str]:
+    """Return time, distance, and what else is known of the best route, with units."""
+    best = plan.best
+    parts = [f"{best.time_h:.2f} h", f"{best.distance_nm:.1f} nm"]
+    if best.fuel_t is not None:
+        parts.append(f"{best.fuel_t:.1f} t fuel")
+    if best.cost is not None:
+        parts.append(f"{best.cost:,.0f} {best.currency}")
+    if best.energy_mwh is not None and plan.voyage.objective == "energy":
+        parts.append(f"{best.energy_mwh:.2f} MWh")
+    if best.co2_t is not None and plan.voyage.objective == "co2":
+        parts.append(f"{best.co2_t:.1f} t CO2")
+    if best.waiting_h > 0:
+        parts.append(f"{best.waiting_h:.2f} h waiting")
+    return parts
+
+
+def print_front(console: Any, plan: Plan) -> None:
+    """Print the routes of a Pareto front and their savings over the weather-blind route."""
+    import numpy as np
+
+    from thalweg.core.pareto_fronts import evenly_spaced_subset
+
+    front = plan.front
+    assert front is not None  # checked by the caller
+    columns = ("h", front.criterion, "nm", "wait h", "gap %", "from", "way")
+    title = f"{front.criterion} against time ({front.unit})"
+    table = new_table(title, columns, left=("from", "way"), wrap="way")
+    rows = sorted(front.rows(plan.routes), key=lambda row: float(row["time_h"]))
+    shown = evenly_spaced_subset(
+        np.array([row["time_h"] for row in rows]),
+        np.array([row[front.column] for row in rows]),
+        _MAX_ROWS,
+    )
+    for row in (rows[index] for index in shown):
+        gap = "" if row["gap"] is None else f"{100 * row['gap']:.1f}"
+        value = f"{row[front.column]:,.2f}"
+        table.add_row(
+            f"{row['time_h']:.2f}", value, f"{row['distance_nm']:.0f}", f"{row['waiting_h']:.1f}",
+            gap, row["stage"], row["way"],
+        )  # fmt: skip
+    console.print(table)
+    if len(rows) > len(shown):
+        console.print(f"{len(shown)} of {len(rows)} routes; --out DIR writes all to front.csv.")
+    for line in _savings(plan):
+        console.print(line, soft_wrap=True)
+
+
+def _savings(plan: Plan) -> list[str]:
+    """Return sentences on what the front saves over the weather-blind route, at the ends."""
+    comparison = plan.front.comparison if plan.front is not None else None
+    if comparison is None or plan.front is None:
+        return []
+    lines = []
+    for row in {id(row): row for row in (comparison.rows[0], comparison.rows[-1])}.values():
+        saved = []
+        if row["saved"] is not None and row["saved"] > 0.0:
+            saved.append(
+                f"{row['saved']:,.2f} {plan.front.unit} ({row['saved_percent']:.1f} %) in the "
+                "same time"
+            )
+        if row["saved_h"] is not None and row["saved_h"] > 0.0:
+            saved.append(f"{row['saved_h']:.2f} h at the same {plan.front.criterion}")
+        lines.append(
+            f"Weather-blind at {row['speed_kn']:.1f} kn: {row['time_h']:.2f} h, "
+            f"{row['value']:,.2f} {plan.front.unit}"
+            + ("" if row["feasible"] else " (breaks a limit)")
+            + (f"; the front saves {', or '.join(saved)}." if saved else ".")
+        )
+    return lines
+
+
+def print_route(route: Route) -> None:
+    """Print the waypoints, totals, violated limits and notes of an evaluated route."""
+    from rich.console import Console
+    from rich.markup import escape
+
+    console = Console()
+    print_waypoints(console, route.waypoints(), "the route as given")
+    waits = f" with {route.waiting_h:.2f} h waiting" if route.waiting_h > 0.0 else ""
+    fuel = "" if route.fuel_t is None else f", {route.fuel_t:.1f} t fuel"
+    console.print(f"[bold]{route.time_h:.2f} h{waits}, {route.distance_nm:.1f} nm{fuel}[/bold]")
+    for violation in route.violations:
+        console.print(f"[red]violation:[/red] {escape(str(violation))}", soft_wrap=True)
+    if route.feasible:
+        console.print("Every limit is kept.")
+    print_notes(console, route.assumptions)
+
+
+def print_waypoints(console: Any, waypoints: list[dict[str, Any]], title: str) -> None:
+    """Print the table of a route's waypoints, narrow enough for a terminal of 80 columns."""
+    table = new_table(title, _WAYPOINT_COLUMNS, left=("waypoint", "UTC"))
+    for row in _shortened([_waypoint_cells(row) for row in waypoints]):
+        table.add_row(*row)
+    console.print(table)
+
+
+def _waypoint_cells(row: dict[str, Any]) -> list[str]:
+    def number(key: str, digits: int) -> str:
+        value = row.get(key)
+        return "" if value is None else f"{value:.{digits}f}"
+
+    lat, lon = row["lat"], row["lon"]
+    course = number("course_deg", 0)
+    return [
+        f"{abs(lat):6.3f}{'N' if lat >= 0 else 'S'} {abs(lon):7.3f}{'E' if lon >= 0 else 'W'}",
+        str(row["time"] or "")[5:16].replace("T", " "),
+        f"{int(course) % 360:03d}" if course else "",
+        number("distance_nm", 1),
+        number("speed_through_water_kn", 1),
+        number("speed_over_ground_kn", 1),
+        number("waiting_h", 2) if row.get("waiting_h") else "",
+        number("ukc_m", 1),
+    ]
+
+
+def _shortened(rows: list[list[str]]) -> list[list[str]]:
+    """Return the rows without the middle of a long table; the files hold all of them."""
+    if len(rows) <= _MAX_ROWS:
+        return rows
+    half = _MAX_ROWS // 2
+    dots = [f"... {len(rows) - 2 * half} more", *[""] * (len(rows[0]) - 1)]
+    return [*rows[:half], dots, *rows[-half:]]

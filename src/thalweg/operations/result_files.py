@@ -1,0 +1,98 @@
+"""Files of dredging projects, waiting studies and track analyses."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from thalweg.operations.dredging.cycles import CYCLE_COLUMNS, cycle_record
+from thalweg.operations.plots import draw_project, draw_routes, draw_tracks, draw_waiting
+from thalweg.planning.report.output_files import make_folder
+
+if TYPE_CHECKING:
+    from thalweg.operations.dredging.project_result import ProjectResult
+    from thalweg.operations.tracks.track_analysis import TrackAnalysis
+    from thalweg.operations.waiting.waiting_study import WaitingStudy
+
+_TIME_FORMAT = "%Y-%m-%dT%H:%M:%SZ"
+
+
+def write_project_files(result: ProjectResult, folder: str | Path) -> list[Path]:
+    """Write project.json, cycles.csv, project.png and routes.png, and return their paths.
+
+    Parameters
+    ----------
+    result : ProjectResult
+    folder : path
+        Created if it does not exist.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    folder = make_folder(folder)
+    result.to_json(folder / "project.json")
+    with (folder / "cycles.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, ("run", *CYCLE_COLUMNS))
+        writer.writeheader()
+        for run in result.runs:
+            writer.writerows({"run": run.name, **cycle_record(c)} for c in run.cycles)
+    draw_project(result, folder / "project.png")
+    draw_routes(result, folder / "routes.png")
+    names = ("project.json", "cycles.csv", "project.png", "routes.png")
+    return [folder / name for name in names]
+
+
+def write_waiting_files(study: WaitingStudy, folder: str | Path, *, title: str = "") -> list[Path]:
+    """Write waiting.csv, waiting.json and waiting.png, and return their paths.
+
+    Parameters
+    ----------
+    study : WaitingStudy
+    folder : path
+        Created if it does not exist.
+    title : str
+        Title of the plot.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    folder = make_folder(folder)
+    study.to_frame().to_csv(folder / "waiting.csv", index=False)
+    text = json.dumps(study.as_dict(), indent=2, allow_nan=False)
+    (folder / "waiting.json").write_text(text, encoding="utf-8")
+    draw_waiting(study, folder / "waiting.png", title=title)
+    return [folder / name for name in ("waiting.csv", "waiting.json", "waiting.png")]
+
+
+def write_track_files(analysis: TrackAnalysis, folder: str | Path) -> list[Path]:
+    """Write activities.csv, legs.csv, cycles.csv, tracks.json and tracks.png; return their paths.
+
+    Parameters
+    ----------
+    analysis : TrackAnalysis
+    folder : path
+        Created if it does not exist.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    folder = make_folder(folder)
+    frames = {
+        "activities.csv": analysis.activity_frame(),
+        "legs.csv": analysis.leg_frame(),
+        "cycles.csv": analysis.cycle_frame(),
+    }
+    for name, frame in frames.items():
+        frame.to_csv(folder / name, index=False, date_format=_TIME_FORMAT)
+    text = json.dumps(analysis.as_dict(), indent=2, allow_nan=False)
+    (folder / "tracks.json").write_text(text, encoding="utf-8")
+    draw_tracks(analysis, folder / "tracks.png")
+    return [folder / name for name in (*frames, "tracks.json", "tracks.png")]
