@@ -209,11 +209,11 @@ def test_an_edge_in_a_uniform_current_takes_its_length_over_the_published_speed(
         )  # fmt: skip
         found = current_triangle(
             5.0,
-            float(network.course[0]),
+            float(network.edges.course[0]),
             current_east=np.float32(current[0]),
             current_north=np.float32(current[1]),
         )
-        expected = network.length[0] / found.speed_over_ground
+        expected = network.edges.length[0] / found.speed_over_ground
         assert arrivals[0, 0] - 50.0 == pytest.approx(float(expected), rel=1e-7)
 
 
@@ -227,7 +227,7 @@ def test_an_edge_burns_the_fuel_rate_of_the_table_at_the_published_heading():
     for _ in range(10):
         sea = random_conditions(rng)
         network = line(2, 9000.0, course=rng.uniform(-np.pi, np.pi), depth=40.0, pieces=3)
-        course = float(network.course[0])
+        course = float(network.edges.course[0])
         fields = make_fields(network, [0.0, 1e6], **sea)
         request = FrontRequest(
             0, 1, 0.0, 9e5, np.arange(2), FUEL_MASS, np.ones(network.n_edges), True
@@ -244,7 +244,7 @@ def test_an_edge_burns_the_fuel_rate_of_the_table_at_the_published_heading():
             if math.isnan(ground):
                 assert np.isnan(out[setting]).all()
                 continue
-            duration = network.length[0] / ground
+            duration = network.edges.length[0] / ground
             assert out[setting, 0] == pytest.approx(duration, rel=5e-4)
             east = ground * math.sin(course) - sea["current_east"]
             north = ground * math.cos(course) - sea["current_north"]

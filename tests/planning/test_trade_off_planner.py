@@ -77,7 +77,7 @@ def test_the_front_runs_from_the_fastest_to_the_cheapest_and_no_route_beats_anot
     assert np.all(fuel <= best * 1.01)
     gaps = [gap for gap in answer.front.gaps(answer.routes) if gap is not None]
     # 32 directions may be 1.3 % longer than open water; fuel goes with the time to the power -3
-    assert gaps and max(gaps) < 0.055
+    assert gaps and max(gaps) < 0.06
 
 
 def test_least_cost_weighs_time_against_fuel():
