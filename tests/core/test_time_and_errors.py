@@ -78,7 +78,7 @@ _OWN_TEXTS = {
     ("ship/tables/table_cache.py", 1),
     ("sea/ensemble_layer.py", 1),
 } | {
-    ("sea/layer_stack.py", 1),
+    ("sea/sea.py", 1),
     ("sea/tides/model_run_analysis.py", 1),
     ("sea/files/grib_worker.py", 1),
 }

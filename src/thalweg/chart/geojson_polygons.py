@@ -103,7 +103,9 @@ def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = Tru
             continue
         for k in range(1, len(rings)):  # holes get longitudes of the same turn as their outline
             rings[k][:, 0] += 360.0 * np.round((rings[0][0, 0] - rings[k][0, 0]) / 360.0)
-        shape: Any = shapely.polygons(rings[0], holes=rings[1:] or None)
+        # one ring at a time: arrays of rings need the same number of positions in each
+        holes = [shapely.linearrings(ring) for ring in rings[1:]]
+        shape: Any = shapely.polygons(rings[0], holes=holes or None)
         if not shapely.is_valid(shape):
             reason = shapely.is_valid_reason(shape)
             if not repair:

@@ -35,9 +35,9 @@ def run(arguments: argparse.Namespace) -> int:
     announce_compilation(search=True)
     warm_up.start_compiling("thalweg.planning.compile_kernels")
     from thalweg.chart import Chart
+    from thalweg.core.file_writing import make_folder
     from thalweg.planning import plan as make_plan
     from thalweg.planning.demo_voyage import demo_voyage, weather_blind
-    from thalweg.planning.report.output_files import make_folder
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 

@@ -35,7 +35,8 @@ def add_command(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Inspect the files, print what was found and draw the map."""
-    from thalweg.planning.report.output_files import draw_sea, make_folder
+    from thalweg.core.file_writing import make_folder
+    from thalweg.planning.report.output_files import draw_sea
     from thalweg.sea import Sea
 
     if arguments.time and not arguments.out:

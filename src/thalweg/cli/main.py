@@ -98,9 +98,21 @@ def main(argv: Sequence[str] | None = None) -> int:
             # the reader of the output has closed it: the flush at exit must not raise again
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
+        except OSError as error:
+            return print_error(_system_error(error), as_json=as_json)
         except KeyboardInterrupt:
             print("stopped", file=sys.stderr)
             return INTERRUPTED
+
+
+def _system_error(error: OSError) -> InputError:
+    """Return an error of the operating system, such as a full disk, in the three parts."""
+    where = f" at {str(error.filename)!r}" if error.filename else ""
+    return InputError(
+        f"The operating system stopped the work{where}: {error.strerror or error}.",
+        "The command reads its files, and writes its results and a cache in your own folder.",
+        "Check free space and permissions; THALWEG_CACHE sets another folder for the cache.",
+    )
 
 
 def _show_warning(message, category, filename, lineno, file=None, line=None):  # type: ignore[no-untyped-def]

@@ -214,7 +214,7 @@ def prepare_output_folder(arguments: argparse.Namespace) -> None:
         If it cannot be created or written.
     """
     if arguments.out:
-        from thalweg.planning.report.output_files import make_folder
+        from thalweg.core.file_writing import make_folder
 
         make_folder(arguments.out)
 
@@ -227,7 +227,7 @@ def prepare_output_file(path: str) -> Path:
     InputError
         If the path is a folder, or its folder cannot be created or written.
     """
-    from thalweg.planning.report.output_files import make_folder
+    from thalweg.core.file_writing import make_folder
 
     target = Path(path)
     if target.is_dir():

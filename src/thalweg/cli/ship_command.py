@@ -12,6 +12,7 @@ from thalweg.cli import options
 from thalweg.cli.ship_sheet_table import print_sheet
 from thalweg.cli.tables import print_written
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import make_folder, write_text
 
 
 def add_command(commands: Any) -> None:
@@ -186,15 +187,6 @@ def _check_ranges(sheet: dict[str, Any], strict: bool) -> None:
 def _write(ship: Any, sheet: dict[str, Any], weather: dict[str, float], out: str) -> list[Path]:
     from thalweg.cli.ship_plots import draw_ship
 
-    folder = Path(out)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "ship.json").write_text(json.dumps(sheet, indent=2, allow_nan=False) + "\n")
-    except OSError as problem:
-        raise InputError(
-            f"The folder {folder} cannot be written: {problem.strerror or problem}.",
-            "It is created if it does not exist; ship.json and the plots go into it.",
-            "Give another folder with --out.",
-            folder=str(folder),
-        ) from None
+    folder = make_folder(out)
+    write_text(folder / "ship.json", json.dumps(sheet, indent=2, allow_nan=False) + "\n")
     return [folder / "ship.json", *draw_ship(ship, sheet, weather, folder)]

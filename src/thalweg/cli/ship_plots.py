@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.file_writing import save_figure
 from thalweg.core.units import KNOT
 from thalweg.ship import Conditions, Ship
 from thalweg.ship.performance_sheet import assumed_peak_period
@@ -72,7 +73,7 @@ def _save(path: Path, draw: Callable[[Any], bool], **subplot: Any) -> bool:
     axes = figure.add_subplot(**subplot)
     if not draw(axes):
         return False
-    figure.savefig(path, dpi=130)
+    save_figure(figure, path, dpi=130)
     return True
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import io
 import json
 import sys
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ import numpy as np
 
 from thalweg.cli import option_values
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import write_text
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.types import FloatArray
 
@@ -65,8 +67,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(_as_dict(constants, times, series), indent=2, allow_nan=False))
     elif out:
-        with out.open("w", encoding="utf-8", newline="") as file:
-            _write_csv(file, times, series)
+        text = io.StringIO(newline="")
+        _write_csv(text, times, series)
+        write_text(out, text.getvalue())
         print(f"wrote {arguments.out}")
     else:
         _write_csv(sys.stdout, times, series)

@@ -170,7 +170,7 @@ class LegPrices:
     and canal dues :math:`D`. The price of consumption depends on the position:
     :math:`p = (p_{out} + f (p_{in} - p_{out})) z`, with the fraction :math:`f` of the leg inside
     emission control areas and the factor :math:`z` of price zones.
-    `thalweg.ship.leg_prices.leg_prices` makes it for a ship.
+    `thalweg.ship.consumption.leg_prices` makes it for a ship.
 
     Attributes
     ----------

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
 from thalweg.operations.dredging.cycles import CYCLE_COLUMNS, cycle_record
 from thalweg.operations.plots import draw_project, draw_routes, draw_tracks, draw_waiting
-from thalweg.planning.report.output_files import make_folder
 
 if TYPE_CHECKING:
     from thalweg.operations.dredging.project_result import ProjectResult
@@ -35,11 +34,10 @@ def write_project_files(result: ProjectResult, folder: str | Path) -> list[Path]
     """
     folder = make_folder(folder)
     result.to_json(folder / "project.json")
-    with (folder / "cycles.csv").open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, ("run", *CYCLE_COLUMNS))
-        writer.writeheader()
-        for run in result.runs:
-            writer.writerows({"run": run.name, **cycle_record(c)} for c in run.cycles)
+    records = [{"run": run.name, **cycle_record(c)} for run in result.runs for c in run.cycles]
+    columns = ("run", *CYCLE_COLUMNS)
+    rows = [[record.get(name) for name in columns] for record in records]
+    write_csv_rows(folder / "cycles.csv", [columns, *rows])
     draw_project(result, folder / "project.png")
     draw_routes(result, folder / "routes.png")
     names = ("project.json", "cycles.csv", "project.png", "routes.png")
@@ -63,9 +61,9 @@ def write_waiting_files(study: WaitingStudy, folder: str | Path, *, title: str =
         If the folder cannot be written.
     """
     folder = make_folder(folder)
-    study.to_frame().to_csv(folder / "waiting.csv", index=False)
+    write_text(folder / "waiting.csv", study.to_frame().to_csv(index=False))
     text = json.dumps(study.as_dict(), indent=2, allow_nan=False)
-    (folder / "waiting.json").write_text(text, encoding="utf-8")
+    write_text(folder / "waiting.json", text)
     draw_waiting(study, folder / "waiting.png", title=title)
     return [folder / name for name in ("waiting.csv", "waiting.json", "waiting.png")]
 
@@ -91,8 +89,8 @@ def write_track_files(analysis: TrackAnalysis, folder: str | Path) -> list[Path]
         "cycles.csv": analysis.cycle_frame(),
     }
     for name, frame in frames.items():
-        frame.to_csv(folder / name, index=False, date_format=_TIME_FORMAT)
+        write_text(folder / name, frame.to_csv(index=False, date_format=_TIME_FORMAT))
     text = json.dumps(analysis.as_dict(), indent=2, allow_nan=False)
-    (folder / "tracks.json").write_text(text, encoding="utf-8")
+    write_text(folder / "tracks.json", text)
     draw_tracks(analysis, folder / "tracks.png")
     return [folder / name for name in (*frames, "tracks.json", "tracks.png")]

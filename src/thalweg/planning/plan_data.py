@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.file_writing import write_text
 from thalweg.core.objective import Objective
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
@@ -180,7 +181,7 @@ class PlanData:
         """
         text = json.dumps(self.to_dict(), indent=2, allow_nan=False)
         if path is not None:
-            Path(path).write_text(text + "\n", encoding="utf-8")
+            write_text(path, text + "\n")
         return text
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.file_writing import write_text
 from thalweg.core.time import format_time
 from thalweg.planning.voyage_parts import Itinerary, Schedule, SearchRequest, VoyagePrices
 
@@ -182,7 +183,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         data = self.to_dict()
         as_json = path.suffix == ".json"
         text = json.dumps(data, indent=2, allow_nan=False) if as_json else dump_yaml(data)
-        path.write_text(text, encoding="utf-8")
+        write_text(path, text)
 
 
 def _plain_value(name: str, value: Any) -> Any:

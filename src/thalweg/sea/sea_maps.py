@@ -12,6 +12,7 @@ import numpy as np
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import save_figure
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
@@ -136,7 +137,7 @@ def draw_maps(
         f"{format_time(time).replace('T', '  ').replace(':00Z', ' UTC')}     {_shortened(sources)}"
     )
     figure.suptitle(title, x=0.012, ha="left", fontsize=10, color=TEXT_COLOUR)
-    figure.savefig(path, format="png")
+    save_figure(figure, path, format="png")
 
 
 def _shortened(text: str) -> str:

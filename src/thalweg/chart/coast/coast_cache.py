@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
-import tempfile
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +14,7 @@ import numpy as np
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.coast.gshhg import CLOSED_CANALS, data_files, read_land_rings
 from thalweg.core.cache_folder import cache_folder
+from thalweg.core.file_writing import replacing_file
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
 CACHE_FORMAT: Final = 2  # raise when the arrays or the way they are made change
@@ -54,11 +53,5 @@ def _load_index(path: Path) -> IndexArrays:
 
 
 def _save_index(path: Path, index: IndexArrays) -> None:
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez(file, allow_pickle=False, **index._asdict())
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    with replacing_file(path) as file:
+        np.savez(file, allow_pickle=False, **index._asdict())

@@ -3,11 +3,13 @@
 numba itself notices only changes of the file a function stands in, not of what it calls.
 """
 
+import contextlib
 import hashlib
 import os
 import shutil
-import tempfile
 from pathlib import Path
+
+from thalweg.core.cache_folder import cache_folder, is_usable, private_temporary_folder
 
 #: The folder of the package `kernels`.
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -21,31 +23,25 @@ def _source_hash() -> str:
     return hashlib.sha256(repr(facts).encode()).hexdigest()[:16]
 
 
-def _cache_root() -> Path:
-    override = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("THALWEG_CACHE")
-    if override:
-        return Path(override)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "thalweg"
-
-
 def _make_folder() -> Path:
-    base = _cache_root() / "kernels"
-    folder = base / _source_hash()
-    try:
-        if not folder.is_dir():
-            folder.mkdir(parents=True, exist_ok=True)
-            _remove_old_folders(base)
-        if os.access(folder, os.W_OK):
+    override = os.environ.get("NUMBA_CACHE_DIR")
+    places = [Path(override) / "kernels"] if override else []
+    for place in (*places, cache_folder("kernels"), private_temporary_folder() / "kernels"):
+        folder = place / _source_hash()
+        new = not folder.is_dir()
+        if is_usable(folder):
+            if new:
+                _remove_old_folders(place)
             return folder
-    except OSError:
-        pass
-    return Path(tempfile.mkdtemp(prefix="thalweg-kernels-"))
+    return folder  # nothing can be written: kernels are compiled in every process
 
 
 def _remove_old_folders(base: Path) -> None:
-    folders = sorted(base.iterdir(), key=lambda path: path.stat().st_mtime, reverse=True)
-    for folder in folders[_MAX_FOLDERS:]:
-        shutil.rmtree(folder, ignore_errors=True)
+    with contextlib.suppress(OSError):  # another process may remove the same folders
+        folders = [path for path in base.iterdir() if path.is_dir()]
+        folders.sort(key=lambda path: path.stat().st_mtime, reverse=True)
+        for folder in folders[_MAX_FOLDERS:]:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 #: Where the compiled code of these kernels is kept.

@@ -1,7 +1,10 @@
 """How kernels are compiled: numba, cached on disk, without division checks."""
 
+import contextlib
+
 import numba
 
+from thalweg.kernels.compilation.checked_code_cache import CheckedFunctionCache
 from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 
 
@@ -9,13 +12,16 @@ def jit(function=None, **options):
     """Compile with on-disk caching and NumPy's error model (division checks block SIMD)."""
     if function is None:
         return lambda given: jit(given, **options)
-    options = {"cache": True, "error_model": "numpy", "nogil": True, **options}
+    kernel = numba.njit(**{"error_model": "numpy", "nogil": True, **options})(function)
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(COMPILED_FOLDER)
     try:
-        return numba.njit(**options)(function)
+        # numba raises RuntimeError where no folder can be written: then nothing is kept
+        with contextlib.suppress(RuntimeError):
+            kernel._cache = CheckedFunctionCache(function)
     finally:
         numba.config.CACHE_DIR = before
+    return kernel
 
 
 prange = numba.prange

@@ -78,7 +78,7 @@ def pull_taut(
         in the ways that cost changes from place to place.
     sides : callable, optional
         Tells the sides on which islands are passed, to keep them (see
-        `thalweg.network.paths_without_canals.homotopy`).
+        `thalweg.network.alternatives.homotopy`).
     rounds : int
         How often corners are cut at most; 0 only leaves waypoints out.
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
-import tempfile
 import zipfile
 from dataclasses import dataclass
 from functools import lru_cache
@@ -17,6 +15,7 @@ import numpy as np
 from thalweg.chart.coast.coast_index_builder import build_index
 from thalweg.chart.geojson_polygons import rings_from_polygons
 from thalweg.core.cache_folder import cache_folder
+from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.triangle_subdivision import outlines_crossed
@@ -259,16 +258,10 @@ def _load(path: Path) -> GlobeGrid:
 
 
 def _save(path: Path, grid: GlobeGrid) -> None:
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
     facts = np.array([grid.rejected, grid.spacing, grid.gap])
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez(file, allow_pickle=False, lat=grid.lat, lon=grid.lon, facts=facts,
-                     **vars(grid.pairs))  # fmt: skip
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    with replacing_file(path) as file:
+        np.savez(file, allow_pickle=False, lat=grid.lat, lon=grid.lon, facts=facts,
+                 **vars(grid.pairs))  # fmt: skip
 
 
 def _remove_old_files(folder: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.file_writing import write_text
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY
@@ -273,7 +274,7 @@ class Project:
         from thalweg.core.strict_yaml import dump_yaml
 
         text = dump_yaml(self.to_dict(), sort_keys=False)
-        Path(path).write_text(text, encoding="utf-8")
+        write_text(path, text)
 
 
 _SOURCE_KEYS = ("sea", "tides", "map", "depth", "zones", "coast")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.core.file_writing import write_text
 from thalweg.core.units import DAY, TONNE
 from thalweg.operations.dredging.cycles import DredgingCycle, cycle_record
 from thalweg.operations.dredging.project import Project
@@ -139,7 +140,7 @@ class ProjectResult:
         """Return the result as JSON text, and write it if a path is given."""
         text = json.dumps(self.as_dict(), indent=2, allow_nan=False)
         if path is not None:
-            Path(path).write_text(text + "\n", encoding="utf-8")
+            write_text(path, text + "\n")
         return text
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.core.file_writing import save_figure
 from thalweg.core.time import format_time
 from thalweg.core.units import DAY, HOUR
 
@@ -51,7 +52,7 @@ def draw_project(result: ProjectResult, path: str | Path | None = None) -> Any:
     _draw_time_shares(result, figure.add_subplot(grid[2, 1]))
     figure.suptitle(result.project.name, fontsize=11, parse_math=False)
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 
@@ -196,7 +197,7 @@ def draw_routes(
         label = "days since the start" if colour == "time" else "load factor"
         figure.colorbar(bundle, ax=list(frames), label=label, shrink=0.7)
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from thalweg.core.file_writing import save_figure
 from thalweg.core.units import HOUR, KNOT
 from thalweg.operations.tracks.activities import (
     AWAY,
@@ -62,7 +63,7 @@ def draw_tracks(analysis: TrackAnalysis, path: str | Path | None = None) -> Any:
         one.xaxis.label.set_size(8)
         one.yaxis.label.set_size(8)
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 

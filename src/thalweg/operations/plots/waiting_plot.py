@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.file_writing import save_figure
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR
 from thalweg.operations.waiting.waiting_optimisation import WaitingPlan
@@ -52,7 +53,7 @@ def draw_waiting(study: WaitingStudy, path: str | Path | None = None, *, title: 
     hotel = f"hotel power {study.hotel_power / 1000.0:g} kW, {len(study.trips)} trips"
     figure.suptitle(f"{title} ({hotel})" if title else hotel.capitalize(), fontsize=10)
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 

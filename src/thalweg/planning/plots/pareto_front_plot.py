@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.core.file_writing import save_figure
 from thalweg.planning.pareto.plan_front import knee
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def draw_pareto_front(plan: PlanData, path: str | Path | None = None) -> Any:
     axes.grid(alpha=0.3, lw=0.5)
     axes.legend(fontsize=8, framealpha=0.9)
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from thalweg.core.file_writing import save_figure
 from thalweg.core.units import HOUR, KNOT
 from thalweg.route import Route
 
@@ -46,7 +47,7 @@ def draw_profile(route: Route, path: str | Path | None = None) -> Any:
     rows[-1].set_xlabel("hours since departure", fontsize=8)
     figure.tight_layout()
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 

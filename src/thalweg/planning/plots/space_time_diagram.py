@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import save_figure
 from thalweg.core.time import format_time, parse_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
 from thalweg.planning.plan_data import PlanData
@@ -156,7 +157,7 @@ def _draw(
     axes.grid(alpha=0.25, lw=0.4)
     figure.legend(handles=handles, loc="outside lower left", fontsize=8, ncols=4, frameon=False)
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 

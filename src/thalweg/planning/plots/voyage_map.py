@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thalweg.core.file_writing import save_figure
 from thalweg.core.geodesy import positions_along, wrap_longitude
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, KNOT
@@ -84,7 +85,7 @@ def draw_map(plan: PlanData, path: str | Path | None = None) -> Any:
     _draw_routes(figure, axes, plan, box)
     _decorate_axes(axes, plan, box)
     if path is not None:
-        figure.savefig(path)
+        save_figure(figure, path)
     return figure
 
 

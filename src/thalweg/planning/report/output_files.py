@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thalweg.core.errors import InputError
+from thalweg.core.file_writing import make_folder, write_csv_rows, write_text
 from thalweg.core.time import TimeLike
 from thalweg.planning.plots.route_profile import draw_profile
 from thalweg.planning.plots.space_time_diagram import write_space_time_diagram
@@ -21,33 +20,6 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
     from thalweg.planning.plan_data import PlanData
     from thalweg.sea import Sea
-
-
-def make_folder(folder: str | Path) -> Path:
-    """Create a folder if it does not exist, and return it.
-
-    Raises
-    ------
-    InputError
-        If it cannot be created or written.
-    """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        writable = os.access(folder, os.W_OK)
-    except OSError as error:
-        raise _unwritable_error(folder, error.strerror or str(error)) from error
-    if not writable:
-        raise _unwritable_error(folder, "permission denied")
-    return folder
-
-
-def _unwritable_error(folder: Path, why: str) -> InputError:
-    return InputError(
-        f"The folder {folder} cannot be written: {why}.",
-        "A folder that exists and can be written, or a path where one can be created.",
-        "Choose another with --out.",
-    )
 
 
 def write_plan(plan: PlanData, folder: str | Path) -> list[Path]:
@@ -91,12 +63,8 @@ def _write_front(plan: PlanData, folder: Path) -> list[Path]:
 
 def _write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> Path:
     """Write plain rows as CSV; unknown values are empty."""
-    import csv
-
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]))
-        writer.writeheader()
-        writer.writerows({k: "" if v is None else v for k, v in row.items()} for row in rows)
+    names = list(rows[0])
+    write_csv_rows(path, [names, *([row.get(name) for name in names] for row in rows)])
     return path
 
 
@@ -104,7 +72,7 @@ def write_route(route: Route, folder: str | Path) -> list[Path]:
     """Write a route as route.json, in three formats, and its profile; return the files."""
     folder = make_folder(folder)
     text = json.dumps(route.as_dict(), indent=2, allow_nan=False)
-    (folder / "route.json").write_text(text + "\n", encoding="utf-8")
+    write_text(folder / "route.json", text + "\n")
     files = [folder / "route.json", *_write_formats(route, folder)]
     draw_profile(route, folder / "profile.png")
     return [*files, folder / "profile.png"]

@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import write_csv_rows
 from thalweg.core.time import parse_time
 from thalweg.route.formats.parsed_track import (
     SPEEDS,
@@ -77,11 +78,8 @@ def write_csv(route: Route, path: str | Path) -> None:
     path : str or Path
     """
     rows = route.waypoints()
-    with Path(path).open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(rows[0])
-        for row in rows:
-            writer.writerow(_cell(value) for value in row.values())
+    cells = [[_cell(value) for value in row.values()] for row in rows]
+    write_csv_rows(path, [list(rows[0]), *cells])
 
 
 def _bare(name: str) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import write_text
 from thalweg.core.geodesy import Position, densify, positions_along
 from thalweg.core.time import parse_time
 from thalweg.core.units import NAUTICAL_MILE
@@ -101,7 +102,7 @@ def write_geojson(route: Route, path: str | Path) -> None:
         rest = {key: value for key, value in row.items() if key not in ("lat", "lon")}
         features.append({"type": "Feature", "geometry": place, "properties": rest})
     text = json.dumps({"type": "FeatureCollection", "features": features}, allow_nan=False)
-    Path(path).write_text(text + "\n", encoding="utf-8")
+    write_text(path, text + "\n")
 
 
 def _geometries(data: Any) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:

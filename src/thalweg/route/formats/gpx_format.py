@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.file_writing import write_bytes
 from thalweg.core.time import parse_time
 from thalweg.route.formats.parsed_track import (
     SPEEDS,
@@ -75,7 +77,9 @@ def write_gpx(route: Route, path: str | Path) -> None:
     tree = ElementTree.ElementTree(root)
     ElementTree.register_namespace("thalweg", _OWN_NAMESPACE)
     ElementTree.indent(tree)
-    tree.write(Path(path), encoding="utf-8", xml_declaration=True)
+    text = io.BytesIO()
+    tree.write(text, encoding="utf-8", xml_declaration=True)
+    write_bytes(path, text.getvalue())
 
 
 def _extend(point: ElementTree.Element, row: Mapping[str, Any]) -> None:

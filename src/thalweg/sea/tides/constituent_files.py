@@ -21,6 +21,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError, ThalwegWarning, unknown_name_error
+from thalweg.core.file_writing import write_text
 from thalweg.core.units import KNOT
 from thalweg.sea import standard_names as nm
 from thalweg.sea.tides import schureman
@@ -87,7 +88,7 @@ def write_constituents(constituents: Constituents, path: str | Path) -> None:
         JSON file to write.
     """
     text = json.dumps(as_dict(constituents), indent=1, allow_nan=False)
-    Path(path).write_text(text, encoding="utf-8")
+    write_text(path, text)
 
 
 def as_dict(constituents: Constituents) -> dict[str, Any]:

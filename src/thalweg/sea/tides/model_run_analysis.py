@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
-import os
 import warnings
 import zipfile
 from collections.abc import Sequence
@@ -15,6 +15,7 @@ import numpy as np
 
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.ensemble_layer import check_not_ensemble
@@ -175,12 +176,8 @@ def _write_cache(path: Path, analysis: harmonic_analysis.TideAnalysis) -> None:
         arrays[f"mean:{name}"] = constants.mean[name]
         arrays[f"share:{name}"] = analysis.tidal_share[name]
         arrays[f"variance:{name}"] = analysis.variance[name]
-    partial = path.with_name(f"{path.stem}.{os.getpid()}.part.npz")
-    try:
-        np.savez(partial, **arrays)
-        os.replace(partial, path)
-    except OSError:
-        partial.unlink(missing_ok=True)
+    with contextlib.suppress(OSError), replacing_file(path) as file:
+        np.savez(file, **arrays)
 
 
 def _read_cache(

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
-import os
-import threading
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from thalweg.core.cache_folder import cache_folder
+from thalweg.core.file_writing import replacing_file
 from thalweg.core.types import FloatArray
 from thalweg.ship.tables.output_curve import OUTPUT_CURVE_FIELDS, OutputCurve
 from thalweg.ship.tables.performance_table import PerformanceTable
@@ -98,14 +98,10 @@ def _write(path: Path, kept: TableWithMaxima) -> None:
         arrays |= {f"grid{p}_{k}": grid for k, grid in enumerate(part.grids)}
     if finish is not None:
         arrays |= {f"finish_{name}": getattr(finish, name) for name in OUTPUT_CURVE_FIELDS}
-    draft = path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.tmp")
-    try:
-        with draft.open("wb") as file:
+    with contextlib.suppress(OSError):
+        with replacing_file(path) as file:
             np.savez(file, **arrays)
-        os.replace(draft, path)
         _remove_oldest(path.parent)
-    except OSError:
-        draft.unlink(missing_ok=True)
 
 
 def _remove_oldest(folder: Path) -> None:

@@ -1,0 +1,196 @@
+"""Writing files completely or not at all.
+
+The content goes to a temporary file in the same folder, which then takes the place of the old
+file. A full disk or a stopped process leaves the old file as it was.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import io
+import os
+import secrets
+import stat
+from collections.abc import Iterable, Iterator
+from os import PathLike
+from pathlib import Path
+from typing import IO, Any
+
+from thalweg.core.errors import InputError
+
+
+@contextlib.contextmanager
+def replacing_file(path: str | PathLike[str]) -> Iterator[IO[bytes]]:
+    """Open a temporary file that replaces ``path`` when the block ends without an error.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write. A link is followed; the permissions of an existing file are kept. A device
+        or a pipe is written directly.
+
+    Yields
+    ------
+    file
+        Binary file to write to.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written. An existing file is then unchanged.
+    """
+    target = Path(os.path.realpath(path))
+    mode = _existing_mode(target)
+    if mode is not None and not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        with target.open("wb") as stream:
+            yield stream
+        return
+    if target.is_dir():
+        raise IsADirectoryError(21, "it is a folder", str(target))
+    if mode is not None and not os.access(target, os.W_OK):
+        raise PermissionError(13, "Permission denied", str(target))
+    draft = target.with_name(f".{secrets.token_hex(8)}.part")
+    try:
+        with draft.open("xb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        if mode is not None:
+            draft.chmod(stat.S_IMODE(mode))
+        os.replace(draft, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            draft.unlink(missing_ok=True)
+        raise
+
+
+def _existing_mode(path: Path) -> int | None:
+    """Return the kind and the permissions of a file; None if it does not exist."""
+    try:
+        return path.stat().st_mode
+    except FileNotFoundError:
+        return None
+
+
+def write_bytes(path: str | PathLike[str], data: bytes) -> None:
+    """Write a file completely or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+    data : bytes
+
+    Raises
+    ------
+    InputError
+        If it cannot be written. An existing file is then unchanged.
+    """
+    try:
+        with replacing_file(path) as file:
+            file.write(data)
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        raise unwritable_error("file", path, error) from error
+
+
+def write_text(path: str | PathLike[str], text: str) -> None:
+    """Write text in UTF-8, completely or not at all; parameters and errors as `write_bytes`."""
+    write_bytes(path, text.encode("utf-8", "backslashreplace"))
+
+
+def write_csv_rows(path: str | PathLike[str], rows: Iterable[Iterable[Any]]) -> None:
+    """Write rows as CSV, completely or not at all; None becomes an empty cell.
+
+    Parameters
+    ----------
+    path : str or Path
+    rows : iterable of rows of cells
+
+    Raises
+    ------
+    InputError
+        If it cannot be written. An existing file is then unchanged.
+    """
+    text = io.StringIO(newline="")
+    csv.writer(text).writerows(rows)
+    write_text(path, text.getvalue())
+
+
+def save_figure(figure: Any, path: str | PathLike[str] | IO[bytes], **options: Any) -> None:
+    """Write a matplotlib figure, completely or not at all.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    path : str, Path or binary file
+        The suffix gives the format; without one, ``.png`` is added.
+    **options
+        For ``savefig``.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written, or the format is unknown. An existing file is then unchanged.
+    """
+    if not isinstance(path, (str, PathLike)):
+        figure.savefig(path, **options)
+        return
+    path = Path(path)
+    if not path.suffix and "format" not in options:
+        path = path.with_name(path.name + ".png")
+    options = {"format": path.suffix[1:].lower(), **options}
+    known = figure.canvas.get_supported_filetypes()
+    if options["format"] not in known:
+        raise InputError(
+            f"A picture of the format {options['format']!r} was asked for.",
+            f"Formats: {', '.join(sorted(known))}.",
+            "Give the file one of these endings.",
+            file=str(path),
+        )
+    picture = io.BytesIO()
+    figure.savefig(picture, **options)
+    write_bytes(path, picture.getvalue())
+
+
+def make_folder(folder: str | PathLike[str]) -> Path:
+    """Create a folder if it does not exist, and return it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be created or written.
+    """
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not os.access(folder, os.W_OK):
+            raise PermissionError(13, "Permission denied")
+    except FileExistsError:
+        raise unwritable_error("folder", folder, "a file has this name") from None
+    except (OSError, ValueError) as error:
+        raise unwritable_error("folder", folder, error) from error
+    return folder
+
+
+def unwritable_error(kind: str, path: str | PathLike[str], why: Exception | str) -> InputError:
+    """Return the error for a ``file`` or ``folder`` that cannot be written.
+
+    Parameters
+    ----------
+    kind : {'file', 'folder'}
+    path : str or Path
+    why : exception or str
+        An `OSError`, or the reason in words.
+    """
+    reason = why if isinstance(why, str) else getattr(why, "strerror", None) or str(why)
+    possible = {
+        "file": "A file needs an existing folder, permission to write and free space; "
+        "an earlier file of this name is unchanged.",
+        "folder": "A folder that exists and can be written, or a path where one can be created.",
+    }
+    return InputError(
+        f"The {kind} {str(path)!r} cannot be written: {reason}.",
+        possible[kind],
+        "Choose another path, or correct the cause.",
+        file=str(path),
+    )
