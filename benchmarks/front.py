@@ -21,22 +21,16 @@ import numpy as np
 from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
 
-from thalweg.search import NetworkFront, pareto_front
+from thalweg.search import FrontQuery, MultiSettingShipOnNetwork, NetworkFront, pareto_front
 
 
 def search(grid: world.Grid, given: tuple, bin_min: float, lower: bool) -> NetworkFront:
     network, fields = given
     table, fuel = world.tables()
+    latest = world.T0 + world.LATEST * world.HOUR
     return pareto_front(
-        network,
-        fields,
-        table,
-        fuel,
-        start=grid.node(world.START),
-        goal=grid.node(world.GOAL),
-        depart=world.T0,
-        latest=world.T0 + world.LATEST * world.HOUR,
-        limits=NO_LIMITS,
+        MultiSettingShipOnNetwork(network, fields, table, fuel, NO_LIMITS),
+        FrontQuery(grid.node(world.START), grid.node(world.GOAL), world.T0, latest),
         bin_s=bin_min * world.HOUR / 60.0,
         lower=lower,
         memory_limit=8e9,

@@ -16,7 +16,7 @@ import time
 import numpy as np
 
 from relaxations import SPACING, SPEED, TOP_LIMITS, moving_sea, regular_network, speed_table
-from thalweg.search import earliest_arrival
+from thalweg.search import ShipOnNetwork, earliest_arrival
 
 SIDE = 100
 OFFSETS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
@@ -29,15 +29,13 @@ def main() -> None:
     network = regular_network(SIDE, OFFSETS)
     fields = moving_sea(network, 6.0 * SIDE * SPACING / SPEED, 8)
     rng = np.random.default_rng(0)
-    given = {"setting": 0, "limits": TOP_LIMITS, "top_speed": SPEED, "depart": 0.0}
+    ship = ShipOnNetwork(network, fields, speed_table(), 0, TOP_LIMITS, SPEED)
     for method in ("astar", "dijkstra"):
         taken, settled = [], []
         for run in range(options.runs + 1):
             start, goal = rng.integers(0, SIDE, 2) * SIDE + np.array([0, SIDE - 1])
             begin = time.perf_counter()
-            result = earliest_arrival(
-                network, fields, speed_table(), start=start, goal=goal, method=method, **given
-            )
+            result = earliest_arrival(ship, start=start, goal=goal, depart=0.0, method=method)
             if run:  # the first one compiles or loads
                 taken.append(1e3 * (time.perf_counter() - begin))
                 settled.append(result.settled)

@@ -26,7 +26,7 @@ from thalweg import Chart, Sea, Ship, lattice
 from thalweg.core.limits import Limits
 from thalweg.core.units import KNOT
 from thalweg.kernels import codes
-from thalweg.search import earliest_arrival
+from thalweg.search import ShipOnNetwork, earliest_arrival
 
 OPTIMUM = 26240.4617
 METRES_PER_DEGREE = 6_372_800.0 * math.pi / 180.0
@@ -80,15 +80,10 @@ def ours(directions):
         extra=None,
     )
     found = earliest_arrival(
-        network,
-        fields,
-        ship.tabulate(),
+        ShipOnNetwork(network, fields, ship.tabulate(), setting=0, limits=Limits(), top_speed=4.0),
         start=network.meta.start,
         goal=network.meta.goal,
         depart=T0,
-        setting=0,
-        limits=Limits(),
-        top_speed=4.0,
     )
     return network.n_nodes, found.cost
 

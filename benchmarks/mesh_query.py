@@ -26,7 +26,7 @@ from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network import mesh
 from thalweg.sea.frozen_fields import StationFields
-from thalweg.search import PreparedNetwork, earliest_arrival, prepare_profile_search
+from thalweg.search import PreparedNetwork, ShipOnNetwork, earliest_arrival, prepare_profile_search
 
 SPACING = 300.0  # m
 SPEED, DRAUGHT = 5.0, 5.0
@@ -101,7 +101,7 @@ def main() -> None:
         [
             timed(
                 lambda s=s, g=g, t=t: earliest_arrival(
-                    network, fields, steady(), start=s, goal=g, depart=t, **given
+                    ShipOnNetwork(network, fields, steady(), **given), start=s, goal=g, depart=t
                 )
             )
             for (s, g), t in zip(pairs, departs)

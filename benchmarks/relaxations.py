@@ -27,7 +27,7 @@ from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.network import Edges, Graph, Network, NetworkMeta, Samples, Stations
 from thalweg.sea.frozen_fields import StationFields
 from thalweg.search.earliest_arrival import ArrivalQuery, solve_earliest_arrival
-from thalweg.search.search_problem import make_search_problem
+from thalweg.search.search_problem import ShipOnNetwork, make_search_problem
 
 SPACING = 2000.0  # [m]
 OFFSETS = [
@@ -132,7 +132,7 @@ def main() -> None:
     network = regular_network(side)
     fields = moving_sea(network, 3.0 * side * SPACING / SPEED, options.times)
     given = make_search_problem(
-        network, fields, speed_table(), setting=0, limits=TOP_LIMITS, top_speed=SPEED
+        ShipOnNetwork(network, fields, speed_table(), setting=0, limits=TOP_LIMITS, top_speed=SPEED)
     )
     solve_earliest_arrival(network, given, ArrivalQuery(0, 1, 0.0))  # compile
     print(f"{network.n_nodes:,} nodes, {network.n_edges:,} edges, {len(network.samples):,} middles")

@@ -22,6 +22,31 @@ SHARED_FUNCTIONS = {
     "equilibrium_arguments",
     "nodal_corrections",
 }
+MAX_ARGUMENTS = 8  # of a function outside the kernels, without self and cls
+#: Functions with more arguments, by module below thalweg, and why they keep them.
+MANY_ARGUMENTS = {
+    "evolution.evolve.evolve": "public entry point with keyword options",
+    "evolution.memetic.refine_front": "public entry point with keyword options",
+    "network.global_grid.globe_builder.globe": "public entry point with keyword options",
+    "network.regional_lattice.lattice_builder.lattice": "public entry point with keyword options",
+    "network.triangular_mesh.mesh_builder.mesh": "public entry point with keyword options",
+    "operations.examples.synthetic_tracks.synthetic_track": "keyword options of a demonstration",
+    "operations.openclsim.leg_planner.LegPlanner.open": "public entry point with keyword options",
+    "operations.waiting.trip_durations.trip_table": "public entry point with keyword options",
+    "route.evaluators.population_evaluator.make_evaluator": "public entry point with options",
+    "route.referee.evaluation.evaluate": "public entry point with keyword options",
+    "route.refinement.better_route.better_route": "public entry point with keyword options",
+    "route.refinement.cost_refinement.polish": "public entry point with keyword options",
+    "sea.sea.Sea.freeze_grid": "bounds of an area and a period, each an argument of its own",
+    "ship.methods.added_resistance.snnm.snnm": "parameters of a published formula",
+    "ship.methods.added_resistance.stawave.stawave2": "parameters of a published formula",
+    "ship.methods.added_resistance.stawave.stawave2_transfer": "parameters of a published formula",
+    "ship.methods.propulsion.propulsion_factors.propulsion": "parameters of a published formula",
+    "ship.methods.resistance.holtrop_mennen.holtrop": "parameters of a published formula",
+    "ship.methods.seakeeping.ship_motions.ship_response": "parameters of a published formula",
+    "ship.methods.speed_loss.kwon_speed_loss": "parameters of a published formula",
+    "ship.ship.Ship.simple": "public entry point with keyword options",
+}
 
 
 def modules() -> dict[str, Path]:
@@ -75,6 +100,36 @@ def test_no_folder_has_too_many_modules():
     for path in MODULES.values():
         counts[path.parent.relative_to(ROOT).as_posix()] += 1
     assert {folder: n for folder, n in counts.items() if n > MAX_MODULES} == {}
+
+
+def functions(tree: ast.AST, prefix: str) -> Iterable[tuple[str, ast.FunctionDef]]:
+    """Return every function with its dotted name: in classes and in functions too."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            name = f"{prefix}.{node.name}"
+            if isinstance(node, ast.FunctionDef):
+                yield name, node
+            yield from functions(node, name)
+        else:
+            yield from functions(node, prefix)
+
+
+def argument_count(function: ast.FunctionDef) -> int:
+    names = [arg.arg for arg in (*function.args.posonlyargs, *function.args.args)]
+    bound = names[:1] in (["self"], ["cls"])
+    return len(names) + len(function.args.kwonlyargs) - bound
+
+
+def test_functions_outside_the_kernels_have_few_arguments():
+    """A function that needs more takes them as a dataclass or a named tuple."""
+    many = sorted(
+        name.removeprefix("thalweg.")
+        for module, tree in TREES.items()
+        if not module.startswith("thalweg.kernels.")
+        for name, function in functions(tree, module)
+        if argument_count(function) > MAX_ARGUMENTS
+    )
+    assert many == list(MANY_ARGUMENTS)
 
 
 def imported(tree: ast.AST) -> set[str]:

@@ -6,7 +6,7 @@ import pytest
 from tests.search.small import limits, line, make_fields, make_table, steady
 from thalweg.kernels import codes
 from thalweg.kernels.search.edge_departure import OPENING_TOLERANCE
-from thalweg.search import earliest_arrival
+from thalweg.search import ShipOnNetwork, earliest_arrival
 from thalweg.search.fifo import sampled_arrivals
 
 HOUR = 3600.0
@@ -36,18 +36,23 @@ def test_an_opening_is_found_to_a_tenth_of_a_second(seed, by_depth):
     table = squat if by_depth else steady(4.0)
     asked = {"setting": 0, "limits": limits(depth=REQUIRED), "top_speed": 5.0}
     depart = 100.0
-    found = earliest_arrival(network, fields, table, start=0, goal=1, depart=depart, **asked)
+    found = earliest_arrival(
+        ShipOnNetwork(network, fields, table, **asked), start=0, goal=1, depart=depart
+    )
     clock = np.arange(depart, 6 * HOUR, 1.0)
-    arrivals, _ = sampled_arrivals(network, fields, table, departures=clock, edges=[0], **asked)
+    arrivals, _ = sampled_arrivals(
+        ShipOnNetwork(network, fields, table, **asked), departures=clock, edges=[0]
+    )
     assert np.isinf(arrivals[0, 0])  # shut at first
     first = int(np.argmax(np.isfinite(arrivals[0])))
     leave = float(found.path_depart[0])
     assert clock[first - 1] <= leave + OPENING_TOLERANCE
     assert found.arrive <= arrivals[0].min() + 1.0
     before = sampled_arrivals(
-        network, fields, table, edges=[0],
-        departures=[leave - 1.01 * OPENING_TOLERANCE, leave], **asked,
-    )[0][0]  # fmt: skip
+        ShipOnNetwork(network, fields, table, **asked),
+        edges=[0],
+        departures=[leave - 1.01 * OPENING_TOLERANCE, leave],
+    )[0][0]
     assert before[1] == found.arrive
     if leave < clock[first] + 1.0:  # left as it opened
         assert np.isinf(before[0])

@@ -5,6 +5,7 @@ import pytest
 
 from tests.search.small import limits, line, make_fields, steady
 from thalweg.kernels import codes
+from thalweg.search import ShipOnNetwork
 from thalweg.search.fifo import sampled_arrivals
 
 HOUR = 3600.0
@@ -14,7 +15,7 @@ def sail(network, fields, departures, *, table=None, bounds=None, edges=(0,)):
     given = {"setting": 0, "limits": limits() if bounds is None else bounds, "top_speed": 9.0}
     table = steady(5.0) if table is None else table
     arrivals, statuses = sampled_arrivals(
-        network, fields, table, departures=departures, edges=edges, **given
+        ShipOnNetwork(network, fields, table, **given), departures=departures, edges=edges
     )
     return arrivals[0], statuses[0]
 

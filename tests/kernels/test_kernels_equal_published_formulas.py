@@ -19,9 +19,11 @@ from thalweg.kernels.geometry import cube_sphere
 from thalweg.kernels.geometry.depth_sampling import DepthArrays, depths_at_points, least_depths
 from thalweg.kernels.leg.table_lookup import table_value
 from thalweg.kernels.pareto.edge_tables import sail_departures
+from thalweg.search import ShipOnNetwork
 from thalweg.search.fifo import sampled_arrivals
 from thalweg.search.pareto.front_problem import (
     FrontRequest,
+    MultiSettingShipOnNetwork,
     make_front_problem,
     new_edge_workspace,
 )
@@ -204,9 +206,10 @@ def test_an_edge_in_a_uniform_current_takes_its_length_over_the_published_speed(
         network = line(2, 9000.0, course=course, pieces=4)
         fields = make_fields(network, [0.0, 1e6], current_east=current[0], current_north=current[1])
         arrivals, _ = sampled_arrivals(
-            network, fields, steady(5.0), departures=[50.0], setting=0, limits=Limits(),
-            top_speed=5.0, edges=[0],
-        )  # fmt: skip
+            ShipOnNetwork(network, fields, steady(5.0), setting=0, limits=Limits(), top_speed=5.0),
+            departures=[50.0],
+            edges=[0],
+        )
         found = current_triangle(
             5.0,
             float(network.edges.course[0]),
@@ -232,9 +235,8 @@ def test_an_edge_burns_the_fuel_rate_of_the_table_at_the_published_heading():
         request = FrontRequest(
             0, 1, 0.0, 9e5, np.arange(2), FUEL_MASS, np.ones(network.n_edges), True
         )
-        problem = make_front_problem(
-            network, fields, table, rate, request=request, limits=Limits(), top_speed=None
-        )
+        ship = MultiSettingShipOnNetwork(network, fields, table, rate, Limits())
+        problem = make_front_problem(ship, request)
         out, edges = np.empty((2, 2)), np.zeros(2, np.int64)
         sail_departures(
             problem.world, edges, edges, np.arange(2), np.full(2, 60.0), out, new_edge_workspace()

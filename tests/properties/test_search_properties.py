@@ -7,7 +7,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.search.small import NO_LIMITS, limits, make_fields, make_network, steady
-from thalweg.search import best_departure, earliest_arrival, fifo_report
+from thalweg.search import (
+    DepartureWindow,
+    ShipOnNetwork,
+    best_departure,
+    earliest_arrival,
+    fifo_report,
+)
 from thalweg.search.fifo import sampled_arrivals
 
 SPEED, STEP, STEPS, MINUTE = 5.0, 1800.0, 30, 60.0
@@ -37,11 +43,9 @@ def random_world(seed, *, nodes=6, gaps=False, pieces=2, **options):
 
 
 def sail(network, fields, depart, **options):
-    wanted = {
-        "start": 0, "goal": network.n_nodes - 1, "depart": depart, "setting": 0,
-        "limits": NO_LIMITS, "top_speed": SPEED,
-    }  # fmt: skip
-    return earliest_arrival(network, fields, steady(SPEED), **(wanted | options))
+    ship = ShipOnNetwork(network, fields, steady(SPEED), 0, NO_LIMITS, SPEED)
+    wanted = {"start": 0, "goal": network.n_nodes - 1, "depart": depart}
+    return earliest_arrival(ship, **(wanted | options))
 
 
 def edge_arrival(network, fields, edge, depart, wait):
@@ -50,9 +54,10 @@ def edge_arrival(network, fields, edge, depart, wait):
     if wait == "any minute":
         starts = np.append(starts, np.arange(depart, fields.times[-1], MINUTE))
     arrivals, _ = sampled_arrivals(
-        network, fields, steady(SPEED), departures=starts, edges=[edge], setting=0,
-        limits=NO_LIMITS, top_speed=SPEED,
-    )  # fmt: skip
+        ShipOnNetwork(network, fields, steady(SPEED), setting=0, limits=NO_LIMITS, top_speed=SPEED),
+        departures=starts,
+        edges=[edge],
+    )
     return arrivals.min()
 
 
@@ -87,9 +92,11 @@ def test_astar_is_dijkstra_is_brute_force(seed, case):
     network, fields, depart = random_world(seed, gaps=gaps, nodes=5)
     if not wait:
         report = fifo_report(
-            network, fields, steady(SPEED), departures=fields.times, setting=0, limits=NO_LIMITS,
-            top_speed=SPEED,
-        )  # fmt: skip
+            ShipOnNetwork(
+                network, fields, steady(SPEED), setting=0, limits=NO_LIMITS, top_speed=SPEED
+            ),
+            departures=fields.times,
+        )
         assume(report.worst == 0.0)
     results = [sail(network, fields, depart, wait=wait, method=m) for m in ("astar", "dijkstra")]
     truth = brute_force(network, fields, 0, depart, "any minute" if gaps else wait)
@@ -170,9 +177,11 @@ def test_no_departure_on_the_grid_beats_the_best_departure(seed):
     network, fields, _ = random_world(seed, nodes=6)
     window = (0.0, 8 * STEP)
     best = best_departure(
-        network, fields, steady(SPEED), start=0, goal=5, window=window, setting=0,
-        limits=NO_LIMITS, top_speed=SPEED,
-    )  # fmt: skip
+        ShipOnNetwork(network, fields, steady(SPEED), setting=0, limits=NO_LIMITS, top_speed=SPEED),
+        start=0,
+        goal=5,
+        window=DepartureWindow(*window),
+    )
     tried = [sail(network, fields, t).duration for t in STEP * np.arange(9)]
     assert best.found == np.isfinite(min(tried))
     if best.found:

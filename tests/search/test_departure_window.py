@@ -9,11 +9,12 @@ from tests.search.small import limits, line, make_fields, steady
 from tests.search.test_limited_waiting import barred_line
 from tests.search.test_tidal_states import GIVEN as TIDAL
 from thalweg.core.errors import InputError
-from thalweg.search import best_departure, earliest_arrival
+from thalweg.search import DepartureWindow, ShipOnNetwork, best_departure, earliest_arrival
 
 HOUR = 3600.0
 TIDE = 12.42 * HOUR
-GIVEN = {"start": 0, "goal": 10, "setting": 0, "limits": limits(), "top_speed": 5.0}
+ENDS = {"start": 0, "goal": 10}
+GIVEN = {"setting": 0, "limits": limits(), "top_speed": 5.0}
 
 
 def tidal(step=HOUR / 4):
@@ -25,11 +26,17 @@ def tidal(step=HOUR / 4):
 
 def test_the_best_departure_has_the_stream_with_it():
     network, fields = tidal()
-    result = best_departure(network, fields, steady(5.0), window=(2 * HOUR, 20 * HOUR), **GIVEN)
+    result = best_departure(
+        ShipOnNetwork(network, fields, steady(5.0), **GIVEN),
+        window=DepartureWindow(2 * HOUR, 20 * HOUR),
+        **ENDS,
+    )
     # by symmetry the passage is centred on the strongest stream
     assert result.depart + result.duration / 2 == pytest.approx(TIDE, abs=400.0)
     fine = [
-        earliest_arrival(network, fields, steady(5.0), depart=t, **GIVEN).duration
+        earliest_arrival(
+            ShipOnNetwork(network, fields, steady(5.0), **GIVEN), depart=t, **ENDS
+        ).duration
         for t in np.arange(2 * HOUR, 20 * HOUR, 120.0)
     ]
     assert result.duration <= min(fine) + 0.1
@@ -38,14 +45,24 @@ def test_the_best_departure_has_the_stream_with_it():
 def test_equal_departures_go_to_the_earliest():
     network, _ = tidal()
     fields = make_fields(network, [0.0, 1e5, 2e5], current_east=1.0, current_north=0.0)
-    result = best_departure(network, fields, steady(5.0), window=(500.0, 9000.0), **GIVEN)
+    result = best_departure(
+        ShipOnNetwork(network, fields, steady(5.0), **GIVEN),
+        window=DepartureWindow(500.0, 9000.0),
+        **ENDS,
+    )
     assert result.depart == 500.0
 
 
 def test_a_window_of_one_moment():
     network, fields = tidal()
-    result = best_departure(network, fields, steady(5.0), window=(HOUR, HOUR), **GIVEN)
-    alone = earliest_arrival(network, fields, steady(5.0), depart=HOUR, **GIVEN)
+    result = best_departure(
+        ShipOnNetwork(network, fields, steady(5.0), **GIVEN),
+        window=DepartureWindow(HOUR, HOUR),
+        **ENDS,
+    )
+    alone = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(5.0), **GIVEN), depart=HOUR, **ENDS
+    )
     assert (result.depart, result.arrive) == (HOUR, alone.arrive)
 
 
@@ -53,7 +70,10 @@ def test_the_best_departure_is_none_if_nothing_succeeds():
     network, fields = tidal()
     given = GIVEN | {"top_speed": 1.0}
     result = best_departure(
-        network, fields, steady(1.0), window=(0.0, 2 * HOUR), arrive_by=2 * HOUR, **given
+        ShipOnNetwork(network, fields, steady(1.0), **given),
+        window=DepartureWindow(0.0, 2 * HOUR),
+        arrive_by=2 * HOUR,
+        **ENDS,
     )
     assert not result.found
     assert "arrives too late" in result.refused
@@ -62,7 +82,9 @@ def test_the_best_departure_is_none_if_nothing_succeeds():
 def test_an_own_step_of_departures():
     network, fields = tidal()
     coarse = best_departure(
-        network, fields, steady(5.0), window=(2 * HOUR, 20 * HOUR), step=4 * HOUR, **GIVEN
+        ShipOnNetwork(network, fields, steady(5.0), **GIVEN),
+        window=DepartureWindow(2 * HOUR, 20 * HOUR, step=4 * HOUR),
+        **ENDS,
     )
     assert coarse.depart + coarse.duration / 2 == pytest.approx(TIDE, abs=400.0)
 
@@ -71,7 +93,11 @@ def test_an_own_step_of_departures():
 def test_empty_windows_are_refused(window):
     network, fields = tidal()
     with pytest.raises(InputError, match="window"):
-        best_departure(network, fields, steady(5.0), window=window, **GIVEN)
+        best_departure(
+            ShipOnNetwork(network, fields, steady(5.0), **GIVEN),
+            window=DepartureWindow(*window),
+            **ENDS,
+        )
 
 
 @pytest.mark.parametrize("waits_at", [[0, 1], [0]])
@@ -79,13 +105,27 @@ def test_a_window_where_the_ship_may_wait_at_some_nodes_only(waits_at):
     """A bar that opens at 4 h: who leaves within the first hour must wait, and can."""
     network, fields = barred_line(4 * HOUR)
     network = replace(network, can_wait=np.isin(np.arange(6), waits_at))
-    asked = {"start": 0, "goal": 5, **TIDAL}
-    found = best_departure(network, fields, steady(4.0), window=(0.0, HOUR), **asked)
-    last = earliest_arrival(network, fields, steady(4.0), depart=HOUR, **asked)
+    asked = {"start": 0, "goal": 5}
+    found = best_departure(
+        ShipOnNetwork(network, fields, steady(4.0), **TIDAL),
+        window=DepartureWindow(0.0, HOUR),
+        **asked,
+    )
+    last = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **TIDAL), depart=HOUR, **asked
+    )
     assert found.found and last.found
     assert found.arrive == pytest.approx(last.arrive, abs=1.0)
     assert found.duration == pytest.approx(last.duration, abs=1.0)
-    later = best_departure(network, fields, steady(4.0), window=(0.0, 6 * HOUR), **asked)
+    later = best_departure(
+        ShipOnNetwork(network, fields, steady(4.0), **TIDAL),
+        window=DepartureWindow(0.0, 6 * HOUR),
+        **asked,
+    )
     assert later.duration == pytest.approx(5000.0 / 4.0, abs=1.0)
     with pytest.raises(InputError, match="node 99"):
-        best_departure(network, fields, steady(4.0), window=(0.0, HOUR), **(asked | {"goal": 99}))
+        best_departure(
+            ShipOnNetwork(network, fields, steady(4.0), **TIDAL),
+            window=DepartureWindow(0.0, HOUR),
+            **asked | {"goal": 99},
+        )

@@ -4,19 +4,18 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from tests.search.small import grid, limits, line, make_fields, make_network, steady
+from tests.search.small import NO_LIMITS, grid, limits, line, make_fields, make_network, steady
 from thalweg.core.errors import InputError
-from thalweg.search import earliest_arrival
+from thalweg.search import ShipOnNetwork, earliest_arrival
 
 STILL = {"current_east": 0.0, "current_north": 0.0}
 
 
-def sail(network, fields, *, speed=5.0, **options):
-    given = {
-        "start": 0, "goal": len(network.can_wait) - 1, "depart": 0.0, "setting": 0,
-        "limits": limits(), "top_speed": speed,
-    }  # fmt: skip
-    return earliest_arrival(network, fields, steady(speed), **(given | options))
+def sail(network, fields, *, speed=5.0, setting=0, limits=NO_LIMITS, top_speed=None, **options):
+    top = speed if top_speed is None else top_speed
+    ship = ShipOnNetwork(network, fields, steady(speed), setting, limits, top)
+    given = {"start": 0, "goal": len(network.can_wait) - 1, "depart": 0.0}
+    return earliest_arrival(ship, **(given | options))
 
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from tests.search.small import limits, line, make_fields, steady
-from thalweg.search import earliest_arrival, earliest_arrivals_with_waiting, fifo_report
+from thalweg.search import (
+    ShipOnNetwork,
+    earliest_arrival,
+    earliest_arrivals_with_waiting,
+    fifo_report,
+)
 from thalweg.search.fifo import sampled_arrivals
 
 INF = np.inf
@@ -65,7 +70,9 @@ GIVEN = {"setting": 0, "limits": limits(), "top_speed": 30.0}
 def test_the_fields_reproduce_the_example_without_waiting():
     network, fields = example()
     arrivals, _ = sampled_arrivals(
-        network, fields, steady(1.0), departures=UNIT * np.arange(10), edges=[0], **GIVEN
+        ShipOnNetwork(network, fields, steady(1.0), **GIVEN),
+        departures=UNIT * np.arange(10),
+        edges=[0],
     )
     assert arrivals[0] / UNIT == pytest.approx(np.arange(10) + W, rel=1e-6)
 
@@ -75,7 +82,11 @@ def test_the_fields_reproduce_the_example_without_waiting():
 def test_the_search_waits_as_in_the_example(depart, method):
     network, fields = example()
     result = earliest_arrival(
-        network, fields, steady(1.0), start=0, goal=1, depart=UNIT * depart, method=method, **GIVEN
+        ShipOnNetwork(network, fields, steady(1.0), **GIVEN),
+        start=0,
+        goal=1,
+        depart=UNIT * depart,
+        method=method,
     )
     assert result.arrive / UNIT == pytest.approx(WAITED[depart], rel=1e-6)
     if depart < 3:
@@ -91,11 +102,14 @@ def test_the_search_without_waiting_takes_what_it_gets(may_wait):
         network.can_wait[0] = False
     results = [
         earliest_arrival(
-            network, fields, steady(1.0), start=0, goal=1, depart=UNIT * t,
-            wait=may_wait != "nowhere", **GIVEN,
+            ShipOnNetwork(network, fields, steady(1.0), **GIVEN),
+            start=0,
+            goal=1,
+            depart=UNIT * t,
+            wait=may_wait != "nowhere",
         )
         for t in range(10)
-    ]  # fmt: skip
+    ]
     assert [r.found for r in results] == [False] * 3 + [True] * 7
     arrivals = [r.arrive / UNIT for r in results]
     assert arrivals[3:] == pytest.approx((np.arange(10) + W)[3:], rel=1e-6)
@@ -105,7 +119,9 @@ def test_the_search_without_waiting_takes_what_it_gets(may_wait):
 def test_the_report_measures_the_worst_gain_by_waiting():
     network, fields = example()
     report = fifo_report(
-        network, fields, steady(1.0), departures=UNIT * np.arange(10), edges=[0], **GIVEN
+        ShipOnNetwork(network, fields, steady(1.0), **GIVEN),
+        departures=UNIT * np.arange(10),
+        edges=[0],
     )
     assert report.worst == pytest.approx(5 * UNIT, rel=1e-6)  # 15 becomes 10
     assert (report.edge, report.share) == (0, 1.0)
@@ -115,5 +131,7 @@ def test_the_report_measures_the_worst_gain_by_waiting():
 def test_steady_water_keeps_order():
     network = line(3, 5000.0)
     fields = make_fields(network, [0.0, 1e5], current_east=1.0, current_north=0.0)
-    report = fifo_report(network, fields, steady(5.0), departures=np.linspace(0, 5e4, 7), **GIVEN)
+    report = fifo_report(
+        ShipOnNetwork(network, fields, steady(5.0), **GIVEN), departures=np.linspace(0, 5e4, 7)
+    )
     assert (report.worst, report.edge, report.share, report.blocked) == (0.0, -1, 0.0, 0.0)

@@ -10,7 +10,13 @@ from thalweg.chart import Chart
 from thalweg.core import geodesy
 from thalweg.core.errors import InputError
 from thalweg.network import check_network, globe, shortest_path
-from thalweg.search import best_departure, earliest_arrival, lower_bound
+from thalweg.search import (
+    DepartureWindow,
+    ShipOnNetwork,
+    best_departure,
+    earliest_arrival,
+    lower_bound,
+)
 
 TIMES = np.linspace(0.0, 400_000.0, 9)
 HOUR = 3600.0
@@ -37,9 +43,9 @@ def square(**options):
     return make_network(lat, lon, edges, pieces=3, **options)
 
 
-def search(network, fields, speed=5.0, **options):
-    options = {"setting": 0, "limits": NO_LIMITS, "start": 0, "goal": 2, "depart": 0.0, **options}
-    return earliest_arrival(network, fields, steady(speed), top_speed=speed, **options)
+def search(network, fields, speed=5.0, limits=NO_LIMITS, **options):
+    ship = ShipOnNetwork(network, fields, steady(speed), 0, limits, speed)
+    return earliest_arrival(ship, **{"start": 0, "goal": 2, "depart": 0.0, **options})
 
 
 def test_defaults_are_sailed_edges_without_fees():
@@ -113,9 +119,14 @@ def test_astar_equals_dijkstra_on_random_networks_with_canals(seed):
         assert results[0].cost == pytest.approx(results[1].cost, rel=1e-12)
         if results[0].found:
             bound = lower_bound(
-                network, fields, steady(4.0), start=0, goal=13, depart=0.0, setting=0,
-                limits=NO_LIMITS, top_speed=4.0, objective=objective,
-            )  # fmt: skip
+                ShipOnNetwork(
+                    network, fields, steady(4.0), setting=0, limits=NO_LIMITS, top_speed=4.0
+                ),
+                start=0,
+                goal=13,
+                depart=0.0,
+                objective=objective,
+            )
             assert bound.value <= results[0].cost * (1 + 1e-9)
 
 
@@ -123,9 +134,11 @@ def test_departure_windows_pass_canals_too():
     network = with_canal(square(), [(0, 2)], HOUR)
     fields = make_fields(network, TIMES, current_east=0.0, current_north=0.0)
     result = best_departure(
-        network, fields, steady(5.0), start=0, goal=2, window=(0.0, 7200.0), setting=0,
-        limits=NO_LIMITS, top_speed=5.0,
-    )  # fmt: skip
+        ShipOnNetwork(network, fields, steady(5.0), setting=0, limits=NO_LIMITS, top_speed=5.0),
+        start=0,
+        goal=2,
+        window=DepartureWindow(0.0, 7200.0),
+    )
     assert result.duration == HOUR
 
 
@@ -170,12 +183,12 @@ def test_a_ship_sails_the_globe_network_through_a_canal_and_round_when_it_is_for
         times = np.array([0.0, 5e6])
         fields = make_fields(network, times, current_east=0.0, current_north=0.0)
         ends = {"start": network.meta.start, "goal": network.meta.goal}
-        given = {"depart": 0.0, "setting": 0, "limits": NO_LIMITS, "top_speed": speed, **ends}
-        result = earliest_arrival(network, fields, table, **given)
+        ship = ShipOnNetwork(network, fields, table, setting=0, limits=NO_LIMITS, top_speed=speed)
+        result = earliest_arrival(ship, depart=0.0, **ends)
         distance, path = shortest_path(network, *ends.values(), weight=network.times(speed))
         assert result.arrive == pytest.approx(distance[ends["goal"]], rel=1e-6)
         assert result.path.tolist() == path
-        assert lower_bound(network, fields, table, **given).value <= result.duration
+        assert lower_bound(ship, depart=0.0, **ends).value <= result.duration
         found.append(result.duration)
     panama = chart.canals[1]
     assert panama.transit_time < found[0] < panama.transit_time + 500 * 1852 / speed

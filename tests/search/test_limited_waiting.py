@@ -9,7 +9,7 @@ import pytest
 
 from tests.search.small import line, make_fields, steady
 from tests.search.test_tidal_states import GIVEN, HOUR, MINUTE, REQUIRED, gully
-from thalweg.search import earliest_arrival
+from thalweg.search import ShipOnNetwork, earliest_arrival
 from thalweg.search.fifo import sampled_arrivals
 
 DEPART = 1000.0
@@ -30,7 +30,9 @@ def minute_by_minute(network, fields):
     what a minute more or less at every node decides).
     """
     clock = np.arange(DEPART, fields.times[-1], MINUTE)
-    arrivals, _ = sampled_arrivals(network, fields, steady(4.0), departures=clock, **GIVEN)
+    arrivals, _ = sampled_arrivals(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), departures=clock
+    )
     depth = fields.values.sum(axis=2)
     afloat = np.array([np.interp(clock, fields.times, d) >= REQUIRED for d in depth])
     afloat[0] = True
@@ -54,11 +56,15 @@ def minute_by_minute(network, fields):
 def test_as_good_as_minute_by_minute_and_never_waiting_where_it_may_not(seed):
     network, fields = restricted(seed)
     truth = minute_by_minute(network, fields)
-    found = earliest_arrival(network, fields, steady(4.0), start=0, goal=6, depart=DEPART, **GIVEN)
+    found = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), start=0, goal=6, depart=DEPART
+    )
     free = earliest_arrival(
-        replace(network, can_wait=np.ones(7, bool)), fields, steady(4.0), start=0, goal=6,
-        depart=DEPART, **GIVEN,
-    )  # fmt: skip
+        ShipOnNetwork(replace(network, can_wait=np.ones(7, bool)), fields, steady(4.0), **GIVEN),
+        start=0,
+        goal=6,
+        depart=DEPART,
+    )
     if found.found:
         assert found.path[0] == 0 and found.path[-1] == 6
         assert found.arrive >= free.arrive - 1.0
@@ -82,7 +88,7 @@ def _sail_again(network, fields, found):
     ):
         edge = int(np.flatnonzero((tails == a) & (network.graph.target == b))[0])
         arrivals, _ = sampled_arrivals(
-            network, fields, steady(4.0), departures=np.array([leave]), **GIVEN
+            ShipOnNetwork(network, fields, steady(4.0), **GIVEN), departures=np.array([leave])
         )
         assert arrivals[edge, 0] == pytest.approx(come, abs=0.01)
     for node, come, go in zip(found.path[1:], found.path_arrive[1:], found.path_depart[1:]):
@@ -103,7 +109,9 @@ def barred_line(opens: float):
 def test_the_wait_before_a_bar_is_taken_at_the_anchorage():
     """The bar opens within the step before 4 h; node 1 is 2 km and 500 s from there."""
     network, fields = barred_line(4.0 * HOUR)
-    found = earliest_arrival(network, fields, steady(4.0), start=0, goal=5, depart=0.0, **GIVEN)
+    found = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), start=0, goal=5, depart=0.0
+    )
     assert found.path.tolist() == [0, 1, 2, 3, 4, 5]
     waits = found.path_depart - found.path_arrive
     assert set(np.flatnonzero(waits > 1.0)) <= {0, 1}
@@ -115,19 +123,27 @@ def test_the_wait_before_a_bar_is_taken_at_the_anchorage():
 def test_without_an_anchorage_the_ship_waits_at_the_start():
     network, fields = barred_line(4.0 * HOUR)
     network = replace(network, can_wait=np.arange(6) == 0)
-    found = earliest_arrival(network, fields, steady(4.0), start=0, goal=5, depart=0.0, **GIVEN)
+    found = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), start=0, goal=5, depart=0.0
+    )
     assert found.found
     waits = found.path_depart - found.path_arrive
     assert np.flatnonzero(waits > 1.0).tolist() == [0]
     none = earliest_arrival(
-        network, fields, steady(4.0), start=0, goal=5, depart=0.0, wait=False, **GIVEN
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN),
+        start=0,
+        goal=5,
+        depart=0.0,
+        wait=False,
     )
     assert not none.found
 
 
 def test_no_path_is_reported_with_its_reasons():
     network, fields = barred_line(100.0 * HOUR)
-    found = earliest_arrival(network, fields, steady(4.0), start=0, goal=5, depart=0.0, **GIVEN)
+    found = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), start=0, goal=5, depart=0.0
+    )
     assert not found.found
     assert found.nearest_node == 3
     assert any("clearance" in reason or "depth" in reason for reason in found.refused)
@@ -135,23 +151,32 @@ def test_no_path_is_reported_with_its_reasons():
 
 def test_a_latest_arrival_is_kept():
     network, fields = barred_line(4.0 * HOUR)
-    asked = {"start": 0, "goal": 5, "depart": 0.0, **GIVEN}
-    assert not earliest_arrival(network, fields, steady(4.0), arrive_by=3.0 * HOUR, **asked).found
-    assert earliest_arrival(network, fields, steady(4.0), arrive_by=4.2 * HOUR, **asked).found
+    asked = {"start": 0, "goal": 5, "depart": 0.0}
+    assert not earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), arrive_by=3.0 * HOUR, **asked
+    ).found
+    assert earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), arrive_by=4.2 * HOUR, **asked
+    ).found
 
 
 def test_where_waiting_is_allowed_everywhere_nothing_changes():
     network, fields = gully(3)
-    given = {"start": 0, "goal": 6, "depart": DEPART, **GIVEN}
-    plain = earliest_arrival(network, fields, steady(4.0), **given)
+    given = {"start": 0, "goal": 6, "depart": DEPART}
+    plain = earliest_arrival(ShipOnNetwork(network, fields, steady(4.0), **GIVEN), **given)
     barred = replace(network, can_wait=np.ones(7, bool))
-    assert earliest_arrival(barred, fields, steady(4.0), **given).arrive == plain.arrive
+    assert (
+        earliest_arrival(ShipOnNetwork(barred, fields, steady(4.0), **GIVEN), **given).arrive
+        == plain.arrive
+    )
 
 
 def test_open_water_takes_one_wave():
     """No bar, no reason to wait: a few searches settle every node once, whatever the period."""
     network = replace(line(60, 1000.0), can_wait=np.arange(60) % 2 == 0)
     fields = make_fields(network, [0.0, 8 * HOUR, 300 * HOUR], bed_depth=10.0)
-    found = earliest_arrival(network, fields, steady(4.0), start=0, goal=59, depart=0.0, **GIVEN)
+    found = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), start=0, goal=59, depart=0.0
+    )
     assert found.arrive == pytest.approx(59_000.0 / 4.0)
     assert found.settled <= 3 * (network.n_nodes + 1)  # and one more to tell the way

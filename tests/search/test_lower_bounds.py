@@ -9,7 +9,7 @@ from tests.search.small import grid, limits, make_fields, steady
 from thalweg.core.geodesy import distance
 from thalweg.search import direction_factor, earliest_arrival, lower_bound
 from thalweg.search.lower_bounds import free_space_bound, network_bound
-from thalweg.search.search_problem import make_search_problem
+from thalweg.search.search_problem import ShipOnNetwork, make_search_problem
 
 
 @pytest.mark.parametrize("gap_deg", [4.0, 19.107, 26.565, 45.0, 60.0])
@@ -72,17 +72,18 @@ def world(reach, gap):
     return network, fields
 
 
-GIVEN = {"start": 0, "goal": 20 * 21 + 13, "setting": 0, "limits": limits(), "top_speed": 5.0}
+ENDS = {"start": 0, "goal": 20 * 21 + 13}
+GIVEN = {"setting": 0, "limits": limits(), "top_speed": 5.0}
 
 
 @pytest.mark.parametrize("objective", ["time", "distance"])
 def test_the_bound_of_a_coarse_network_is_below_the_finest_network(objective):
     network, fields = world(1, math.pi / 4)
     fine, fine_fields = world(4, math.atan(1 / 4))
-    given = GIVEN | {"objective": objective, "depart": 0.0}
-    bound = lower_bound(network, fields, steady(5.0), **given)
-    best = earliest_arrival(fine, fine_fields, steady(5.0), **given).cost
-    coarse = earliest_arrival(network, fields, steady(5.0), **given).cost
+    asked = ENDS | {"objective": objective, "depart": 0.0}
+    bound = lower_bound(ShipOnNetwork(network, fields, steady(5.0), **GIVEN), **asked)
+    best = earliest_arrival(ShipOnNetwork(fine, fine_fields, steady(5.0), **GIVEN), **asked).cost
+    coarse = earliest_arrival(ShipOnNetwork(network, fields, steady(5.0), **GIVEN), **asked).cost
     assert bound.value < best < coarse
     assert bound.value > 0.85 * best
     assert 0.0 < bound.kappa <= 1.0
@@ -92,7 +93,7 @@ def test_the_bound_of_a_coarse_network_is_below_the_finest_network(objective):
 def test_the_free_bound_is_the_geodesic_at_full_speed_with_the_strongest_current():
     network, fields = world(1, math.pi / 4)
     given = make_search_problem(
-        network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0
+        ShipOnNetwork(network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0)
     )
     u, v = fields.values[..., 0].astype(float), fields.values[..., 1].astype(float)
     geodesic = float(distance(0.0, 0.0, network.lat[433], network.lon[433]))
@@ -108,10 +109,12 @@ def test_without_a_valid_factor_the_free_bound_remains():
     network, _ = world(1, math.pi / 4)
     fields = make_fields(network, [0.0, 1e6], current_east=5.5, current_north=0.0)
     given = make_search_problem(
-        network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0
+        ShipOnNetwork(network, fields, steady(5.0), setting=0, limits=limits(), top_speed=5.0)
     )
     assert network_bound(network, given, start=0, goal=20, depart=0.0).value == 0.0
-    bound = lower_bound(network, fields, steady(5.0), **(GIVEN | {"goal": 20}), depart=0.0)
+    bound = lower_bound(
+        ShipOnNetwork(network, fields, steady(5.0), **GIVEN), start=0, goal=20, depart=0.0
+    )
     assert "free space" in bound.kind
 
 
@@ -121,9 +124,13 @@ def test_limits_at_the_network_do_not_lift_the_bound_above_a_looser_ship():
     wave[network.stations.lat > 0.3] = 1.0
     fields = make_fields(network, [0.0, 1e6], wave_height_channel=wave[:, None])
     tight = lower_bound(
-        network, fields, steady(5.0), **(GIVEN | {"limits": limits(wave=3.0)}), depart=0.0
+        ShipOnNetwork(network, fields, steady(5.0), **(GIVEN | {"limits": limits(wave=3.0)})),
+        depart=0.0,
+        **ENDS,
     )
     loose = earliest_arrival(
-        network, fields, steady(5.0), **(GIVEN | {"limits": limits(wave=3.05)}), depart=0.0
+        ShipOnNetwork(network, fields, steady(5.0), **(GIVEN | {"limits": limits(wave=3.05)})),
+        depart=0.0,
+        **ENDS,
     )
     assert tight.value < loose.cost

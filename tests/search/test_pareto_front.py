@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 from dataclasses import replace
 
@@ -13,11 +14,17 @@ from tests.search.test_limited_waiting import barred_line
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.kernels import codes
-from thalweg.search import cheapest, earliest_arrival, pareto_front
-from thalweg.search.pareto.front_problem import FrontRequest, make_front_problem
+from thalweg.search import ShipOnNetwork, cheapest, earliest_arrival, pareto_front
+from thalweg.search.pareto.front_problem import (
+    FrontQuery,
+    FrontRequest,
+    MultiSettingShipOnNetwork,
+    make_front_problem,
+)
 from thalweg.search.pareto.seed_paths import PlannedPath, sail_planned_path
 
 SPEEDS = np.array([4.0, 6.0, 8.0])
+QUERY = {field.name for field in dataclasses.fields(FrontQuery)}
 STILL = {"current_east": 0.0, "current_north": 0.0}
 
 
@@ -26,10 +33,14 @@ def ship(speeds=SPEEDS, per_cube=1e-3):
     return make_table(((), (), speeds)), make_table(((), (), per_cube * speeds**3))
 
 
-def search(network, fields, goal, latest, *, tables=None, **options):
+def search(
+    network, fields, goal, latest, *, tables=None, limits=NO_LIMITS, top_speed=None, **options
+):
     table, fuel = ship() if tables is None else tables
-    options = {"limits": NO_LIMITS, "depart": 0.0, "start": 0, **options}
-    return pareto_front(network, fields, table, fuel, goal=goal, latest=latest, **options)
+    on_network = MultiSettingShipOnNetwork(network, fields, table, fuel, limits, top_speed)
+    asked = {name: options.pop(name) for name in QUERY & options.keys()}
+    query = FrontQuery(**{"start": 0, "goal": goal, "depart": 0.0, "latest": latest, **asked})
+    return pareto_front(on_network, query, **options)
 
 
 def world_of(
@@ -42,9 +53,8 @@ def world_of(
         0, network.n_nodes - 1, 0.0, latest, np.arange(table.n_settings), prices,
         prices.of_legs(inside, 1.0), wait,
     )  # fmt: skip
-    return make_front_problem(
-        network, fields, table, fuel, request=request, limits=NO_LIMITS, top_speed=None
-    ), request
+    on_network = MultiSettingShipOnNetwork(network, fields, table, fuel, NO_LIMITS)
+    return make_front_problem(on_network, request), request
 
 
 def random_world(seed, *, columns=4, calm=False):
@@ -241,9 +251,11 @@ def test_legs_are_those_of_the_earliest_arrival():
     network, fields = random_world(5)
     table, _ = ship()
     fastest = earliest_arrival(
-        network, fields, table,
-        start=0, goal=7, depart=0.0, setting=2, limits=NO_LIMITS, top_speed=8.0,
-    )  # fmt: skip
+        ShipOnNetwork(network, fields, table, setting=2, limits=NO_LIMITS, top_speed=8.0),
+        start=0,
+        goal=7,
+        depart=0.0,
+    )
     found = search(network, fields, 7, 20_000.0, lower=False)
     assert found.fastest.time == pytest.approx(fastest.duration, rel=1e-12)
     again, request = world_of(network, fields, 20_000.0)
@@ -355,9 +367,11 @@ def test_a_bar_is_passed_when_the_tide_allows():
     found = search(network, fields, 3, 60_000.0, limits=limits(depth=6.0), lower=False)
     table, _ = ship()
     fastest = earliest_arrival(
-        network, fields, table,
-        start=0, goal=3, depart=0.0, setting=2, limits=limits(depth=6.0), top_speed=8.0,
-    )  # fmt: skip
+        ShipOnNetwork(network, fields, table, setting=2, limits=limits(depth=6.0), top_speed=8.0),
+        start=0,
+        goal=3,
+        depart=0.0,
+    )
     assert found.fastest.time == pytest.approx(fastest.duration, abs=1e-6)
     open_from = 20_000.0 + 44_712.0 * np.arcsin(0.5) / (2 * np.pi)
     for point in found.points:  # the bar, node 2, is reached and left at high water
@@ -472,17 +486,26 @@ def test_settings_can_be_chosen():
 
 def tidal_front(network, fields, latest, **more):
     table, fuel = make_table(((), (), np.array([4.0]))), make_table(((), (), np.array([1.0])))
-    more = {"limits": limits(depth=5.0), "depart": 0.0, "start": 0, "goal": 5, **more}
-    return pareto_front(network, fields, table, fuel, latest=latest, **more)
+    options = {"tables": (table, fuel), "limits": limits(depth=5.0), **more}
+    return search(network, fields, 5, latest, **options)
 
 
 def test_waiting_at_an_anchorage_before_a_bar():
     """The fastest way is that of `earliest_arrival`, which waits where it may."""
     network, fields = barred_line(4.0 * 3600.0)
     one = earliest_arrival(
-        network, fields, make_table(((), (), np.array([4.0]))), start=0, goal=5, depart=0.0,
-        setting=0, limits=limits(depth=5.0), top_speed=4.0,
-    )  # fmt: skip
+        ShipOnNetwork(
+            network,
+            fields,
+            make_table(((), (), np.array([4.0]))),
+            setting=0,
+            limits=limits(depth=5.0),
+            top_speed=4.0,
+        ),
+        start=0,
+        goal=5,
+        depart=0.0,
+    )
     found = tidal_front(network, fields, 7 * 3600.0)
     assert found.fastest.time == pytest.approx(one.arrive, abs=1e-6)
     assert found.fastest.path.tolist() == [0, 1, 2, 3, 4, 5]

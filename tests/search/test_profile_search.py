@@ -22,7 +22,7 @@ from thalweg.network import Samples
 from thalweg.network.triangular_mesh.edge_sampling import sampled_on_triangle_sides
 from thalweg.network.triangular_mesh.mesh_builder import mesh
 from thalweg.operations.examples.estuary import synthetic_estuary
-from thalweg.search import PreparedNetwork, earliest_arrival, prepare_profile_search
+from thalweg.search import PreparedNetwork, ShipOnNetwork, earliest_arrival, prepare_profile_search
 from thalweg.ship import Ship
 
 T0 = parse_time("2026-06-01T00:00Z")
@@ -61,7 +61,10 @@ def ask(ship, load_factor, **more):
 
 def separately(world, depart, *, start, goal, table, **more):
     network, fields = world
-    return earliest_arrival(network, fields, table, start=start, goal=goal, depart=depart, **more)
+    one = {name: more.pop(name) for name in ("setting", "limits", "top_speed")}
+    return earliest_arrival(
+        ShipOnNetwork(network, fields, table, **one), start=start, goal=goal, depart=depart, **more
+    )
 
 
 @pytest.mark.parametrize(("load_factor", "start", "goal"), [(1.0, 0, 1), (0.6, 0, 1), (0.0, 1, 0)])
@@ -173,7 +176,7 @@ def test_penalties_count_as_in_separate_searches():
     found = prepare_profile_search(PreparedNetwork.prepare(network, fields), table, **asked).sail(
         T0 + 60.0
     )
-    one = earliest_arrival(network, fields, table, depart=T0 + 60.0, **asked)
+    one = separately((network, fields), T0 + 60.0, table=table, **asked)
     assert found.nodes.tolist() == one.path.tolist() == [0, 3, 2]
     assert found.arrive == pytest.approx(one.arrive, abs=1e-9)
 
@@ -214,8 +217,8 @@ HOUR = 3600.0
 def passages_on(network, fields, table, **asked):
     asked = {"setting": 0, "limits": NO_LIMITS, "top_speed": 5.0, "start": 0, **asked}
     passages = prepare_profile_search(PreparedNetwork.prepare(network, fields), table, **asked)
-    return passages, lambda t, **more: earliest_arrival(
-        network, fields, table, depart=t, **asked, **more
+    return passages, lambda t, **more: separately(
+        (network, fields), t, table=table, **asked, **more
     )
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.search.small import limits, line, make_fields, steady
-from thalweg.search import best_departure, earliest_arrival
+from thalweg.search import DepartureWindow, ShipOnNetwork, best_departure, earliest_arrival
 
 HOUR = 3600.0
 CLOSED, OPEN = -8.0, 0.0  # water level over a bed of 10 m; 5 m are needed
@@ -24,12 +24,15 @@ def bar(level_at_30_km, times, *, everywhere=False):
     return network, make_fields(network, times, water_level=level)
 
 
+def on_network(network, fields):
+    return ShipOnNetwork(
+        network, fields, steady(4.0), setting=0, limits=limits(depth=5.0), top_speed=4.0
+    )
+
+
 def sail(network, fields, **options):
-    given = {
-        "start": 0, "goal": 40, "depart": 0.0, "setting": 0,
-        "limits": limits(depth=5.0), "top_speed": 4.0,
-    }  # fmt: skip
-    return earliest_arrival(network, fields, steady(4.0), **(given | options))
+    given = {"start": 0, "goal": 40, "depart": 0.0}
+    return earliest_arrival(on_network(network, fields), **(given | options))
 
 
 def steep(opens, times):
@@ -111,8 +114,7 @@ def test_the_best_departure_arrives_as_the_bar_opens():
     network, fields = bar(np.interp(times, [4 * HOUR, 5 * HOUR], [CLOSED, OPEN]), times)
     opens = 4 * HOUR + 0.375 * HOUR
     result = best_departure(
-        network, fields, steady(4.0), start=0, goal=40, window=(0.0, 6 * HOUR), setting=0,
-        limits=limits(depth=5.0), top_speed=4.0,
-    )  # fmt: skip
+        on_network(network, fields), start=0, goal=40, window=DepartureWindow(0.0, 6 * HOUR)
+    )
     assert result.duration == pytest.approx(20000.0, abs=2.0)
     assert result.depart >= opens - 30e3 / 4.0 - 250.0 - 2.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.search.small import limits, line, make_fields, make_network, steady
-from thalweg.search import earliest_arrival
+from thalweg.search import ShipOnNetwork, earliest_arrival
 from thalweg.search.fifo import sampled_arrivals
 from thalweg.search.search_problem import network_arrays, sea_arrays
 from thalweg.search.tidal_states import tidal_states
@@ -35,7 +35,9 @@ def gully(seed, nodes=7):
 def minute_by_minute(network, fields, start, goal, depart):
     """Return the earliest arrival on a network of nodes times minutes, times rounded up."""
     clock = np.arange(depart, fields.times[-1], MINUTE)
-    arrivals, _ = sampled_arrivals(network, fields, steady(4.0), departures=clock, **GIVEN)
+    arrivals, _ = sampled_arrivals(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), departures=clock
+    )
     depth = fields.values.sum(axis=2)
     afloat = np.array([np.interp(clock, fields.times, d) >= REQUIRED for d in depth])
     afloat[start] = True
@@ -59,7 +61,9 @@ def minute_by_minute(network, fields, start, goal, depart):
 def test_the_search_is_as_good_as_minute_by_minute(seed):
     network, fields = gully(seed)
     truth = minute_by_minute(network, fields, 0, 6, 1000.0)
-    result = earliest_arrival(network, fields, steady(4.0), start=0, goal=6, depart=1000.0, **GIVEN)
+    result = earliest_arrival(
+        ShipOnNetwork(network, fields, steady(4.0), **GIVEN), start=0, goal=6, depart=1000.0
+    )
     assert result.found == np.isfinite(truth)
     if result.found:
         # rounding up costs the oracle up to a minute at every node

@@ -13,8 +13,13 @@ from thalweg.core.objective import LegPrices
 from thalweg.evolution import Genome, VariationSettings, evolve
 from thalweg.evolution.evolve import METHODS
 from thalweg.evolution.variation import OperatorWeights
-from thalweg.search import NetworkFront, earliest_arrival, pareto_front
-from thalweg.search.pareto.front_problem import FrontRequest, make_front_problem
+from thalweg.search import NetworkFront, ShipOnNetwork, earliest_arrival, pareto_front
+from thalweg.search.pareto.front_problem import (
+    FrontQuery,
+    FrontRequest,
+    MultiSettingShipOnNetwork,
+    make_front_problem,
+)
 from thalweg.search.pareto.front_result import FrontPoint
 from thalweg.search.pareto.seed_paths import PlannedPath, sail_planned_path
 
@@ -40,9 +45,10 @@ def exact() -> NetworkFront:
     table, fuel = world.tables()
     start, goal = GRID.node(world.START), GRID.node(world.GOAL)
     return pareto_front(
-        network(), fields(), table, fuel, start=start, goal=goal, depart=world.T0,
-        latest=LATEST, limits=NO_LIMITS, bin_s=2.0 * world.HOUR / 60.0,
-    )  # fmt: skip
+        MultiSettingShipOnNetwork(network(), fields(), table, fuel, NO_LIMITS),
+        FrontQuery(start, goal, world.T0, LATEST),
+        bin_s=2.0 * world.HOUR / 60.0,
+    )
 
 
 @cache
@@ -52,9 +58,13 @@ def seeds() -> tuple[Genome, ...]:
     ways = set()
     for setting in range(table.n_settings):
         found = earliest_arrival(
-            network(), fields(), table, start=GRID.node(world.START), goal=GRID.node(world.GOAL),
-            depart=world.T0, setting=setting, limits=NO_LIMITS, top_speed=12.0,
-        )  # fmt: skip
+            ShipOnNetwork(
+                network(), fields(), table, setting=setting, limits=NO_LIMITS, top_speed=12.0
+            ),
+            start=GRID.node(world.START),
+            goal=GRID.node(world.GOAL),
+            depart=world.T0,
+        )
         ways.add(tuple(found.path))
     lat, lon = network().stations.lat, network().stations.lon
     return tuple(
@@ -88,9 +98,8 @@ def sailed(genome: Genome) -> FrontPoint | None:
         int(nodes[0]), int(nodes[-1]), world.T0, LATEST, np.arange(table.n_settings),
         LegPrices(), np.ones(net.n_edges), True,
     )  # fmt: skip
-    got = make_front_problem(
-        net, fields(), table, fuel, request=request, limits=NO_LIMITS, top_speed=None
-    )
+    ship = MultiSettingShipOnNetwork(net, fields(), table, fuel, NO_LIMITS)
+    got = make_front_problem(ship, request)
     leave = np.full(len(edges), -np.inf)
     return sail_planned_path(
         got, request, PlannedPath(nodes, np.array(edges), np.asarray(genome.setting), leave)

@@ -17,7 +17,7 @@ from tests.search.small import NO_LIMITS
 from tests.worlds import jet_and_eddies as world
 from thalweg.evolution.indicators import hypervolume
 from thalweg.route import Track, evaluate
-from thalweg.search import NetworkFront, pareto_front
+from thalweg.search import FrontQuery, MultiSettingShipOnNetwork, NetworkFront, pareto_front
 
 
 @cache
@@ -25,16 +25,10 @@ def found(reach: int, bin_min: float, lower: bool = False) -> tuple[world.Networ
     grid = world.Grid(5.0, reach)
     network = grid.network()
     table, fuel = world.tables()
+    latest = world.T0 + world.LATEST * world.HOUR
     return network, pareto_front(
-        network,
-        world.freeze(network),
-        table,
-        fuel,
-        start=grid.node(world.START),
-        goal=grid.node(world.GOAL),
-        depart=world.T0,
-        latest=world.T0 + world.LATEST * world.HOUR,
-        limits=NO_LIMITS,
+        MultiSettingShipOnNetwork(network, world.freeze(network), table, fuel, NO_LIMITS),
+        FrontQuery(grid.node(world.START), grid.node(world.GOAL), world.T0, latest),
         bin_s=bin_min * world.HOUR / 60.0,
         lower=lower,
     )

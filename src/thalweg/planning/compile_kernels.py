@@ -14,7 +14,7 @@ def compile_search() -> None:
     """Search and smooth a passage between two nodes in open water, to compile the kernels."""
     from thalweg.route import Track, smooth
     from thalweg.sea import GridFields, StationFields
-    from thalweg.search import earliest_arrival, lower_bound
+    from thalweg.search import ShipOnNetwork, earliest_arrival, lower_bound
     from thalweg.ship import Ship
 
     network = _two_nodes()
@@ -24,9 +24,9 @@ def compile_search() -> None:
     stations = StationFields(times, np.zeros((2, 2, 3), np.float32), index)
     table = Ship.load("handysize-bulker").tabulate()
     limits = Limits(wave_height=8.0)
-    options = {"start": 0, "goal": 1, "depart": 0.0, "setting": 0, "limits": limits}
-    earliest_arrival(network, stations, table, top_speed=10.0, **options)  # type: ignore[arg-type]
-    lower_bound(network, stations, table, top_speed=10.0, **options)  # type: ignore[arg-type]
+    ship = ShipOnNetwork(network, stations, table, setting=0, limits=limits, top_speed=10.0)
+    earliest_arrival(ship, start=0, goal=1, depart=0.0)
+    lower_bound(ship, start=0, goal=1, depart=0.0)
     raster = GridFields(times, -0.1, 0.1, -0.1, 0.1, np.zeros((2, 4, 4, 3), np.float32), index)
     track = Track([0.0, 0.02, 0.0], [0.0, 0.05, 0.1], 0.0, None, [0, 0])  # type: ignore[arg-type]
     smooth(track, table=table, fields=raster, limits=limits)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
-from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.search.earliest_arrival import (
     ArrivalQuery,
     Method,
@@ -22,13 +20,8 @@ from thalweg.search.limited_waiting import (
     earliest_arrival_with_restricted_waiting,
     waiting_is_restricted,
 )
-from thalweg.search.search_problem import SearchProblem, make_search_problem
+from thalweg.search.search_problem import SearchProblem, ShipOnNetwork, make_search_problem
 from thalweg.search.search_result import SearchResult
-
-if TYPE_CHECKING:
-    from thalweg.network.network import Network
-    from thalweg.sea.frozen_fields import StationFields
-    from thalweg.ship.tables.performance_table import PerformanceTable
 
 _MAX_DEPARTURES = 97  # of the first pass
 _MAX_DEPARTURES_RESTRICTED_WAITING = 25  # where every departure is a search in rounds
@@ -36,39 +29,46 @@ _GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 _COST_TOLERANCE = 1e-3  # costs closer than this are equal [s or m]
 
 
-def best_departure(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
-    *,
-    start: int,
-    goal: int,
-    window: tuple[float, float],
-    setting: int,
-    limits: Limits,
-    top_speed: float,
-    objective: SingleSettingObjective = "time",
-    wait: bool = True,
-    arrive_by: float | None = None,
-    method: Method = "astar",
-    step: float | None = None,
-    tolerance: float = 60.0,
-) -> SearchResult:
-    """Find the departure inside a window that makes the voyage cheapest.
+@dataclass(frozen=True)
+class DepartureWindow:
+    """The departures to choose from, and how finely they are tried.
 
-    Parameters
+    Attributes
     ----------
-    network, fields, table, start, goal, setting, limits, top_speed
-        As in `thalweg.search.earliest_arrival`.
-    objective, wait, arrive_by, method
-        As in `thalweg.search.earliest_arrival`.
-    window : tuple of float
+    first, last : float
         Earliest and latest departure [s].
     step : float, optional
         Spacing of the departures tried [s]. By default the times of the fields inside the window,
         but not more than 96 even steps (24 where the ship may wait at some nodes only).
     tolerance : float
         The best departure is refined to this [s].
+    """
+
+    first: float
+    last: float
+    step: float | None = None
+    tolerance: float = 60.0
+
+
+def best_departure(
+    ship_on_network: ShipOnNetwork,
+    *,
+    start: int,
+    goal: int,
+    window: DepartureWindow,
+    objective: SingleSettingObjective = "time",
+    wait: bool = True,
+    arrive_by: float | None = None,
+    method: Method = "astar",
+) -> SearchResult:
+    """Find the departure inside a window that makes the voyage cheapest.
+
+    Parameters
+    ----------
+    ship_on_network, start, goal, objective, wait, arrive_by, method
+        As in `thalweg.search.earliest_arrival`.
+    window : DepartureWindow
+        Earliest and latest departure, and how finely the departures between them are tried.
 
     Returns
     -------
@@ -88,7 +88,8 @@ def best_departure(
     is wholly between two samples elsewhere can be missed. A ship that would wait at the start
     leaves when the waiting ends.
     """
-    first, last = float(window[0]), float(window[1])
+    network = ship_on_network.network
+    first, last = float(window.first), float(window.last)
     if not (math.isfinite(first) and math.isfinite(last) and first <= last):
         raise InputError(
             f"The departure window from {first} to {last} is empty.",
@@ -97,15 +98,8 @@ def best_departure(
         )
     check_query(network.n_nodes, ArrivalQuery(start, goal, first, objective, method=method))
     restricted = wait and objective == "time" and waiting_is_restricted(network)
-    given = make_search_problem(
-        network,
-        fields,
-        table,
-        setting=setting,
-        limits=limits,
-        top_speed=top_speed,
-        ends=(start, goal) if wait and not restricted else None,
-    )
+    ends = (start, goal) if wait and not restricted else None
+    given = make_search_problem(ship_on_network, ends=ends)
 
     def sail(depart: float) -> SearchResult:
         if restricted:
@@ -117,7 +111,7 @@ def best_departure(
         return solve_earliest_arrival(network, given, asked)
 
     most = _MAX_DEPARTURES_RESTRICTED_WAITING if restricted else _MAX_DEPARTURES
-    departures = _departures(given, first, last, step, most)
+    departures = _departures(given, first, last, window.step, most)
     tried = [sail(t) for t in departures]
     tried += [sail(t) for t in _after_waiting(tried, last)]
     best = min(tried, key=_comparison_key)
@@ -126,7 +120,7 @@ def best_departure(
     near = int(np.searchsorted(departures, best.depart))
     low = departures[max(near - 1, 0)]
     high = departures[min(near + 1, len(departures) - 1)]
-    while high - low > tolerance:
+    while high - low > window.tolerance:
         left, right = high - _GOLDEN_RATIO * (high - low), low + _GOLDEN_RATIO * (high - low)
         pair = sail(left), sail(right)
         best = min((best, *pair), key=_comparison_key)

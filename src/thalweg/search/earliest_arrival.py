@@ -10,10 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
-from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
 from thalweg.kernels.codes import REASONS
-from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.label_setting import (
     RELAXED,
     SAILED,
@@ -32,6 +30,7 @@ from thalweg.search.limited_waiting import (
 from thalweg.search.search_problem import (
     ROUNDING_FACTOR,
     SearchProblem,
+    ShipOnNetwork,
     canal_speed,
     distance_bounds,
     make_search_problem,
@@ -40,8 +39,6 @@ from thalweg.search.search_result import SearchResult, SearchWork
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
-    from thalweg.sea.frozen_fields import StationFields
-    from thalweg.ship.tables.performance_table import PerformanceTable
 
 Method = Literal["astar", "dijkstra"]
 
@@ -76,16 +73,11 @@ class ArrivalQuery:
 
 
 def earliest_arrival(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
+    ship_on_network: ShipOnNetwork,
     *,
     start: int,
     goal: int | None,
     depart: float,
-    setting: int,
-    limits: Limits,
-    top_speed: float,
     objective: SingleSettingObjective = "time",
     wait: bool = True,
     arrive_by: float | None = None,
@@ -95,20 +87,12 @@ def earliest_arrival(
 
     Parameters
     ----------
-    network : Network
-    fields : StationFields
-        The sea, frozen at the network's stations.
-    table : PerformanceTable or TableArrays
+    ship_on_network : ShipOnNetwork
+        The network, the sea frozen at its stations, and the ship at one setting.
     start, goal : int
         Nodes. A goal of None (or -1) settles everything that can be reached.
     depart : float
         Time at the start [s].
-    setting : int
-        Setting of the ship.
-    limits : Limits
-        Limits along the route (`thalweg.core.limits.Limits`).
-    top_speed : float
-        Upper bound of the ship's speed through water at this setting [m/s].
     objective : {"time", "distance"}
     wait : bool
         Whether the ship may wait at nodes that allow it.
@@ -146,19 +130,13 @@ def earliest_arrival(
     which obeys the triangle inequality. Edges of fixed time are passed in that time whatever the
     sea is.
     """
+    network = ship_on_network.network
     asked = ArrivalQuery(start, goal, depart, objective, wait, arrive_by, method)
     check_query(network.n_nodes, asked)
     node = asked.goal_node
     restricted = wait and node >= 0 and objective == "time" and waiting_is_restricted(network)
-    given = make_search_problem(
-        network,
-        fields,
-        table,
-        setting=setting,
-        limits=limits,
-        top_speed=top_speed,
-        ends=(start, node) if wait and not restricted else None,
-    )
+    ends = (start, node) if wait and not restricted else None
+    given = make_search_problem(ship_on_network, ends=ends)
     if restricted:
         return earliest_arrival_with_restricted_waiting(
             network, given, start=int(start), goal=node, depart=float(depart),

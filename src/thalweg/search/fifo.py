@@ -3,21 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.core.limits import Limits
 from thalweg.core.types import FloatArray
-from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.edge_departure import edge_arrivals
-from thalweg.search.search_problem import make_search_problem
-
-if TYPE_CHECKING:
-    from thalweg.network.network import Network
-    from thalweg.sea.frozen_fields import StationFields
-    from thalweg.ship.tables.performance_table import PerformanceTable
+from thalweg.search.search_problem import ShipOnNetwork, make_search_problem
 
 
 @dataclass(frozen=True)
@@ -74,22 +66,14 @@ def earliest_arrivals_with_waiting(
 
 
 def sampled_arrivals(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
-    *,
-    departures: ArrayLike,
-    setting: int,
-    limits: Limits,
-    top_speed: float,
-    edges: ArrayLike | None = None,
+    ship_on_network: ShipOnNetwork, *, departures: ArrayLike, edges: ArrayLike | None = None
 ) -> tuple[FloatArray, NDArray[np.int64]]:
     """Sail edges at many departures without waiting.
 
     Parameters
     ----------
-    network, fields, table, setting, limits, top_speed
-        As in `thalweg.search.earliest_arrival`.
+    ship_on_network : ShipOnNetwork
+        The network, the sea frozen at its stations, and the ship at one setting.
     departures : array_like (D,)
         [s].
     edges : array_like (E,), optional
@@ -102,9 +86,7 @@ def sampled_arrivals(
     statuses : ndarray (E, D)
         Codes of `thalweg.kernels.codes`.
     """
-    given = make_search_problem(
-        network, fields, table, setting=setting, limits=limits, top_speed=top_speed
-    )
+    given = make_search_problem(ship_on_network)
     count = len(given.network.target)
     chosen = np.arange(count) if edges is None else np.asarray(edges, np.int64)
     tails = np.searchsorted(given.network.indptr, chosen, side="right") - 1
@@ -117,33 +99,16 @@ def sampled_arrivals(
 
 
 def fifo_report(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
-    *,
-    departures: ArrayLike,
-    setting: int,
-    limits: Limits,
-    top_speed: float,
-    edges: ArrayLike | None = None,
+    ship_on_network: ShipOnNetwork, *, departures: ArrayLike, edges: ArrayLike | None = None
 ) -> FifoReport:
     """Measure how far edges break order (a later departure arrives later) at sampled departures.
 
     Parameters
     ----------
-    network, fields, table, departures, setting, limits, top_speed, edges
+    ship_on_network, departures, edges
         As in `sampled_arrivals`.
     """
-    arrivals, _ = sampled_arrivals(
-        network,
-        fields,
-        table,
-        departures=departures,
-        setting=setting,
-        limits=limits,
-        top_speed=top_speed,
-        edges=edges,
-    )
+    arrivals, _ = sampled_arrivals(ship_on_network, departures=departures, edges=edges)
     waited = earliest_arrivals_with_waiting(arrivals)
     open_ = np.isfinite(arrivals)
     gain = np.where(open_, arrivals, 0.0) - np.where(open_, waited, 0.0)

@@ -12,19 +12,17 @@ from numpy.typing import NDArray
 from thalweg.core.geodesy import distance
 from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
-from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.search.earliest_arrival import ArrivalQuery, solve_earliest_arrival
 from thalweg.search.search_problem import (
     ROUNDING_FACTOR,
     SearchProblem,
+    ShipOnNetwork,
     canal_speed,
     make_search_problem,
 )
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
-    from thalweg.sea.frozen_fields import StationFields
-    from thalweg.ship.tables.performance_table import PerformanceTable
 
 _LIMIT_RELAXATION = 0.02  # limits are loosened by this share for the bound on the network
 _FREE_SPACE_TIME_NOTE = (
@@ -127,16 +125,11 @@ def _mixed(
 
 
 def lower_bound(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
+    ship_on_network: ShipOnNetwork,
     *,
     start: int,
     goal: int,
     depart: float,
-    setting: int,
-    limits: Limits,
-    top_speed: float,
     objective: SingleSettingObjective = "time",
     known: float | None = None,
     any_departure: bool = False,
@@ -145,7 +138,7 @@ def lower_bound(
 
     Parameters
     ----------
-    network, fields, table, start, goal, depart, setting, limits, top_speed, objective
+    ship_on_network, start, goal, depart, objective
         As in `thalweg.search.earliest_arrival`.
     known : float, optional
         Time or distance of a route that exists, in open water rather than on the network. A
@@ -159,9 +152,7 @@ def lower_bound(
     LowerBound
         The larger of `free_space_bound` and `network_bound`, as far as both hold.
     """
-    given = make_search_problem(
-        network, fields, table, setting=setting, limits=limits, top_speed=top_speed
-    )
+    network, given = ship_on_network.network, make_search_problem(ship_on_network)
     free = free_space_bound(network, given, start=start, goal=goal, objective=objective)
     if any_departure:
         return free

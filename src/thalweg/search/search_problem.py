@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ __all__ = [
     "BOUND_RADIUS",
     "ROUNDING_FACTOR",
     "SearchProblem",
+    "ShipOnNetwork",
     "canal_speed",
     "contiguous_array",
     "distance_bounds",
@@ -36,6 +38,32 @@ __all__ = [
     "ship_arrays",
     "top_speed_through_water",
 ]
+
+
+@dataclass(frozen=True, eq=False)
+class ShipOnNetwork:
+    """A ship at one setting, on a network, in the sea frozen at the network's stations.
+
+    Attributes
+    ----------
+    network : Network
+    fields : StationFields
+        The sea, frozen at the network's stations.
+    table : PerformanceTable or TableArrays
+    setting : int
+        Setting of the ship.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
+    top_speed : float
+        Upper bound of the ship's speed through water at this setting [m/s].
+    """
+
+    network: Network
+    fields: StationFields
+    table: PerformanceTable | TableArrays
+    setting: int
+    limits: Limits
+    top_speed: float
 
 
 class SearchProblem(NamedTuple):
@@ -198,14 +226,7 @@ def top_speed_through_water(sea: SeaArrays, top_speed: float) -> tuple[float, bo
 
 
 def make_search_problem(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
-    *,
-    setting: int,
-    limits: Limits,
-    top_speed: float,
-    ends: tuple[int, int | None] | None = None,
+    ship_on_network: ShipOnNetwork, *, ends: tuple[int, int | None] | None = None
 ) -> SearchProblem:
     """Gather what a search reads.
 
@@ -216,8 +237,9 @@ def make_search_problem(
     InputError
         If the parts do not fit together or the ship has no speed.
     """
-    ship = ship_arrays(table, setting, limits)
-    sea = sea_arrays(fields, tides=limits.depth_checked)
+    network, limits = ship_on_network.network, ship_on_network.limits
+    ship = ship_arrays(ship_on_network.table, ship_on_network.setting, limits)
+    sea = sea_arrays(ship_on_network.fields, tides=limits.depth_checked)
     stations = len(network.stations.lat)
     if sea.values.shape[0] != stations:
         raise InputError(
@@ -225,7 +247,7 @@ def make_search_problem(
             "Fields belong to the network they were frozen for.",
             "Freeze the sea at the stations of this network.",
         )
-    fastest, _ = top_speed_through_water(sea, top_speed)
+    fastest, _ = top_speed_through_water(sea, ship_on_network.top_speed)
     arrays = network_arrays(network)
     if ends is not None:
         keep = ends[0], -1 if ends[1] is None else ends[1]

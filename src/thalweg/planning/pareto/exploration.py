@@ -16,7 +16,13 @@ from thalweg.planning.pareto.trade_off_context import ExploredAlternative, Trade
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.planning.single.passage import isochrones, refine_track, track_from_result
 from thalweg.sea import StationFields
-from thalweg.search import NetworkFront, direction_factor, pareto_front
+from thalweg.search import (
+    FrontQuery,
+    MultiSettingShipOnNetwork,
+    NetworkFront,
+    direction_factor,
+    pareto_front,
+)
 
 #: Number of time bins of a front; refinement corrects what they miss.
 _TIME_BINS = 300
@@ -97,25 +103,26 @@ def network_pareto_front(
     depart = context.voyage.earliest_departure
     prices = trade_off.objective.prices
     differs = prices.differs_in_control_areas
-    return pareto_front(
+    ship = MultiSettingShipOnNetwork(
         network,
         frozen.stations,
         context.table,
         trade_off.consumption,
+        limits=trade_off.limits,
+        top_speed=frozen.top_speed,
+    )
+    query = FrontQuery(
         start=network.meta.start,
         goal=network.meta.goal,
         depart=depart,
-        limits=trade_off.limits,
         latest=latest,
         settings=trade_off.settings,
         prices=prices,
         eca_fraction=eca_fractions(network, context.chart) if differs else None,
         wait=context.voyage.wait,
-        bin_s=(latest - depart) / _TIME_BINS,
-        top_speed=frozen.top_speed,
-        lower=lower,
-        progress=progress,
     )
+    bin_s = (latest - depart) / _TIME_BINS
+    return pareto_front(ship, query, bin_s=bin_s, lower=lower, progress=progress)
 
 
 def _largest_direction_factor(

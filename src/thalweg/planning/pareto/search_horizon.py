@@ -14,7 +14,7 @@ from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network, shortest_path
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
 from thalweg.planning.pareto.trade_off_context import TradeOffContext
-from thalweg.search import SearchResult, earliest_arrival
+from thalweg.search import SearchResult, ShipOnNetwork, earliest_arrival
 
 #: Time of the slowest ship of interest over that in calm water ...
 _SLOWEST_TIME_RATIO = 1.25
@@ -132,17 +132,20 @@ def fastest_path(
 ) -> SearchResult:
     """Search the fastest path over a network at one setting."""
     context = trade_off.context
-    return earliest_arrival(
+    ship = ShipOnNetwork(
         network,
         frozen.stations,
         context.table,
+        setting=setting,
+        limits=trade_off.limits,
+        top_speed=frozen.top_speed,
+    )
+    return earliest_arrival(
+        ship,
         start=network.meta.start,
         goal=network.meta.goal,
         depart=context.voyage.earliest_departure,
-        setting=setting,
-        limits=trade_off.limits,
         wait=context.voyage.wait,
-        top_speed=frozen.top_speed,
     )
 
 

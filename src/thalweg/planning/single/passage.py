@@ -22,7 +22,15 @@ from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
 from thalweg.route import Route, Track, better_route
 from thalweg.route.refinement.better_route import comparison_key
-from thalweg.search import LowerBound, SearchResult, best_departure, earliest_arrival, lower_bound
+from thalweg.search import (
+    DepartureWindow,
+    LowerBound,
+    SearchResult,
+    ShipOnNetwork,
+    best_departure,
+    earliest_arrival,
+    lower_bound,
+)
 
 #: Periods for which the sea is frozen, in multiples of the time along the geodesic.
 _HORIZONS = (2.5, 8.0, 30.0)
@@ -197,17 +205,12 @@ def isochrones(
 ) -> np.ndarray:
     """Return the earliest arrival at every node [s since 1970], up to a time if one is given."""
     everywhere = earliest_arrival(
-        network,
-        frozen.stations,
-        context.table,
+        _ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,
         goal=None,
         depart=depart,
-        setting=context.setting,
-        limits=context.needs.limits,
         wait=context.voyage.wait,
         arrive_by=until,
-        top_speed=frozen.top_speed,
     )
     return everywhere.node_arrival
 
@@ -307,19 +310,30 @@ def _run_search(
     limits: Limits,
     window: tuple[float, float],
 ) -> SearchResult:
+    ship = _ship_on_network(context, network, frozen, limits)
     options = {
         "start": network.meta.start,
         "goal": network.meta.goal,
-        "setting": context.setting,
-        "limits": limits,
         "objective": context.voyage.objective,
         "wait": context.voyage.wait,
         "arrive_by": context.voyage.arrive_by,
-        "top_speed": frozen.top_speed,
     }
     if window[1] > window[0]:
-        return best_departure(network, frozen.stations, context.table, window=window, **options)  # type: ignore[arg-type]
-    return earliest_arrival(network, frozen.stations, context.table, depart=window[0], **options)  # type: ignore[arg-type]
+        return best_departure(ship, window=DepartureWindow(*window), **options)  # type: ignore[arg-type]
+    return earliest_arrival(ship, depart=window[0], **options)  # type: ignore[arg-type]
+
+
+def _ship_on_network(
+    context: PlanningContext, network: Network, frozen: FrozenSea, limits: Limits
+) -> ShipOnNetwork:
+    return ShipOnNetwork(
+        network,
+        frozen.stations,
+        context.table,
+        setting=context.setting,
+        limits=limits,
+        top_speed=frozen.top_speed,
+    )
 
 
 def _bound(
@@ -332,16 +346,11 @@ def _bound(
     any_departure: bool = False,
 ) -> LowerBound:
     return lower_bound(
-        network,
-        frozen.stations,
-        context.table,
+        _ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,
         goal=network.meta.goal,
         depart=float(result.path_arrive[0]),
-        setting=context.setting,
-        limits=context.needs.limits,
         objective="distance" if context.voyage.objective == "distance" else "time",
-        top_speed=frozen.top_speed,
         known=_objective_value(context, route) if route.feasible else None,
         any_departure=any_departure,
     )

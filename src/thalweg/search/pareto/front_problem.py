@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.limits import Limits
-from thalweg.core.objective import LegPrices
+from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.codes import (
     AXIS_COUNT,
@@ -39,6 +41,7 @@ from thalweg.kernels.search.label_setting import (
 from thalweg.search.search_problem import (
     ROUNDING_FACTOR,
     SearchProblem,
+    ShipOnNetwork,
     contiguous_array,
     make_search_problem,
     ship_arrays,
@@ -55,8 +58,67 @@ if TYPE_CHECKING:
 _MAX_TIME_PRICES = 10
 
 
+@dataclass(frozen=True, eq=False)
+class MultiSettingShipOnNetwork:
+    """A ship with a choice of settings, on a network, in the sea frozen at its stations.
+
+    Attributes
+    ----------
+    network : Network
+        Edges of fixed time (canals) cost their fee and the fuel of that time in still water at the
+        slowest setting that is fast enough.
+    fields : StationFields
+        The sea, frozen at the network's stations.
+    table, fuel : PerformanceTable or TableArrays
+        Speed through water [m/s] and fuel rate [kg/s] with the same settings.
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
+    top_speed : float, optional
+        Upper bound of the speed through water [m/s] (default: of the table).
+    """
+
+    network: Network
+    fields: StationFields
+    table: PerformanceTable | TableArrays
+    fuel: PerformanceTable | TableArrays
+    limits: Limits
+    top_speed: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class FrontQuery:
+    """What `thalweg.search.pareto_front` is asked on a network.
+
+    Attributes
+    ----------
+    start, goal : int
+        Nodes.
+    depart, latest : float
+        Time at the start and latest arrival [s since epoch].
+    settings : sequence of int, optional
+        Settings to choose from on every edge (default: all). The highest is taken to be the
+        fastest everywhere.
+    prices : LegPrices, optional
+        Prices of fuel, time, waiting and canal dues (default: 1 per kilogram of fuel).
+    eca_fraction : array_like (E,), optional
+        Fraction of each edge inside emission control areas, 0 to 1 (default: 0); see
+        `thalweg.network.eca_fractions`.
+    wait : bool
+        Whether the ship may wait at nodes that allow it, as long as it stays afloat.
+    """
+
+    start: int
+    goal: int
+    depart: float
+    latest: float
+    settings: Sequence[int] | NDArray[np.int64] | None = None
+    prices: LegPrices = FUEL_MASS
+    eca_fraction: ArrayLike | None = None
+    wait: bool = True
+
+
 class FrontRequest(NamedTuple):
-    """What was asked, as `thalweg.search.pareto_front` takes it; times in seconds since epoch."""
+    """A `FrontQuery` that has been checked, with its settings and the fuel price of each edge."""
 
     start: int
     goal: int
@@ -101,18 +163,13 @@ class FrontProblem(NamedTuple):
 
 
 def make_front_problem(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
-    fuel: PerformanceTable | TableArrays,
-    *,
-    request: FrontRequest,
-    limits: Limits,
-    top_speed: float | None,
+    ship_on_network: MultiSettingShipOnNetwork, request: FrontRequest
 ) -> FrontProblem:
     """Gather the arrays that a front is searched with."""
-    ship = ship_arrays(table, int(request.settings[-1]), limits)
-    burning = ship_arrays(fuel, int(request.settings[-1]), limits).table
+    network, limits = ship_on_network.network, ship_on_network.limits
+    highest, top_speed = int(request.settings[-1]), ship_on_network.top_speed
+    ship = ship_arrays(ship_on_network.table, highest, limits)
+    burning = ship_arrays(ship_on_network.fuel, highest, limits).table
     if burning.n_settings != ship.table.n_settings:
         raise InputError(
             f"The fuel table has {burning.n_settings} settings, the table of speeds "
@@ -124,7 +181,7 @@ def make_front_problem(
     thriftiest = np.maximum(table_bounds(burning, np.fmin)[request.settings], 0.0)
     top = float(np.nanmax(fastest)) if top_speed is None else float(top_speed)
     whole = make_search_problem(
-        network, fields, table, setting=int(request.settings[-1]), limits=limits, top_speed=top
+        ShipOnNetwork(network, ship_on_network.fields, ship_on_network.table, highest, limits, top)
     )
     given, origin = _with_states(whole, request, limits.required_depth)
     factor = np.ones_like(whole.network.factor)

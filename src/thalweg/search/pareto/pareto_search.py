@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError, NoRouteError
-from thalweg.core.limits import Limits
-from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.pareto.edge_tables import EdgeTables
@@ -39,7 +37,9 @@ from thalweg.search.pareto.discretisation import (
 from thalweg.search.pareto.front_problem import (
     BoundsToGoal,
     FrontProblem,
+    FrontQuery,
     FrontRequest,
+    MultiSettingShipOnNetwork,
     bounds_to_goal,
     earliest_arrivals,
     make_front_problem,
@@ -61,32 +61,18 @@ from thalweg.search.search_problem import distance_bounds
 
 if TYPE_CHECKING:
     from thalweg.network.network import Network
-    from thalweg.sea.frozen_fields import StationFields
-    from thalweg.ship.tables.performance_table import PerformanceTable
 
 
 MEMORY_LIMIT = 3e9  # [bytes]
 
 
 def pareto_front(
-    network: Network,
-    fields: StationFields,
-    table: PerformanceTable | TableArrays,
-    fuel: PerformanceTable | TableArrays,
+    ship_on_network: MultiSettingShipOnNetwork,
+    query: FrontQuery,
     *,
-    start: int,
-    goal: int,
-    depart: float,
-    limits: Limits,
-    latest: float,
-    settings: Sequence[int] | NDArray[np.int64] | None = None,
-    prices: LegPrices = FUEL_MASS,
-    eca_fraction: ArrayLike | None = None,
-    wait: bool = True,
     bin_s: float | None = None,
     memory_limit: float = MEMORY_LIMIT,
     lower: bool = True,
-    top_speed: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NetworkFront:
     """Find the Pareto front of time and cost of the paths between two nodes.
@@ -97,29 +83,10 @@ def pareto_front(
 
     Parameters
     ----------
-    network : Network
-        Edges of fixed time (canals) cost their fee and the fuel of that time in still water at the
-        slowest setting that is fast enough.
-    fields : StationFields
-        The sea, frozen at the network's stations.
-    table, fuel : PerformanceTable or TableArrays
-        Speed through water [m/s] and fuel rate [kg/s] with the same settings.
-    start, goal : int
-        Nodes.
-    depart, latest : float
-        Time at the start and latest arrival [s since epoch].
-    limits : Limits
-        As in `thalweg.search.earliest_arrival`.
-    settings : sequence of int, optional
-        Settings to choose from on every edge (default: all). The highest is taken to be the
-        fastest everywhere.
-    prices : LegPrices, optional
-        Prices of fuel, time, waiting and canal dues (default: 1 per kilogram of fuel).
-    eca_fraction : array_like (E,), optional
-        Fraction of each edge inside emission control areas, 0 to 1 (default: 0); see
-        `thalweg.network.eca_fractions`.
-    wait : bool
-        Whether the ship may wait at nodes that allow it, as long as it stays afloat.
+    ship_on_network : MultiSettingShipOnNetwork
+        The network, the sea frozen at its stations, and the ship with its settings.
+    query : FrontQuery
+        Start, goal, departure, latest arrival, settings to choose from, and prices.
     bin_s : float, optional
         Width of the bins of time [s] (default: a round number that divides the time into at most
         2000 bins, fewer, but not below 250, where the memory or the work does not allow that).
@@ -127,8 +94,6 @@ def pareto_front(
         Memory that may be taken [bytes].
     lower : bool
         Whether to search the lower front as well.
-    top_speed : float, optional
-        Upper bound of the speed through water [m/s] (default: of the table).
     progress : callable, optional
         Called with the share of the bins done.
 
@@ -181,14 +146,9 @@ def pareto_front(
       and the best prices of every edge do not lead them below what is known of the goal. This
       loses nothing.
     """
-    request = _request(
-        network, table,
-        start=start, goal=goal, depart=depart, latest=latest, settings=settings,
-        prices=prices, eca_fraction=eca_fraction, wait=wait, bin_s=bin_s,
-    )  # fmt: skip
-    front_problem = make_front_problem(
-        network, fields, table, fuel, request=request, limits=limits, top_speed=top_speed
-    )
+    network, request = ship_on_network.network, _request(ship_on_network, query)
+    _check_bin_width(bin_s)
+    front_problem = make_front_problem(ship_on_network, request)
     bounds = bounds_to_goal(front_problem, request.goal)
     soonest = earliest_arrivals(front_problem, request, everywhere=True)
     first = _find_seed_paths(network, front_problem, request, bounds)
@@ -348,20 +308,17 @@ def _no_route(network: Network, front_problem: FrontProblem, request: FrontReque
     )  # fmt: skip
 
 
-def _request(
-    network: Network,
-    table: PerformanceTable | TableArrays,
-    *,
-    start: int,
-    goal: int,
-    depart: float,
-    latest: float,
-    settings: Sequence[int] | NDArray[np.int64] | None,
-    prices: LegPrices,
-    eca_fraction: ArrayLike | None,
-    wait: bool,
-    bin_s: float | None,
-) -> FrontRequest:
+def _check_bin_width(bin_s: float | None) -> None:
+    if bin_s is not None and not (math.isfinite(bin_s) and bin_s > 0.0):
+        raise InputError(
+            f"The bins of {bin_s} s hold no time.", "A bin has a positive width.", "Widen them."
+        )
+
+
+def _request(ship_on_network: MultiSettingShipOnNetwork, query: FrontQuery) -> FrontRequest:
+    """Check a query against the network and the ship's settings."""
+    network, table, settings = ship_on_network.network, ship_on_network.table, query.settings
+    start, goal, depart, latest = query.start, query.goal, query.depart, query.latest
     raw = table if isinstance(table, TableArrays) else table.kernel_arrays()
     count = int(raw.n_settings)
     chosen = np.arange(count) if settings is None else np.unique(np.asarray(settings, np.int64))
@@ -384,7 +341,8 @@ def _request(
             "Give a later arrival.",
         )
     inside = np.broadcast_to(
-        np.asarray(0.0 if eca_fraction is None else eca_fraction, float), (network.n_edges,)
+        np.asarray(0.0 if query.eca_fraction is None else query.eca_fraction, float),
+        (network.n_edges,),
     )
     if not ((inside >= 0.0) & (inside <= 1.0)).all():
         raise InputError(
@@ -392,11 +350,8 @@ def _request(
             "Each edge has one, as thalweg.network.eca_fractions returns them.",
             "Correct the fractions.",
         )
-    if bin_s is not None and not (math.isfinite(bin_s) and bin_s > 0.0):
-        raise InputError(
-            f"The bins of {bin_s} s hold no time.", "A bin has a positive width.", "Widen them."
-        )
     return FrontRequest(
-        int(start), int(goal), float(depart), float(latest), chosen, prices,
-        prices.of_legs(inside, np.asarray(network.edges.price_factor, float)), bool(wait),
+        int(start), int(goal), float(depart), float(latest), chosen, query.prices,
+        query.prices.of_legs(inside, np.asarray(network.edges.price_factor, float)),
+        bool(query.wait),
     )  # fmt: skip
