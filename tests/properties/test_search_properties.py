@@ -42,8 +42,8 @@ def random_world(seed, *, nodes=6, gaps=False, pieces=2, **options):
     return network, fields, depart
 
 
-def sail(network, fields, depart, **options):
-    ship = ShipOnNetwork(network, fields, steady(SPEED), 0, NO_LIMITS, SPEED)
+def sail(network, fields, depart, *, limits=NO_LIMITS, **options):
+    ship = ShipOnNetwork(network, fields, steady(SPEED), 0, limits, SPEED)
     wanted = {"start": 0, "goal": network.n_nodes - 1, "depart": depart}
     return earliest_arrival(ship, **(wanted | options))
 
