@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.search.earliest_arrival import (
     ArrivalQuery,
@@ -36,6 +37,7 @@ _GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 _COST_TOLERANCE = 1e-3  # costs closer than this are equal [s or m]
 
 
+@limits_as_array
 def best_departure(
     network: Network,
     fields: StationFields,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import InputError
 from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.search.label_setting import (
@@ -75,6 +76,7 @@ class ArrivalQuery:
         return -1 if self.goal is None else int(self.goal)
 
 
+@limits_as_array
 def earliest_arrival(
     network: Network,
     fields: StationFields,

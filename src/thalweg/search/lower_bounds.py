@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from thalweg.core.geodesy import distance
 from thalweg.core.limits import Limits
 from thalweg.core.objective import SingleSettingObjective
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.search.earliest_arrival import ArrivalQuery, solve_earliest_arrival
 from thalweg.search.search_problem import (
@@ -126,6 +127,7 @@ def _mixed(
     return np.asarray(ratio)
 
 
+@limits_as_array
 def lower_bound(
     network: Network,
     fields: StationFields,

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.limits import Limits
 from thalweg.core.objective import FUEL_MASS, LegPrices
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels.codes import REASONS
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.kernels.pareto.edge_tables import EdgeTables
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
 MEMORY_LIMIT = 3e9  # [bytes]
 
 
+@limits_as_array
 def pareto_front(
     network: Network,
     fields: StationFields,
