@@ -1,4 +1,4 @@
-"""Names of before still work and say which name to use now."""
+"""Deprecated names still work, with a warning that gives the new name."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def restricted(seed):
 def minute_by_minute(network, fields):
     """Return the earliest arrival at the last node on a network of nodes times minutes.
 
-    Arrivals are rounded down for one bound and up for the other, so the truth lies between (up to
+    Arrivals are rounded down for one bound and up for the other, so the exact value is between (to
     what a minute more or less at every node decides).
     """
     clock = np.arange(DEPART, fields.times[-1], MINUTE)
@@ -100,7 +100,7 @@ def barred_line(opens: float):
     return network, make_fields(network, times, bed_depth=bed)
 
 
-def test_the_wait_before_a_bar_is_taken_at_the_anchorage():
+def test_the_ship_waits_for_a_bar_at_the_anchorage():
     """The bar opens within the step before 4 h; node 1 is 2 km and 500 s from there."""
     network, fields = barred_line(4.0 * HOUR)
     found = earliest_arrival(network, fields, steady(4.0), start=0, goal=5, depart=0.0, **GIVEN)
@@ -133,14 +133,14 @@ def test_no_path_is_reported_with_its_reasons():
     assert any("clearance" in reason or "depth" in reason for reason in found.refused)
 
 
-def test_a_latest_arrival_is_kept():
+def test_no_arrival_is_after_the_latest_arrival():
     network, fields = barred_line(4.0 * HOUR)
     asked = {"start": 0, "goal": 5, "depart": 0.0, **GIVEN}
     assert not earliest_arrival(network, fields, steady(4.0), arrive_by=3.0 * HOUR, **asked).found
     assert earliest_arrival(network, fields, steady(4.0), arrive_by=4.2 * HOUR, **asked).found
 
 
-def test_where_waiting_is_allowed_everywhere_nothing_changes():
+def test_waiting_at_all_nodes_gives_the_unlimited_result():
     network, fields = gully(3)
     given = {"start": 0, "goal": 6, "depart": DEPART, **GIVEN}
     plain = earliest_arrival(network, fields, steady(4.0), **given)
@@ -154,4 +154,4 @@ def test_open_water_takes_one_wave():
     fields = make_fields(network, [0.0, 8 * HOUR, 300 * HOUR], bed_depth=10.0)
     found = earliest_arrival(network, fields, steady(4.0), start=0, goal=59, depart=0.0, **GIVEN)
     assert found.arrive == pytest.approx(59_000.0 / 4.0)
-    assert found.settled <= 3 * (network.n_nodes + 1)  # and one more to tell the way
+    assert found.settled <= 3 * (network.n_nodes + 1)  # and one more for the path
