@@ -1,8 +1,7 @@
 """Old names of modules and functions: they still work, with a warning that names the new one.
 
-Modules that the documentation once named are found by an importer that is asked last, so that it
-costs nothing as long as new names are used. Packages answer for names they once exported by
-`renamed`.
+An importer finds the old names of documented modules. It is the last one, so that it takes no time
+when only new names are used. Packages support the names they once exported by `renamed`.
 """
 
 from __future__ import annotations
@@ -289,6 +288,6 @@ class _OldModules(MetaPathFinder, Loader):
 
 
 def install() -> None:
-    """Let Python find the old modules; asked after all other importers."""
+    """Let Python find the old modules, after all other importers."""
     if not any(isinstance(finder, _OldModules) for finder in sys.meta_path):
         sys.meta_path.append(_OldModules())

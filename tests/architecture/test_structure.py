@@ -61,7 +61,7 @@ TREES = {name: ast.parse(path.read_text("utf-8")) for name, path in MODULES.item
 
 
 def repeated(places: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
-    """Return the names that stand in more than one place."""
+    """Return the names that occur in more than one place."""
     return {name: sorted(found) for name, found in places.items() if len(set(found)) > 1}
 
 

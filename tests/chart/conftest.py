@@ -1,4 +1,4 @@
-"""Charts that many tests share."""
+"""Charts that several test modules share."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def test_figures_are_those_of_a_canal(canal):
     assert canal.fee > 0.0 and canal.source
 
 
-def test_canal_of_legs_knows_both_directions_and_nothing_else(chart):
+def test_canal_of_legs_finds_only_canals_in_both_directions(chart):
     for k, canal in enumerate(chart.canals):
         lat1, lon1, lat2, lon2 = ends_of(canal)
         found = chart.canal_of_legs(
@@ -101,7 +101,7 @@ def test_a_ship_that_is_too_large_gets_the_reason():
         {"max_draught": np.nan},
     ],
 )
-def test_figures_that_make_no_sense_are_refused(wrong):
+def test_invalid_values_are_refused(wrong):
     sound = {"name": "x", "title": "X", "path": ((1.0, 2.0), (1.0, 3.0)), "transit_time": 1.0}
     with pytest.raises(InputError, match="'x'"):
         Canal(**{**sound, "fee": 0.0, **wrong})

@@ -46,7 +46,7 @@ def test_a_folder_that_cannot_be_written_is_no_harm(tmp_path):
     assert not path.exists()
 
 
-def test_gshhg_is_kept_in_the_cache_folder(tmp_path, monkeypatch):
+def test_gshhg_is_cached(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     first = Chart.gshhg("c")
     assert len(list((tmp_path / "coast").glob("gshhg-c-*.npz"))) == 1

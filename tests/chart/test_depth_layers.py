@@ -40,7 +40,7 @@ RAMP = np.broadcast_to(LON * 10.0, (len(LAT), len(LON)))  # depth 20 m in the we
         (grid(RAMP, LAT, LON + 360.0, "depth"), {}),
     ],
 )
-def test_depth_is_positive_down_whatever_the_file_says(array, options):
+def test_depth_is_positive_down_for_any_sign_in_the_file(array, options):
     chart = OPEN.with_depth(array, **options)
     assert chart.has_depth
     assert chart.depths.at([51.0, 51.23], [3.0, 2.55]) == pytest.approx([30.0, 25.5], rel=1e-5)
@@ -68,7 +68,7 @@ def test_a_shoal_of_one_sounding_is_never_missed():
     assert chart.depths.along(50.5, 2.2, 50.5, 3.8) == 30.0
 
 
-def test_the_first_layer_that_knows_a_place_counts():
+def test_the_first_layer_with_data_at_a_position_is_used():
     inner = np.where(RAMP > 30.0, np.nan, 5.0)
     chart = OPEN.with_depth(grid(inner, LAT, LON, "depth")).with_depth(lambda lat, lon: 100.0)
     assert chart.depths.at(51.0, [2.5, 3.5, 10.0]) == pytest.approx([5.0, 100.0, 100.0])
@@ -104,13 +104,15 @@ def test_uneven_steps_keep_the_least_sounding():
 
 
 def test_between_uneven_soundings_the_shallower_one_counts():
-    lon = np.array([2.0, 3.0, 3.25])  # laid on steps of 0.25: 2.25 to 2.75 lie between 10 and 50 m
+    lon = np.array(
+        [2.0, 3.0, 3.25]
+    )  # on a grid with steps of 0.25: 2.25 to 2.75 lie between 10 and 50 m
     values = np.broadcast_to(np.array([10.0, 50.0, 50.0]), (len(LAT), 3))
     chart = OPEN.with_depth(grid(values, LAT, lon, "depth"))
     assert chart.depths.along(51.0, 2.45, 51.0, 2.55) == 10.0
 
 
-def test_the_fingerprint_knows_the_soundings():
+def test_the_fingerprint_depends_on_the_soundings():
     one = OPEN.with_depth(grid(RAMP, LAT, LON, "depth"))
     two = OPEN.with_depth(grid(RAMP + 1.0, LAT, LON, "depth"))
     again = OPEN.with_depth(grid(RAMP, LAT, LON, "depth"))
@@ -172,7 +174,7 @@ def test_missing_values_that_are_not_marked_are_not_deep_water():
         chart.depths.along(50.5, 2.2, 50.5, 3.0)
 
 
-def test_the_embedded_depth_warns_but_proves_nothing():
+def test_the_embedded_depth_is_coarse_and_not_part_of_charts():
     assert 4000.0 < coarse_depth(40.0, -55.0) < 6000.0
     assert 15.0 < coarse_depth(55.0, 3.0) < 45.0  # the North Sea
     assert coarse_depth(47.0, 8.0) < 0.0
@@ -201,7 +203,7 @@ def test_a_long_leg_over_a_gap_in_the_soundings_is_unknown():
 
 
 def test_a_leg_that_clips_the_corner_of_a_shallow_cell_is_shallow():
-    """However it is cut: the whole leg is as shallow as the least of its parts."""
+    """The least depth of a leg is the least of those of its parts, for any division."""
     lat = lon = np.arange(0.0, 1.01, 0.1)
     rng = np.random.default_rng(3)
     for _ in range(20):

@@ -83,7 +83,7 @@ def test_names_short_unknown_and_too_early():
     assert [z.name for z in twice.zones.eca] == ["north-sea", "baltic-sea"]
 
 
-def test_published_points_are_kept_to_the_digit():
+def test_published_points_are_exact():
     for name, first, count in (
         ("north-america-pacific", (32.536111, -117.103056), 47),
         ("north-america-atlantic", (60.0, -64.16), 206),
@@ -179,7 +179,7 @@ def test_share_is_by_length_on_a_long_oblique_geodesic():
 
 
 def test_a_leg_out_of_one_area_and_into_another(seas):
-    """Santander road to Boston: exact pieces add up whatever the cuts."""
+    """Santander road to Boston: fractions of pieces add up for any division."""
     ends = (48.0, -12.0, 42.0, -69.0)
     whole = float(seas.zones.eca_fraction(*ends))
     lat, lon = positions_along(*ends, np.linspace(0.0, 1.0, 38))
@@ -258,7 +258,7 @@ def test_invalid_outlines_are_refused_with_the_place():
             OPEN.with_zones(feature)
 
 
-def test_the_fingerprint_knows_the_areas(seas):
+def test_the_fingerprint_depends_on_the_areas(seas):
     prints = {chart.fingerprint() for chart in (OPEN, seas, OPEN.with_eca("north-sea"))}
     assert len(prints) == 3
 

@@ -97,7 +97,7 @@ def test_antimeridian_and_poles(world):
 
 
 def test_land_cut_in_two_at_a_meridian_has_no_seam(world):
-    # GSHHG cuts Chukotka and Wrangel Island at 180 degrees, Antarctica at 0 and 180
+    # GSHHG splits Chukotka and Wrangel Island at 180 degrees, Antarctica at 0 and 180
     lat = np.array([66.0, 67.5, 68.5, 71.1, -80.0, -85.0])
     for lon in (180.0, -180.0, 180.0 - 1e-13, -180.0 + 1e-13):
         assert not world.is_navigable(lat, lon).any()
@@ -128,7 +128,7 @@ def test_direction_does_not_matter(world):
     assert np.array_equal(there, back)
 
 
-def test_broadcasts_and_keeps_shape(world):
+def test_broadcasts_and_preserves_shape(world):
     found = world.legs_blocked(54.0, 3.0, np.full((2, 3), 54.5), np.full((2, 3), 4.0))
     assert found.shape == (2, 3)
     assert world.leg_status(54.0, 3.0, 54.1, 3.0).shape == ()
@@ -244,7 +244,7 @@ def test_an_area_that_is_none_is_refused(box):
         Chart.open_water(*box)
 
 
-def test_shore_distance_is_a_lower_bound_and_near_the_truth(world):
+def test_shore_distance_is_a_lower_bound_near_the_exact_value(world):
     rng = np.random.default_rng(8)
     lat, lon = rng.uniform(49, 60, 300), rng.uniform(-8, 10, 300)
     found = world.coastline.shore_distance(lat, lon)
@@ -262,7 +262,7 @@ def test_shore_distance_is_a_lower_bound_and_near_the_truth(world):
         assert found[k] >= min(true, 50_000.0) * 0.985 - 350.0  # the outline is sampled
 
 
-def test_unknown_or_missing_resolution_says_what_to_do():
+def test_unknown_or_missing_resolution_is_refused_with_a_remedy():
     with pytest.raises(InputError, match="c \\(crude\\)"):
         Chart.gshhg("x")
     try:

@@ -101,11 +101,11 @@ def test_a_puddle_is_not_open_sea():
     assert 2200.0 < away < 3200.0
 
 
-def test_nothing_navigable_within_reach_is_none(world):
+def test_none_if_no_navigable_water_is_within_reach(world):
     assert world.nearest_navigable(47.0, 60.0) is None
 
 
-def test_a_place_by_a_pond_snaps_to_it_when_nothing_else_is_near():
+def test_a_place_near_a_pond_snaps_to_it_if_no_other_water_is_near():
     land = [[-3, -3], [3, -3], [3, 3], [-3, 3], [-3, -3]]
     ponds = [
         [[x, y], [x, y + w], [x + w, y + w], [x + w, y], [x, y]]

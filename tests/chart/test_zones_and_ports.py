@@ -44,7 +44,7 @@ def test_factors_are_weighted_by_length():
     assert price.tolist() == [1.0, 1.0, 1.0]
 
 
-def test_factors_of_legs_from_nowhere_are_unknown():
+def test_factors_of_legs_with_unknown_ends_are_unknown():
     for chart in (OPEN, OPEN.with_zones([zone(1, -1, 2, 1, kind="penalty", factor=3.0)])):
         penalty, price = chart.zones.factors([0.0, float("nan"), 0.0], 0.0, 0.0, 4.0)
         assert np.isnan(penalty).tolist() == np.isnan(price).tolist() == [False, True, False]
@@ -83,7 +83,7 @@ def test_zones_cross_the_antimeridian():
         ({"kind": "price", "factor": "nan"}, "above 0"),
     ],
 )
-def test_zones_that_make_no_sense_are_refused(properties, words):
+def test_invalid_zones_are_refused(properties, words):
     with pytest.raises(InputError, match=words):
         OPEN.with_zones(zone(0, 0, 1, 1, **properties))
 
@@ -176,7 +176,7 @@ def _ring_of(*corners):
 
 @pytest.mark.parametrize(("west", "east"), [(-100, 100), (-170, 170), (10, 350), (-179.9, 179.9)])
 def test_a_wide_zone_is_not_silently_turned_inside_out(west, east):
-    """As written it runs as RFC 7946 asks, so it is not taken to cross the antimeridian."""
+    """Its direction is that of RFC 7946, so it is not taken to cross the antimeridian."""
     with pytest.raises(InputError, match="degrees as written, or") as caught:
         OPEN.with_zones(zone(west, -10, east, 10, kind="no-go"))
     assert f"longitude {west:g} to {east:g}" in str(caught.value)

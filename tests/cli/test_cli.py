@@ -1,4 +1,4 @@
-"""The command line: results, exit codes, and errors a person can act on."""
+"""The command line: results, exit codes, and error messages with a remedy."""
 
 import json
 
@@ -140,7 +140,7 @@ def test_inspect(capsys, currents):
         (["--ship", "SHIP", "--sea", "CURRENTS", "--fill", "waves=-1"], 2, "between 0 and"),
     ],
 )
-def test_mistakes_have_exit_codes_and_no_traceback(capsys, ship, currents, extra, code, words):
+def test_errors_have_exit_codes_and_no_traceback(capsys, ship, currents, extra, code, words):
     extra = [{"SHIP": ship, "CURRENTS": currents}.get(word, word) for word in extra]
     got = main(["plan", HERE, THERE, "--coast", "none", *extra])
     captured = capsys.readouterr()
@@ -199,7 +199,7 @@ def test_help_names_every_command():
         (["inspect", "x.nc", "--time", "2026-01-01", "--json"], "--out"),
     ],
 )
-def test_command_lines_that_are_not_understood(capsys, command, words):
+def test_invalid_command_lines_are_refused(capsys, command, words):
     assert main(command) == 2
     found = json.loads(capsys.readouterr().out)
     assert found["error"] == "InputError"
@@ -227,7 +227,7 @@ def test_half_a_vector_is_no_sea(capsys, tmp_path, currents):
     assert "partner is missing" in capsys.readouterr().err
 
 
-def test_the_high_north_is_told(capsys, ship):
+def test_high_latitudes_give_a_warning(capsys, ship):
     code, found = run_json(
         capsys, "plan", "75N 0E", "75N 4E", "--ship", ship, "--calm", "--coast", "none"
     )

@@ -1,4 +1,4 @@
-"""Ensembles on the command line: a file for each member, and what is no ensemble."""
+"""Ensembles on the command line: a file for each member, and refused files."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""``thalweg ship``: arguments, the JSON it promises, pictures, and refusals."""
+"""``thalweg ship``: arguments, JSON, plots, and refused input."""
 
 import argparse
 import json
@@ -239,13 +239,13 @@ def test_speeds_a_ship_cannot_show_are_left_out_and_named(capsys):
         _run(capsys, "handysize-bulker", "--speed", "20:22")
 
 
-def test_weather_a_ship_does_not_feel_is_said(capsys):
+def test_weather_without_effect_on_the_ship_is_reported(capsys):
     sheet = json.loads(_run(capsys, "vox-olympia", "--hs", 3, "--wind", 10, "--json"))
     assert [text.split(" given")[0] for text in sheet["warnings"]] == ["waves are", "the wind is"]
     assert json.loads(_run(capsys, "kvlcc2", "--hs", 3, "--wind", 10, "--json"))["warnings"] == []
 
 
-def test_weather_beyond_the_limits_is_said(capsys):
+def test_weather_beyond_the_limits_is_reported(capsys):
     sheet = json.loads(_run(capsys, "kvlcc2", "--hs", 9, "--wind", 30, "--json"))
     assert [text.split(" are")[0] for text in sheet["warnings"]] == [
         "waves of 9 m",
@@ -291,7 +291,7 @@ def test_rudder_drag_needs_the_option_and_a_crab_angle(capsys, ship_file):
         drag("--crab", 60)
 
 
-def test_the_list_of_ships_is_json_when_asked(capsys):
+def test_the_list_of_ships_can_be_json(capsys):
     assert "kvlcc2" in json.loads(_run(capsys, "--list", "--json"))["ships"]
 
 
@@ -304,7 +304,7 @@ def test_names_that_look_like_markup_or_formulas_are_shown_as_they_are(capsys, t
     assert (tmp_path / "out" / "speed_loss.png").stat().st_size > 1000
 
 
-def test_water_too_shallow_is_said_and_draws_no_resistance(capsys, tmp_path):
+def test_too_shallow_water_is_reported_and_has_no_resistance_plot(capsys, tmp_path):
     path = tmp_path / "ship.yaml"
     path.write_text(FILE.replace("models: {", "models: {shallow_water: karpov, "))
     options = ("--speed", "8:10", "--water-depth", 9, "--out", tmp_path / "out", "--json")

@@ -1,4 +1,4 @@
-"""``thalweg tides``: records and runs in, constituents and predictions out."""
+"""``thalweg tides``: constituents and predictions from records and model runs."""
 
 import argparse
 import csv
@@ -129,7 +129,7 @@ def test_a_published_file_is_predicted(capsys):
         (("--at", "-33.9,18.4", "--rayleigh", "0"), "Rayleigh"),
     ],
 )
-def test_an_analysis_that_cannot_be(record, words, match):
+def test_impossible_analyses_are_refused(record, words, match):
     with pytest.raises(InputError, match=match):
         tide("analyse", record, *words)
 
@@ -195,7 +195,7 @@ def test_official_records_are_analysed_as_they_are(capsys, name, words, size, la
     assert m2["phase_deg"] == pytest.approx(lag, abs=1.0)
 
 
-def test_options_that_would_change_nothing_are_refused(record, tmp_path):
+def test_options_without_effect_are_refused(record, tmp_path):
     with pytest.raises(InputError, match="--map is for variables"):
         tide("analyse", record, "--at", "-33.9,18.4", "--map", "a=b")
     run = tmp_path / "run.nc"

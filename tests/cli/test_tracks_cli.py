@@ -93,7 +93,7 @@ def test_names_with_brackets_are_printed_as_they_are(folder, tmp_path, capsys):
     ("more", "told"),
     [
         (["--ship", "hopper-dredger"], "no sea is given"),
-        (["--vessel", "7"], "'7' was asked for"),
+        (["--vessel", "7"], "'7' was requested"),
         (["--column", "lat"], "WHAT=NAME"),
         (["--column", "lat=y"], "are wrong"),
         (["--slow", "-1"], "not negative"),

@@ -60,7 +60,7 @@ def test_building_twice_gives_the_same(name):
     np.testing.assert_equal(asdict(first), asdict(second))
 
 
-def test_nothing_is_written_by_reading():
+def test_reading_does_not_write():
     network = lattice(Chart.open_water(), (10, -40), (11, -39), directions=8)
     before = network.edges.length.copy()
     check_network(network)

@@ -1,4 +1,4 @@
-"""What every layer of a sea must keep, whatever it is made of."""
+"""The properties that every layer of a sea must have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every ship of ours keeps the public contract, and the contract finds faults."""
+"""All ship models of the package pass the model check, and the check detects faults."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ def test_large_library_ships_keep_the_contract(name):
     check_ship_model(Ship.load(name))
 
 
-def test_the_dredger_keeps_it_empty_and_half_full():
+def test_the_dredger_satisfies_it_empty_and_half_full():
     for load_factor in (0.0, 0.5):
         check_ship_model(Ship.load("hopper-dredger").with_load_factor(load_factor))
 

@@ -85,7 +85,7 @@ def package(tmp_path, monkeypatch):
         ("offered-slowed", 0.0, 4.4),
     ],
 )
-def test_a_ship_of_another_package_loads_by_name_and_keeps_the_contract(name, draught, speed):
+def test_a_ship_of_another_package_loads_by_name_and_satisfies_the_protocol(name, draught, speed):
     ship = Ship.load(name)
     assert ship.draught == draught
     conditions = Conditions(wave_height=2.0)

@@ -50,7 +50,7 @@ def test_triangle_inequality(lat1, lon1, lat2, lon2):
     assert whole <= way * (1 + 1e-12)
 
 
-def test_densify_keeps_vertices_and_length():
+def test_densify_preserves_vertices_and_length():
     lats, lons = np.array([50.0, 45.0, 40.7]), np.array([-5.0, -40.0, -74.0])
     fine_lat, fine_lon, leg = geodesy.densify(lats, lons, 50_000.0)
     pieces = geodesy.distance(fine_lat[:-1], fine_lon[:-1], fine_lat[1:], fine_lon[1:])

@@ -24,7 +24,7 @@ def test_array_is_in_the_order_of_the_kernel_codes():
     assert array[codes.LIMIT_WIND_SPEED] == LIMITS.wind_speed
 
 
-def test_without_arguments_nothing_is_limited():
+def test_without_arguments_there_are_no_limits():
     assert Limits().array.tolist() == [-math.inf, math.inf, math.inf]
     assert not Limits().depth_checked
     assert LIMITS.depth_checked

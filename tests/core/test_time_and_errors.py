@@ -1,4 +1,4 @@
-"""Time at the boundary, and errors that say what to do."""
+"""Conversion of times, and errors with a remedy."""
 
 import ast
 import json
@@ -56,7 +56,7 @@ def test_near_matches_ignore_case():
     assert "Did you mean 'Rotterdam'" in str(unknown_name_error("port", "roterdam", ["Rotterdam"]))
 
 
-def test_an_error_keeps_its_three_parts_and_details():
+def test_an_error_has_its_three_parts_and_details():
     error = NoRouteError("No way.", "Nothing.", "Wait.", reasons={"land": 3}, nearest=(1.0, 2.0))
     assert str(error) == "No way. Nothing. Wait."
     assert error.as_dict()["details"] == {"reasons": {"land": 3}, "nearest": [1.0, 2.0]}
@@ -100,7 +100,7 @@ def test_json_is_never_written_with_nan_or_infinity():
     assert set(lax.items()) == _OWN_TEXTS
 
 
-def test_without_a_home_data_are_kept_in_the_temporary_folder(monkeypatch, tmp_path):
+def test_without_a_home_folder_data_are_cached_in_the_temporary_folder(monkeypatch, tmp_path):
     def nowhere():
         raise RuntimeError("Could not determine home directory.")
 

@@ -1,4 +1,4 @@
-"""The page on ship files names every key and every method there is, and no others."""
+"""The page on ship files names all keys and methods, and no others."""
 
 import re
 from pathlib import Path

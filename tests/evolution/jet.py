@@ -1,6 +1,6 @@
 """A meandering jet, two moving eddies and a tide: 500 x 500 nm, shrunk 100 times, on the equator.
 
-Speeds and fuel are Table 5.3 of Seuren (2020). Times in hours and fuel in tonnes are told at the
+Speeds and fuel are Table 5.3 of Seuren (2020). Times in hours and fuel in tonnes are given at the
 scale before shrinking.
 """
 

@@ -1,4 +1,4 @@
-"""Evolution runs: repeatable, cancellable, feasible by the referee, and as good as is told."""
+"""Evolution runs: repeatable, cancellable, feasible by the referee, and as good as documented."""
 
 import signal
 from functools import cache
@@ -172,7 +172,7 @@ def test_a_front_has_settled_when_its_distances_vary_no_more():
     assert not any(moving.settled(rng.random((5, 2))) for _ in range(100))
 
 
-def test_asking_and_telling_is_all_there_is():
+def test_the_ask_and_tell_interface_suffices():
     evaluator = jet.evaluator()
     rng = np.random.default_rng(0)
     first = evaluator.population([jet.straight(s) for s in range(12)], capacity=40)
@@ -211,7 +211,7 @@ def test_waits_that_help_stay_and_others_go():
         ({"seconds": float("nan")}, "zero or more"),
     ],
 )
-def test_what_cannot_be_is_an_error(wrong, word):
+def test_impossible_values_are_refused(wrong, word):
     with pytest.raises(InputError, match=word):
         evolve(jet.evaluator(), [jet.straight(6)], **wrong)
 

@@ -60,7 +60,7 @@ def test_non_dominated_keeps_the_first_of_equals_and_drops_unknown():
     assert non_dominated(points).tolist() == [True, True, False, False, False, True, False]
 
 
-def test_points_beyond_the_reference_add_nothing():
+def test_points_beyond_the_reference_do_not_add_to_the_hypervolume():
     assert hypervolume([*Z, (6, 0), (0, 5)], CORNER) == 8.0
     assert hypervolume([(6, 6)], CORNER) == 0.0
     assert hypervolume([], CORNER) == 0.0
@@ -110,7 +110,7 @@ def test_pymoo_agrees():
         lambda: generational_distance([], Z),
     ],
 )
-def test_what_makes_no_sense_is_an_error(wrong):
+def test_invalid_values_are_refused(wrong):
     with pytest.raises(InputError) as caught:
         wrong()
     assert caught.value.possible

@@ -54,7 +54,7 @@ def test_the_time_evaluator_agrees_to_rounding():
     assert arrive[0, :n] == pytest.approx(quick[0], rel=1e-12)
 
 
-def test_a_population_is_sailed_as_each_track_alone_whatever_the_threads():
+def test_a_population_gives_the_results_of_single_tracks_for_any_number_of_threads():
     evaluator = jet.evaluator()
     genomes = [wavy(int(rng.integers(3, 30)), seed) for seed in range(80)]
     together = np.column_stack(evaluator(genomes))
@@ -141,7 +141,7 @@ def test_charted_depth_limits_legs():
     assert violation[0] == pytest.approx(share, abs=0.11)  # whole legs
 
 
-def test_canal_legs_take_their_time_and_fee_whatever_the_sea():
+def test_canal_legs_have_fixed_time_and_fee_in_any_sea():
     evaluator = jet.evaluator(prices=LegPrices(outside=2.0))
     genome = jet.straight(6, 4)
     length = 30.0 * jet.NM / jet.SHRINK
@@ -225,7 +225,7 @@ def test_genomes_go_to_tracks_and_back():
         lambda: Genome.from_track(Track([0.0, 1.0], [0.0, 1.0], 0.0), settings=3, via=[(0.5, 0.5)]),
     ],
 )
-def test_what_cannot_be_is_an_error(wrong):
+def test_impossible_values_are_refused(wrong):
     with pytest.raises(InputError) as caught:
         wrong()
     assert caught.value.possible

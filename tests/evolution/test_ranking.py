@@ -1,4 +1,4 @@
-"""Ranking: worked examples of NSGA-II and SPEA2, and pymoo as an independent opinion."""
+"""Ranking: worked examples of NSGA-II and SPEA2, and pymoo as an independent check."""
 
 import numpy as np
 import pytest
@@ -83,14 +83,14 @@ def test_archive_is_filled_with_the_fittest_or_thinned():
     assert set(chosen.tolist()) <= {0, 1, 2}
 
 
-def test_thinning_takes_what_loses_least_and_keeps_the_ends():
+def test_thinning_removes_the_least_contribution_and_no_ends():
     given = scores([(1, 5), (2, 3), (2.1, 2.9), (4, 1), (5, 0.5), (6, 6)])
     assert least_crowded_front(given, 4).tolist() == [0, 1, 3, 4]  # (2.1, 2.9) adds 1.9 x 0.1
     assert least_crowded_front(given, 2).tolist() == [0, 4]
     assert least_crowded_front(given, 9).tolist() == [0, 1, 2, 3, 4]
 
 
-def test_a_climber_moves_as_m_paes_says():
+def test_a_climber_moves_as_published_for_m_paes():
     def point(t, c):
         return np.array([t, c, 0.0])
 
@@ -102,9 +102,9 @@ def test_a_climber_moves_as_m_paes_says():
     assert len(climber.near) == 3
     assert not climber.judge(point(2, 9.5), 10)  # something in its archive dominates it
     crowded = HillClimber(point(3, 3), np.array([[3, 3, 0.0], [0, 9, 0.0], [2.9, 3.1, 0.0]]))
-    assert crowded.judge(point(6, 0.5), 10)  # nothing dominates it and there is more room
+    assert crowded.judge(point(6, 0.5), 10)  # it is not dominated and less crowded
     assert crowded.near.shape[0] == 4
-    # between its neighbours (5, 5) has more room than (6.9, 3.1); it is no neighbour of itself
+    # (5, 5) is less crowded than (6.9, 3.1); a point is not a neighbour of itself
     alone = HillClimber(point(5, 5), np.array([[5, 5, 0.0], [0, 10, 0.0], [10, 0, 0.0]]))
     assert not alone.judge(point(6.9, 3.1), 10)
     full = HillClimber(

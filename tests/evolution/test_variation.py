@@ -144,7 +144,7 @@ def test_pauses_change_waits_only():
 
 @settings(max_examples=25)
 @given(st.integers(2, 30), st.integers(2, 30), st.integers(0, 10**6))
-def test_children_are_tracks_from_start_to_goal(first, second, seed):
+def test_offspring_are_tracks_from_start_to_goal(first, second, seed):
     random = np.random.default_rng(seed)
     parents = []
     for points in (first, second):

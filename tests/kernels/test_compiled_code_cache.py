@@ -1,4 +1,4 @@
-"""Compiled kernels are kept apart by the state of their source, in a folder that can be written."""
+"""Compiled kernels have one writable folder for each version of their source."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""When a ship leaves that waits for an edge to open: against departures second by second."""
+"""Departure of a ship that waits for an edge to open: against departures at every second."""
 
 import numpy as np
 import pytest

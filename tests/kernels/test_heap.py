@@ -1,4 +1,4 @@
-"""The indexed heap gives up its nodes in order of their last keys."""
+"""The indexed heap returns its nodes in the order of their last keys."""
 
 import numpy as np
 import pytest

@@ -52,7 +52,7 @@ def test_parts_add_up():
     ("x", "ok"),
     [(0.0, True), (10.0, True), (10.000001, True), (10.1, False), (-0.1, False), (np.nan, False)],
 )
-def test_nothing_is_extrapolated(x, ok):
+def test_tables_do_not_extrapolate(x, ok):
     grid = GRIDS[codes.AXIS_WIND_SPEED]
     table = make_table(((codes.AXIS_WIND_SPEED,), (grid,), grid[:, None]))
     value, inside = table_value(table, (x, 0.0, 0.0, 0.0, 0.0, 0.0), 0)

@@ -1,4 +1,4 @@
-"""A child compiles once, and leaves no trace of itself when it fails."""
+"""A child process compiles once, and removes its marker when it fails."""
 
 import gc
 import os
@@ -27,13 +27,13 @@ def _module(folder, name, text):
     return name
 
 
-def test_a_child_does_the_work_and_is_waited_for(marks):
+def test_a_child_process_compiles_and_the_parent_waits(marks):
     warm_up.start_compiling(_module(marks, "does_it", WRITES.format(str(marks / "proof"))))
     warm_up.wait_until_compiled()
     assert (marks / "proof").read_text() == "done"
 
 
-def test_nothing_is_started_when_all_is_compiled_or_another_is_at_it(marks):
+def test_no_process_starts_if_all_is_compiled_or_another_compiles(marks):
     name = _module(marks, "is_late", WRITES.format(str(marks / "proof")))
     for mark in ("warm", "warming"):
         (marks / mark).touch()
@@ -42,7 +42,7 @@ def test_nothing_is_started_when_all_is_compiled_or_another_is_at_it(marks):
         (marks / mark).unlink()
 
 
-def test_a_child_that_fails_says_nothing_and_is_not_done(marks, monkeypatch):
+def test_a_failed_child_process_is_silent_and_leaves_no_marker(marks, monkeypatch):
     with pytest.raises(RuntimeError, match="no compiler"):
         warm_up.compile_in_child(_here(marks, monkeypatch, "raise RuntimeError('no compiler')"))
     assert not (marks / "warm").exists()

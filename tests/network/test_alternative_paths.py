@@ -53,7 +53,7 @@ def test_both_sides_of_an_island_are_found_and_shortened(world):
         assert len(way.lat) < 12 < len(way.path)
 
 
-def test_small_islands_count_when_asked_and_large_ones_need_not(world):
+def test_the_least_width_of_islands_can_be_set(world):
     chart, network = world
     assert len(alternative_paths(network, chart, island=1000.0)) == 3
     assert len(alternative_paths(network, chart, island=1e6)) == 1
@@ -127,7 +127,7 @@ def test_pulling_never_costs_more_and_never_touches_land(seed):
     assert total_cost(again) <= way.length * (1 + 1e-12)
 
 
-def test_pulling_with_a_cost_goes_round_what_is_dear():
+def test_pulling_with_a_cost_avoids_expensive_areas():
     chart = Chart.open_water(-5.0, 5.0, -5.0, 5.0)
 
     def cost(lat1, lon1, lat2, lon2):
@@ -178,7 +178,7 @@ def test_a_path_by_two_canals_is_searched_without_their_subsets():
     chart = Chart.gshhg("i")
     network = globe(chart, (38.2, 22.5), (27.0, 34.5), slack=0.6)  # Gulf of Corinth to Red Sea
     ways = paths_without_canals(network, chart, threshold=0.6)
-    # no way without Suez lies within the threshold, so two of the four subsets are left
+    # no path without Suez is within the threshold, so two of the four subsets are left
     assert [way.canals for way in ways] == [("corinth", "suez"), ("suez",)]
     toll = network.edges.length + 1e6 * (network.edges.fee == chart.canals[3].fee)
     first, *_ = paths_without_canals(network, chart, edge_weights=EdgeWeights(toll), threshold=0.6)
@@ -217,10 +217,10 @@ def test_floro_santander_has_three_paths_for_three_prices():
 
 def test_wrong_input_is_refused(world):
     chart, network = world
-    for wrong, said in (({"most": 0}, "0 ways"), ({"stretch": -0.1}, "-0.1")):
+    for wrong, said in (({"most": 0}, "0 paths"), ({"stretch": -0.1}, "-0.1")):
         with pytest.raises(InputError, match=said):
             alternative_paths(network, chart, **wrong)
-    with pytest.raises(InputError, match="do not weigh"):
+    with pytest.raises(InputError, match="do not fit"):
         alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(np.ones(3))])
     with pytest.raises(InputError, match="cannot cost"):
         EdgeWeights.priced(network, chart, 0.0)
@@ -228,7 +228,7 @@ def test_wrong_input_is_refused(world):
     with pytest.raises(InputError, match="no start"):
         paths_without_canals(dataclasses.replace(network, meta=meta), chart)
     shut = np.full(network.n_edges, np.inf)
-    with pytest.raises(NoRouteError, match="no way"):
+    with pytest.raises(NoRouteError, match="no path"):
         alternative_paths(network, chart, edge_weight_sets=[EdgeWeights(shut)])
-    with pytest.raises(NoRouteError, match="no way"):
+    with pytest.raises(NoRouteError, match="no path"):
         paths_without_canals(network, chart, edge_weights=EdgeWeights(shut))

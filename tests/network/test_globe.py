@@ -97,7 +97,7 @@ def test_edges_are_sampled_and_legs_are_free(chart):
     assert close.n_stations - close.n_nodes > 2 * (network.n_stations - network.n_nodes)
 
 
-def test_the_antimeridian_is_nothing_special():
+def test_results_across_the_antimeridian_are_equal():
     chart = Chart.gshhg("c")
     network = globe(chart, (35.0, 142.0), (37.0, -124.5), coast_levels=2)
     length, _ = sailed(network)
@@ -117,7 +117,7 @@ def test_the_arctic_is_closed_unless_it_is_opened_or_an_end_lies_there():
     assert 72.0 < north.lat.max() <= 75.0
 
 
-def test_no_go_zones_and_areas_are_kept_out(chart):
+def test_no_go_zones_and_areas_have_no_nodes(chart):
     wall = [[[-31.0, 20.0], [-29.0, 20.0], [-29.0, 71.0], [-31.0, 71.0], [-31.0, 20.0]]]
     zone = {"type": "Feature", "properties": {"kind": "no-go"},
             "geometry": {"type": "Polygon", "coordinates": wall}}  # fmt: skip
@@ -139,7 +139,7 @@ def test_no_route_without_canals_names_the_canals_needed(chart):
             "geometry": {"type": "Polygon", "coordinates": wall}}  # fmt: skip
     baltic = chart.with_zones({"type": "FeatureCollection", "features": [shut]})
     assert sailed(globe(baltic, (54.6, 10.8), ROTTERDAM))[1] == ["kiel"]
-    with pytest.raises(NoRouteError, match=r"no way by water.*Allow the .*Kiel Canal") as told:
+    with pytest.raises(NoRouteError, match=r"no path by water.*Allow the .*Kiel Canal") as told:
         globe(baltic.without_canals("all"), (54.6, 10.8), ROTTERDAM)
     assert told.value.nearest is not None
 
@@ -166,7 +166,7 @@ def test_ends_on_land_are_refused():
         globe(Chart.gshhg("c"), (47.0, 8.0), NEW_YORK)
 
 
-def test_the_grid_is_kept_on_disk_and_a_broken_file_is_replaced(tmp_path, monkeypatch):
+def test_the_grid_is_cached_and_a_damaged_file_is_replaced(tmp_path, monkeypatch):
     monkeypatch.setenv("THALWEG_CACHE", str(tmp_path))
     chart = Chart.gshhg("c")
     made = grid.globe_grid(chart, SMALL)
@@ -193,14 +193,14 @@ def test_another_coastline_is_another_grid():
     assert len(crude.lat) != len(low.lat)
 
 
-def test_slack_keeps_more_of_the_sea():
+def test_more_slack_gives_more_nodes():
     chart = Chart.gshhg("c")
     ends = NEW_YORK, (45.0, -9.5)
     counts = [globe(chart, *ends, coast_levels=2, slack=s).n_nodes for s in (0.05, 0.5, np.inf)]
     assert counts == sorted(counts) and counts[0] < 0.5 * counts[2]
 
 
-def test_six_directions_are_the_plain_grid():
+def test_six_directions_use_only_the_edges_of_faces():
     chart = Chart.open_water()
     ends = (10.0, -40.0), (30.0, 20.0)
     crow = float(geodesy.distance(*ends[0], *ends[1])) / 1852.0

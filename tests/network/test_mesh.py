@@ -33,7 +33,7 @@ def test_spacing_fraction_is_one_in_still_water_and_never_more():
 
 
 @pytest.mark.parametrize(("largest", "kept"), [(0.1, 400), (1.0, 200)])
-def test_thinning_a_square_grid_as_halem_does(largest, kept):
+def test_thinning_of_a_square_grid_agrees_with_van_halem_2019(largest, kept):
     x, y = (part.ravel() for part in np.meshgrid(np.arange(20) * 0.5, np.arange(20) * 0.5))
     gap = largest * spacing_fraction(1.0, 0.0, alpha=0.0, speed_power=1.0)
     assert thin_by_spacing(x, y, gap).sum() == kept
@@ -113,7 +113,7 @@ def test_no_leg_crosses_a_hole_of_the_mesh():
 
 
 def test_a_hole_touched_only_at_its_corners_is_not_crossed():
-    # a square of 5 x 5 nodes, the middle 2 x 2 cells cut out: straight across runs corner to corner
+    # a square of 5 x 5 nodes, without the middle 2 x 2 cells: straight across runs corner to corner
     y, x = (part.ravel() for part in np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij"))
     faces = []
     for i in range(4):

@@ -72,7 +72,7 @@ def test_a_fixed_route_has_nodes_along_it_and_at_borders():
     assert np.all((share < 1e-4) | (share > 1.0 - 1e-4))
 
 
-def test_a_line_through_a_canal_keeps_it():
+def test_pulling_a_line_keeps_its_canal():
     chart = Chart.gshhg("i")
     canal = next(c for c in chart.canals if c.name == "kiel")
     network = fixed_route(chart, list(canal.ends), spacing=1000.0)

@@ -84,7 +84,7 @@ def test_too_few_waiting_nodes_are_named(network):
         check_network(replace(network, can_wait=network.can_wait[:-1].copy()))
 
 
-def test_one_way_edges_are_no_fault_unless_symmetry_is_declared(network):
+def test_one_way_edges_are_valid_unless_symmetry_is_declared(network):
     keep = np.ones(network.n_edges, bool)
     ptr = network.samples.ptr
     keep[np.flatnonzero(np.diff(ptr) == 0)[0]] = False

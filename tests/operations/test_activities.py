@@ -1,4 +1,4 @@
-"""Areas, and tracks cut by them."""
+"""Work areas, and the activities of tracks in them."""
 
 import itertools
 
@@ -68,7 +68,7 @@ def test_two_cycles():
     assert found[1].duration == pytest.approx(between / 6.0, rel=0.02)
 
 
-def test_a_wait_on_the_way_is_no_sailing():
+def test_a_wait_during_a_trip_is_not_sailing():
     names, found = kinds(sail((PIT, 60), (MIDDLE, 90), (BEACH, 60)))
     assert names == ["loading", "sailing full", "waiting", "sailing full", "unloading"]
     assert found[2].duration == pytest.approx(90 * 60, abs=180)
@@ -93,7 +93,7 @@ def test_trips_that_come_back_are_away_unless_they_are_short():
     assert names[:3] == ["loading", "away", "loading"]
 
 
-def test_gaps_are_not_seen_and_what_they_cut_is_not_whole():
+def test_activities_with_gaps_are_incomplete():
     frame = sail((PIT, 120), (BEACH, 120), (PIT, 60))
     on_the_way = frame[(frame.lon < 4.3) | (frame.lon > 4.7)]
     names, found = kinds(on_the_way)
@@ -105,8 +105,8 @@ def test_gaps_are_not_seen_and_what_they_cut_is_not_whole():
     assert names[0] == "loading" and "not seen" not in names
 
 
-def test_work_with_a_gap_long_enough_for_a_trip_is_not_whole():
-    """Loading, 11 hours unseen, loading again: nobody knows how long it loaded."""
+def test_work_with_a_gap_long_enough_for_a_trip_is_incomplete():
+    """Loading, 11 hours without positions, loading again: the loading time is unknown."""
     frame = sail((BEACH, 60), (PIT, 900), (BEACH, 60))
     minute = (frame.time - frame.time.iloc[0]).dt.total_seconds() / 60
     names, found = kinds(frame[(minute < 400) | (minute > 1060)])
@@ -142,7 +142,7 @@ def test_areas_across_the_antimeridian():
         ([{"type": "Point", "coordinates": [1, 2]}], "no area"),
     ],
 )
-def test_areas_that_cannot_be(features, told):
+def test_invalid_areas_are_refused(features, told):
     with pytest.raises(InputError, match=told):
         WorkAreas.read(collection(*features))
 

@@ -103,13 +103,13 @@ def test_a_project_in_openclsim_sails_planned_legs(yard, leg_planner, estuary):
         assert leg.arrive == again.arrive
         assert leg.distance == again.distance
         assert leg.clearance >= 1.0
-    # the clock stands where loading, sailing and unloading have brought it
+    # the clock has advanced by loading, sailing and unloading
     pumping = 2 * 2 * 2800.0 / 1.5
     sailing = sum(leg.duration for leg in vessel.legs)
     assert yard.env.now - START == pytest.approx(pumping + sailing, abs=1.0)
 
 
-def test_the_log_tells_distance_energy_and_waits(yard):
+def test_the_log_contains_distance_energy_and_waits(yard):
     project(yard, cycles=2, amount=4000.0)  # a full ship waits for the tide on one of them
     vessel = yard.vessel
     stops = [row["ObjectState"] for row in vessel.logbook if "energy_j" in row["ObjectState"]]
@@ -133,7 +133,7 @@ def test_the_log_tells_distance_energy_and_waits(yard):
     assert abs((last - ended.replace(tzinfo=None)).total_seconds()) < 0.01
 
 
-def test_load_decides_speed_and_way(yard, estuary):
+def test_speed_and_route_depend_on_the_load(yard, estuary):
     vessel = yard.vessel
     assert vessel.load_factor == 0.0
     assert vessel.v == pytest.approx(12.0 * 1852.0 / 3600.0)
@@ -149,7 +149,7 @@ def test_load_decides_speed_and_way(yard, estuary):
     assert vessel.compute_distance(vessel.geometry, vessel.geometry) == 0.0
 
 
-def test_a_given_duration_is_taken_at_its_word(yard):
+def test_a_given_duration_is_used(yard):
     def go():
         yield from yard.vessel.move(yard.beach, duration=600.0)
 
@@ -170,7 +170,7 @@ def test_a_given_duration_is_taken_at_its_word(yard):
         ({"load_steps": True}, "load_steps is True"),
     ],
 )
-def test_fairways_that_cannot_be_are_refused(estuary, leg_planner, changes, words):
+def test_invalid_fairways_are_refused(estuary, leg_planner, changes, words):
     asked = {"start": START, "days": 4.0, "min_ukc": 1.0, **changes}
     with pytest.raises(InputError, match=words):
         if "network" in asked:
@@ -178,7 +178,7 @@ def test_fairways_that_cannot_be_are_refused(estuary, leg_planner, changes, word
         LegPlanner.open(ship=leg_planner.ship, sea=estuary.sea, chart=estuary.chart, **asked)
 
 
-def test_what_cannot_be_sailed_is_told(yard, leg_planner, estuary):
+def test_impossible_legs_are_reported(yard, leg_planner, estuary):
     with pytest.raises(InputError, match="engine order"):
         next(yard.vessel.move(yard.beach, engine_order=0.5))
     with pytest.raises(OutsidePeriodError, match="outside the period"):
@@ -193,5 +193,5 @@ def test_what_cannot_be_sailed_is_told(yard, leg_planner, estuary):
         leg_planner.sail(estuary.load, estuary.load, depart=START, load_factor=0.0)
     with pytest.raises(InputError, match="on land or in a no-go zone"):
         leg_planner.sail(estuary.load, (52.9, 3.5), depart=START, load_factor=0.0)
-    assert leg_planner._rounded(0.61) == 0.7  # never less deep than it lies
+    assert leg_planner._rounded(0.61) == 0.7  # never less than the actual draught
     assert leg_planner._rounded(0.6) == 0.6

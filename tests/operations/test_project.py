@@ -127,7 +127,7 @@ def test_legs_run_between_the_sites_with_the_right_load(result):
                 assert gap == pytest.approx(deep, abs=1e-9)
 
 
-def test_planned_is_faster_than_the_charted_way(result):
+def test_planned_is_faster_than_the_charted_route(result):
     base, optimised = (run.totals for run in result.runs)
     assert result.runs[0].name == "base case"
     assert optimised["production_m3_week"] > 1.15 * base["production_m3_week"]
@@ -208,7 +208,7 @@ def test_a_leg_that_breaks_a_limit_between_the_nodes_is_planned_with_more_water(
         assert found.arrive < leg.arrive < found.arrive + 600.0
 
 
-def test_corners_keep_a_way_along_a_parallel_near_its_nodes():
+def test_corners_keep_a_route_along_a_parallel_near_its_nodes():
     """A geodesic of 60 km between places on a parallel runs 90 m off it; over the date line too."""
     for west in (3.0, 179.6):
         lon = (west + np.linspace(0.0, 0.9, 200) + 180.0) % 360.0 - 180.0
@@ -329,7 +329,7 @@ def test_a_curve_with_overflow_takes_longer_for_the_last_tenth():
         ({"base_case": {"route": [[51.7, 3.5], [51.8, 3.5]], "load_factor": 0}}, "load_factor is"),
     ],
 )
-def test_what_cannot_be_is_refused_at_the_door(changes, words):
+def test_invalid_projects_are_refused_before_the_simulation(changes, words):
     with pytest.raises(InputError, match=words):
         Project.from_dict(example(**changes))
 
@@ -340,14 +340,14 @@ def sail(**changes):
     return run_project(project, ship=ship, sea=sea, chart=chart)
 
 
-def test_a_dry_site_is_told_with_its_best_moment():
+def test_a_dry_site_is_reported_with_its_highest_water():
     with pytest.raises(InputError, match="too shallow at every tide") as caught:
         sail(unload=[51.6865, 3.52])  # on the bank
     assert "m less than the empty ship needs (4.52 m)" in caught.value.possible
     assert 0.5 < caught.value.details["missing_m"] < 4.5
 
 
-def test_a_clearance_no_tide_gives_says_when_it_is_highest_and_what_is_missing():
+def test_an_impossible_clearance_is_reported_with_highest_water_and_missing_depth():
     with pytest.raises(NoRouteError, match="no route at any tide") as caught:
         sail(min_ukc_m=6.0, load_factors=[0.5, 1.0])
     details = caught.value.details
@@ -357,13 +357,13 @@ def test_a_clearance_no_tide_gives_says_when_it_is_highest_and_what_is_missing()
     assert "m too shallow: at" in caught.value.possible
 
 
-def test_too_few_days_are_told_with_what_is_moved():
+def test_too_few_days_are_reported_with_the_volume_moved():
     with pytest.raises(OutsidePeriodError, match=r"can be moved \(optimised\)") as caught:
         sail(volume_m3=60_000, days=1.0)
     assert 8_000 <= caught.value.details["moved_m3"] <= 24_000
 
 
-def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
+def test_gaps_and_the_end_of_the_data_are_reported_when_a_project_stops(tmp_path):
     hours = np.array([0.0, 0.5, 1.0, 1.5, 10.0, 10.5, 11.0])
     axes, ones = ("time", "lat", "lon"), np.ones((7, 5, 5))
     path = tmp_path / "gap.nc"
@@ -397,7 +397,7 @@ def test_gaps_and_the_end_of_the_data_are_told_where_a_project_stops(tmp_path):
         ({"coast": "x", "sea": "a.nc"}, "There is no file 'a.nc'"),
     ],
 )
-def test_a_sea_that_cannot_be_is_refused(changes, words):
+def test_an_invalid_sea_is_refused(changes, words):
     with pytest.raises(InputError, match=words):
         open_project_inputs(Project.from_dict(example(**changes)))
 
@@ -408,7 +408,7 @@ def test_a_hopper_larger_than_the_ship_is_refused():
     assert "holds 4000 m3" in caught.value.possible
 
 
-def test_a_base_case_that_leaves_the_data_says_where():
+def test_a_base_case_outside_the_data_is_refused_with_the_position():
     north = [51.7449, 3.579], [51.72, 3.70], [51.72, 3.74], [51.6596, 3.6514]
     project = Project.from_dict(example(base_case={"route": [list(place) for place in north]}))
     ship, sea, _ = open_project_inputs(project)
@@ -430,7 +430,7 @@ def bed():
     )
 
 
-def test_ways_are_drawn_over_no_water_where_the_chart_has_land(result):
+def test_the_plot_of_routes_shows_the_land_of_the_chart(result):
     west, south, east, north = 3.62, 51.72, 3.66, 51.74
     ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
     land = Chart.from_geojson({"type": "Polygon", "coordinates": [ring]}).with_depth(
@@ -481,7 +481,7 @@ def test_without_a_clearance_a_project_needs_no_depth(tmp_path):
     assert known.optimised.totals["least_clearance_m"] == pytest.approx(8.5)  # 15 m less 6.5 m
 
 
-def test_the_clearance_that_a_ship_file_asks_is_kept(tmp_path):
+def test_the_clearance_of_the_ship_file_is_respected(tmp_path):
     data = dict(Ship.load("hopper-dredger").data) | {"limits": {"min_under_keel_clearance_m": 9.0}}
     asked = deep_sea(tmp_path / "bed.nc", bed=True) | {"ship": data, "load_factors": [0.5, 1.0]}
     result = sail(**asked, min_ukc_m=None)
@@ -490,7 +490,7 @@ def test_the_clearance_that_a_ship_file_asks_is_kept(tmp_path):
     assert {c.load_factor for c in sail(**asked, min_ukc_m=1.0).optimised.cycles} == {1.0}
 
 
-def test_sites_parted_by_what_no_data_know_are_told(tmp_path):
+def test_sites_separated_by_unknown_water_are_reported(tmp_path):
     for bed_too in (False, True):
         asked = deep_sea(tmp_path / f"wall{bed_too}.nc", bed=bed_too, wall=True)
         with pytest.raises(NoRouteError, match="no route at any tide") as caught:
@@ -561,7 +561,7 @@ def san_diego(**changes):
 
 
 def test_a_project_on_the_mesh_of_a_real_model():
-    """Ways along the rim of the mesh keep the nodes that hold them inside it."""
+    """Routes along the rim of the mesh include the nodes that bound them."""
     project = san_diego()
     ship, sea, chart = open_project_inputs(project)
     result = run_project(project, ship=ship, sea=sea, chart=chart)

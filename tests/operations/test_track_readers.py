@@ -1,4 +1,4 @@
-"""Reading and cleaning tracks: every dialect of column and time, and nothing in silence."""
+"""Reading and cleaning tracks: formats of columns and times, with a note on every change."""
 
 import numpy as np
 import pandas as pd
@@ -60,7 +60,7 @@ def test_dialects(tmp_path, text):
     assert log.values["draught"] == pytest.approx(5.0)
 
 
-def test_given_columns_win_and_units_taken_for_granted_are_told(tmp_path):
+def test_given_columns_have_priority_and_assumed_units_are_reported(tmp_path):
     text = "t,y,x,speed,power\n2026-03-01,52,4,10,3000\n2026-03-01T00:01,52,4.004,10,3000\n"
     log = read_tracks(write(tmp_path, text), columns={"time": "t", "lat": "y", "lon": "x"})
     assert log.values["power"] == pytest.approx(3e6)
@@ -84,7 +84,7 @@ def test_speeds_in_the_wrong_unit_are_doubted():
         assert not any("times those" in note for note in read_tracks(right).notes)
 
 
-def test_rows_are_sorted_and_doubles_dropped_and_both_told():
+def test_rows_are_sorted_and_duplicates_removed_with_notes():
     frame = straight(10)
     shuffled = frame.sample(frac=1.0, random_state=3)
     double = pd.concat([shuffled, frame.iloc[[4]], frame.iloc[[5]].assign(lat=52.001)])
@@ -108,7 +108,7 @@ def test_positions_off_the_globe_and_times_unread_are_left_out():
     assert log.removed == {"without a readable time": 1, "without a position on the globe": 3}
 
 
-def test_a_jump_out_and_back_is_dropped_and_a_jump_that_lasts_breaks_the_track():
+def test_outliers_are_removed_and_lasting_jumps_split_the_track():
     frame = straight(30)
     frame.loc[7, "lat"] += 1.0
     frame.loc[[12, 13], "lon"] += 2.0
@@ -129,7 +129,7 @@ def test_a_first_position_elsewhere_is_dropped():
     assert len(log) == 29 and log.lat.min() > 51.0
 
 
-def test_gaps_are_marked_and_told():
+def test_gaps_are_marked_and_reported():
     frame = straight(40).drop(index=range(10, 25))
     log = read_tracks(frame, cleaning=CleaningRules(longest_gap=600.0))
     assert np.flatnonzero(log.broken).tolist() == [9]
@@ -144,7 +144,7 @@ def test_one_ship_of_several_must_be_chosen():
     assert caught.value.details["vessels"] == ["1", "2"]
     log = read_tracks(both, vessel=2)
     assert len(log) == 7 and log.vessel == "2"
-    with pytest.raises(InputError, match="'3' was asked for"):
+    with pytest.raises(InputError, match="'3' was requested"):
         read_tracks(both, vessel="3")
     assert read_tracks(straight(5).assign(mmsi=1)).vessel == "1"
 
@@ -163,7 +163,7 @@ def test_one_ship_of_several_must_be_chosen():
         ("time,lat,lon\n2026-01-01,520,4\n2026-01-02,520,4.1\n", "2 without a position"),
     ],
 )
-def test_files_that_are_no_tracks(tmp_path, text, told):
+def test_files_without_tracks_are_refused(tmp_path, text, told):
     with pytest.raises(InputError, match=told):
         read_tracks(write(tmp_path, text))
 

@@ -1,4 +1,4 @@
-"""Models against measured tracks, on made tracks whose truth is known."""
+"""Models against measurements, on synthetic tracks with known activities and speeds."""
 
 import json
 import warnings
@@ -78,7 +78,7 @@ def test_speed_noise_is_within_the_stated_errors(seed):
         assert abs(found.speeds[kind] - knots * KNOT) < 3.5 * found.speed_errors[kind]
 
 
-def test_activities_and_cycles_are_those_of_the_truth(made, analysis):
+def test_activities_and_cycles_equal_those_of_the_simulation(made, analysis):
     kinds = [a.kind for a in analysis.activities]
     assert kinds == [*made.truth.kind, "loading"]  # the last trip ends in the area
     whole = [a for a in analysis.activities if a.whole]
@@ -110,7 +110,7 @@ def test_better_models_lie_closer(analysis):
     assert any("setting of 13.00 kn while sailing empty" in note for note in analysis.notes)
 
 
-def test_legs_tell_their_way_and_errors(analysis):
+def test_the_table_of_legs_has_distances_and_errors(analysis):
     legs = analysis.leg_frame()
     assert len(legs) == 24
     assert (legs.distance_nm < 14.1 - 2 * 0.5 * CYCLE.radius_nm).all()
@@ -129,7 +129,7 @@ def test_the_answer_is_json(analysis, made):
     json.dumps(still.as_dict(), allow_nan=False)
 
 
-def test_currents_that_are_unknown_are_told_and_left_out(made):
+def test_unknown_currents_are_reported_and_excluded(made):
     half = made.truth.start.iloc[24]
     sea = Sea.from_functions(
         {
@@ -144,13 +144,13 @@ def test_currents_that_are_unknown_are_told_and_left_out(made):
     assert any("has no current" in note for note in found.notes)
 
 
-def test_still_water_tells_no_factor(made):
+def test_still_water_gives_no_calibration_factor(made):
     found = analyse_tracks(made.frame, CYCLE.areas, sea=Sea.calm())
     assert found.calibration is None
     assert any("not determined" in note for note in found.notes)
 
 
-def test_gaps_in_a_track_are_told(made):
+def test_gaps_in_a_track_are_reported(made):
     frame = made.frame.drop(index=range(100, 130))
     found = analyse_tracks(frame, CYCLE.areas, sea=TIDAL)
     assert any("No positions for" in note for note in found.notes)
@@ -188,7 +188,7 @@ def test_spread_of_a_hand_computed_example():
     assert fit.rmse_rel == pytest.approx(100 * np.sqrt(1.5 / 4) / 2.5)
 
 
-def test_spread_says_nan_for_what_cannot_be_told():
+def test_spread_is_nan_where_it_is_undefined():
     assert np.isnan(agreement_statistics([], []).rmse)
     assert np.isnan(agreement_statistics([1.0, 2.0], [1.0, 2.0]).slope)
     flat = agreement_statistics([3.0, 3.0, 3.0], [2.0, 3.0, 4.0])
@@ -219,7 +219,7 @@ def test_over_ground_undoes_through_water(analysis):
 
 
 @pytest.mark.parametrize("stops", range(70, 75))  # minute in which it stops
-def test_a_ship_that_lies_dead_still_on_its_way_has_no_course_there(stops):
+def test_a_ship_at_rest_during_a_trip_has_no_course(stops):
     """Nine minutes are no wait, but may hold a segment of no length: its leg is still compared."""
     minutes = np.arange(0.0, 180.0)
     way = np.interp(minutes, [30, stops, stops + 9, stops + 49], [0.0, 0.5, 0.5, 1.0])

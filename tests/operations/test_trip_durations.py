@@ -191,7 +191,7 @@ def test_a_ship_that_feels_the_bed_needs_its_depth():
         trip_table([WEST_END, EAST_END], sea=Sea.calm(), **asked)
 
 
-def test_refining_keeps_what_was_sailed_and_is_smooth_between():
+def test_refinement_reuses_sailed_departures_and_is_smooth_between():
     at = np.arange(100) / 100
     wave = 1000.0 + 50.0 * np.sin(2 * np.pi * at)
     table = TripTable("a", 0.0, 447.0, wave, 3.0 * wave, wave, periodic=True)
@@ -224,8 +224,8 @@ def test_what_a_ship_must_not_do_in_waves_closes_a_departure():
     assert any(allowed) and not all(allowed)
 
 
-def test_a_limit_that_is_reached_under_way_closes_a_departure():
-    """Waves grow past 4 m at a known time; whoever is not there by then does not arrive."""
+def test_departures_that_meet_a_limit_have_no_arrival():
+    """Waves exceed 4 m from a known time on; trips that are not finished by then fail."""
     closes = 20_000.0
     sea = rising_waves(lambda t: 4.0 + (t - closes) / 1e4, from_deg=270.0, period=8.0)
     table = trip_table(

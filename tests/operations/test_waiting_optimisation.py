@@ -91,7 +91,7 @@ def test_the_optimum_of_a_table_that_ends_is_that_of_brute_force(seed, width, ho
     wait=st.integers(0, 60),
     hotel=st.floats(0.0, 1e5),
 )
-def test_nothing_beats_the_optimum(seed, cycles, wait, hotel):
+def test_no_plan_is_better_than_the_optimum(seed, cycles, wait, hotel):
     rng = np.random.default_rng(seed)
     trips = [table(rng, 40, closed=0.1), table(rng, 40, closed=0.1)] * cycles
     asked = {"start": 7 * STEP, "max_wait": wait * STEP, "hotel_power": hotel}

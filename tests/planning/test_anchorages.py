@@ -112,7 +112,7 @@ def test_the_referee_finds_waits_where_there_should_be_none() -> None:
     assert evaluate(at_berth, ship=SHIP, sea=SEA, chart=chart(BARRED)).feasible
 
 
-def test_without_leave_to_wait_anywhere_but_the_berth_a_closed_bar_is_waited_for_there() -> None:
+def test_without_anchorages_the_ship_waits_at_the_berth_for_a_closed_bar() -> None:
     everywhere = chart(zone("no-waiting", *AREA))
     route = sail(everywhere)
     assert waits(route) == [(51.71, 3.45)]

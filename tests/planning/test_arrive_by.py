@@ -20,7 +20,7 @@ def contrary(time, lat, lon):
     return np.where(np.abs(lat) < 0.1, -6.0 * KNOT, 0.0) + 0.0 * lon
 
 
-def test_the_shortest_way_is_late_and_another_is_not() -> None:
+def test_the_shortest_route_is_late_and_another_is_in_time() -> None:
     sea = Sea.from_functions(
         {
             "eastward_sea_water_velocity": contrary,
@@ -36,7 +36,7 @@ def test_the_shortest_way_is_late_and_another_is_not() -> None:
 
 
 def test_a_fastest_arrival_in_time_is_not_reported_as_late() -> None:
-    """A search for the least distance keeps one label a node: it may miss a longer, faster way."""
+    """A search for the least distance has one label per node: it may miss a longer, faster path."""
     error = late_arrival_error(DEPART + 10.0 * HOUR, DEPART + 8.0 * HOUR)
     assert error.asked == "The shortest route does not arrive by 2026-01-01T10:00:00Z."
     assert error.possible == "The fastest route arrives at 2026-01-01T08:00:00Z."

@@ -53,7 +53,7 @@ def test_unknown_port_gets_near_matches():
         ask(start="Roterdam")
 
 
-def test_start_on_land_says_where_water_is():
+def test_start_on_land_names_the_nearest_water():
     chart = Chart.from_geojson(land=SQUARE)
     with pytest.raises(InputError, match=r"nearest navigable water is .* nm away") as caught:
         ask(start=(50.5, 2.0), chart=chart)
@@ -85,7 +85,7 @@ def test_missing_variable_is_named():
         ask(ship=Ship.load("handysize-bulker"), sea=current(lambda t, lat, lon: 0.0 * lat))
 
 
-def test_a_gap_right_across_is_no_route_and_says_no_data():
+def test_a_data_gap_across_the_area_is_reported_as_no_route():
     sea = current(lambda t, lat, lon: np.where(np.abs(lon - 2.0) < 0.2, np.nan, 0.0))
     with pytest.raises(NoRouteError) as caught:
         ask(sea=sea)
@@ -101,7 +101,7 @@ def test_a_gap_is_sailed_round_never_through():
     assert best.samples["lat"][inside].min() > 50.699
 
 
-def test_a_named_filling_opens_the_gap_and_is_told():
+def test_a_requested_fill_value_closes_the_gap_and_is_reported():
     sea = current(lambda t, lat, lon: np.where(np.abs(lon - 2.0) < 0.2, np.nan, 0.0))
     found = ask(sea=sea.filled(currents=0.0))
     assert any("currents" in note for note in found.notes)
@@ -174,7 +174,7 @@ def test_no_departure_or_two():
         Voyage(start=(50, 1), goal=(51, 2), depart=DEPART, depart_window=(DEPART, DEPART))
 
 
-def test_window_the_wrong_way_round():
+def test_a_window_that_ends_before_it_begins_is_refused():
     with pytest.raises(InputError, match="before"):
         Voyage(start=(50, 1), goal=(51, 2), depart_window=("2026-01-02", "2026-01-01"))
 
@@ -206,7 +206,7 @@ def test_network_unknown_or_absent():
         plan(voyage, ship=SHIP, sea=Sea.calm(), chart=WATER, network="mesh")
 
 
-def test_a_wind_speed_without_direction_serves_a_ship_that_looks_at_nothing_else():
+def test_wind_speed_without_direction_suffices_for_ships_that_use_only_speed():
     sea = Sea.from_functions({"wind_speed": lambda t, lat, lon: 10.0 + 0.0 * lat})
     ship = Ship.from_speed_function(lambda c: 6.0 - 0.1 * c.wind_speed, draught_m=5.0)
     best = ask(ship=ship, sea=sea).best
@@ -218,7 +218,7 @@ def test_a_wind_speed_without_direction_serves_a_ship_that_looks_at_nothing_else
         ask(ship=angled, sea=sea)
 
 
-def test_the_clearance_of_the_ship_file_holds_unless_the_voyage_says_otherwise():
+def test_the_clearance_of_the_voyage_overrides_that_of_the_ship_file():
     ship = Ship.load("hopper-dredger").with_load_factor(1.0)  # 6.5 m, and 1 m of clearance
     shallow = WATER.with_depth(lambda lat, lon: 7.0 + 0.0 * lat)
     with pytest.raises(NoRouteError) as caught:

@@ -104,7 +104,7 @@ def test_ice_latitudes_are_excluded_unless_the_voyage_goes_there():
 
     assert reach(62.0) == [False, False]
     assert reach(78.0) == [True, True]
-    assert ICE_LIMIT_NORTH < 72.0  # Bellot Strait, the way round the north of America
+    assert ICE_LIMIT_NORTH < 72.0  # Bellot Strait, the route north of America
 
 
 def test_a_missing_route_without_canals_is_reported():

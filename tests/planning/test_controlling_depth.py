@@ -132,7 +132,7 @@ def test_levels_without_a_bed_are_not_a_depth() -> None:
 
 
 def test_routes_do_not_pass_a_gap_in_time() -> None:
-    """No data from 3 h to 9 h: a ship lies at her berth until then, or has no route."""
+    """No data from 3 h to 9 h: the ship stays at its berth until then, or has no route."""
     sea = Sea.open(hydro.dhi().isel(time=[0, 1, 2, 3, 9, 10, 11, 12]))
     given = {
         "ship": Ship.simple(speed_kn=6.0, draught_m=1.0),

@@ -129,7 +129,7 @@ def test_a_deadline_mixes_two_speeds_at_least_energy():
 
 
 @pytest.mark.parametrize("hotel_kw", [200.0, 2900.0])
-def test_waiting_takes_the_hotel_load_and_pays_only_where_that_is_small(hotel_kw):
+def test_waiting_consumes_the_hotel_load_and_saves_energy_only_if_it_is_small(hotel_kw):
     ship = powered(hotel_kw=hotel_kw, speeds=(8.0,))
     best = planned("energy", ship, sea=head_current(6.0, 3.0), **CAREFULLY).best
     hotel, sailing = hotel_kw / 1e3, best.time_h - best.waiting_h
@@ -140,7 +140,7 @@ def test_waiting_takes_the_hotel_load_and_pays_only_where_that_is_small(hotel_kw
     assert best.energy_mwh == pytest.approx(wanted, rel=5e-3)
 
 
-def test_a_ship_with_a_resistance_takes_what_its_power_and_hotel_load_tell():
+def test_energy_of_a_resistance_ship_is_its_power_and_hotel_load_over_time():
     hull = {"length_between_perpendiculars_m": 169.0, "length_waterline_m": 172.4}
     hull |= {"breadth_m": 32.0, "draught_m": 10.0, "block_coefficient": 0.785}
     ship = Ship.from_dict(
@@ -169,7 +169,7 @@ def test_energy_of_a_ship_whose_power_is_unknown_is_refused():
         planned("energy", field)
 
 
-def test_json_and_files_tell_the_energy(tmp_path):
+def test_json_and_files_contain_the_energy(tmp_path):
     answer = planned("energy", powered())
     told = json.loads(answer.to_json())
     assert told["objective_unit"] == "MWh"
@@ -201,7 +201,7 @@ def test_the_command_line_plans_for_energy(tmp_path, capsys):
 
 @pytest.mark.parametrize("objective", ["energy", "cost"])
 def test_search_and_referee_agree_in_a_steady_current(objective):
-    # against 3 kn a mile over ground takes 1 / (v - 3) hours: faster through the water pays
+    # against 3 kn a mile over ground takes 1 / (v - 3) hours: a higher speed saves fuel
     ship = powered() if objective == "energy" else dredger()
     rate = (lambda v: power(v) + HOTEL) if objective == "energy" else per_second
     speeds = np.round(ship.speeds / KNOT, 6)
@@ -263,7 +263,7 @@ def test_waiting_costs_time_and_no_speed(per_cube):
     assert best.cost == pytest.approx(wanted, rel=5e-3)
 
 
-def test_a_price_of_fuel_wins_over_the_price_of_speed():
+def test_a_price_of_fuel_overrides_the_price_of_speed():
     data = {"fuel": {"reference_t_per_day": 24.0}, "engine": {"reference_speed_kn": 12.0}}
     ship = dredger(models={"calm_water": "cubic"}, **data)
     by_speed = planned("cost", ship, speed_kn=10.0).best
@@ -276,7 +276,7 @@ def test_a_price_of_fuel_wins_over_the_price_of_speed():
     assert dearer.cost == pytest.approx(by_speed.cost + more, rel=1e-6)
 
 
-def test_the_command_line_says_what_the_lambdas_cost(capsys):
+def test_the_command_line_prints_the_cost_of_the_lambdas(capsys):
     words = ["0,0", "0,2", "--calm", "--coast", "none", "--depart", "2026-01-01T00:00Z"]
     words += [
         "--resolution",

@@ -82,7 +82,7 @@ def test_a_complete_plan_is_not_marked():
     assert not found.cancelled and "cancelled" not in json.loads(found.to_json())
 
 
-def test_the_command_line_keeps_and_marks_it_and_says_where_nothing_is_kept(
+def test_the_command_line_marks_a_stopped_plan_and_reports_a_missing_one(
     tmp_path, monkeypatch, capsys
 ):
     ship = tmp_path / "ship.yaml"
@@ -98,4 +98,4 @@ def test_the_command_line_keeps_and_marks_it_and_says_where_nothing_is_kept(
         if code == 0:
             assert json.loads(told.out)["cancelled"] is True
         else:
-            assert "nothing is kept" in told.err and not told.out
+            assert "there is no result" in told.err and not told.out

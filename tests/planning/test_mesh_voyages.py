@@ -1,4 +1,4 @@
-"""Voyages on the meshes of real hydrodynamic models, from the command line, checked by hand."""
+"""Voyages on the meshes of real hydrodynamic models, against calculations by hand."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys)
     again = evaluate(track, ship=ship, sea=sea, min_ukc=0.5, step=5.0)
     assert again.feasible and again.min_ukc_m >= 0.5 - 1e-6
     assert again.time_h == pytest.approx(best["time_h"], abs=1e-3)
-    # The waits stand in the file; thinned too far for the gullies, all nodes are taken after all.
+    # The waits are in the file; the thinned mesh is too coarse for the gullies: all nodes are used.
     assert read_track(tmp_path / "route.csv").wait.sum() == pytest.approx(3600.0 * waits.sum())
     thinned = planned(
         capsys, "32.65,-117.25", "32.63,-117.11", *words[:-2], "--ukc", "0.5",
@@ -85,7 +85,7 @@ def test_san_diego_waits_for_the_tide_over_flats_that_fall_dry(tmp_path, capsys)
     )  # fmt: skip
     assert thinned["routes"][0]["feasible"]
     assert thinned["routes"][0]["time_h"] == pytest.approx(best["time_h"], abs=0.01)
-    # Nobody gets there while the flats are dry: without waiting there is no way.
+    # The flats are dry: without waiting there is no route.
     asked = ["32.65,-117.25", "32.63,-117.11", "--ship", "hopper-dredger", "--ukc", "0.5"]
     assert main(["plan", *asked, "--no-wait", *words]) == 4
     assert "No route" in capsys.readouterr().err

@@ -58,7 +58,7 @@ def test_small_islands_do_not_change_labels():
     assert labels(chart, NORTHERN, SOUTHERN) == ("open sea", "open sea")
 
 
-def test_canals_stay_in_the_name_and_ways_by_others_are_not_compared():
+def test_labels_contain_canals_and_compare_routes_through_the_same_canals():
     chart = islands((-0.3, -0.3, 0.3, 0.3))
     names = ["suez", "suez", "open sea"]
     first, second, third = labels(chart, NORTHERN, SOUTHERN, SOUTHERN, names=names)
@@ -67,7 +67,7 @@ def test_canals_stay_in_the_name_and_ways_by_others_are_not_compared():
     assert third == "open sea"
 
 
-def test_every_way_between_two_islands_has_a_name_of_its_own():
+def test_every_route_between_two_islands_has_its_own_label():
     chart = islands((-1.0, -0.2, -0.6, 0.2), (0.6, -0.2, 1.0, 0.2))
     ways = [[WEST, (a, -0.8), (0.0, 0.0), (b, 0.8), EAST] for a in (0.5, -0.5) for b in (0.5, -0.5)]
     names = labels(chart, *ways)
@@ -75,7 +75,7 @@ def test_every_way_between_two_islands_has_a_name_of_its_own():
     assert all(name.count(" of the land at ") == 2 for name in names)
 
 
-def test_the_three_ways_from_floro_to_santander():
+def test_labels_of_the_three_routes_from_floro_to_santander():
     chart = Chart.gshhg("i")
     routes = [sailed([START, *middle, GOAL], chart, SHIP) for middle in WAYS.values()]
     network = fixed_route(chart, [START, *WAYS["R3"], GOAL], spacing=100_000.0)
@@ -86,7 +86,7 @@ def test_the_three_ways_from_floro_to_santander():
 
 
 @pytest.mark.parametrize("name", ["Great Britain", "Ireland", "Iceland", "Viti Levu", "Australia"])
-def test_land_has_its_name(name):
+def test_land_is_named(name):
     chart = Chart.gshhg("l")
     rings = chart.coastline.rings
     found = []

@@ -113,7 +113,7 @@ def waiting():
     return plan(voyage, ship=SHIP, sea=bar(), chart=Chart.open_water(*AREA))
 
 
-def test_the_ship_keeps_out_of_what_is_closed(waiting) -> None:
+def test_the_route_avoids_closed_periods(waiting) -> None:
     """Every fine sample of the route lies in an open period of its own diagram."""
     best = waiting.best
     samples = best.samples

@@ -39,7 +39,7 @@ def test_a_bar_is_crossed_when_the_tide_of_that_day_allows(gauge):
     assert best.arrive < opening + 2.5 * 3600.0
 
 
-def test_waiting_for_the_flood_along_the_coast_pays_in_time():
+def test_departing_with_the_flood_shortens_the_passage():
     coast = stratified_coast_current(
         "spring", coast=(51.75, 4.0), onshore_deg=90.0, flood="2031-07-05T06:00Z", draught=5.0
     )
@@ -57,7 +57,7 @@ def test_waiting_for_the_flood_along_the_coast_pays_in_time():
     assert found["04:15"] < still - 0.2 < still + 0.1 < found["10:30"]
 
 
-def test_a_gap_in_the_data_that_a_voyage_waits_through_is_told(tmp_path):
+def test_a_data_gap_during_a_wait_is_reported(tmp_path):
     hours = np.array([0.0, 0.5, 1.0, 5.0, 5.5, 6.0, 6.5, 7.0])
     axes, ones = ("time", "lat", "lon"), np.ones((8, 5, 5))
     path = tmp_path / "gap.nc"

@@ -61,7 +61,7 @@ def test_with_a_deadline_two_neighbouring_speeds_are_mixed():
     assert answer.best.fuel_t >= wanted * (1.0 - 1e-4)
 
 
-def test_the_front_runs_from_the_fastest_to_the_cheapest_and_no_route_beats_another():
+def test_the_front_runs_from_fastest_to_cheapest_and_is_non_dominated():
     answer = still("front", cubic_ship())
     time = np.array([route.time_h for route in answer.routes])
     fuel = np.array([route.fuel_t for route in answer.routes])
@@ -137,7 +137,7 @@ def test_a_current_faster_than_the_ship_is_the_reason():
     assert "current" in refusal.value.remedy
 
 
-def test_waiting_is_hardly_chosen_where_nothing_changes():
+def test_waiting_is_rarely_chosen_in_constant_conditions():
     answer = still("front", cubic_ship(), method="exact")
     bins = 25.1 / 720  # a ship may wait for the next bin of time
     assert all(route.waiting_h <= 2 * bins for route in answer.routes)
@@ -150,7 +150,7 @@ def test_what_the_front_saves_over_constant_speeds_is_reported():
     assert all(abs(row["saved"]) < 0.01 * row["value"] for row in rows)  # still water: nothing
 
 
-def test_the_json_contains_the_whole_front():
+def test_the_json_contains_the_complete_front():
     answer = still("front", cubic_ship(), fuel_price_usd=500.0)
     told = json.loads(answer.to_json())
     assert told["front"]["criterion"] == "cost" and told["front"]["unit"] == "USD"

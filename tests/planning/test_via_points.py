@@ -17,7 +17,7 @@ SEA = Sea.from_functions(
 
 @pytest.mark.parametrize("objective", ["time", "distance"])
 def test_two_via_points(objective):
-    # The second part leaves at an arrival that is no round number of anything.
+    # The second part departs at an arrival that is not a round number.
     via = ((51.5, 2.0), (50.5, 3.0))
     voyage = Voyage(
         start=(51.0, 1.5), goal=(51.0, 3.5), via=via, depart="2026-01-01", objective=objective

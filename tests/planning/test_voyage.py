@@ -1,4 +1,4 @@
-"""The request goes through a file and comes back the same."""
+"""A voyage written to a file and read again is equal."""
 
 import pytest
 

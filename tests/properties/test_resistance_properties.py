@@ -1,4 +1,4 @@
-"""What every resistance, wave, wind and propulsion method must obey, whatever the numbers."""
+"""Properties of all resistance, wave, wind and propulsion methods for any input."""
 
 from __future__ import annotations
 
@@ -341,7 +341,7 @@ def test_more_thrust_needs_more_turns_and_power(thrust, inflow, more):
     area=st.floats(0.3, 1.05),
     blades=st.integers(2, 7),
 )
-def test_the_propeller_gives_the_thrust_asked_for(force, inflow, pitch, area, blades):
+def test_the_propeller_gives_the_required_thrust(force, inflow, pitch, area, blades):
     screw = Propeller(diameter=5.0, pitch_ratio=pitch, area_ratio=area, blades=blades)
     thrust, _ = b_series_polynomials(screw)
     largest = largest_advance(screw)

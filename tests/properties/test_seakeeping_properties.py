@@ -1,4 +1,4 @@
-"""What must hold for the motions of every ship in every sea."""
+"""Properties of the motions of any ship in any sea."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_finite_everywhere(w, angle, speed):
 
 
 def test_the_pole_of_following_seas_is_removed():
-    """Where the ship keeps pace with the waves, and beside it, the response is one curve."""
+    """The response is continuous where the ship has the speed of the waves."""
     w = 9.80665 / 12.0 * (1.0 + np.array([-1e-7, 0.0, 1e-7]))
     heave, pitch = ship_motions.jensen_motions(w, speed=12.0, wave_angle=np.pi, hull=HULL)
     assert np.ptp(heave) < 1e-5
@@ -160,7 +160,7 @@ def test_scalar_equals_array_element(conditions):
 
 
 @given(height=heights, period=periods)
-def test_spectrum_is_never_negative_and_keeps_its_height(height, period):
+def test_spectrum_is_never_negative_and_preserves_the_height(height, period):
     w, weights = wave_spectra.quadrature(period)
     density = wave_spectra.jonswap(w, height=height, period=period)
     assert np.all(density >= 0.0)

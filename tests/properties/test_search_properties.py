@@ -1,4 +1,4 @@
-"""What every search promises, on random small networks in random moving water."""
+"""Properties of all searches, on random small networks in random moving water."""
 
 from itertools import pairwise
 
@@ -119,7 +119,7 @@ def test_waiting_never_loses(seed, gaps):
     network, fields, depart = random_world(seed, nodes=8, gaps=gaps)
     waiting = sail(network, fields, depart, goal=None)
     moving = sail(network, fields, depart, goal=None, wait=False)
-    # an opening is found to a tenth of a second, at every edge of a way
+    # openings are accurate to a tenth of a second, at every edge of a path
     assert np.all(waiting.node_arrival <= moving.node_arrival + 0.8)
 
 
@@ -145,7 +145,7 @@ def test_a_limit_never_helps(seed, wind):
     free = sail(network, fields, depart)
     bound = sail(network, fields, depart, limits=limits(wind=wind))
     tighter = sail(network, fields, depart, limits=limits(wind=0.8 * wind))
-    # an opening is found to a tenth of a second, at every edge of a way
+    # openings are accurate to a tenth of a second, at every edge of a path
     assert free.arrive <= bound.arrive + 0.8
     assert bound.arrive <= tighter.arrive + 0.8
     assert free.cost <= bound.cost + 0.8
@@ -173,7 +173,7 @@ def test_more_edges_never_hurt(seed):
 
 @given(seeds)
 @settings(max_examples=25)
-def test_no_departure_on_the_grid_beats_the_best_departure(seed):
+def test_no_departure_on_the_grid_is_better_than_the_best_departure(seed):
     network, fields, _ = random_world(seed, nodes=6)
     window = (0.0, 8 * STEP)
     best = best_departure(

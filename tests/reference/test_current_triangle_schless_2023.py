@@ -95,7 +95,7 @@ def test_monotone_curve_stays_near_the_quadratic():
     assert np.max(np.abs(nodes - quadratic)) < 0.012
 
 
-def test_drag_force_by_hand():
+def test_drag_force_equals_a_hand_calculation():
     force = cur.rudder_drag(6.0, np.radians(-10.0), rudder_area=20.0, density=1025.0)
     assert force == pytest.approx(0.5 * 1025.0 * 0.09 * 20.0 * 36.0)
 

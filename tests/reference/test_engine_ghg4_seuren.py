@@ -30,7 +30,7 @@ def test_one_day_of_a_ten_megawatt_engine():
     assert rate * DAY / 1000.0 == pytest.approx(27.593, abs=5e-4)
 
 
-def test_base_values_and_their_honesty():
+def test_base_values_and_their_sources():
     value, record = specific_consumption.base_sfoc("slow_speed_diesel", "residual", built=2010)
     assert (value, record.verified) == (175.0, True)
     assert specific_consumption.base_sfoc("slow_speed_diesel", "residual", built=1990)[0] == 185.0
@@ -107,7 +107,7 @@ def test_engines_needed():
     np.testing.assert_array_equal(needed, [0, 1, 1, 2, 2, np.nan, np.nan])
 
 
-def test_fewest_engines_are_not_always_the_thriftiest():
+def test_fewest_engines_do_not_always_burn_the_least():
     """At 5 MW one engine runs at full load (1.025), two at half load (1.03875)."""
     _, one = specific_consumption.plant_fuel_rate(5e6, 5e6, count=2, sfoc_g_kwh=180.0)
     _, two = specific_consumption.plant_fuel_rate(

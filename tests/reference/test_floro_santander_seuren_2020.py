@@ -1,7 +1,7 @@
 """Florø to Santander round the North Sea control area: money at fixed passage times.
 
 Lengths and costs are those of exact shortest paths on GSHHG i (visibility graphs, price factor of
-the control area 1.5593) for the three ways round of the case of Seuren (2020), with his ship: table
+the control area 1.5593) for the three routes of the case of Seuren (2020), with his ship: table
 5.3, 300 USD/t. Costs are of the best mix of speeds in each zone for the passage time.
 """
 
@@ -82,7 +82,7 @@ def as_route(track: Track, chart: Chart) -> Route:
 
 @pytest.fixture(scope="module")
 def fastest(chart) -> dict[str, Route]:
-    """The ways at the highest setting, legs cut where they cross the border of the area."""
+    """The routes at the highest setting, legs split where they cross the border of the area."""
     found = {}
     for name, middle in WAYS.items():
         places = np.array([START, *middle, GOAL])
@@ -115,7 +115,7 @@ def best_mix(zones: dict[bool, float], seconds: float) -> dict[bool, np.ndarray]
 
 
 def at_mix(route: Route, inside: np.ndarray, mix: dict[bool, np.ndarray]) -> Track:
-    """Return the track with legs cut where the setting changes, the fast part of a zone first."""
+    """Return the track with legs split where the setting changes, the fast part of a zone first."""
     track = route.track
     left = {name: parts.copy() for name, parts in mix.items()}
     places, settings = [track.positions[0]], []
@@ -145,7 +145,7 @@ def zones_of(route: Route, chart: Chart) -> tuple[np.ndarray, dict[bool, float]]
 
 
 @pytest.mark.parametrize("way", list(WAYS))
-def test_lengths_of_the_ways(fastest, chart, way):
+def test_lengths_of_the_routes(fastest, chart, way):
     route = fastest[way]
     assert route.feasible, route.violations
     _, zones = zones_of(route, chart)

@@ -1,4 +1,4 @@
-"""Hollenbach (1998) against what others printed or computed with it.
+"""Hollenbach (1998) against published values of other authors.
 
 The single-screw design line is compared with the table "HOLLENBACH (from code)" of Yu (2021), NTNU
 Marine DataLab, whose inputs are L 162.45 m, C_B 0.728 and L_OS = L_WL = 172.42 m (the 172.24 m of

@@ -65,7 +65,7 @@ def test_lcb_of_kvlcc2_and_kcs():
 
 
 def test_regressions_written_out():
-    """Numbers worked by hand from the printed formulas."""
+    """Values calculated by hand from the printed formulas."""
     assert reg.block_from_froude(0.25) == pytest.approx(0.633125, abs=1e-9)
     assert reg.midship_from_block(0.6) == pytest.approx(1.0 / (1.0 + 0.4**3.5))
     assert reg.midship_kerlen(0.6) == pytest.approx(1.006 - 0.0056 / 0.6**3.56)

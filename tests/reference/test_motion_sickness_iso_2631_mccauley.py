@@ -66,7 +66,7 @@ def test_ohanlon():
     assert fast == pytest.approx(50.0 * (1.0 + math.erf(level / math.sqrt(2.0))), rel=1e-9)
 
 
-def test_no_motion_nobody_sick_and_unknown_stays_unknown():
+def test_no_motion_gives_no_sickness_and_unknown_stays_unknown():
     sick = motion_sickness.motion_sickness_percent_mccauley(
         [0.0, np.nan], frequency_hz=0.2, duration=3600.0
     )

@@ -177,6 +177,6 @@ def test_draught_takes_the_mean_of_the_profile():
         lambda: stratified_coast_current(coast=(52, 4), onshore_deg=90, flood=0.0, decay=0.0),
     ],
 )
-def test_nonsense_is_refused(make):
+def test_invalid_values_are_refused(make):
     with pytest.raises(InputError):
         make()

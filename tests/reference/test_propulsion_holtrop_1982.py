@@ -68,7 +68,7 @@ def test_open_water_efficiency_and_shaft_power_as_printed():
     """Thrust 2172.75 kN at 1.6594 rev/s: eta_0 0.6461 and 32621 kW.
 
     The paper corrects the polynomials for the roughness of the blades, which is left out here,
-    so half a percent is what can be asked.
+    so the tolerance is half a percent.
     """
     thrust, inflow = 2172.75e3, SPEED * (1.0 - 0.2584)
     advance = inflow / (RATE * DIAMETER)
@@ -226,7 +226,7 @@ def test_a_propeller_the_series_cannot_describe_is_refused(propeller):
     assert "pitch ratio" in str(caught.value)
 
 
-def test_operating_point_gives_the_thrust_asked_for():
+def test_operating_point_gives_the_required_thrust():
     thrust = np.array([0.0, 1e3, 2e5, 5e5, 4e5, 1e5])
     inflow = np.array([5.0, 8.0, 6.0, 0.0, 1e-4, 3.0])
     state = operating_point(thrust, inflow, B_SERIES_4_70)

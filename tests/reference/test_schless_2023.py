@@ -7,7 +7,7 @@ resistance), water of 1025 kg/m3 and 1e-6 m2/s, a transom of 0.2 B T, appendages
 wetted surface with 1 + k2 = 2.5, and one calibrated constant, the hull efficiency 1.029. Test
 case 2 (the depth falls from 20 to 8 m) is missed by 1.6 %: the final program of the thesis has
 some detail of the depth that is not described. Table 4.6 was made with the ellipse of Table 4.9
-(0.7 m/s along the coast, 0.35 m/s across, the same everywhere), not with the profile of Table 2.1;
+(0.7 m/s along the coast, 0.35 m/s across, uniform), not with the profile of Table 2.1;
 it is met within 0.9 %.
 """
 

@@ -48,7 +48,7 @@ def test_peak_factor_of_dnv_and_its_ends():
 
 
 @pytest.mark.parametrize(("hs", "tp"), [(2.0, 8.0), (6.0, 11.0), (3.0, 6.0), (2.0, 4.0)])
-def test_fixed_quadrature_keeps_the_height(hs, tp):
+def test_fixed_quadrature_preserves_the_height(hs, tp):
     w, weights = spectra.quadrature(tp)
     m0 = spectra.spectral_moment(
         spectra.jonswap(w, height=hs, period=tp), weights, frequency=w, order=0
@@ -56,7 +56,7 @@ def test_fixed_quadrature_keeps_the_height(hs, tp):
     assert spectra.significant_height(m0) == pytest.approx(hs, rel=2e-3)
 
 
-def test_peak_stands_at_the_peak():
+def test_peak_is_at_the_peak_period():
     w = np.linspace(0.2, 2.0, 18_001)
     density = spectra.jonswap(w, height=3.0, period=8.0, peak_factor=3.3)
     assert w[np.argmax(density)] == pytest.approx(2.0 * np.pi / 8.0, abs=1e-3)

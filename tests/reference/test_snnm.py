@@ -128,7 +128,7 @@ TRIMMED = SnnmHull(175.0, 25.4, 9.0, 10.0, 0.57, 60.0, 70.0, pitch_gyration=0.24
 
 @pytest.mark.parametrize("hull", [KVLCC2, TRIMMED], ids=["full", "fine and trimmed"])
 @pytest.mark.parametrize("degrees", [0.0, 10.0, 30.0, 75.0, 90.0, 110.0, 150.0, 165.0, 180.0])
-def test_the_whole_formula_written_out(hull, degrees):
+def test_the_complete_formula_written_out(hull, degrees):
     """Every heading, waves from short to long, ships that wait, overtake slowly and fast."""
     for ratio in (0.05, 0.15, 0.5, 0.9, 1.4, 2.4, 2.6):
         for froude in (0.05, 0.11, 0.16, 0.27):
@@ -140,7 +140,7 @@ def test_the_whole_formula_written_out(hull, degrees):
             assert [float(x) for x in got] == pytest.approx(expected, rel=1e-9, abs=1e-9 * unit)
 
 
-def test_nothing_is_reflected_beyond_two_and_a_half_lengths():
+def test_no_reflection_beyond_two_and_a_half_lengths():
     _, reflection = snnm_transfer(frequency([2.49, 2.5, 4.0]), SPEED, 0.3, KVLCC2)
     assert reflection[0] > 0.0
     np.testing.assert_allclose(reflection[1:], 0.0, atol=1e-6 * UNIT)

@@ -80,7 +80,7 @@ def test_speed_never_falls_with_depth():
     assert np.all(np.diff(limit(depths)) >= 0.0)
 
 
-def test_barrass_by_hand():
+def test_barrass_equals_a_hand_calculation():
     """B 20, T 6.5, h 10, width 180: S2 = 130/1670; C_B .8, 10 kn."""
     expected = 0.8 * (130.0 / 1670.0) ** (2.0 / 3.0) * 10.0**2.08 / 30.0
     got = squat.barrass_squat(10.0 * KNOT, 10.0, block_coefficient=0.8, **HOPPER)
@@ -115,7 +115,7 @@ def test_a_filled_channel_is_blocked():
     assert limit(6.4, channel_width=20.0) == 0.0
 
 
-def test_later_barrass_form_by_hand():
+def test_later_barrass_form_equals_a_hand_calculation():
     """K = B T / (b h) with b = 7.04 B / C_B^0.85, or the width of the channel."""
     at = {"draught": 10.0, "breadth": 30.0, "block_coefficient": 0.8}
     knots = 5.0 / KNOT

@@ -114,7 +114,7 @@ def test_validity():
     assert (note.value, note.high) == (3.0, 2.25)
 
 
-def test_every_range_of_stawave2_ends_where_the_procedure_says():
+def test_ranges_of_stawave2_are_those_of_the_procedure():
     inside = [  # L_PP, B, T, C_B, Fn just inside the lower and the upper ends
         {"length": 76.0, "wide": 18.9, "deep": 8.5, "block": 0.40, "froude": 0.101},
         {"length": 349.0, "wide": 38.9, "deep": 4.34, "block": 0.89, "froude": 0.299},

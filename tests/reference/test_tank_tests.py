@@ -11,7 +11,7 @@ allowance, which a smooth model does not have.
   Fluids 31 (2001); Gothenburg 2010 workshop).
 * KCS: KRISO tank, scale 1/31.6, C_T = 3.711e-3 at U 2.196 m/s, Fr 0.260, Re 1.26e7; L_PP 7.2786 m,
   S 0.1803 L_PP^2 with rudder (Tokyo 2015, case 2.1). Its bulb's section is not published: 12 and
-  20 m2 at full scale are both tried. It stands in for S175, of which no tank value was found.
+  20 m2 at full scale are both tried. It replaces S175, for which no tank value is published.
 
 Holtrop's sample is of the years to 1980. Of two hulls designed in 1997, KVLCC2 and KCS, both his
 methods say some ten percent more than the tank; so does Hollenbach's *minimum* line for KVLCC2

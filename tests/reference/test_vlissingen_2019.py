@@ -4,7 +4,7 @@ Rijkswaterstaat publishes the constituents of Vlissingen (analysis of 2009-2012)
 it made of them, every 10 minutes of 2019, in whole centimetres. Predicting from the constituents
 gives 0.61 cm RMSE (largest difference 2.9 cm). What is left is known:
 
-* The official prediction keeps the nodal corrections of the middle of the year for all of it; with
+* The official prediction uses the nodal corrections of the middle of the year throughout; with
   those (``nodal_time``) 0.30 cm is left, and nothing over 0.73 cm.
 * 0.29 cm is what rounding to whole centimetres alone gives (1 cm / sqrt 12).
 * With Schureman's nodal factors in full, not in the shares that Rijkswaterstaat gives them, it is
@@ -48,7 +48,7 @@ def _rmse(difference):
     return float(np.sqrt(np.mean(difference**2)))
 
 
-def test_file_is_read_whole(vlissingen):
+def test_file_is_read_completely(vlissingen):
     assert len(vlissingen.names) == 94
     assert vlissingen.convention == "rws"
     assert vlissingen.mean[nm.WATER_LEVEL] == pytest.approx([0.01])

@@ -1,6 +1,6 @@
-"""Section 4.3 of Schless (2023): does it pay to wait for the current before sailing?
+"""Section 4.3 of Schless (2023): savings of waiting for the current before sailing.
 
-His figures state, in words: one way at neap tide at most "approximately 4.5 %" saved, five cycles
+The stated results: a single trip at neap tide at most "approximately 4.5 %" saved, five cycles
 "approximately 2.6 %" from t0 = 0 and "approximately 3 %" from t0 = 0.5 T and 0.75 T, at spring tide
 "approximately 1.5 %"; never a saving with a generator of 327.1 kW; savings only with 5 or 10 % of
 that power, not with 25 %, and with 10 % not at the end of the curve, where one way from t0 = 0 all
@@ -37,7 +37,7 @@ def study(trips, hotel_power=0.0):
     return waiting_study(trips, starts=QUARTERS, max_waits=WAITS, hotel_power=hotel_power)
 
 
-def test_one_way_at_neap_tide_saves_four_and_a_half_per_cent():
+def test_a_single_trip_at_neap_tide_saves_four_and_a_half_per_cent():
     saving = 100.0 * study(one_way(HALVED["neap"])).saving("current")
     assert saving.max() == pytest.approx(4.5, abs=0.4)
     assert saving[0, -1] == pytest.approx(2.7, abs=0.1)
@@ -86,7 +86,7 @@ def test_savings_shrink_from_neap_to_spring_tide():
 
 
 def test_savings_with_the_currents_as_printed():
-    """Kept as a finding: Table 4.9 as it stands gives 5.4 %, not 3 %."""
+    """Table 4.9 as printed gives 5.4 %, not 3 %."""
     found = study(five_cycles(TIDAL_ELLIPSES["neap"]))
     assert 100.0 * found.saving("current").max() == pytest.approx(5.4, abs=0.1)
     assert 100.0 * found.saving("optimum").max() == pytest.approx(5.6, abs=0.1)
@@ -94,7 +94,7 @@ def test_savings_with_the_currents_as_printed():
 
 @pytest.mark.parametrize("scenarios", [HALVED, TIDAL_ELLIPSES], ids=["halved", "printed"])
 @pytest.mark.parametrize("name", TIDAL_ELLIPSES)
-def test_waiting_never_pays_with_a_generator_of_327_kw(scenarios, name):
+def test_waiting_saves_no_energy_with_a_generator_of_327_kw(scenarios, name):
     for trips in (one_way(scenarios[name]), five_cycles(scenarios[name])):
         found = study(trips, GENERATOR)
         assert found.saving("current").max() <= 1e-12

@@ -1,4 +1,4 @@
-"""Planar worlds laid on the equator, shrunk so far that the ellipsoid is flat to a few 1e-6.
+"""Planar worlds on the equator, scaled down so that the ellipsoid is flat to a few 1e-6.
 
 Lengths and times are divided by ``shrink``; speeds stay.
 """
@@ -58,7 +58,7 @@ def ship(speed: float, draught: float = 5.0) -> Ship:
 class Islands:
     """A chart of polygons near the equator, where geodesics are straight in degrees.
 
-    It stands in for a Chart: the same questions, answered by shapely.
+    It replaces a Chart: the same tests, by shapely.
     """
 
     has_depth = False

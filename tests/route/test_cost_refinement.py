@@ -85,7 +85,7 @@ CUBIC_KN = np.round(np.arange(8.0, 16.0001, 0.1), 3)
 
 
 def cubic_ship() -> Ship:
-    """Fuel of k V^3 with V in knots and k of 1 kg/h, told as tonnes a day."""
+    """Fuel of k V^3 with V in knots and k of 1 kg/h, given in tonnes per day."""
     table = {
         "speed_kn": CUBIC_KN.tolist(),
         "fuel_t_per_day": (24e-3 * CUBIC_KN**3).tolist(),
@@ -185,7 +185,7 @@ def test_never_worse_and_invalid_objectives_are_refused():
 
 
 def by_cubed_speed(**costs):
-    """A ship whose fuel is unknown and that pays for time and cubed speed (van Halem 2019)."""
+    """A ship with unknown fuel and prices of time and cubed speed (van Halem 2019)."""
     costs = {"per_week": 700_000.0, "per_second_per_cubed_speed": 0.008, **costs}
     hull, speeds = {"draught_m": 5.0}, [6.0, 8.0, 10.0, 12.0]
     return Ship.from_dict({"name": "x", "hull": hull, "speeds_kn": speeds, "costs": costs})
@@ -214,7 +214,7 @@ def test_the_cost_of_time_and_cubed_speed():
 
 @settings(max_examples=8, deadline=None)
 @given(st.floats(-2, 2), st.floats(-2, 2), st.floats(1.0, 1.5), st.integers(0, 11))
-def test_never_worse_whatever_the_sea_and_the_start(u, v, later, setting):
+def test_refinement_is_never_worse_for_any_sea_and_start(u, v, later, setting):
     sea = Sea.from_functions(
         {
             "eastward_sea_water_velocity": lambda t, a, o: u * KNOT * np.cos(3 * o + t / 9000),
@@ -230,7 +230,7 @@ def test_never_worse_whatever_the_sea_and_the_start(u, v, later, setting):
     assert route.co2_t <= start.co2_t * (1 + 1e-12)
 
 
-def test_land_is_kept_clear_of():
+def test_refinement_avoids_land():
     island = {
         "type": "Polygon",
         "coordinates": [[[0.9, -0.3], [1.1, -0.3], [1.1, 0.3], [0.9, 0.3], [0.9, -0.3]]],
@@ -249,7 +249,7 @@ def test_land_is_kept_clear_of():
     assert route.fuel_t < 0.9 * start.fuel_t
 
 
-def test_time_that_weather_takes_away_is_not_used():
+def test_time_lost_to_weather_is_not_used():
     """Waves over the limit come to the second half after 8.3 hours: no slower there than that."""
     ship = Ship.from_dict({**BULKER.data, "limits": {"max_significant_wave_height_m": 4.0}})
     height = "sea_surface_wave_significant_height"

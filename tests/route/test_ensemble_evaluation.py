@@ -96,7 +96,7 @@ def test_data_that_end_too_early_make_a_member_infeasible() -> None:
     assert found.infeasible == (0, 1)
 
 
-def test_the_tail_as_worked_by_hand() -> None:
+def test_the_tail_equals_a_hand_calculation() -> None:
     assert cvar(range(1, 11), 0.9) == 10.0
     assert cvar(range(1, 11), 0.8) == 9.5
     assert cvar(range(1, 26), 0.9) == pytest.approx((25 + 24 + 0.5 * 23) / 2.5)

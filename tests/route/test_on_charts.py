@@ -53,7 +53,7 @@ def test_charted_depth_and_level_make_the_clearance():
 
 
 def test_smoothing_keeps_charted_depth():
-    # a shoal of a grid, 4 m deep, that the taut way rounds by its northern edge
+    # a shoal of a grid, 4 m deep, that the pulled line passes at its northern edge
     lat, lon = np.arange(-30, 31) / 50.0, np.arange(-10, 71) / 50.0
     shoal = (np.abs(lon - 0.5) < 0.11) & (lat[:, None] < 0.09)
     grid = xr.DataArray(

@@ -1,4 +1,4 @@
-"""What the referee says a route burns, emits and costs; control areas, canals, waits, prices."""
+"""Fuel, emissions and cost of evaluated routes: control areas, canals, waits, prices."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def test_time_and_waiting_have_a_price():
     assert lying.fuel_eca_t == pytest.approx(inside / 1000.0, rel=1e-5)
 
 
-def test_unknown_prices_are_unknown_never_nothing():
+def test_unknown_prices_are_unknown_never_zero():
     ship = Ship.from_dict(
         {**{k: v for k, v in BULKER.data.items() if k != "fuel"}, "costs": {"hire_per_day": 1e4}}
     )

@@ -70,7 +70,7 @@ def test_linear_shear_along_a_known_line():
     assert route.time_h * 3600 / plane.unit == pytest.approx(expected, rel=1e-7)
 
 
-def test_converges_with_order_four_and_tells_its_error():
+def test_converges_with_order_four_and_reports_its_error():
     sea = Sea.from_functions(
         {
             UE: lambda t, a, o: np.cos(t / 7000 + 3 * a),
@@ -114,7 +114,7 @@ def test_strong_tides_settle_over_a_long_voyage():
     assert route.arrive == pytest.approx(t, abs=0.5)
 
 
-def test_jump_of_a_field_in_time_is_met_at_its_moment():
+def test_a_jump_of_a_field_in_time_is_resolved():
     sea = Sea.from_functions(
         {UE: lambda t, a, o: np.where(t < 5000.0, 0.0, 1.0), UN: lambda t, a, o: 0.0 * a}
     )
@@ -155,7 +155,7 @@ def test_waiting_where_the_tide_falls_away_is_a_grounding():
 
 
 def test_the_least_clearance_is_that_of_a_wait_over_low_water():
-    """The tide falls by 1 m while the ship waits, and has come back when it goes on."""
+    """The tide falls by 1 m while the ship waits, and has risen again when it continues."""
     low = 2000.0
 
     def level(t, a, o):
@@ -166,7 +166,7 @@ def test_the_least_clearance_is_that_of_a_wait_over_low_water():
     route = evaluate(track, ship=ship(5.0, 4.0), sea=sea, min_ukc=0.5)
     assert route.feasible
     assert route.legs["under_keel_clearance"][0] == pytest.approx(2.0)
-    assert route.min_ukc_m == pytest.approx(1.0, abs=0.15)  # looked at every five minutes
+    assert route.min_ukc_m == pytest.approx(1.0, abs=0.15)  # sampled every five minutes
 
 
 def test_a_gap_is_reported_with_its_position():

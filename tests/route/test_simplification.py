@@ -39,7 +39,7 @@ def test_corners_and_waits_stay():
     assert fewer.time_h <= route.time_h * (1 + 6.1e-5)
 
 
-def test_nothing_is_left_out_when_it_would_cost_more_than_allowed():
+def test_waypoints_remain_if_removal_would_cost_more_than_allowed():
     bearing = np.linspace(0.0, np.pi, 60)
     track = Track.from_positions(zip(50.0 + np.sin(bearing), -5.0 - np.cos(bearing)), depart=0.0)
     route = score(track)

@@ -120,7 +120,7 @@ def test_halem_rotating_flow(swing, seconds):
 
 
 def test_halem_bar_waits_no_second_too_long():
-    # trivial case 3: a bar dry until 18000 s; waiting beats the way round
+    # trivial case 3: a bar dry until 18000 s; waiting is faster than the detour
     plane = Plane(unit=HALEM_DEGREE / 100)
 
     def bed(t, lat, lon):
@@ -172,7 +172,7 @@ def test_the_route_around_a_square_island_is_shortest(points, objective):
     assert len(better.track) <= 6
 
 
-def test_keeps_the_way_round_it_was_given():
+def test_smoothing_passes_land_on_the_given_side():
     plane, boat = Plane(unit=1000.0), ship(5.0)
     chart = Islands(rectangle(plane, -1, -1, 1, 3))
     track = Track.from_positions([plane.place(*p) for p in [(-3, 0), (0, 7), (3, 0)]], depart=0)
@@ -180,7 +180,7 @@ def test_keeps_the_way_round_it_was_given():
     assert better.distance_nm * 1852 / 1000 == pytest.approx(2 * math.hypot(2, 3) + 2, rel=1e-5)
 
 
-def test_pulling_never_loses_and_keeps_only_what_serves():
+def test_string_pulling_never_costs_more_and_removes_useless_waypoints():
     plane, boat = Plane(unit=1000.0), ship(5.0)
     rng = np.random.default_rng(5)
     points = [(0, 0), *((x, rng.uniform(-1, 1)) for x in range(1, 60)), (60, 0)]
@@ -215,7 +215,7 @@ def test_pulling_never_loses_and_keeps_only_what_serves():
     assert wall.sail(pulled.batch())[1][0] <= wall.sail(line.batch())[1][0]
 
 
-def test_a_limit_in_the_field_is_kept():
+def test_smoothing_violates_no_limit_of_a_field():
     # waves too high in the middle of the way: the route must bend round, and does so closely
     plane = Plane(unit=1000.0)
 
@@ -281,7 +281,7 @@ def test_the_time_evaluator_respects_the_edges_of_its_raster():
     assert arrive[0, 1] == pytest.approx(0.5 * 111319.49 / 5.0, rel=1e-6)
 
 
-def test_penalty_zones_are_gone_round_when_that_is_cheaper():
+def test_penalty_zones_are_avoided_when_that_is_cheaper():
     plane, boat = Plane(unit=1000.0), ship(5.0)
     ring = np.array([plane.place(*p) for p in [(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)]])
     zone = {

@@ -55,14 +55,14 @@ def test_route_is_plain_data_on_demand():
     assert "nm" in str(route)
 
 
-def test_violation_tells_its_place():
+def test_violation_has_a_position():
     text = str(Violation("under-keel clearance", 0.0, 52.0, 4.1, -0.5, 1.0))
     assert "52.0000N 4.1000E" in text
     assert "(-0.50, limit 1.00)" in text
     assert Violation("land: leg 2", float("nan"), 0.0, 0.0).as_dict()["time"] is None
 
 
-def test_what_is_burnt_between_joined_routes_is_not_taken_as_nothing():
+def test_fuel_between_joined_routes_is_unknown_not_zero():
     boat = Ship.load("vox-olympia")
     depth = {"sea_floor_depth_below_geoid": lambda t, lat, lon: 20.0 + 0.0 * lat}
     sea = Sea.from_functions(depth).filled(wind=0.0, waves=0.0, currents=0.0)

@@ -112,7 +112,7 @@ def test_strongest_modelled_wind_is_that_of_the_track() -> None:
     assert 8.0 < got[HS].max() < 13.0
 
 
-def test_symmetric_maximum_is_kept_by_the_fitted_deficit() -> None:
+def test_the_fitted_deficit_preserves_the_symmetric_maximum() -> None:
     track = load_best_track("danielle-1998")
     state = vortex_state(track, track.time[20:])
     wind = models.holland_gradient_wind(

@@ -629,7 +629,7 @@ def test_only_the_box_and_window_are_loaded() -> None:
     assert len(stored.reads) == count
 
 
-def test_extra_mapping_keeps_a_plain_variable() -> None:
+def test_extra_mapping_adds_a_plain_variable() -> None:
     dataset = regular(
         fields={"so": {"units": "1e-3"}}, field=lambda t, y, x: 35.0 + 0 * (t + y + x)
     )

@@ -43,7 +43,7 @@ def test_wind_speed_and_direction_become_components(name, angle, east, north) ->
     assert np.cos(np.radians(got[name] - angle)) == pytest.approx(1.0)
 
 
-def test_wave_direction_is_kept_as_a_unit_vector_towards() -> None:
+def test_wave_direction_is_stored_as_a_unit_vector_towards() -> None:
     sea = Sea.from_functions({"sea_surface_wave_from_direction": lambda t, y, x: 315.0})
     fields = sea.freeze_stations([0.0], [0.0], 0.0, 100.0, [codes.WAVE_EAST, codes.WAVE_NORTH])
     assert fields.values[0, 0] == pytest.approx([np.sqrt(0.5), -np.sqrt(0.5)], abs=1e-6)
@@ -120,7 +120,7 @@ def test_wrong_shape_names_the_function() -> None:
         text.sample(["x"], 0.0, 0.0, 0.0)
 
 
-def test_nan_is_kept_and_its_reason_reported() -> None:
+def test_nan_is_preserved_and_its_reason_reported() -> None:
     sea = Sea.from_functions(
         {"x": lambda t, y, x: np.where(y > 0.5, np.nan, 1.0)},
         area=(0.0, 1.0, 179.0, -179.0),

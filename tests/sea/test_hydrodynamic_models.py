@@ -269,7 +269,7 @@ def test_a_gap_in_time_is_reported_and_stays_unknown() -> None:
 
 
 def test_a_moving_depth_needs_no_standard_name(tmp_path) -> None:
-    """As written for San Diego: depth over time and elevation, without a word more."""
+    """As written for San Diego: only depth over time and elevation."""
     hydro.adcirc().to_netcdf(tmp_path / "run.nc")
     data = xr.load_dataset(tmp_path / "run.nc")
     moving = data["zeta"] + data["depth"]

@@ -212,7 +212,7 @@ def test_nodes_with_different_gaps_are_solved_separately():
 
 
 def test_a_node_with_values_at_half_days_only_has_no_tide():
-    """There S2 stands still: solved all the same, its amplitude would come out at kilometres."""
+    """S2 is constant there: a solution would give amplitudes of kilometres."""
     coarse = START + 43200.0 * np.arange(119)
     times = np.concatenate([coarse, coarse[-1] + 3600.0 * np.arange(1, 121)])
     truth = Constituents.single(

@@ -117,7 +117,7 @@ def make_table(*parts) -> TableArrays:
 
 
 def steady(speed: float) -> TableArrays:
-    """Return the table of a ship that keeps its speed in all weathers."""
+    """Return the table of a ship with constant speed in all weather."""
     return make_table(((), (), np.array([speed])))
 
 
@@ -136,7 +136,7 @@ def point_speed_at(table=None, *, course=0.0, depth=np.inf, bounds=None, setting
 
 
 def line(count: int, spacing: float, **options) -> Network:
-    """Return nodes in a row along the equator, linked both ways, ``spacing`` metres apart."""
+    """Return nodes along the equator, linked in both directions, ``spacing`` metres apart."""
     lat, lon = geodesy.direct(0.0, 0.0, np.pi / 2, spacing * np.arange(count))
     there = [(i, i + 1) for i in range(count - 1)] + [(i + 1, i) for i in range(count - 1)]
     return make_network(lat, lon, there, **options)

@@ -66,7 +66,7 @@ def test_a_window_of_one_moment():
     assert (result.depart, result.arrive) == (HOUR, alone.arrive)
 
 
-def test_the_best_departure_is_none_if_nothing_succeeds():
+def test_there_is_no_best_departure_if_all_fail():
     network, fields = tidal()
     given = GIVEN | {"top_speed": 1.0}
     result = best_departure(

@@ -1,4 +1,4 @@
-"""The search: closed forms, limits, reasons, objectives, requests that make no sense."""
+"""The earliest arrival: closed forms, limits, reasons, objectives, invalid requests."""
 
 import networkx as nx
 import numpy as np
@@ -19,7 +19,7 @@ def sail(network, fields, *, speed=5.0, setting=0, limits=NO_LIMITS, top_speed=N
 
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])
-def test_a_constant_current_along_the_way(method):
+def test_a_constant_current_along_the_route(method):
     network = line(11, 3000.0)
     fields = make_fields(network, [0.0, 1e5], current_east=1.0, current_north=2.0)
     result = sail(network, fields, method=method)
@@ -60,7 +60,7 @@ def test_astar_settles_fewer_nodes_than_dijkstra():
     assert one.settled * 4 < other.settled
 
 
-def test_of_equally_short_ways_the_earlier_is_taken():
+def test_of_equally_short_paths_the_earlier_is_returned():
     lat, lon = [0.0, 0.1, -0.1, 0.0], [0.0, 0.1, 0.1, 0.2]  # north about or south about
     network = make_network(lat, lon, [(0, 1), (0, 2), (1, 3), (2, 3)])
 
@@ -134,7 +134,7 @@ def test_arrive_by_cuts_the_search():
     assert (late.found, late.refused) == (False, {"arrives too late": 1})
 
 
-def test_waves_are_waited_out():
+def test_the_ship_waits_until_waves_are_low_enough():
     network = line(3, 3000.0)
     times = np.arange(0.0, 36001.0, 3600.0)
     height = np.interp(times, [0.0, 18000.0, 36000.0], [6.0, 2.0, 2.0])
@@ -156,7 +156,7 @@ def test_start_and_goal_may_be_one():
     assert result.path_depart.tolist() == [7.0]
 
 
-def test_frozen_arrays_are_welcome():
+def test_read_only_arrays_are_accepted():
     network = line(3, 3000.0)
     fields = make_fields(network, [0.0, 1e5], **STILL)
     before = sail(network, fields).arrive
@@ -179,7 +179,7 @@ def test_frozen_arrays_are_welcome():
         {"limits": np.array([1.0, 2.0])}, {"limits": np.array([np.nan, 1.0, 1.0])},
     ],
 )  # fmt: skip
-def test_requests_that_make_no_sense(wrong):
+def test_invalid_requests_are_refused(wrong):
     network = line(3, 3000.0)
     with pytest.raises(InputError):
         sail(network, make_fields(network, [0.0, 1e5], **STILL), **wrong)

@@ -1,4 +1,4 @@
-"""Order on edges and waiting: the printed example, by itself and through the search."""
+"""FIFO property and waiting: the published example, alone and in the search."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def test_waiting_example(allowed, changed):
         assert (arrivals - np.arange(10)).tolist() == [6, 5, 4, 3, 3, 3, 4, 3, 2, 2]
 
 
-def test_no_waiting_at_all_changes_nothing():
+def test_results_without_waiting_are_equal():
     arrivals = np.arange(10) + W
     assert earliest_arrivals_with_waiting(arrivals, False).tolist() == arrivals.tolist()
 
@@ -128,7 +128,7 @@ def test_the_report_measures_the_worst_gain_by_waiting():
     assert report.blocked == pytest.approx(0.3)
 
 
-def test_steady_water_keeps_order():
+def test_steady_water_is_fifo():
     network = line(3, 5000.0)
     fields = make_fields(network, [0.0, 1e5], current_east=1.0, current_north=0.0)
     report = fifo_report(

@@ -1,4 +1,4 @@
-"""Edges of fixed time: canals are passed in their time, whatever the sea is."""
+"""Edges of fixed time: canals are passed in their time in any sea."""
 
 import numpy as np
 import pytest
@@ -91,7 +91,7 @@ def test_the_length_of_a_canal_counts_by_distance():
 
 @pytest.mark.parametrize("method", ["astar", "dijkstra"])
 def test_a_canal_faster_than_the_ship_does_not_mislead_astar(method):
-    # goal 3 beyond the canal 1-2; the way round by 4 looks nearer to a bound by the ship's speed
+    # goal 3 beyond the canal 1-2; the detour by 4 seems shorter to a bound by the ship's speed
     lat = [0.0, 1.0, 1.0, 0.0, 0.2]
     lon = [0.0, 0.0, 5.0, 5.0, 2.5]
     edges = [(0, 1), (1, 2), (2, 3), (0, 4), (4, 3)]

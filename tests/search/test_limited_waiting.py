@@ -26,7 +26,7 @@ def restricted(seed):
 def minute_by_minute(network, fields):
     """Return the earliest arrival at the last node on a network of nodes times minutes.
 
-    Arrivals are rounded down for one bound and up for the other, so the truth lies between (up to
+    Arrivals are rounded down for one bound and up for the other, so the exact value is between (to
     what a minute more or less at every node decides).
     """
     clock = np.arange(DEPART, fields.times[-1], MINUTE)
@@ -106,7 +106,7 @@ def barred_line(opens: float):
     return network, make_fields(network, times, bed_depth=bed)
 
 
-def test_the_wait_before_a_bar_is_taken_at_the_anchorage():
+def test_the_ship_waits_for_a_bar_at_the_anchorage():
     """The bar opens within the step before 4 h; node 1 is 2 km and 500 s from there."""
     network, fields = barred_line(4.0 * HOUR)
     found = earliest_arrival(
@@ -149,7 +149,7 @@ def test_no_path_is_reported_with_its_reasons():
     assert any("clearance" in reason or "depth" in reason for reason in found.refused)
 
 
-def test_a_latest_arrival_is_kept():
+def test_no_arrival_is_after_the_latest_arrival():
     network, fields = barred_line(4.0 * HOUR)
     asked = {"start": 0, "goal": 5, "depart": 0.0}
     assert not earliest_arrival(
@@ -160,7 +160,7 @@ def test_a_latest_arrival_is_kept():
     ).found
 
 
-def test_where_waiting_is_allowed_everywhere_nothing_changes():
+def test_waiting_at_all_nodes_gives_the_unlimited_result():
     network, fields = gully(3)
     given = {"start": 0, "goal": 6, "depart": DEPART}
     plain = earliest_arrival(ShipOnNetwork(network, fields, steady(4.0), **GIVEN), **given)
@@ -179,4 +179,4 @@ def test_open_water_takes_one_wave():
         ShipOnNetwork(network, fields, steady(4.0), **GIVEN), start=0, goal=59, depart=0.0
     )
     assert found.arrive == pytest.approx(59_000.0 / 4.0)
-    assert found.settled <= 3 * (network.n_nodes + 1)  # and one more to tell the way
+    assert found.settled <= 3 * (network.n_nodes + 1)  # and one more for the path

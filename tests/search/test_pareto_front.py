@@ -1,4 +1,4 @@
-"""The front of time against cost: real ways, brute force, laws of speed, refusals."""
+"""The front of time against cost: real paths, brute force, laws of speed, refused input."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def all_paths(network, goal):
 
 
 def brute_force(network, fields, latest, *, pauses=(0.0,), **prices):
-    """Return (time, cost) of all ways, settings and pauses before edges."""
+    """Return (time, cost) of all paths, settings and pauses before edges."""
     got, request = world_of(network, fields, latest, **prices)
     found = []
     for edges in all_paths(network, request.goal):
@@ -107,7 +107,7 @@ def _sail_pausing(got, request, states, edges, choices, pause):
     point = sail_planned_path(got, request, PlannedPath(states, edges, choices, leave))
     if point is None or not any(pause):
         return point
-    for i, length in enumerate(pause):  # each pause begins upon the arrival found so far
+    for i, length in enumerate(pause):  # each pause begins at the arrival found so far
         leave[i] = point.path_arrive[i] + length if length else -np.inf
         point = sail_planned_path(got, request, PlannedPath(states, edges, choices, leave))
         if point is None:
@@ -127,7 +127,7 @@ def test_front_is_that_of_brute_force_without_waiting(seed):
     found = search(network, fields, 7, latest, wait=False, bin_s=4.0, lower=False)
     every = brute_force(network, fields, latest, wait=False)
     assert len(found.points) > 8
-    for point in found.points:  # a real way beats no real way
+    for point in found.points:  # no real path is better
         assert point.cost >= least(every, point.time) * (1 - 1e-9)
     for time, cost in every[np.minimum.accumulate(every[:, 1]) == every[:, 1]]:
         reached = found.cost[found.time <= time + 3 * found.bin_s].min(initial=np.inf)
@@ -214,7 +214,7 @@ def test_lower_front_where_some_nodes_do_not_let_wait():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_points_are_real_ways(seed):
+def test_points_are_real_paths(seed):
     network, fields = random_world(seed)
     priced = {
         "prices": LegPrices(inside=2.0, time=0.01, waiting=0.02),
@@ -380,7 +380,7 @@ def test_a_bar_is_passed_when_the_tide_allows():
     assert found.cheapest.cost == pytest.approx(0.064 * 30_000.0 / 4.0)
 
 
-def test_fuel_follows_the_weather_that_is_felt():
+def test_fuel_depends_on_the_weather_along_the_path():
     """Wind 10 m/s from ahead and current 2 m/s from astern: 12 m/s over the moving water."""
     network = line(3, 20_000.0)
     fields = make_fields(
@@ -434,7 +434,7 @@ def test_choosing_from_a_front():
     assert caught.value.details["earliest"] == found.fastest.arrive
 
 
-def test_too_late_says_the_earliest_arrival():
+def test_a_latest_arrival_too_early_is_refused_with_the_earliest():
     network = line(3, 20_000.0)
     fields = make_fields(network, [0.0, 1e6], **STILL)
     with pytest.raises(InputError, match="earliest arrival is 5000 s") as caught:
@@ -457,7 +457,7 @@ def test_required_memory_is_checked_before_it_is_allocated():
     [
         ({"latest": -1.0}, "not after the departure"),
         ({"settings": [0, 3]}, "not all the ship's"),
-        ({"goal": 99}, "no way from node"),
+        ({"goal": 99}, "from node 0 to node 99"),
         ({"eca_fraction": -1.0}, "between 0 and 1"),
         ({"eca_fraction": np.nan}, "between 0 and 1"),
         ({"bin_s": 0.0}, "bins"),
@@ -470,7 +470,7 @@ def test_bad_requests(wrong, words):
         search(network, fields, **{"goal": 2, "latest": 20_000.0, **wrong})
 
 
-def test_no_way_gives_the_reasons():
+def test_an_impossible_path_is_refused_with_the_reasons():
     network = line(3, 20_000.0, depth=5.0)
     fields = make_fields(network, [0.0, 1e6], **STILL)
     with pytest.raises(NoRouteError, match="under-keel clearance"):
@@ -518,7 +518,7 @@ def test_waiting_at_an_anchorage_before_a_bar():
 
 
 def test_a_ship_that_may_not_wait_may_circle():
-    """A long way round is open; to go to and fro until the bar opens is shorter and dearer."""
+    """A long detour is open; sailing to and fro until the bar opens is shorter and costs more."""
     network, fields = barred_line(4.0 * 3600.0)
     around = [(0, 5)]
     edges = [(i, i + 1) for i in range(5)] + [(i + 1, i) for i in range(5)] + around
@@ -531,8 +531,8 @@ def test_a_ship_that_may_not_wait_may_circle():
     assert found.cheapest.waiting == 0.0
 
 
-def test_no_way_names_the_nearest_place_across_the_antimeridian():
-    """Nodes 0 and 1 are joined, 179.9 and 179.0 E; the goal lies at 179.9 W."""
+def test_the_nearest_reached_place_is_found_across_the_antimeridian():
+    """Nodes 0 and 1 are joined, 179.9 and 179.0 E; the goal is at 179.9 W."""
     lon = np.array([179.9, 179.0, -179.9])
     network = make_network(np.zeros(3), lon, [(0, 1), (1, 0)])
     fields = make_fields(network, [0.0, 1e6], **STILL)
@@ -574,7 +574,7 @@ def test_neither_setting_alone_passes_but_both_in_turn():
     assert found.fastest.time == pytest.approx(5000.0 + last, rel=1e-6)
 
 
-def test_limits_in_waves_that_no_setting_keeps():
+def test_limits_in_waves_violated_at_all_settings():
     with pytest.raises(NoRouteError, match="safety or comfort"):
         surfing([3.0, 3.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0], speed_limit=3.0)
     with pytest.raises(InputError, match="7500 s"):

@@ -1,4 +1,4 @@
-"""Profile search: the same answers as separate searches, for every departure."""
+"""Profile search: the same results as separate searches, for every departure."""
 
 from dataclasses import replace
 
@@ -135,7 +135,7 @@ def test_waiting_at_anchorages_only(world, dredger):
         assert np.all(waits[~waiting[found.nodes]] == 0.0)
 
 
-def test_a_known_arrival_changes_nothing(world, dredger):
+def test_a_known_arrival_does_not_change_the_result(world, dredger):
     asked = ask(dredger, 1.0, start=0, goal=1)
     passages = prepare_profile_search(PreparedNetwork.prepare(*world), asked.pop("table"), **asked)
     depart = T0 + 4.0 * 3600.0
@@ -181,7 +181,7 @@ def test_penalties_count_as_in_separate_searches():
     assert found.arrive == pytest.approx(one.arrive, abs=1e-9)
 
 
-def test_a_way_no_tide_opens_is_known_before_searching():
+def test_a_route_closed_at_every_tide_is_refused_before_the_search():
     network = make_network([0.0, 0.0], [0.0, 0.1], [(0, 1)], depth=5.0)
     fields = make_fields(network, T0 + 600.0 * np.arange(20), WATER_LEVEL=0.5)
     asked = {"start": 0, "goal": 1, "setting": 0, "top_speed": 4.0}

@@ -1,4 +1,4 @@
-"""Extremes of tables bound every value they give."""
+"""Extremes of tables bound all their values."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A bar that is dry until it opens: arrive, wait, go on (truth: max(s1/V, To) + (L - s1)/V)."""
+"""A bar that is dry until To: arrive, wait, continue (exact: max(s1/V, To) + (L - s1)/V)."""
 
 import numpy as np
 import pytest
@@ -75,7 +75,7 @@ def test_a_window_at_high_water_shorter_than_the_step_of_the_data_is_found():
     assert result.path_depart[15] + 250.0 == pytest.approx(opens, abs=1.0)
 
 
-def test_without_waiting_the_bar_closes_the_way():
+def test_without_waiting_the_bar_blocks_the_route():
     times = np.arange(0.0, 10 * HOUR, HOUR)
     network, fields = bar(np.interp(times, [4 * HOUR, 5 * HOUR], [CLOSED, OPEN]), times)
     result = sail(network, fields, wait=False)
@@ -85,7 +85,7 @@ def test_without_waiting_the_bar_closes_the_way():
     assert np.isfinite(result.node_arrival).sum() == 16
 
 
-def test_a_bar_that_never_opens_is_refused_whatever_the_time():
+def test_a_bar_that_never_opens_is_refused_at_any_departure():
     times = np.arange(0.0, 10 * HOUR, HOUR)
     network, fields = bar(np.full(len(times), CLOSED), times, everywhere=True)
     result = sail(network, fields)

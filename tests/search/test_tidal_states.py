@@ -95,7 +95,7 @@ def test_states_of_one_node_with_three_times_afloat():
 
 
 @pytest.mark.parametrize("required", [-np.inf, 1.0])
-def test_nothing_is_split_that_never_falls_dry(required):
+def test_nodes_that_never_fall_dry_have_one_state(required):
     network, fields = gully(1)
     arrays = network_arrays(network)
     assert tidal_states(arrays, sea_arrays(fields), required, (0, 6)) is arrays

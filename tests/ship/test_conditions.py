@@ -29,7 +29,7 @@ def test_shapes_that_do_not_broadcast_are_refused():
         Conditions(wind_speed=[1.0, 2.0], wind_angle=[0.0, 1.0, 2.0])
 
 
-def test_words_are_no_conditions():
+def test_text_is_refused_as_a_condition():
     with pytest.raises(InputError, match="wind_speed"):
         Conditions(wind_speed="strong")
 

@@ -41,7 +41,7 @@ def test_energy_is_counted_in_megawatt_hours():
     assert energy.waiting == pytest.approx(BULKER.hotel_power / 3.6e9)
 
 
-def test_cubed_speed_stands_for_fuel_without_a_price():
+def test_cubed_speed_replaces_fuel_without_a_price():
     costs = {"per_week": 604_800.0, "per_second_per_cubed_speed": 0.008}
     hull, speeds = {"draught_m": 5.0}, [6.0, 8.0]
     ship = Ship.from_dict({"name": "x", "hull": hull, "speeds_kn": speeds, "costs": costs})

@@ -17,7 +17,7 @@ def terms_of(sections: dict) -> FuelTerms:
     return fuel_terms(ShipFile.of({"name": "ship", **sections}))
 
 
-def test_what_a_kilogram_stands_for():
+def test_factors_of_a_kilogram_of_fuel():
     terms = Ship.load("handysize-bulker").fuel_terms
     assert terms.per_kg("fuel", True) == terms.per_kg("fuel", False) == 1.0
     assert terms.per_kg("cost", False) == pytest.approx(0.3)
@@ -39,7 +39,7 @@ def test_another_fuel_inside_burns_by_the_same_heat():
     assert dearer.price_inside == pytest.approx(1.6)  # the ratio is kept
 
 
-def test_prices_are_given_and_kept():
+def test_given_prices_are_used():
     terms = Ship.load("handysize-bulker").fuel_terms
     dearer = terms.with_prices(600.0)
     assert dearer.per_kg("cost", False) == pytest.approx(0.6)
@@ -67,7 +67,7 @@ def test_unknown_prices_stay_unknown():
 
 
 @pytest.mark.parametrize("bad", [-1.0, math.nan, math.inf, "much"])
-def test_prices_that_make_no_sense_are_refused(bad):
+def test_invalid_prices_are_refused(bad):
     terms = Ship.load("handysize-bulker").fuel_terms
     for name in ("usd_per_t", "eca_price_factor", "time_usd_per_day"):
         with pytest.raises(InputError, match="price") as caught:
@@ -94,7 +94,7 @@ def test_one_currency():
         terms_of(euros).with_prices(time_usd_per_day=100.0)
 
 
-def test_the_price_of_speed_stands_for_fuel_only_where_fuel_has_no_price():
+def test_the_price_of_speed_is_used_only_where_fuel_has_no_price():
     costs = {"per_week": 604800.0, "per_second_per_cubed_speed": 0.008, "currency": "EUR"}
     terms = terms_of({"costs": costs})
     assert terms.by_speed and terms.cubed_speed_price == 0.008

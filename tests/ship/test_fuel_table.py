@@ -80,7 +80,7 @@ def test_a_ship_that_weather_stops_burns_no_more_than_ordered():
     assert float(ship.fuel_rate(storm, 0)) == pytest.approx(4125 * 166.9 / 3.6e6, rel=1e-6)
 
 
-def test_a_held_speed_burns_what_weather_asks_for():
+def test_the_fuel_of_an_ordered_speed_depends_on_the_weather():
     ship = _held()
     table = ship.tabulate_fuel()
     c = _draws(1500, 11)
@@ -258,7 +258,7 @@ def test_a_table_of_power_has_the_hotel_load_in_it():
     assert (true.max(axis=0) > 1.3 * true.min(axis=0)).all()
 
 
-def test_power_that_is_ordered_or_known_is_a_constant_besides_the_hotel_load():
+def test_ordered_or_known_power_is_constant_plus_the_hotel_load():
     engine = {**DATA["engine"], "hotel_load_kw": 200}
     ordered = Ship.from_dict({**DATA, "powers_kw": [3600, 7650], "engine": engine})
     known = Ship.from_dict(

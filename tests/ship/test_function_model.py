@@ -1,4 +1,4 @@
-"""Ships from a user's function: what it reads decides between a table and a field."""
+"""Ships from a user's function: a table or a field, by the variables it reads."""
 
 import math
 

@@ -61,7 +61,7 @@ def test_impossible_draughts_are_refused(draught):
         Ship.simple(speed_kn=8.0, draught_m=draught)
 
 
-def test_kwon_slows_the_ship_and_keeps_its_fuel():
+def test_kwon_reduces_the_speed_at_constant_fuel_rate():
     ship = Ship.simple(
         15.2, 9.5, breadth_m=23.4, fuel_t_per_day=39.0, speed_loss="kwon_2008", **BULKER
     )

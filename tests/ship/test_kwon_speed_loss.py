@@ -29,7 +29,7 @@ def _loss(wind, angle, block=0.8, volume=27150.0, **more):
 
 
 @given(angles, blocks, volumes, loadings)
-def test_no_wind_costs_nothing(angle, block, volume, loading):
+def test_no_wind_gives_no_speed_loss(angle, block, volume, loading):
     assert _loss(0.0, angle, block, volume, loading=loading) == 0.0
 
 
@@ -85,7 +85,7 @@ def test_arrays_of_displacement_answer_as_numbers_do(wind, angle):
     assert found == pytest.approx(expected, abs=1e-9)
 
 
-def test_a_hurricane_on_the_beam_costs_nothing_only_as_printed():
+def test_a_hurricane_on_the_beam_has_no_loss_only_as_printed():
     printed = {"hold": False, "classes": True}
     assert _loss(40.0, np.pi / 2, volume=3e5, **printed) == 0.0
     assert _loss(40.0, np.pi / 2, volume=3e5) > 0.05

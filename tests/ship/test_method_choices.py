@@ -100,7 +100,7 @@ def test_the_power_at_an_attained_speed_is_that_of_the_calm_speed_behind_it():
     assert sheet["conditions"][0]["brake_power_kw"] == pytest.approx(7650, rel=1e-3)
 
 
-def test_kwon_beside_wind_or_waves_would_count_the_weather_twice():
+def test_kwon_with_wind_or_wave_resistance_is_refused():
     models = {**POWERED["models"], "waves": "stawave_1"}
     with pytest.raises(InputError, match=r"together with models\.waves.*twice"):
         Ship.from_dict({**POWERED, "models": models})

@@ -73,12 +73,12 @@ def test_two_of_three_draughts_give_the_third(given, ends):
         ({}, {"engine": {"power_kw": 5000, "least_load": 0.9, "largest_load": 0.5}}, "least load"),
     ],
 )
-def test_what_contradicts_itself_is_refused(hull, sections, words):
+def test_contradictory_particulars_are_refused(hull, sections, words):
     with pytest.raises(InputError, match=words):
         _ship(hull, **sections)
 
 
-def test_the_prismatic_coefficient_stands_for_midship_or_block():
+def test_the_prismatic_coefficient_replaces_midship_or_block():
     estimates = _estimates(_ship({"prismatic_coefficient": 0.75}))
     assert estimates["midship_coefficient"] == (pytest.approx(0.96), "C_B over C_P")
     estimates = _estimates(
@@ -91,7 +91,7 @@ def test_the_prismatic_coefficient_stands_for_midship_or_block():
     assert _drag(_ship({"prismatic_coefficient": 0.75})) == pytest.approx(_drag(_ship(same)))
 
 
-def test_who_names_the_bulbs_section_has_its_height():
+def test_the_height_of_a_bulb_is_estimated_from_its_area():
     estimates = _estimates(_ship({"bulb_area_m2": 12.0}))
     assert estimates["bulb_centre_height_m"] == (pytest.approx(2.8), "Rakke (2016)")
     assert _estimates(_ship())["bulb_area_m2"] == (0.0, "taken as no bulb")
@@ -145,7 +145,7 @@ def test_a_weight_belongs_to_the_draught_of_the_loading():
     assert hull.values["block_coefficient"] == pytest.approx(9000 / 1.025 / (120 * 18 * 6))
 
 
-def test_a_hull_that_cannot_be_emptied_says_so_when_it_is_asked():
+def test_a_hull_without_resistance_when_empty_is_refused_on_use():
     light = {"draught_full_m": 7.0, "draught_empty_m": 2.0}
     ship = _ship({"block_coefficient": 0.6, "midship_coefficient": 0.75}, loading=light)
     with pytest.raises(InputError, match="no resistance for this hull at load factor 0"):
@@ -188,7 +188,7 @@ def file_order(key):
     return order.index(key)
 
 
-def test_wake_alone_is_no_hull_efficiency_and_is_said():
+def test_wake_without_thrust_deduction_is_reported():
     assert performance_sheet(_ship(propulsion={"wake_fraction": 0.3}))["assumed"] == [
         "propulsion.wake_fraction is not used"
     ]
@@ -200,7 +200,7 @@ def test_wake_alone_is_no_hull_efficiency_and_is_said():
     assert power == pytest.approx(_drag(ship) * 6.0 / eta)
 
 
-def test_loads_beyond_an_engines_curve_are_said():
+def test_loads_beyond_an_engines_curve_are_reported():
     curve = {"sfoc_load": [0.5, 1.0], "sfoc_curve_g_per_kwh": [190, 180]}
     ship = _ship(engine={"power_kw": 20000, **curve})
     notes = performance_sheet(ship, speeds_kn=[12])["conditions"][0]["warnings"]
@@ -271,7 +271,7 @@ def test_a_field_of_speeds_has_no_sheet():
         performance_sheet(Ship.from_speed_function(lambda at: 5.0 + 0.0 * at.lat))
 
 
-def test_a_ballast_line_that_is_not_there_is_told():
+def test_a_missing_ballast_line_is_reported():
     twin = {"propellers": 2, "propeller_diameter_m": 4.0}
     ballast = {"condition": "ballast"}
     estimates = _estimates(_ship({}, "hollenbach_1998_mean", propulsion=twin, loading=ballast))
@@ -280,7 +280,7 @@ def test_a_ballast_line_that_is_not_there_is_told():
     assert "loading.condition" not in _estimates(single)
 
 
-def test_a_load_factor_that_changes_nothing_is_said():
+def test_a_load_factor_without_effect_is_reported():
     empty = performance_sheet(_ship().with_load_factor(0.5))["assumed"]
     assert empty == [
         "load factor 0.5 has no effect: the ship file does not describe the empty ship"
@@ -290,7 +290,7 @@ def test_a_load_factor_that_changes_nothing_is_said():
     assert performance_sheet(ship.with_load_factor(0.5))["assumed"] == []
 
 
-def test_an_emptier_hull_keeps_its_trim_and_loses_wetted_surface():
+def test_a_lighter_hull_has_the_same_trim_and_less_wetted_surface():
     hull = {"draught_fore_m": 6.0, "draught_aft_m": 8.0, "wetted_surface_m2": 3000.0}
     hull |= {"length_waterline_m": 122.0}
     loading = {"draught_full_m": 7.0, "draught_empty_m": 5.0, "displacement_empty_m3": 7200.0}

@@ -120,7 +120,7 @@ def test_the_largest_value_bounds_the_sum():
     assert _affine_table().largest(0) == pytest.approx(6.0)
 
 
-def test_refinement_meets_the_tolerance_and_says_so():
+def test_refinement_meets_the_tolerance_and_reports_the_error():
     def bend(where):
         return (10.0 - 0.02 * where["wave_height"] ** 2)[..., None]
 
@@ -179,7 +179,7 @@ def test_a_table_of_one_setting_gives_the_same_numbers():
 
 
 def _crossing():
-    """Wind asks for 2 x (1 + v), waves for 3 Hs^2; three settings can spare (4, 8, 12) - 4 v."""
+    """Wind requires 2 x (1 + v), waves 3 Hs^2; three settings have a reserve (4, 8, 12) - 4 v."""
     wind, angle, speeds = np.linspace(0, 10, 3), np.linspace(0, np.pi, 3), np.linspace(0, 4, 5)
     blown = 2.0 * wind[:, None] * (1.0 + speeds)
     rough = np.full((3, 5), 3.0)

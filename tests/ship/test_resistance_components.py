@@ -1,4 +1,4 @@
-"""What a ship file's choices make of the methods: which numbers reach them."""
+"""Inputs of the methods that a ship file chooses."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def _estimates(ship):
 
 
 @pytest.mark.parametrize(("bulb", "variant"), [(0.0, "twin_no_bulb"), (8.0, "twin_bulb")])
-def test_the_wetted_surface_of_twin_screws_knows_the_bulb(bulb, variant):
+def test_the_wetted_surface_of_twin_screws_includes_the_bulb(bulb, variant):
     screws = {"propellers": 2, "propeller_diameter_m": 4.0}
     hull = {"bulb_area_m2": bulb, "length_over_surface_m": 123.0}
     ship = _ship({"calm_water": "hollenbach_1998_mean"}, hull, propulsion=screws)
@@ -63,7 +63,7 @@ def test_lackenby_takes_the_power_of_the_deep_water_speed():
     assert float(shallow) == pytest.approx(float(ship.power_at_speed(Conditions(CALM), deep)))
 
 
-def test_particulars_for_the_wind_are_estimated_and_told():
+def test_particulars_for_the_wind_are_estimated_and_reported():
     hull = {"length_overall_m": 126.0, "frontal_area_m2": 300.0, "lateral_area_m2": 1500.0}
     hull |= {"superstructure_lateral_area_m2": 300.0, "superstructure_height_m": 20.0}
     ship = _ship({"wind": "fujiwara_2006"}, hull)
@@ -96,7 +96,7 @@ def test_waves_given_by_where_they_go_come_from_the_opposite_direction():
     assert float(Conditions.from_sea(north, heading=0.0).wave_angle) == pytest.approx(np.pi)
 
 
-def test_a_ship_that_weather_stops_takes_no_more_than_its_order():
+def test_a_stopped_ship_uses_no_more_than_its_ordered_power():
     engine = {"power_kw": 1200, "type": "medium_speed_diesel"}
     hull = {"frontal_area_m2": 900.0, "lateral_area_m2": 2500.0}
     screw = {"propeller_diameter_m": 4.5, "propeller_pitch_ratio": 0.8}

@@ -191,7 +191,7 @@ def test_unknown_weather_gives_unknown_speed_and_power(ship):
         assert np.isnan(ship.fuel_rate(c)), name
 
 
-def test_following_seas_push_only_when_asked():
+def test_following_seas_push_only_if_requested():
     behind = Conditions(**{**CALM, "wave_height": 5.0, "wave_angle": 2.1})
     assert float(_ship({"waves": "snnm"}).resistance(behind, 3.0)["waves"]) == 0.0
     pushed = _ship({"waves": "snnm", "wave_push": True})
@@ -318,7 +318,7 @@ def test_shallow_water_by_friction_alone_and_by_printed_bands():
         _ship({"shallow_water": "lackenby"})
 
 
-def test_the_type_of_ship_for_the_wind_follows_from_the_hull_and_is_told():
+def test_the_ship_type_for_wind_follows_from_the_hull_and_is_reported():
     def estimated(**hull):
         ship = _ship({"wind_type": None}, hull=hull)
         return {e.key: e.value for e in ship.estimated}["models.wind_type"]

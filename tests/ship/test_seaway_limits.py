@@ -230,7 +230,7 @@ def test_a_ship_with_limits_is_another_ship():
 
 
 @pytest.mark.slow
-def test_a_plan_keeps_out_of_danger_and_the_referee_agrees():
+def test_a_plan_avoids_dangerous_waves_as_evaluated_by_the_referee():
     """24 kn straight before a following sea would surf-ride: the plan turns off by 45 degrees."""
     from thalweg import Chart, Voyage, plan
 

@@ -1,4 +1,4 @@
-"""Ship files: what is read, what is refused and with which words."""
+"""Ship files: contents that are read, and messages for refused contents."""
 
 import numpy as np
 import pytest
@@ -198,7 +198,7 @@ def test_seurens_bulker_has_table_5_3():
     assert ship.data["fuel"]["eca_price_factor"] == 1.5593
 
 
-def test_seurens_bulker_slows_in_wind_and_keeps_its_fuel():
+def test_seurens_bulker_slows_in_wind_at_constant_fuel_rate():
     ship = Ship.load("handysize-bulker")
     wind = Conditions(wind_speed=0.836 * 5**1.5, wind_angle=0.0)  # Beaufort 5, head
     fn = 15.2 * KNOT / np.sqrt(9.80665 * 152.9)
@@ -287,7 +287,7 @@ def test_squat_and_speed_loss_go_together(tmp_path):
         (("squat: van_halem_2019", "engine: seuren"), "not a key"),
     ],
 )
-def test_squat_that_cannot_be_is_refused(tmp_path, change, words):
+def test_invalid_squat_is_refused(tmp_path, change, words):
     with pytest.raises(InputError, match=words):
         Ship.load(_write(tmp_path, DREDGER.replace(*change)))
 
@@ -346,7 +346,7 @@ def test_a_ship_without_draught_hears_all_that_its_method_needs():
     ]
 
 
-def test_what_kwon_needs_and_was_estimated_is_told():
+def test_estimated_inputs_of_kwon_are_reported():
     hull = {"length_waterline_m": 160, "breadth_m": 25, "draught_m": 9, "displacement_m3": 26000}
     ship = Ship.from_dict(
         {"name": "x", "hull": hull, "speeds_kn": [9], "models": {"speed_loss": "kwon_2008"}}

@@ -1,4 +1,4 @@
-"""The SNNM formula summed up beforehand for one hull, against its sums over the spectrum."""
+"""Precomputed sums of the SNNM formula for one hull, against its sums over the spectrum."""
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def test_fast_ships_overtake_short_waves():
         assert found == pytest.approx(true, rel=1e-4, abs=1e-4 * np.abs(true).max())
 
 
-def test_unknown_stays_unknown_and_a_flat_sea_asks_for_nothing():
+def test_unknown_stays_unknown_and_a_flat_sea_has_no_resistance():
     table = TABLES["bulker"]
     for at in ((np.nan, 1.0, 8.0, 0.0), (7.0, np.nan, 8.0, 0.0), (7.0, 1.0, np.nan, 0.0)):
         assert np.isnan(table(*at))

@@ -1,4 +1,4 @@
-"""Tables kept on disk: the same numbers, rebuilt when damaged, and no need of a disk."""
+"""The cache of tables: equal numbers, rebuilt when damaged, optional."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def _table(calls=None):
     return table, np.array([5.0, 9.0])
 
 
-def test_a_kept_table_is_read_back_without_building(folder):
+def test_a_cached_table_is_read_without_building(folder):
     calls = []
     first = cached_table({"ship": 1}, lambda: _table(calls))
     again = cached_table({"ship": 1}, lambda: _table(calls))
@@ -37,7 +37,7 @@ def test_a_kept_table_is_read_back_without_building(folder):
 
 
 @pytest.mark.parametrize("kind", ["curve", "crossing"])
-def test_what_follows_the_sum_is_kept_too(folder, kind):
+def test_the_output_curve_is_cached(folder, kind):
     grid = np.linspace(0.0, 10.0, 5)
     part = TablePart((3,), (grid,), np.ones((5, 2)), 6.0)
     ends = np.array([5.0, 9.0])
@@ -63,7 +63,7 @@ def test_another_ship_has_its_own_table(folder):
 
 
 @pytest.mark.parametrize("damage", [b"", b"PK\x03\x04 broken", b"\x93NUMPY"])
-def test_a_damaged_file_is_built_anew(folder, damage):
+def test_a_damaged_file_is_rebuilt(folder, damage):
     calls = []
     cached_table({"ship": 1}, lambda: _table(calls))
     (path,) = folder.glob("*.npz")

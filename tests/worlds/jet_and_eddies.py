@@ -1,6 +1,6 @@
 """Networks and frozen fields of the jet and eddies: a plane of 500 x 500 nm, shrunk 100 times.
 
-Lengths and times are shrunk by the same factor, so speeds stay and fuel is divided by it; laid on
+Lengths and times are shrunk by the same factor, so speeds stay and fuel is divided by it; on
 the equator the case is planar to about 1e-5. The sea itself and the ship are those of
 `tests.evolution.jet`.
 """

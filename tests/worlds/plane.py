@@ -1,4 +1,4 @@
-"""Planar worlds laid on the equator, where the ellipsoid is flat to about 1e-5."""
+"""Planar worlds on the equator, where the ellipsoid is flat to about 1e-5."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Known ways on the real coastline, and geodesics in open water."""
+"""Known paths on the real coastline, and geodesics in open water."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_floro_to_santander(coast):
     ],
     ids=["Atlantic", "antimeridian", "Arctic", "South Pacific"],
 )
-def test_in_open_water_the_shortest_way_is_the_geodesic(start, goal):
+def test_in_open_water_the_shortest_path_is_the_geodesic(start, goal):
     chart = Chart.open_water(-80.0, 84.0, -180.0, 180.0)
     found = shortest(start, goal, chart)
     geodesic = float(geodesy.distance(*start, *goal)) / 1852.0
@@ -53,7 +53,7 @@ def test_in_open_water_the_shortest_way_is_the_geodesic(start, goal):
 
 
 def test_the_same_world_shifted_in_longitude_gives_the_same_route():
-    """Nothing depends on where the antimeridian lies."""
+    """Results are independent of the antimeridian."""
     lengths = []
     for shift in (0.0, 90.0, 178.0):
         square = [[-0.3, 9.7], [0.3, 9.7], [0.3, 10.3], [-0.3, 10.3], [-0.3, 9.7]]

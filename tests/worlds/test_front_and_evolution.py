@@ -1,4 +1,4 @@
-"""Lower front, front and evolution in the jet and eddies: none lies above the next."""
+"""Lower front, front and evolution in the jet and eddies: each is on or below the next."""
 
 from functools import cache
 from itertools import pairwise

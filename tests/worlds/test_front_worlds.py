@@ -1,10 +1,10 @@
-"""The front in a meandering jet with moving eddies and a tide, beside values found elsewhere.
+"""The front in a meandering jet with moving eddies and a tide, against independent values.
 
 Those were computed with the current of an edge frozen at the departure (5-point quadrature), in
-which the optimiser exploits that the sea stands still: sailed again through the moving sea its
-ways take 0.20 % (32 directions) and 0.47 % (80 directions) longer than the network said. Here
+which the optimiser uses that the sea is frozen: sailed again through the moving sea its
+paths take 0.20 % (32 directions) and 0.47 % (80 directions) longer than the network said. Here
 edges are sailed through the moving sea in the first place, so the fuel is a little higher at a
-given time, and the ways sailed again are as good as the network says.
+given time, and the paths sailed again agree with the network.
 """
 
 from functools import cache

@@ -1,4 +1,4 @@
-"""Van Halem's three cases on the pruned mesh of a model: the certified optima come out."""
+"""Van Halem's three cases on the pruned mesh of a model, against certified optima."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def on_mesh(run: Sea, **options):
     return plan(voyage, ship=simple_ship(4.0), sea=run, chart=WATER, network="mesh", **options)
 
 
-def test_a_mesh_that_is_asked_for_is_thinned_by_the_flow_to_the_resolution():
+def test_a_requested_mesh_is_thinned_by_the_flow_to_the_resolution():
     """Case 1: 2 m/s and much curl leave more nodes than a weak even flow."""
     run = model(rotating(2.0, False), 0.025)
     whole = on_mesh(run).provenance["networks"][0]["nodes"]

@@ -38,7 +38,7 @@ def test_tidal_bar(opens_h, seconds):
 
 
 def test_halem_waits_for_the_bank():
-    """Van Halem (2019) case 3: waiting 31903.29 s beats the detour of 33367.90 s."""
+    """Van Halem (2019) case 3: waiting takes 31903.29 s, the detour 33367.90 s."""
     inside = lambda x, y: (np.abs(x) < 0.4) & (np.abs(y) < 0.1)  # noqa: E731
     found = HALEM.plan(
         (0.0, -0.4),
@@ -63,7 +63,7 @@ def test_halem_detours_when_the_bank_opens_late():
         spacing=0.025,
     )
     corners = 2 * math.hypot(0.4, 0.3) + 0.2  # to a corner, along the bank, from the other corner
-    # The rim of this bank is a step: rasters blur it, and the referee keeps the route clear of it.
+    # The rim of this bank is a step: rasters smooth it, and the referee rejects routes across it.
     assert_optimal(found, corners * HALEM.unit / 4.0, within=6e-3)
     assert found.best.waiting_h == 0.0
 

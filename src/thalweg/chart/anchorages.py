@@ -1,6 +1,6 @@
 """Where a ship may wait: in anchorages if the chart has any, never in no-waiting zones.
 
-On a chart without such zones a ship may wait everywhere.
+On a chart without such zones a ship may wait at any place.
 """
 
 from __future__ import annotations

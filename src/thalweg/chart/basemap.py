@@ -1,4 +1,4 @@
-"""Coastlines and land as shapely geometries, cut to a box, for maps."""
+"""Coastlines and land as shapely geometries, clipped to a box, for maps."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _clipped_polygons(rings: Rings, chosen: Any, shift: float, box: Any) -> list
 
 @cache
 def _dataset_cut_meridians() -> Any:
-    """Return the meridians at which GSHHG cuts land, as lines."""
+    """Return the meridians at which GSHHG splits land, as lines."""
     import shapely
 
     cuts = [[(x, -90.0), (x, 90.0)] for x in (-540.0, -180.0, 180.0, 540.0)]
@@ -83,8 +83,8 @@ def coastline_lines(
 ) -> list[tuple[FloatArray, FloatArray]]:
     """Return the outlines of land in a box [deg] as (lat, lon) arrays [deg].
 
-    The sides of the box are left out, and so are the meridians (0 and 180) at which GSHHG cuts
-    land.
+    The sides of the box are left out, and so are the meridians (0 and 180) at which GSHHG
+    splits land.
     """
     import shapely
 

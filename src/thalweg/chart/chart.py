@@ -206,7 +206,7 @@ class Chart:
         return replace(self, zones=self.zones.joined(Zones(eca=zones)))
 
     def within(self, south: float, north: float, west: float, east: float) -> Chart:
-        """Return this chart cut to a box that no leg may leave [deg]."""
+        """Return this chart clipped to a box that no leg may leave [deg]."""
         box = BoundingBox.checked(float(south), float(north), float(west), float(east))
         return replace(self, area=box)
 

@@ -1,9 +1,9 @@
 """Polygons from GeoJSON (RFC 7946), with messages that name the faulty polygon.
 
 An edge over more than 180 degrees of longitude has two readings: as written, by Greenwich, or the
-short one across the antimeridian, where RFC 7946 asks for the area to be cut. The reading by which
-the ring encloses an area is used. If both do, the ring is taken to cross the antimeridian when its
-direction is the one that RFC 7946 asks for then (outlines counter-clockwise, holes clockwise), and
+short one across the antimeridian, where RFC 7946 requires the area to be split. The reading by
+which the ring encloses an area is used. If both do, the ring crosses the antimeridian when its
+direction is the one that RFC 7946 requires then (outlines counter-clockwise, holes clockwise), and
 is refused otherwise. Edges of 360 degrees belong to bands around the globe.
 """
 
@@ -29,6 +29,18 @@ def read_features(
     source: GeoJsonSource, what: str
 ) -> list[tuple[Mapping[str, Any], Mapping[str, Any]]]:
     """Return (geometry, properties) of every feature of a file or of plain data.
+
+    Parameters
+    ----------
+    source : path, str or mapping
+        A file, or GeoJSON as plain data.
+    what : str
+        Name of the source, for messages.
+
+    Returns
+    -------
+    list of (mapping, mapping)
+        Geometry and properties.
 
     Raises
     ------
@@ -83,6 +95,20 @@ def _features(
 
 def parse_polygons(geometry: Mapping[str, Any], what: str, *, repair: bool = True) -> list[Any]:
     """Return the shapely polygons of a geometry, repaired (with a warning) where invalid.
+
+    Parameters
+    ----------
+    geometry : mapping
+        A GeoJSON geometry.
+    what : str
+        Name of the geometry, for messages.
+    repair : bool, optional
+        Repair invalid outlines, with a warning.
+
+    Returns
+    -------
+    list of shapely polygons
+        Coordinates (lon, lat) [deg].
 
     Raises
     ------
@@ -150,7 +176,7 @@ def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:
     if len(ring) < 4 or not np.isfinite(ring).all():
         raise InputError(
             f"A ring of the {what} is not a list of at least four (longitude, latitude) positions.",
-            "",
+            "A ring is a list of positions; the last is equal to the first.",
             "Give closed rings of numbers in degrees, longitude first.",
         )
     for column, name, most in ((1, "latitude", 90.0), (0, "longitude", 540.0)):
@@ -214,7 +240,7 @@ def _ambiguous_edge_error(ring: NDArray[np.float64], edge: int, what: str) -> In
         f"{ring[edge + 1, 0]:g}: {wide:g} degrees as written, or {360.0 - wide:g} across "
         "the antimeridian.",
         f"Across the antimeridian longitudes run on ({west + 360.0:g} for {west:g}), or the area "
-        "is cut in two at 180, as RFC 7946 asks; for the long edge, add points in between.",
+        "is split at 180, as RFC 7946 requires; for the long edge, add points in between.",
         "Write the ring in one of these forms.",
         value=[float(west), float(east)],
     )

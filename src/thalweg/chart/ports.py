@@ -125,7 +125,7 @@ class Ports:
         listed = "; ".join(str(by_name[name]) for name in near)
         return InputError(
             f"There is no port named {text!r} in the index of ports.",
-            f"Nearest in spelling: {listed}." if near else "",
+            f"Nearest in spelling: {listed}." if near else "No port has a similar name.",
             "Give one of these, its UN/LOCODE, or a position such as 52.0N 4.1E.",
             value=text,
             near=[by_name[name].name for name in near],

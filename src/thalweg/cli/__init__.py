@@ -1,1 +1,1 @@
-"""The room cli."""
+"""The command line: commands, options, tables on the terminal and exit codes."""

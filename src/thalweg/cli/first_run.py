@@ -22,7 +22,7 @@ def announce_compilation(*, search: bool = False) -> None:
     if search or not any(COMPILED_FOLDER.rglob("*.nbc")):
         print(
             "First run: compiling the numerical kernels for this computer (1 to 3 minutes). "
-            f"They are kept in {COMPILED_FOLDER.parent}; later runs start at once.",
+            f"They are stored in {COMPILED_FOLDER.parent}; later runs start at once.",
             file=sys.stderr,
             flush=True,
         )

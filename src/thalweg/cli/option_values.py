@@ -43,7 +43,7 @@ def parse_pairs(option: str, texts: Sequence[str], form: str, example: str) -> d
             raise InputError(
                 f"{option} {name}{equals}{value} is not understood.",
                 f"It is written {form}, such as {example}.",
-                "Write it that way.",
+                "Give the value in this form.",
             )
     return {name: value for name, _, value in pairs}
 
@@ -136,7 +136,7 @@ def _parse_fill_policy(text: str) -> tuple[str, float | str]:
         raise InputError(
             f"--fill {text} is not understood.",
             f"It is one of {', '.join(f'{n}=0' for n in FILLABLE)}, waves=wind.",
-            "Write it that way.",
+            "Give the value in this form.",
         ) from None
 
 
@@ -180,7 +180,7 @@ def position_from_text(text: str) -> Position:
         raise InputError(
             f"{text!r} is not a position.",
             "A position is LAT,LON in degrees, such as 52.1,3.97 or 52.1N 3.97E.",
-            "Write it that way.",
+            "Give the value in this form.",
             value=text,
         )
     return float(position[0]), float(position[1])

@@ -163,7 +163,7 @@ def run(arguments: argparse.Namespace) -> int:
             progress=option_values.progress_callback(arguments),
         )
     except KeyboardInterrupt:
-        print("stopped before a plan was found: nothing is kept", file=sys.stderr)
+        print("stopped before a plan was found: there is no result", file=sys.stderr)
         return INTERRUPTED
     files = found.write(arguments.out) if arguments.out else []
     if arguments.json:

@@ -102,7 +102,7 @@ def parse_speeds(text: str) -> list[float]:
         f"--speed {text!r} is not understood.",
         "Speeds are in knots: a list 10,12,14, a range 8:16, or a range with a step 8:16:0.5; "
         f"at most {_MAX_SPEEDS}.",
-        "Write them that way.",
+        "Give the values in this form.",
         value=text,
     )
     try:

@@ -154,7 +154,7 @@ def print_route(route: Route) -> None:
     for violation in route.violations:
         console.print(f"[red]violation:[/red] {escape(str(violation))}", soft_wrap=True)
     if route.feasible:
-        console.print("Every limit is kept.")
+        console.print("No limit is violated.")
     print_notes(console, route.assumptions)
 
 

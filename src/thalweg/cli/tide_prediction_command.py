@@ -89,7 +89,7 @@ def _times(arguments: argparse.Namespace) -> FloatArray:
     rows = int((end - start) / step + 1e-6) + 1
     if rows > MAX_ROWS:
         raise InputError(
-            f"{rows} times are asked for.",
+            f"{rows} times were requested.",
             f"A prediction has at most {MAX_ROWS}.",
             "Use a longer step.",
         )

@@ -46,7 +46,7 @@ def add_command(commands: Any) -> None:
     parser.add_argument(
         "--ship-back",
         metavar="NAME|FILE",
-        help="ship for the way back (empty); default: that of --ship",
+        help="ship for the return trip (empty); default: that of --ship",
     )
     parser.add_argument(
         "--north-sea",
@@ -183,7 +183,7 @@ def _ends(arguments: argparse.Namespace) -> tuple[Position, Position]:
 
 
 def _ships(arguments: argparse.Namespace) -> tuple[Ship, Ship]:
-    """Return the ship for the way there (full) and back (empty)."""
+    """Return the ship for the outward trip (full) and for the return trip (empty)."""
     from thalweg.ship import Ship
 
     there = option_values.open_ship(arguments)

@@ -1,4 +1,4 @@
-"""The folder on disk where things that take long to make are kept between runs."""
+"""The folder on disk that caches results of long computations between runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The errors a user can meet, each saying what was asked, what is possible and what to do."""
+"""Errors for users: each states what was requested, what is possible and what to do."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ import numpy as np
 
 
 class ThalwegWarning(UserWarning):
-    """Something a user should know that does not stop the work."""
+    """A message for the user that does not stop the computation."""
 
 
 class ThalwegError(Exception):
-    """Base of every error raised for a user's sake.
+    """Base class of the errors for users.
 
     Parameters
     ----------
     asked : str
-        What was asked and why it cannot be done.
+        What was requested and why it is not possible.
     possible : str, optional
         What is possible instead.
     remedy : str, optional
         What the user can do.
     **details
-        Machine-readable facts (field, value, file, ...), kept in ``details``.
+        Machine-readable facts (field, value, file, ...), stored in ``details``.
     """
 
     def __init__(self, asked: str, possible: str = "", remedy: str = "", **details: Any) -> None:
@@ -35,7 +35,7 @@ class ThalwegError(Exception):
         super().__init__(" ".join(part for part in (asked, possible, remedy) if part))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the error as plain data for a JSON answer; numbers that are none are None."""
+        """Return the error as plain data for a JSON answer; NaN and infinity become None."""
         return {
             "error": type(self).__name__,
             "asked": self.asked,
@@ -50,7 +50,7 @@ class InputError(ThalwegError, ValueError):
 
 
 class CoverageError(ThalwegError):
-    """The data do not cover what was asked."""
+    """The data do not cover the request."""
 
 
 class OutsideAreaError(CoverageError):
@@ -70,7 +70,7 @@ class DatasetError(ThalwegError):
 
 
 class ModelRangeError(ThalwegError):
-    """A model was asked for values outside the range it is valid for."""
+    """A model was evaluated outside its range of validity."""
 
 
 class NoRouteError(ThalwegError):
@@ -102,14 +102,44 @@ class NoRouteError(ThalwegError):
 
 
 def close_matches(word: str, known: Iterable[str], count: int = 3) -> list[str]:
-    """Return the known words that look most like ``word``, best first, ignoring case."""
+    """Return the known words that look most like ``word``, best first, ignoring case.
+
+    Parameters
+    ----------
+    word : str
+        The unknown word.
+    known : iterable of str
+        Words to compare with.
+    count : int, optional
+        Largest number of results.
+
+    Returns
+    -------
+    list of str
+        Best match first.
+    """
     by_lower = {name.casefold(): name for name in known}
     found = difflib.get_close_matches(word.casefold(), list(by_lower), n=count, cutoff=0.55)
     return [by_lower[name] for name in found]
 
 
 def unknown_name_error(kind: str, word: str, known: Iterable[str]) -> InputError:
-    """Build the error for a name that is not among the known ones, with near matches."""
+    """Build the error for a name that is not among the known ones, with near matches.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the name, for the message, such as ``"method"``.
+    word : str
+        The unknown name.
+    known : iterable of str
+        All known names.
+
+    Returns
+    -------
+    InputError
+        With the known names that are nearest in spelling.
+    """
     names = sorted(known)
     near = close_matches(word, names)
     listed = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")

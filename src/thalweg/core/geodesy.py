@@ -1,4 +1,4 @@
-"""Geodesy on the WGS 84 ellipsoid; positions are (lat, lon) in degrees everywhere.
+"""Geodesy on the WGS 84 ellipsoid; all positions are (lat, lon) in degrees.
 
 Exact lengths and courses come from `pyproj.Geod` (Karney 2013, "Algorithms for geodesics",
 J. Geodesy 87, 43-55). Its order (lon, lat) is used in this module only.
@@ -49,6 +49,16 @@ def unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
     .. math:: (\cos\phi \cos\lambda, \cos\phi \sin\lambda, \sin\phi)
 
     Angles between them are great-circle distances on a sphere, within 0.6 % of the geodesic.
+
+    Parameters
+    ----------
+    lat, lon : array_like (...)
+        Positions [deg].
+
+    Returns
+    -------
+    ndarray (..., 3)
+        Unit vectors [-].
     """
     phi, lam = np.radians(np.asarray(lat, float)), np.radians(np.asarray(lon, float))
     return np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=-1)
@@ -83,6 +93,16 @@ def geocentric_unit_vectors(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     Exact at the poles and at longitudes of 180 and -180 degrees: positions that are the same have
     the same vector. `geocentric_positions` is the inverse.
+
+    Parameters
+    ----------
+    lat, lon : ndarray (...)
+        Positions on the ellipsoid [deg].
+
+    Returns
+    -------
+    ndarray (..., 3)
+        Unit vectors [-].
     """
     phi, lam = np.radians(lat), np.radians(lon)
     c, s = np.cos(phi), AXIS_RATIO_SQUARED * np.sin(phi)
@@ -104,6 +124,16 @@ def rough_lengths(lat: FloatArray, lon: FloatArray) -> FloatArray:
 
     By the haversine formula on a sphere of mean radius; within 0.6 % of the geodesic and much
     faster than `distance`.
+
+    Parameters
+    ----------
+    lat, lon : ndarray (..., n)
+        Vertices of the lines [deg].
+
+    Returns
+    -------
+    ndarray (..., n - 1)
+        Lengths [m].
     """
     phi = np.radians(np.asarray(lat, float))
     half = 0.5 * np.radians(np.diff(lon, axis=-1))
@@ -140,14 +170,40 @@ def inverse(
 
 
 def distance(lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike) -> FloatArray:
-    """Return the length of the geodesic [m] between positions [deg]."""
+    """Return the length of the geodesic [m] between positions [deg].
+
+    Parameters
+    ----------
+    lat1, lon1, lat2, lon2 : array_like
+        Ends of the geodesics [deg]; they broadcast together.
+
+    Returns
+    -------
+    ndarray
+        Lengths [m], of the broadcast shape.
+    """
     return inverse(lat1, lon1, lat2, lon2)[0]
 
 
 def direct(
     lat: ArrayLike, lon: ArrayLike, course: ArrayLike, distance: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the positions [deg] reached after a distance [m] on an initial course [rad]."""
+    """Return the positions [deg] reached after a distance [m] on an initial course [rad].
+
+    Parameters
+    ----------
+    lat, lon : array_like
+        Positions [deg].
+    course : array_like
+        Initial course, clockwise from north [rad].
+    distance : array_like
+        Length of the geodesic [m].
+
+    Returns
+    -------
+    lat, lon : ndarray
+        Positions [deg].
+    """
     a, b, c, d = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat, lon, course, distance)))
     lon2, lat2, _ = WGS84.fwd(b.copy(), a.copy(), np.degrees(c), d.copy())
     return np.asarray(lat2), wrap_longitude(lon2)
@@ -156,7 +212,20 @@ def direct(
 def positions_along(
     lat1: float, lon1: float, lat2: float, lon2: float, fractions: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return positions [deg] at fractions of the geodesic from the first to the second."""
+    """Return positions [deg] at fractions of the geodesic from the first to the second.
+
+    Parameters
+    ----------
+    lat1, lon1, lat2, lon2 : float
+        Ends of the geodesic [deg].
+    fractions : array_like
+        Fractions of its length from the first end, 0 to 1.
+
+    Returns
+    -------
+    lat, lon : ndarray
+        Positions [deg], in the shape of the fractions.
+    """
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     return direct(lat1, lon1, course, np.asarray(fractions, float) * length)
 
@@ -164,7 +233,14 @@ def positions_along(
 def densify(
     lat: ArrayLike, lon: ArrayLike, spacing: float
 ) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
-    """Cut the geodesics of a polyline into equal pieces no longer than ``spacing`` [m].
+    """Split the geodesics of a polyline into equal pieces no longer than ``spacing`` [m].
+
+    Parameters
+    ----------
+    lat, lon : array_like (n,)
+        Vertices of the polyline [deg].
+    spacing : float
+        Greatest length of a piece [m], above 0.
 
     Returns
     -------
@@ -187,11 +263,26 @@ def densify(
 
 
 def check_position(lat: float, lon: float, what: str = "position") -> Position:
-    """Return (lat, lon) with longitude wrapped, or raise `InputError` for impossible values."""
+    """Return (lat, lon) with longitude wrapped, or raise `InputError` for impossible values.
+
+    Parameters
+    ----------
+    lat, lon : float
+        Position [deg].
+    what : str, optional
+        Name of the position, for messages.
+
+    Returns
+    -------
+    lat, lon : float
+        Position with the longitude in -180 to 180 [deg].
+    """
     lat, lon = float(lat), float(lon)
     if not (math.isfinite(lat) and math.isfinite(lon)):
         raise InputError(
-            f"The {what} ({lat}, {lon}) is not a number.", "", "Give lat, lon in degrees."
+            f"The {what} ({lat}, {lon}) is not a pair of numbers.",
+            "Latitudes from -90 to 90 and longitudes from -180 to 360 are possible.",
+            "Give lat, lon in degrees.",
         )
     if abs(lat) > 90.0:
         hint = "Latitude comes first: are latitude and longitude swapped?" if abs(lon) <= 90 else ""
@@ -245,5 +336,16 @@ def parse_position(text: str) -> Position | None:
 
 
 def format_position(lat: float, lon: float) -> str:
-    """Return a position as text, such as ``52.0000N 4.1000E``."""
+    """Return a position as text, such as ``52.0000N 4.1000E``.
+
+    Parameters
+    ----------
+    lat, lon : float
+        Position [deg].
+
+    Returns
+    -------
+    str
+        Latitude and longitude to four decimals, with hemispheres.
+    """
     return f"{abs(lat):.4f}{'N' if lat >= 0 else 'S'} {abs(lon):.4f}{'E' if lon >= 0 else 'W'}"

@@ -42,7 +42,7 @@ class InterruptGuard:
             signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def begin(self) -> None:
-        """Note Ctrl-C from now on: there is a result to keep."""
+        """Handle Ctrl-C from now on as a request to stop: there is a result to return."""
         main = threading.current_thread() is threading.main_thread()
         usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
         if self._installed or not (main and usual):

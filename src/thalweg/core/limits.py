@@ -1,4 +1,4 @@
-"""`Limits`: depth, wave height and wind speed that a ship must keep, and how they are tightened."""
+"""`Limits`: the least depth, greatest wave height and greatest wind speed of a ship."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from thalweg.core.types import FloatArray
 
 @dataclass(frozen=True)
 class Tightening:
-    """One step of a tightening schedule: how much stricter than asked a search keeps the limits.
+    """One step of a tightening schedule: how much stricter than requested the limits are.
 
     Attributes
     ----------

@@ -179,7 +179,7 @@ class LegPrices:
     time : float
         Price of a second, under way or waiting [1/s].
     waiting : float
-        Price of what is consumed in a second of waiting [1/s], besides ``time``.
+        Price of the consumption in a second of waiting [1/s], in addition to ``time``.
     dues : float
         Price of a unit of canal dues; 0 where dues and price zones do not count.
     consumption : {"fuel", "energy", "cubed_speed"}

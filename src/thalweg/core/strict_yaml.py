@@ -44,7 +44,20 @@ class StrictDumper(yaml.SafeDumper):
 
 
 def dump_yaml(data: Any, *, sort_keys: bool = True) -> str:
-    """Return plain data as YAML text that `parse_yaml` can read."""
+    """Return plain data as YAML text that `parse_yaml` can read.
+
+    Parameters
+    ----------
+    data : object
+        Mappings, sequences, text, numbers, booleans and None.
+    sort_keys : bool, optional
+        Sort the keys of mappings.
+
+    Returns
+    -------
+    str
+        YAML text.
+    """
     text: str = yaml.dump(data, Dumper=StrictDumper, sort_keys=sort_keys)
     return text
 

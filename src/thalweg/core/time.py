@@ -36,7 +36,11 @@ def parse_time(value: TimeLike) -> float:
     """
     if isinstance(value, np.datetime64):
         if np.isnat(value):
-            raise InputError("A time is missing (NaT).", "", "Give one such as 2026-01-01T00:00Z.")
+            raise InputError(
+                "A time is missing (NaT).",
+                "A time is a date and a time of day in UTC.",
+                "Give one such as 2026-01-01T00:00Z.",
+            )
         return float(value.astype("datetime64[ns]").astype(np.int64)) / 1e9
     if isinstance(value, datetime):
         moment = value
@@ -53,7 +57,11 @@ def parse_time(value: TimeLike) -> float:
     else:
         seconds = float(value)
         if not math.isfinite(seconds):
-            raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
+            raise InputError(
+                f"A time must be finite, not {value!r}.",
+                "Numbers are seconds since 1970-01-01T00:00Z.",
+                "Give a finite number or an ISO 8601 time.",
+            )
         if not _EARLIEST <= seconds <= _LATEST:
             raise InputError(
                 f"{value!r} seconds since 1970 is not a calendar time.",

@@ -1,4 +1,4 @@
-"""The common interface of NSGA-II, SPEA2 and M-PAES: they ask for scores and are given them."""
+"""The common interface of NSGA-II, SPEA2 and M-PAES: they request and accept scores."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class EvolutionaryAlgorithm(ABC):
     evaluator : Evaluator
         Its chart and settings are used; it is not called.
     first : Population
-        The first population; its best tracks are kept if it is larger than ``size``.
+        The first population; only its best tracks are used if it is larger than ``size``.
     size : int
         Tracks in the population (and the archive), at least 4.
     variation_settings : VariationSettings
@@ -62,7 +62,7 @@ class EvolutionaryAlgorithm(ABC):
         return self._asked
 
     def tell(self, scores: FloatArray) -> None:
-        """Take the scores (N, 3) of the tracks asked for; see `Evaluator.score`."""
+        """Accept the scores (N, 3) of the requested tracks; see `Evaluator.score`."""
         self._asked = self._steps.send(scores)
 
     @abstractmethod

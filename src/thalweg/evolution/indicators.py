@@ -104,8 +104,8 @@ def hypervolume_ratio_of_three(
 def c_metric(first: ArrayLike, second: ArrayLike) -> float:
     """Return the share of the second front that the first covers.
 
-    A point is covered by one that is nowhere worse (Zitzler & Thiele 1999); the share is of the
-    second front's points.
+    A point is covered by one that is not worse in any objective (Zitzler & Thiele 1999); the share
+    is of the second front's points.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Populations to begin with: seeds at their own, the fastest and the thriftiest speed, mutants."""
+"""Initial populations: seeds at their own, the highest and the most economical speed; mutants."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def as_genomes(evaluator: Evaluator, seeds: Sequence[Genome | Track]) -> list[Ge
     """Return seeds as genomes."""
     if not len(seeds):
         raise InputError(
-            "There is no track to begin with.",
+            "There is no initial track.",
             "Evolution starts from at least one, such as the shortest on a network.",
             "Give one for each alternative route.",
         )
@@ -46,6 +46,24 @@ def initial_population(
     """Return seeds, each also at the fastest and at the thriftiest setting, and their mutants.
 
     At least ``size`` tracks (more if there are more seeds). Rows have space for further points.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+        Gives the number of settings and the most economical one.
+    seeds : sequence of Genome or Track
+        Tracks that the population contains.
+    size : int
+        Least number of tracks.
+    variation_settings : VariationSettings
+        Settings of the mutations.
+    rng : numpy.random.Generator
+        Source of random numbers.
+
+    Returns
+    -------
+    Population
+        Seeds first, then mutants.
     """
     genomes = as_genomes(evaluator, seeds)
     top, thrifty = evaluator.settings - 1, least_cost_setting(evaluator)

@@ -12,20 +12,20 @@ from thalweg.evolution.indicators import crowding_distance
 from thalweg.evolution.ranking import dominates, select_survivors
 from thalweg.route.evaluators.population import concatenated_populations
 
-MAX_FAILURES = 5  #: moves in a row to somewhere worse that end a climb
-MAX_MOVES = 20  #: of a climb
-RECOMBINATION_TRIALS = 20  #: pairs tried for a child that may join
-_ARCHIVE_PER_CLIMBER = 5  # the climbers are so many times fewer than the archive
+MAX_FAILURES = 5  #: successive dominated mutants that end a local search
+MAX_MOVES = 20  #: largest number of mutants of a local search
+RECOMBINATION_TRIALS = 20  #: pairs of parents tried until the population is filled
+_ARCHIVE_PER_CLIMBER = 5  # size of the archive over the number of hill climbers
 
 
 @dataclass
 class HillClimber:
-    """One local search: what it has to compare with, and how it fares.
+    """One local search: its current score, its archive and its counts.
 
     Attributes
     ----------
     score : float64 array (3,)
-        Where it stands.
+        Score of its current track.
     near : float64 array (h, 3)
         Its own archive H.
     fails, moves : int
@@ -38,11 +38,11 @@ class HillClimber:
 
     @property
     def is_active(self) -> bool:
-        """Whether the climb continues."""
+        """Whether the local search continues."""
         return self.failures < MAX_FAILURES and self.moves < MAX_MOVES
 
     def judge(self, tried: FloatArray, most: int) -> bool:
-        """Judge a mutant, and stand there if it is accepted."""
+        """Return whether a mutant is accepted, and make it the current track if so."""
         self.moves += 1
         if dominates(self.score, tried):
             self.failures += 1
@@ -57,7 +57,7 @@ class HillClimber:
         return self._test(tried, most)
 
     def _test(self, tried: FloatArray, most: int) -> bool:
-        """Remember a mutant that nothing known dominates; stand there if it is less crowded."""
+        """Archive a non-dominated mutant; make it the current track if it is less crowded."""
         both = np.vstack([_scores_without(self.near, self.score[None]), self.score, tried])
         crowding = crowding_distance(both[:, :2])
         self._remember(tried, most)
@@ -74,22 +74,22 @@ class HillClimber:
 
 
 def _scores_without(scores: FloatArray, some: FloatArray) -> FloatArray:
-    """Return scores (n, 3) without those among some: a twin would make a point look crowded."""
+    """Return scores (n, 3) without those among others; duplicates distort crowding distances."""
     return scores[(scores[:, None] != some[None]).any(axis=2).all(axis=1)]
 
 
 @dataclass
 class _ClimbingRound:
-    """The climbers of one round, and which track of the population each stands on."""
+    """The hill climbers of one round, and the current track of each in the population."""
 
     climbers: list[HillClimber]
     track: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
 
 class Mpaes(EvolutionaryAlgorithm):
-    """A global archive and climbers, which all move together so that they are scored at once.
+    """A global archive and hill climbers; the mutants of all climbers are scored in one batch.
 
-    The population is the archive G followed by the tracks that climbers stand on.
+    The population is the archive G followed by the current tracks of the climbers.
     """
 
     def _search(self) -> ScoreRequests:
@@ -105,11 +105,11 @@ class Mpaes(EvolutionaryAlgorithm):
             base = yield from self._recombine(count)
 
     def _spread_over_archive(self, count: int) -> IntArray:
-        """Return climbers spread over the archive."""
+        """Return tracks spread evenly over the archive, one for each climber."""
         return np.unique(np.linspace(0, len(self.scores) - 1, count).round().astype(np.int64))
 
     def _climb_from(self, base: IntArray) -> ScoreRequests:
-        """Let every climber mutate until it fails too often."""
+        """Run the local search of every climber until it fails too often."""
         archive = self.scores[self._archive()]
         climbers = []
         for index in base:
@@ -134,7 +134,7 @@ class Mpaes(EvolutionaryAlgorithm):
             self._update(climb.track, offspring, scores)
 
     def _update(self, track: IntArray, offspring, scores: FloatArray) -> None:  # type: ignore[no-untyped-def]
-        """Update the archive with all offspring; keep it and the positions of the climbers."""
+        """Update the archive with all offspring, and the current tracks of the climbers."""
         both = np.concatenate([self.scores, scores])
         kept = select_survivors(both, self.size)[0]
         chosen = np.concatenate([kept, np.setdiff1d(track, kept)])
@@ -144,12 +144,12 @@ class Mpaes(EvolutionaryAlgorithm):
         track[:] = where[track]
 
     def _archive(self) -> IntArray:
-        """Return what nothing dominates, at most ``size`` tracks."""
+        """Return the non-dominated tracks, at most ``size``."""
         chosen, rank, _ = select_survivors(self.scores, self.size)
         return chosen[rank[chosen] == 0]
 
     def _recombine(self, count: int):  # type: ignore[no-untyped-def]
-        """Return the climbers of the next round: children that may join, else winners of G."""
+        """Return the climbers of the next round: accepted children, or tournament winners of G."""
         sure = replace(self.variation_settings, crossover=1.0, mutation=0.0)
         base: list[int] = []
         for _ in range(RECOMBINATION_TRIALS):
@@ -182,7 +182,7 @@ class Mpaes(EvolutionaryAlgorithm):
         return where[track]
 
     def _can_join(self, child: FloatArray, archive: FloatArray, parents: IntArray) -> bool:
-        """Return whether a child is fit: not dominated by G, and better or less crowded."""
+        """Return whether a child is accepted: not dominated by G, and better or less crowded."""
         if dominates(archive, child[None]).any():
             return False
         if dominates(child[None], archive).any():

@@ -104,7 +104,18 @@ def normalised(scores: FloatArray) -> FloatArray:
 
 
 def dominates(a: FloatArray, b: FloatArray) -> BoolArray:
-    """Return where scores dominate others, feasibility first; the last axis holds the scores."""
+    """Return where scores dominate others, feasibility first; the last axis holds the scores.
+
+    Parameters
+    ----------
+    a, b : ndarray (..., 3)
+        Scores; they broadcast together.
+
+    Returns
+    -------
+    bool array (...)
+        Where ``a`` dominates ``b``.
+    """
     less = a[..., VIOLATION] < b[..., VIOLATION]
     same = a[..., VIOLATION] == b[..., VIOLATION]
     no_worse = (a[..., TIME] <= b[..., TIME]) & (a[..., COST] <= b[..., COST])

@@ -11,7 +11,7 @@ from thalweg.kernels.evolution.dominance import truncate
 
 
 class Spea2(EvolutionaryAlgorithm):
-    """An archive of what nothing dominates, filled with the fittest or thinned where crowded.
+    """An archive of non-dominated tracks, filled with the fittest others or thinned where crowded.
 
     Distances are between objectives as shares of their ranges.
     """

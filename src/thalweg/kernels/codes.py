@@ -1,6 +1,6 @@
-"""Status codes of the kernels: why a piece of water could not be sailed.
+"""Status codes of the kernels: the reasons why a leg or an edge cannot be sailed.
 
-Kernels never raise; they return one of these. `REASONS` is the one table from code to words.
+Kernels never raise; they return one of these. `REASONS` is the only table from code to text.
 """
 
 from typing import Final

@@ -34,7 +34,7 @@ class Pairs:
     course: Float32Array
 
     def where(self, keep: BoolArray) -> Pairs:
-        """Return the pairs that are kept."""
+        """Return the selected pairs."""
         if keep.all():
             return self
         return Pairs(self.first[keep], self.second[keep], self.length[keep], self.course[keep])
@@ -50,6 +50,22 @@ def allowed_legs(
     """Return which legs between positions the chart allows, and counts of refusals by reason.
 
     Canals are not legs at sea; the builders add them as separate edges.
+
+    Parameters
+    ----------
+    chart : Chart
+        Land, zones and depth.
+    lat, lon : ndarray (N,)
+        Positions [deg].
+    first, second : int array (P,)
+        Indices of the ends of each leg.
+
+    Returns
+    -------
+    allowed : bool array (P,)
+        Legs that the chart allows.
+    counts : dict
+        Number of refused legs by reason.
     """
     chart = chart.without_canals("all")
     free = np.empty(len(first), bool)
@@ -73,7 +89,15 @@ def count_reasons(status: NDArray[np.integer]) -> RejectionCounts:
 
 
 def add_counts(total: RejectionCounts, more: RejectionCounts) -> None:
-    """Add counts by reason to a running total."""
+    """Add counts by reason to a running total.
+
+    Parameters
+    ----------
+    total : dict
+        Counts by reason; changed in place.
+    more : dict
+        Counts to add.
+    """
     for reason, count in more.items():
         total[reason] = total.get(reason, 0) + count
 
@@ -81,7 +105,20 @@ def add_counts(total: RejectionCounts, more: RejectionCounts) -> None:
 def measured_pairs(
     lat: FloatArray, lon: FloatArray, first: Int32Array, second: Int32Array
 ) -> Pairs:
-    """Return pairs with geodesic lengths and mid-edge courses."""
+    """Return pairs with geodesic lengths and mid-edge courses.
+
+    Parameters
+    ----------
+    lat, lon : ndarray (N,)
+        Positions of the nodes [deg].
+    first, second : int32 array (P,)
+        Nodes of each pair.
+
+    Returns
+    -------
+    Pairs
+        With lengths [m] and courses at the middle [rad].
+    """
     length, course = np.empty(len(first)), np.empty(len(first), np.float32)
     graph_building.fill_lengths_and_courses(lat, lon, first, second, length, course)
     for e in np.flatnonzero(np.isnan(length)):  # nearly antipodal: only ever single edges

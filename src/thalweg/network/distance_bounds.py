@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 from thalweg.core.geodesy import EQUATORIAL_RADIUS, FLATTENING
 from thalweg.core.types import FloatArray
 
-# The least radius of curvature of the meridian: a sphere of this radius with the same latitudes and
-# longitudes is nowhere longer than the ellipsoid, so its distances are lower bounds that obey the
-# triangle inequality together with geodesic edge lengths.
+# The least radius of curvature of the meridian. Distances on a sphere of this radius, at the same
+# latitudes and longitudes, are lower bounds of those on the ellipsoid, and obey the triangle
+# inequality together with geodesic edge lengths.
 BOUND_RADIUS: Final = EQUATORIAL_RADIUS * (1.0 - FLATTENING) ** 2
 
 ROUNDING_FACTOR: Final = 1.0 - 1e-9  # keeps bounds below the exact value in floating point
@@ -23,6 +23,18 @@ def distance_bounds(lat: ArrayLike, lon: ArrayLike, to_lat: float, to_lon: float
 
     Great-circle distances on the sphere of the ellipsoid's least radius of curvature: at most
     0.6 % below the mean-radius sphere, never above the geodesic, and consistent for A*.
+
+    Parameters
+    ----------
+    lat, lon : array_like
+        Positions [deg].
+    to_lat, to_lon : float
+        The other position [deg].
+
+    Returns
+    -------
+    ndarray
+        Lower bounds [m].
     """
     phi, to_phi = np.radians(np.asarray(lat, float)), np.radians(to_lat)
     half_dlon = 0.5 * np.radians(np.asarray(lon, float) - to_lon)

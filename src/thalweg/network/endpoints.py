@@ -45,6 +45,18 @@ _MAX_LINKS = 400
 def check_endpoints(chart: Chart, start: Position, goal: Position) -> tuple[Position, Position]:
     """Return start and goal after checks: valid, different, on navigable water.
 
+    Parameters
+    ----------
+    chart : Chart
+        Tests that both positions are on navigable water.
+    start, goal : (lat, lon)
+        Positions [deg].
+
+    Returns
+    -------
+    start, goal : tuple of float
+        Positions [deg] with longitudes in -180 to 180.
+
     Raises
     ------
     InputError

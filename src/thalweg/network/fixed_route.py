@@ -71,7 +71,7 @@ def fixed_route(chart: Chart, way: Sequence[Position], *, spacing: float) -> Net
 
 
 def _cuts_at_borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[FloatArray]:
-    """Return the fractions at which legs are cut: 0, and where they cross a border once."""
+    """Return the fractions at which legs are split: 0, and where they cross a border once."""
     share = np.asarray(chart.zones.eca_fraction(lat[:-1], lon[:-1], lat[1:], lon[1:]))
     inside = np.asarray(chart.zones.in_eca(lat[:-1], lon[:-1]))
     crosses = (share > 1e-6) & (share < 1.0 - 1e-6)
@@ -82,7 +82,7 @@ def _cuts_at_borders(chart: Chart, lat: FloatArray, lon: FloatArray) -> list[Flo
 def _split_legs(
     lat: FloatArray, lon: FloatArray, cuts: Sequence[FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return a line with its legs cut at fractions of their length; 0 is their beginning."""
+    """Return a line with its legs split at fractions of their length; 0 is their start."""
     leg = np.repeat(np.arange(len(cuts)), [len(c) for c in cuts])
     share = np.concatenate(cuts)
     length, course, _ = geodesy.inverse(lat[leg], lon[leg], lat[leg + 1], lon[leg + 1])

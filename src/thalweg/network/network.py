@@ -33,7 +33,7 @@ class NetworkMeta:
     start, goal : int
         Nodes at the exact start and goal, or -1. Via points follow the goal in order.
     notes : tuple of str
-        Where the network differs from the request, in words.
+        Text for each difference between the network and the request.
     """
 
     kind: str

@@ -27,7 +27,7 @@ class ShipTables:
     speed : PerformanceTable
         Speed through water [m/s].
     setting : int
-        Speed setting of a search at one setting; the highest where the voyage asks for none.
+        Speed setting of a search at one setting; by default the highest.
     """
 
     speed: PerformanceTable

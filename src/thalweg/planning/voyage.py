@@ -159,7 +159,11 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         try:
             text = path.read_text(encoding="utf-8")
         except UnicodeDecodeError:
-            raise InputError(f"{path} is not text in UTF-8.", "", "Save it as UTF-8.") from None
+            raise InputError(
+                f"{path} is not text in UTF-8.",
+                "Voyage files are YAML or JSON text in UTF-8.",
+                "Save it as UTF-8.",
+            ) from None
         data = parse_yaml(text, "voyage", path.name)
         if not isinstance(data, dict):
             raise InputError(

@@ -147,7 +147,7 @@ class VoyagePrices:
 
 @dataclass(frozen=True, kw_only=True)
 class SearchRequest:
-    """What is minimised, how it is searched, and what the ship keeps to.
+    """The objective, the method of the search, and the limits of the ship.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def _place(place: Any, what: str) -> Place:
         raise InputError(
             f"The {what} {place!r} is not a place.",
             'A place is (lat, lon) in degrees or text such as "52.0N 4.1E" or a port.',
-            "Write it that way.",
+            "Give the place in one of these forms.",
         ) from None
 
 

@@ -123,8 +123,8 @@ class Track:
         Parameters
         ----------
         keep : array_like of int
-            Ascending indices of the waypoints to keep, first and last included. A joined leg takes
-            the setting (and speed) of its first part; waits at dropped waypoints are dropped.
+            Ascending indices of the waypoints to keep, first and last included. A joined leg has
+            the setting (and speed) of its first part; waits at removed waypoints are removed.
         """
         index = np.asarray(keep, dtype=np.int64)
         return Track(
@@ -139,7 +139,7 @@ class Track:
     def part(self, first: int, last: int, depart: float) -> Track:
         """Return the track between two of its waypoints, departing [s] from the first of them.
 
-        The wait at the first is kept, that at the last is not.
+        The wait at the first waypoint remains, that at the last does not.
         """
         wait = np.append(self.wait[first:last], 0.0)
         lat, lon = self.lat[first : last + 1], self.lon[first : last + 1]

@@ -67,7 +67,20 @@ class Layer(Protocol):
 
 
 def nan_pairs(samples: Samples, pairs: Sequence[tuple[str, str]]) -> Samples:
-    """Make both components of a vector NaN where one of them is."""
+    """Make both components of a vector NaN where one of them is.
+
+    Parameters
+    ----------
+    samples : dict of str to ndarray
+        Values by canonical name; changed in place.
+    pairs : sequence of (str, str)
+        Names of the components of each vector.
+
+    Returns
+    -------
+    dict of str to ndarray
+        The samples.
+    """
     for east, north in pairs:
         if east in samples and north in samples:
             unknown = np.isnan(samples[east]) | np.isnan(samples[north])

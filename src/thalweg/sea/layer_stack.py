@@ -1,6 +1,6 @@
 """Several layers read as one: for each variable the first layer that knows a value wins.
 
-The layers of a `thalweg.sea.Sea` stand in order of priority. Both components of a vector come from
+The layers of a `thalweg.sea.Sea` are in order of priority. Both components of a vector come from
 the same layer. A value that no layer knows is NaN.
 """
 
@@ -28,7 +28,20 @@ def stack_variables(layers: Sequence[Layer]) -> frozenset[str]:
 
 
 def stack_provides(layers: Sequence[Layer], name: str) -> bool:
-    """Return whether the layers hold a variable, or the variables it is derived from."""
+    """Return whether the layers hold a variable, or the variables it is derived from.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers by priority.
+    name : str
+        Canonical variable name.
+
+    Returns
+    -------
+    bool
+        Whether the variable can be sampled.
+    """
     variables = stack_variables(layers)
     return all(n in variables for n in _sources(variables, name))
 
@@ -137,6 +150,18 @@ def stack_period(layers: Sequence[Layer], names: Sequence[str]) -> tuple[float, 
     """Return the first and last time [s since epoch] at which a layer knows any of the names.
 
     A layer that holds always makes them infinite; without a layer that holds a name both are NaN.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Layers by priority.
+    names : sequence of str
+        Canonical variable names.
+
+    Returns
+    -------
+    first, last : float
+        Times [s since 1970-01-01T00:00Z].
     """
     spans = [layer.period or (-np.inf, np.inf) for layer in _holders(layers, names)]
     if not spans:

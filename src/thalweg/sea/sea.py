@@ -182,7 +182,7 @@ class Sea:
             ``..._to_direction``, any ``sea_floor_depth_below_...`` and
             ``sea_surface_height_above_...``. The depth below the *moving* surface
             (``sea_floor_depth_below_sea_surface``) is converted to a depth below datum: the water
-            level is subtracted if it is given too. Other names are kept as plain variables.
+            level is subtracted if it is given too. Other names are stored as plain variables.
         time_step : float, optional
             Step [s] at which kernels receive the formulas (linear in between); 0 for fields that
             never change. By default ``min(600 s, window / 200)``, at most 2000 steps.
@@ -211,7 +211,7 @@ class Sea:
 
     @classmethod
     def calm(cls) -> Sea:
-        """Return a sea without wind, waves and currents, everywhere and at all times.
+        """Return a sea without wind, waves and currents at all places and times.
 
         Waves of height zero travel north with a placeholder peak period of 8 s, so that models
         that use direction and period can be evaluated. Water level and depth are unknown.

@@ -1,8 +1,8 @@
 """Canonical names of the variables of the sea (CF standard names), and their relations.
 
-Every horizontal vector is kept as two components (east, north) in the direction *towards* which it
-points, and the direction of waves as a unit vector towards which they travel. Speeds and directions
-in degrees are derived from these, so that a direction is never interpolated as a number.
+Every horizontal vector is stored as two components (east, north) in the direction *towards* which
+it points, and the direction of waves as a unit vector towards which they travel. Speeds and
+directions in degrees are derived from these, so that a direction is never interpolated as a number.
 """
 
 from __future__ import annotations

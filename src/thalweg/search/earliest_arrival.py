@@ -45,7 +45,7 @@ Method = Literal["astar", "dijkstra"]
 
 @dataclass(frozen=True)
 class ArrivalQuery:
-    """What `earliest_arrival` is asked on a network; meanings as there.
+    """A query of `earliest_arrival` on a network; the attributes have the same meaning there.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ def earliest_arrival(
 def solve_earliest_arrival(
     network: Network, given: SearchProblem, asked: ArrivalQuery, *, shortened: float = 1.0
 ) -> SearchResult:
-    """Do as `earliest_arrival`, for a problem already gathered.
+    """Find the earliest arrival for a prepared problem; see `earliest_arrival`.
 
     Parameters
     ----------
@@ -188,18 +188,24 @@ def check_query(n_nodes: int, asked: ArrivalQuery) -> None:
     start, goal = asked.start, asked.goal_node
     if not (0 <= start < n_nodes and -1 <= goal < n_nodes):
         raise InputError(
-            f"There is no way from node {start} to node {goal} to search for.",
+            f"A search from node {start} to node {goal} is not possible.",
             f"The network has nodes 0 to {n_nodes - 1}.",
-            "",
+            "Give nodes of this network.",
         )
     if not math.isfinite(asked.depart):
-        raise InputError(f"The departure {asked.depart} is not a time.", "", "Give a departure.")
+        raise InputError(
+            f"The departure {asked.depart} is not a time.",
+            "Departures are finite numbers of seconds since 1970-01-01T00:00Z.",
+            "Give a departure.",
+        )
     for kind, word, known in (
         ("objective", asked.objective, ("time", "distance")),
         ("method", asked.method, ("astar", "dijkstra")),
     ):
         if word not in known:
-            raise InputError(f"There is no {kind} {word!r}.", f"Known: {', '.join(known)}.", "")
+            raise InputError(
+                f"There is no {kind} {word!r}.", f"Known: {', '.join(known)}.", "Give one of these."
+            )
 
 
 def _result(

@@ -14,16 +14,16 @@ from thalweg.search.search_problem import ShipOnNetwork, make_search_problem
 
 @dataclass(frozen=True)
 class FifoReport:
-    """How far edges break order when no ship may wait.
+    """Violations of the FIFO property by edges when a ship may not wait.
 
     Attributes
     ----------
     worst : float
-        Most time gained by departing later [s]; 0 when order is kept.
+        Most time gained by departing later [s]; 0 if all edges are FIFO.
     edge : int
-        The edge where that is, -1 when order is kept.
+        The edge where that is; -1 if all edges are FIFO.
     share : float
-        Share of the edges that break order at all.
+        Share of the edges that violate the FIFO property.
     blocked : float
         Share of the departures at which an edge is blocked.
     """

@@ -1,6 +1,6 @@
 """Earliest arrival where a ship may wait at some nodes only.
 
-Where waiting is allowed everywhere the earliest label of a node is the best one. Where it is not,
+If waiting is allowed at all nodes, the earliest label of a node is the best one. Where it is not,
 an early ship may meet a closed bar with no place to wait, while one that left its anchorage later
 passes. The search therefore runs in rounds, each at a later departure. In each round the ship
 leaves from all nodes where it may wait, that it has reached, and where it is still afloat. It sails

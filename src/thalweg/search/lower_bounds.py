@@ -1,4 +1,4 @@
-"""Lower bounds: what no route on this water can beat, and what each bound rests on."""
+"""Lower bounds of the time and cost of all routes, with the assumptions of each bound."""
 
 from __future__ import annotations
 

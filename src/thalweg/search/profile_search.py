@@ -109,7 +109,7 @@ class Profile:
 
 @dataclass(frozen=True, eq=False)
 class ProfileSearch:
-    """All passages of one ship between two nodes, searched when they are asked for.
+    """All passages of one ship between two nodes, each searched when it is first needed.
 
     Attributes
     ----------
@@ -367,8 +367,8 @@ def prepare_profile_search(
     if not (0 <= start < count and 0 <= goal < count and start != goal):
         raise InputError(
             f"There are no passages from node {start} to node {goal}.",
-            f"The network has nodes 0 to {count - 1}, and the two differ.",
-            "",
+            f"The network has nodes 0 to {count - 1}; start and goal must differ.",
+            "Give two nodes of this network.",
         )
     ship = ship_arrays(table, setting, limits)
     fastest, from_field = top_speed_through_water(prepared.sea, top_speed)

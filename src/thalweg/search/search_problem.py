@@ -134,7 +134,19 @@ def network_arrays(network: Network) -> NetworkArrays:
 
 
 def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
-    """Return frozen fields as kernels see them, with tidal extremes if asked.
+    """Return frozen fields as the kernels read them, with tidal extremes if requested.
+
+    Parameters
+    ----------
+    fields : StationFields
+        The sea, frozen at the stations of a network.
+    tides : bool, optional
+        Add the extremes of the water level.
+
+    Returns
+    -------
+    SeaArrays
+        Arrays for the kernels.
 
     Raises
     ------
@@ -175,6 +187,20 @@ def sea_arrays(fields: StationFields, *, tides: bool = False) -> SeaArrays:
 def ship_arrays(table: PerformanceTable | TableArrays, setting: int, limits: Limits) -> ShipArrays:
     """Return a ship at one setting as kernels see it.
 
+    Parameters
+    ----------
+    table : PerformanceTable or TableArrays
+        Speed through water [m/s].
+    setting : int
+        Setting of the ship.
+    limits : Limits
+        Limits of depth, wave height and wind speed.
+
+    Returns
+    -------
+    ShipArrays
+        Arrays for the kernels.
+
     Raises
     ------
     InputError
@@ -190,7 +216,9 @@ def ship_arrays(table: PerformanceTable | TableArrays, setting: int, limits: Lim
     count = int(raw.n_settings)
     if not 0 <= setting < count:
         raise InputError(
-            f"The ship has no setting {setting}.", f"It has settings 0 to {count - 1}.", ""
+            f"The ship has no setting {setting}.",
+            f"It has settings 0 to {count - 1}.",
+            "Give one of these.",
         )
     kinds: dict[str, Any] = {
         name: contiguous_array(getattr(raw, name), kind) for name, kind in ARRAY_TYPES.items()
@@ -231,6 +259,28 @@ def make_search_problem(
     """Gather what a search reads.
 
     With ``ends`` (start and goal) the nodes between them that fall dry become several states.
+
+    Parameters
+    ----------
+    network : Network
+        The network.
+    fields : StationFields
+        The sea, frozen at its stations.
+    table : PerformanceTable or TableArrays
+        Speed through water [m/s].
+    setting : int
+        Setting of the ship.
+    limits : Limits
+        Limits of depth, wave height and wind speed.
+    top_speed : float
+        Upper bound of the speed through water [m/s].
+    ends : tuple of int, optional
+        Start and goal nodes.
+
+    Returns
+    -------
+    SearchProblem
+        Arrays for the kernels.
 
     Raises
     ------

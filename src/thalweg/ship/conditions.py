@@ -142,8 +142,8 @@ class Conditions(Mapping[str, FloatArray]):
         Parameters
         ----------
         sampled : mapping of str to array_like
-            Sea variables by CF standard name, SI, NaN where unknown; all are kept under their own
-            names too.
+            Sea variables by CF standard name, SI, NaN where unknown; all are also stored under
+            their own names.
         heading : array_like, optional
             Heading of the ship [rad from north]; without it there are no relative angles.
         **more : array_like
@@ -167,7 +167,9 @@ def _read_only(name: str, value: ArrayLike) -> FloatArray:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
         raise InputError(
-            f"The condition {name!r} is not made of numbers.", "", "Give a number or an array."
+            f"The condition {name!r} is not made of numbers.",
+            "Numbers and arrays of numbers in SI units are possible.",
+            "Give a number or an array.",
         ) from None
     view = array.view()
     view.flags.writeable = False

@@ -47,7 +47,7 @@ class FuelTerms:
         Price of time (hire) [currency/s].
     cubed_speed_price : float
         Price of a second of sailing per cubed ordered speed [currency/s per (m/s)^3], lambda_f of
-        van Halem (2019); NaN when unknown. It stands for fuel where fuel has no price.
+        van Halem (2019); NaN when unknown. It is used where fuel has no price.
     """
 
     outside: Fuel | None
@@ -171,7 +171,7 @@ class FuelTerms:
         ----------
         usd_per_t : float, optional
             Price of the fuel burnt outside [USD/t]; prices are in USD then. Without
-            ``eca_price_factor`` the price inside keeps its ratio to it.
+            ``eca_price_factor`` the price inside follows with the same ratio.
         eca_price_factor : float, optional
             Price inside over price outside.
         time_usd_per_day : float, optional
@@ -235,7 +235,7 @@ def fuel_terms(file: ShipFile) -> FuelTerms:
 
     Without ``eca_type`` the ship burns the same fuel inside; the price inside is
     ``eca_price_per_t``, or ``price_per_t`` times ``eca_price_factor``. The price of time is
-    ``costs.hire_per_day`` or ``costs.per_week``; ``costs.per_second_per_cubed_speed`` stands for
+    ``costs.hire_per_day`` or ``costs.per_week``; ``costs.per_second_per_cubed_speed`` replaces
     the price of fuel where there is none.
 
     Raises

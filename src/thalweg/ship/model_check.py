@@ -30,7 +30,7 @@ def check_ship_model(
     model : ShipModel or Ship
         What to check.
     tolerance : float
-        Asked of the table.
+        Required accuracy of the table.
     load_factor : float, optional
         Where to check; that of the ship, or full.
 

@@ -174,7 +174,20 @@ class PowerTableModel(Protocol):
 
 
 def setting_index(setting: ArrayLike, count: int) -> NDArray[np.intp]:
-    """Return settings as an index array, or raise `InputError` for one that does not exist."""
+    """Return settings as an index array, or raise `InputError` for one that does not exist.
+
+    Parameters
+    ----------
+    setting : array_like of int
+        Indices of settings.
+    count : int
+        Number of settings of the ship.
+
+    Returns
+    -------
+    int array
+        In the shape of ``setting``.
+    """
     index = np.asarray(setting)
     if not np.issubdtype(index.dtype, np.integer):
         raise InputError(

@@ -66,13 +66,13 @@ def performance_sheet(
     Raises
     ------
     InputError
-        When the ship cannot be asked for any of the speeds, or its speed is a field.
+        If the ship can sail none of the speeds, or its speed is a field.
     """
     if ship.speed_field is not None:
         raise InputError(
             f"The speed of {ship.name!r} is a field of place and time.",
             "A sheet is for ships whose speed depends on wind, waves, depth and setting only.",
-            "Ask for a ship with settings, or evaluate a route with this one.",
+            "Give a ship with settings, or evaluate a route with this one.",
             ship=ship.name,
         )
     conditions = _conditions(ship, weather or {})
@@ -80,7 +80,7 @@ def performance_sheet(
     speeds = np.array(speeds_kn, float) * KNOT if len(speeds_kn) else _default_speeds(ship)
     if speeds.size == 0 or not (np.isfinite(speeds) & (speeds > 0)).all():
         raise InputError(
-            "The speeds asked for are not all positive numbers.",
+            "The requested speeds are not all positive numbers.",
             "Speeds are in knots, such as 8:16 or 10,12,14.",
             "Correct them.",
         )

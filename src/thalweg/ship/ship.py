@@ -325,7 +325,8 @@ class Ship(ShipQueries):
         if not isinstance(self.model, AdjustableModel):
             raise InputError(
                 f"The speed of {self.name!r} follows from its model; no speed can be ordered.",
-                remedy="Leave the ordered speed out.",
+                "Only ships with an adjustable speed accept an ordered speed.",
+                "Leave the ordered speed out.",
             )
         return replace(self, model=self.model.with_speeds(wanted, self.loading.load_factor))
 

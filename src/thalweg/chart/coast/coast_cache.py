@@ -1,4 +1,4 @@
-"""Coast indexes kept on disk between runs: plain arrays in one file, never pickles."""
+"""The cache on disk of coast indexes: plain arrays in one file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from thalweg.core.cache_folder import cache_folder
 from thalweg.core.file_writing import replacing_file
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
-CACHE_FORMAT: Final = 2  # raise when the arrays or the way they are made change
+CACHE_FORMAT: Final = 2  # increase when the arrays or their construction change
 CELLS_BY_RESOLUTION: Final = {"c": 256, "l": 512, "i": 512, "h": 1024, "f": 1024}
 
 

@@ -18,7 +18,9 @@ from thalweg.kernels.geometry.cube_sphere import (
 )
 from thalweg.kernels.geometry.winding_numbers import carry_windings
 
-MAX_SEGMENT_LENGTH: Final = 10_000.0 / RADIUS  # edges are cut into pieces no longer than this [rad]
+MAX_SEGMENT_LENGTH: Final = (
+    10_000.0 / RADIUS
+)  # edges are split into pieces no longer than this [rad]
 MAX_BULGE: Final = 1.0 / RADIUS  # and bulging no more than this [rad]
 CELL_MARGIN: Final = 8.0e-5  # edges are listed in cells this near on the face (about 500 m)
 MAX_CLEARANCE: Final = 0.5  # largest distance that is stored [rad]
@@ -67,7 +69,7 @@ def empty_index() -> IndexArrays:
 def _shared_meridian_edges(
     lat0: FloatArray, lat1: FloatArray, lon0: FloatArray, lon1: FloatArray
 ) -> IntArray:
-    """Return the edges along meridians that two polygons share, where one land was cut in two."""
+    """Return the edges along meridians that two polygons share, where one land was split in two."""
     k = np.flatnonzero((lon0 == lon1) & (lat0 != lat1))
     low, high = np.minimum(lat0[k], lat1[k]), np.maximum(lat0[k], lat1[k])
     places = np.stack([low, high, lon0[k] % 360.0], -1)
@@ -78,7 +80,7 @@ def _shared_meridian_edges(
 
 
 def _cut_edges(rings: Rings) -> CoastSegments:
-    """Cut edges so that arcs stay near the straight line in longitude and latitude."""
+    """Split edges so that arcs stay near the straight line in longitude and latitude."""
     lat0, lat1 = rings.lat[:-1], rings.lat[1:]
     lon0, lon1 = rings.lon[:-1], rings.lon[1:]
     keep = (lat0 != lat1) | (lon0 != lon1)

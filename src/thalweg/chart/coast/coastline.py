@@ -1,4 +1,4 @@
-"""The coastline of a chart: its polygons of land, their index, and what is asked of them."""
+"""The coastline of a chart: polygons of land, their index, and tests of legs and positions."""
 
 from __future__ import annotations
 

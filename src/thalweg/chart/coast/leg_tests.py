@@ -18,7 +18,20 @@ EXACT_LEG_LENGTH: Final = 100_000.0  # legs this short are exact to 3 mm in the 
 def leg_status(
     coast: CoastArrays, lat1: ArrayLike, lon1: ArrayLike, lat2: ArrayLike, lon2: ArrayLike
 ) -> NDArray[np.int8]:
-    """Return the status code of each geodesic leg [deg]; arguments broadcast together."""
+    """Return the status code of each geodesic leg [deg]; arguments broadcast together.
+
+    Parameters
+    ----------
+    coast : CoastArrays
+        Index of a coast.
+    lat1, lon1, lat2, lon2 : array_like
+        Ends of the legs [deg].
+
+    Returns
+    -------
+    int8 array
+        Status codes (`thalweg.kernels.codes`) in the broadcast shape.
+    """
     ends = np.broadcast_arrays(*(np.asarray(x, float) for x in (lat1, lon1, lat2, lon2)))
     # writeable arrays all, so that the kernel is compiled for one kind only
     a, b, c, d = (np.require(x, float, ("C", "W")).ravel() for x in ends)
@@ -31,7 +44,7 @@ def leg_status(
 
 
 def _status_in_parts(coast: CoastArrays, lat1: float, lon1: float, lat2: float, lon2: float) -> int:
-    """Return the status of a leg cut at points of the exact geodesic."""
+    """Return the status of a leg split at points of the exact geodesic."""
     length, course, _ = inverse(lat1, lon1, lat2, lon2)
     count = int(np.ceil(length / EXACT_LEG_LENGTH)) + 1
     lat, lon = direct(lat1, lon1, course, np.linspace(0.0, float(length), count + 1))

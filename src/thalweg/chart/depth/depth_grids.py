@@ -108,7 +108,7 @@ class DepthGrid:
 
 @dataclass(frozen=True)
 class DepthFunctionLayer:
-    """Depth from a function of (lat, lon) [deg]; laid on a grid for legs."""
+    """Depth from a function of (lat, lon) [deg]; sampled on a grid for legs."""
 
     name: str
     function: DepthFunction

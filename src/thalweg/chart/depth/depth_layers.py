@@ -23,7 +23,7 @@ from thalweg.core.types import Float32Array, FloatArray
 from thalweg.kernels.geometry.depth_sampling import DepthArrays, depths_at_points, least_depths
 
 MAX_SOUNDINGS: Final = 60_000_000  # soundings held in memory at once
-MAX_LEG_EXTENT: Final = 5.0  # legs wider than this are cut first [deg]
+MAX_LEG_EXTENT: Final = 5.0  # legs wider than this are split first [deg]
 DEFAULT_SAMPLE_SPACING: Final = (
     1.0 / 600.0
 )  # legs are sampled this close on functions without a spacing [deg]
@@ -177,7 +177,7 @@ class DepthLayers:
         return least
 
     def _least_depth_of_long_leg(self, lat1: float, lon1: float, lat2: float, lon2: float) -> float:
-        """Return the least depth of a leg cut along its geodesic."""
+        """Return the least depth of a leg split along its geodesic."""
         wide = max(abs(lon2 - lon1), abs(lat2 - lat1))
         lat, lon = positions_along(
             lat1, lon1, lat2, lon2, np.linspace(0.0, 1.0, int(wide / 2.0) + 2)

@@ -27,7 +27,7 @@ from thalweg.core.time import TimeLike, parse_time
 
 DATA_DATE: Final = "2026-11-21"  #: date on which the dates of the areas were checked
 MAX_EDGE_LENGTH: Final = (
-    10_000.0  # edges said to be geodesics are cut into pieces no longer than this [m]
+    10_000.0  # edges that are geodesics are split into pieces no longer than this [m]
 )
 
 
@@ -40,16 +40,16 @@ class EmissionControlArea:
     name : str
         Short name, such as ``"north-sea"``.
     title : str
-        Its name in words.
+        Its full name.
     adopted, in_force, sulphur_from : str
         ISO dates: when it was adopted, when the amendment came into force, and from when its
-        limit on sulphur (and so its dearer fuel) counts.
+        limit on sulphur (and so the higher fuel price) applies.
     source : str
         The regulation or resolution.
     limits : {"points", "text", "unknown"}
         ``points``: the published list of points; ``text``: parallels, meridians and capes named
-        in the regulation; ``unknown``: none could be read, so this area can only be asked for
-        with an outline of one's own. Lines over land are never the regulation's.
+        in the regulation; ``unknown``: none are published, so this area can only be used
+        with an outline given by the user. Lines over land are not part of the regulation.
     note : str
         Sources of the limits, as text.
     """
@@ -71,8 +71,8 @@ class EmissionControlArea:
     def rings(self) -> Rings:
         """The outline [deg]; edges straight in longitude and latitude.
 
-        Where the regulation says geodesics they are cut into pieces of at most 10 km, at most
-        4 m beside the geodesic.
+        Geodesics of the regulation are split into pieces of at most 10 km, at most 4 m from the
+        geodesic.
 
         Raises
         ------
@@ -160,7 +160,7 @@ def _outline(name: str) -> Rings:
 def select_emission_control_areas(
     names: str | Iterable[str] | None = None, *, date: TimeLike | None = None
 ) -> list[EmissionControlArea]:
-    """Return the areas asked for by name, or all whose sulphur limit counts on a date.
+    """Return the areas with given names, or all whose sulphur limit applies on a date.
 
     Parameters
     ----------

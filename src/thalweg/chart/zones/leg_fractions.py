@@ -16,8 +16,8 @@ from thalweg.kernels.geometry.coast_index import CoastArrays, outlines_touched, 
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, RADIUS, IndexArrays
 from thalweg.kernels.geometry.polygon_fractions import fractions_by_bisection, middles_inside
 
-CROSSING_TOLERANCE: Final = 0.25  # pieces this short are not cut further [m]
-MAX_PART_LENGTH: Final = 400_000.0  # longer legs are cut into such pieces first [m]
+CROSSING_TOLERANCE: Final = 0.25  # pieces this short are not split further [m]
+MAX_PART_LENGTH: Final = 400_000.0  # longer legs are first split into such pieces [m]
 _WORLD: Final = np.array([-90.0, 90.0, -180.0, 360.0])
 
 
@@ -28,7 +28,20 @@ def outlines_only(index: IndexArrays) -> IndexArrays:
 
 
 def points_inside(index: IndexArrays, lat: FloatArray, lon: FloatArray) -> NDArray[np.bool_]:
-    """Return which positions [deg] lie inside the polygons of an index; arrays of one dimension."""
+    """Return which positions [deg] lie inside the polygons of an index; arrays of one dimension.
+
+    Parameters
+    ----------
+    index : IndexArrays
+        Index of polygons.
+    lat, lon : ndarray (n,)
+        Positions [deg].
+
+    Returns
+    -------
+    bool array (n,)
+        Whether each is inside.
+    """
     code = np.empty(len(lat), np.int8)
     flat = [np.require(x, float, ("C", "W")) for x in (lat, lon)]
     point_codes(CoastArrays(index, empty_index(), _WORLD), flat[0], flat[1], code)

@@ -4,7 +4,7 @@ A GeoJSON feature has the properties ``kind`` ("no-go", "penalty", "price" or "e
 penalty and price, ``factor``. Where zones of one kind overlap, the largest factor counts. An "eca"
 zone without a factor is an emission control area: the ship file states what fuel costs there;
 with one it is a price zone. Where there are zones of the kind "anchorage" a ship may wait in these
-only, and nowhere in zones of the kind "no-waiting".
+only, and never in zones of the kind "no-waiting".
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 
 ZONE_INDEX_CELLS: Final = 128  # cells along a face of the index of no-go zones
-MAX_PART_LENGTH: Final = 50_000.0  # legs are cut into pieces of at most this for factors [m]
+MAX_PART_LENGTH: Final = 50_000.0  # legs are split into pieces of at most this for factors [m]
 ZONE_KINDS: Final = {
     "nogo": "no-go",
     "forbidden": "no-go",
@@ -179,7 +179,7 @@ class Zones:
     def eca_index(self) -> IndexArrays:
         """The emission control areas for kernels: ``cube.inside(index, *unit_vector(lat, lon))``.
 
-        Kept on disk from run to run.
+        Cached on disk.
         """
         if not self.eca:
             return empty_index()
@@ -226,7 +226,7 @@ class Zones:
     def may_wait(self, lat: ArrayLike, lon: ArrayLike) -> NDArray[np.bool_]:
         """Return at which positions [deg] a ship may wait.
 
-        In zones of the kind "anchorage" where there are any, else everywhere; never in zones of
+        In zones of the kind "anchorage" where there are any, else at any place; never in zones of
         the kind "no-waiting".
         """
         y, x = np.broadcast_arrays(np.asarray(lat, float), np.asarray(lon, float))
@@ -322,7 +322,7 @@ def _zone_factor(kind: str, properties: Mapping[str, Any]) -> float:
 
 
 def _without_overlaps(zones: list[tuple[Any, float]]) -> tuple[tuple[Any, float], ...]:
-    """Return zones cut so that none overlap; the largest factor keeps the common part."""
+    """Return zones clipped so that none overlap; the common part gets the largest factor."""
     import shapely
 
     kept: list[tuple[Any, float]] = []

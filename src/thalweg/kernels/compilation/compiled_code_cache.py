@@ -1,6 +1,6 @@
-"""Where compiled kernels are kept: a folder in the user's cache for each state of the kernels.
+"""The cache of compiled kernels: a folder in the user's cache for each version of their source.
 
-numba itself notices only changes of the file a function stands in, not of what it calls.
+numba detects changes of the file of a function only, not of the functions that it calls.
 """
 
 import contextlib
@@ -13,7 +13,7 @@ from thalweg.core.cache_folder import cache_folder, is_usable, private_temporary
 
 #: The folder of the package `kernels`.
 PACKAGE = Path(__file__).resolve().parents[1]
-_MAX_FOLDERS = 4  # folders of compiled code that are kept, the newest ones
+_MAX_FOLDERS = 4  # largest number of folders of compiled code, the newest ones
 
 
 def _source_hash() -> str:
@@ -44,5 +44,5 @@ def _remove_old_folders(base: Path) -> None:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-#: Where the compiled code of these kernels is kept.
+#: Folder of the compiled code of these kernels.
 COMPILED_FOLDER = _make_folder()

@@ -1,4 +1,4 @@
-"""Compiling kernels that neither allocate nor keep arrays: no reference counts.
+"""Decorators that compile kernels without reference counts.
 
 Taking an array out of a named tuple costs two atomic counts; in the land test of a leg they were
 more than half of the time, in the leg formula nine tenths. numba has an option without them, not
@@ -41,7 +41,7 @@ def inlined(function):
 def inlined_by_numba(function):
     """Compile as part of the caller from the start: for thin layers over large inlined functions.
 
-    Each layer of `inlined` functions is optimised again; these cost nothing. Use it for small
-    functions only: the time of type inference grows fast.
+    Each level of `inlined` functions is optimised again; functions inlined here take no extra time.
+    Use it for small functions only: the time of type inference grows fast.
     """
     return _compile(function, inline="always", **_INNER)

@@ -1,8 +1,8 @@
-"""The first run ever compiles the kernels; two processes halve the wait.
+"""Compile the kernels in a second process on first use, to halve the wait.
 
-A child compiles what the search and the refinement need and leaves it in the cache on disk, while
-the parent imports, reads the coast and builds its network. This module imports nothing heavy, so
-that the child can be started first of all.
+The child process compiles the kernels of the search and the refinement into the cache on disk,
+while the parent imports modules, reads the coast and builds its network. This module imports only
+small modules, so that the child process starts early.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from thalweg.kernels.compilation.compiled_code_cache import COMPILED_FOLDER
 _COMPILED_MARKER, _COMPILING_MARKER = COMPILED_FOLDER / "warm", COMPILED_FOLDER / "warming"
 _CHILD_TIMEOUT = 120.0  # seconds the parent waits for the child at most
 _GARBAGE_COLLECTION_THRESHOLD = (
-    200_000  # objects made before rubbish is searched: compiling makes millions that stay
+    200_000  # objects between garbage collections: compiling makes millions that stay in use
 )
 _children: list[subprocess.Popen[bytes]] = []
 

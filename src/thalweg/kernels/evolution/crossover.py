@@ -111,9 +111,9 @@ def make_offspring(
     genes : float64[N, M, COLUMNS]
         The parents.
     pairs : int64[K, 2]
-        Which of them meet.
+        Indices of the parents of each pair.
     coast : CoastArrays
-        Land and no-go zones. New legs keep clear of them if a few tries succeed.
+        Land and no-go zones. New legs avoid them if a few trials succeed.
     settings : int
         Number of settings of the ship.
     variation_settings : float64[VARIATION_SETTING_COUNT]

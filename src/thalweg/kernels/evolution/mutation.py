@@ -44,7 +44,7 @@ OFFSET_SHAPE: Final = (
     8  # of the region of inserted points, of `thalweg.kernels.evolution.random_numbers`
 )
 INSERT_WIDTH: Final = 9  # its half width over its half length
-RADIUS_MIN: Final = 10  # of translations, as shares of the mean length of the legs beside;
+RADIUS_MIN: Final = 10  # of translations, as fractions of the mean length of the adjacent legs;
 RADIUS_MAX: Final = 11  # drawn between them evenly in the logarithm
 CROSSOVER_PROBABILITY: Final = 12  # probability
 MUTATION_PROBABILITY: Final = (
@@ -189,7 +189,7 @@ def _weight_legs_by_length(genes, count, weight):
 
 @kernel_only
 def insert(genes, count, variation_settings, state, weight):
-    """Insert points beside legs drawn by length; return the number of points."""
+    """Insert points near legs drawn by length; return the number of points."""
     legs = count - 1
     k = draw_change_count(
         variation_settings[CHANGE_SCALE] / legs, min(legs, genes.shape[0] - count), state
@@ -241,7 +241,7 @@ def translate(genes, count, variation_settings, state, weight):
 
 @kernel_only
 def delete(genes, count, variation_settings, state, weight):
-    """Leave out free points; the merged leg keeps the setting of the leg before."""
+    """Remove free points; the merged leg has the setting of the leg before."""
     inside = count - 2
     if inside < 1:
         return count
@@ -287,7 +287,7 @@ def change_speed(genes, count, settings, state):
 
 @kernel_only
 def split(genes, count, settings, state, weight):
-    """Cut a leg, drawn by length, at a point of it, and give one part another setting."""
+    """Split a leg, drawn by length, at a random point, and give one part another setting."""
     if count >= genes.shape[0] or settings < 2:
         return count
     _weight_legs_by_length(genes, count, weight)
@@ -306,7 +306,7 @@ def split(genes, count, settings, state, weight):
 
 @kernel_only
 def merge(genes, count, state, weight):
-    """Leave out a free point where the track turns little; the leg keeps either setting."""
+    """Remove a free point where the track turns little; the leg has one of both settings."""
     inside = count - 2
     if inside < 1:
         return count

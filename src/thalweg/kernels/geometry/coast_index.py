@@ -1,9 +1,9 @@
-"""Does a leg touch land? Compiled, exact, over a grid of coast edges on the faces of a cube.
+"""Exact land tests of legs with a grid of coast edges on the faces of a cube.
 
 A position becomes the unit vector of its geocentric latitude, so the plane through two of them
-cuts the ellipsoid in a great ellipse. On a cube face (gnomonic) such arcs are straight lines,
-poles and the antimeridian are nothing special, and a leg walks from cell to cell, or jumps where
-the cell knows how far the coast is.
+intersects the ellipsoid in a great ellipse. On a cube face (gnomonic) such arcs are straight lines,
+poles and the antimeridian need no special treatment, and a leg is followed from cell to cell, or
+over several cells where the distance to the coast is known.
 
 The geodesic leaves the plane of its great ellipse by an offset ``d``. To first order in the
 flattening the plane's section has geodesic curvature ``-2 f n_z r_z`` and Jacobi's equation
@@ -12,11 +12,11 @@ flattening the plane's section has geodesic curvature ``-2 f n_z r_z`` and Jacob
     d(t) = -f n_z [m_z (t sin t - T tan T cos t) + e_z (T sin t / tan T - t cos t)],
 
 t counted from the middle of the leg, T half its length [rad]. Measured against Karney's geodesics
-what remains is below 1.4 f^2 L^2 / 8R: 3 mm at 100 km, 0.3 m at 1000 km. `leg_code` therefore
-calls a long leg "unsure" when it passes the coast nearer than that.
+the remaining error is below 1.4 f^2 L^2 / 8R: 3 mm at 100 km, 0.3 m at 1000 km. `leg_code`
+therefore calls a long leg "unsure" when it passes the coast nearer than that.
 
-Coast edges are straight in longitude and latitude, cut so that the arc between their ends is
-never more than `BULGE` beside them; where that matters an edge is cut finer.
+Coast edges are straight in longitude and latitude, split so that the arc between their ends is
+at most `BULGE` from them; where that matters an edge is split further.
 """
 
 from math import asin, atan, atan2, ceil, cos, hypot, sin, sqrt, tan
@@ -42,7 +42,7 @@ from thalweg.kernels.geometry.cube_sphere import (
 )
 
 REACH: Final = 3.0e-5  # a cell answers for points this far outside it, on the face
-LONGEST_ARC: Final = 0.125  # longer legs are cut into such arcs [rad]
+LONGEST_ARC: Final = 0.125  # longer legs are split into such arcs [rad]
 SHORTEST_ARC: Final = 1.0e-9  # shorter legs are points [rad]
 SURE_CHORD: Final = 0.025  # legs below 159 km are never unsure
 LONGEST_CHORD: Final = 1.2  # legs above 8,200 km always are
@@ -62,7 +62,7 @@ class CoastArrays(NamedTuple):
 
 @allocation_free
 def _offset(k, mz, ez, half, tan_half, t):
-    """Return how far the geodesic is beside the plane at the angle t from its middle."""
+    """Return the offset of the geodesic from the plane at the angle t from its middle."""
     s, c = sin(t), cos(t)
     return k * (mz * (t * s - half * tan_half * c) + ez * (half * s / tan_half - t * c))
 
@@ -309,7 +309,7 @@ def leg_code(coast, lat1, lon1, lat2, lon2):
     ----------
     coast : CoastArrays
     lat1, lon1, lat2, lon2 : float
-        Ends of the leg [deg]. Legs above 8,000 km are better cut first: they are always unsure.
+        Ends of the leg [deg]. Split legs above 8,000 km first: they are always unsure.
 
     Returns
     -------

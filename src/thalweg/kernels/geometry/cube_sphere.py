@@ -1,8 +1,8 @@
-"""Polygons on the faces of a cube: where a position is, and whether inside.
+"""Polygons on the faces of a cube: cells of positions, and tests whether they are inside.
 
 A position becomes the unit vector of its geocentric latitude. Seen from the centre of the Earth
 onto the faces of a cube (gnomonic projection) great-circle arcs are straight lines, and the poles
-and the antimeridian are nothing special. Each face is cut into ``side`` x ``side`` cells; a cell
+and the antimeridian need no special treatment. Each face has ``side`` x ``side`` cells; a cell
 holds the edges that cross it and the winding number at its middle.
 """
 

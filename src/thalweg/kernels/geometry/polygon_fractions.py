@@ -1,4 +1,4 @@
-"""How much of a leg is inside polygons."""
+"""Fraction of a leg inside polygons."""
 
 from math import atan2, cos, sin, sqrt
 from typing import Final
@@ -15,8 +15,8 @@ _ECCENTRICITY_SQUARED: Final = FLATTENING * (2.0 - FLATTENING)  # eccentricity s
 def middle_inside(index, lat1, lon1, lat2, lon2):
     """Return whether the middle of a leg [deg] is inside the polygons of an index.
 
-    Ends that are on an outline to the last bit say nothing; the middle of a leg that touches none
-    does. It is that of the great ellipse, some metres from the geodesic on the longest legs.
+    Ends exactly on an outline are undecided; the middle of a leg that touches no outline is not. It
+    is that of the great ellipse, some metres from the geodesic on the longest legs.
     """
     ax, ay, az = unit_vector(lat1, lon1)
     bx, by, bz = unit_vector(lat2, lon2)

@@ -1,4 +1,4 @@
-"""How far is the shore? Compiled; exact near it, a lower bound away from it."""
+"""Distance to the shore: exact near it, a lower bound at larger distances."""
 
 from math import asin, sqrt
 

@@ -1,4 +1,4 @@
-"""Which cells of a coast index are inside: winding numbers carried from cell to cell."""
+"""Winding numbers of the cells of a coast index, propagated from cell to cell."""
 
 from thalweg.kernels.compilation.decorators import allocation_free
 from thalweg.kernels.geometry.cube_sphere import ALL_LAND, FIRST_ROW, cell_middle, winding_from
@@ -8,7 +8,7 @@ SEA = 1.0e-9  # a cell value: outside the polygons, distance to them not known y
 
 @allocation_free
 def _carry(index, face, i, j, from_i, from_j, to_i, to_j, winding):
-    """Carry a winding number between two places of one cell (halves are its borders)."""
+    """Propagate a winding number between two points of one cell (halves are its borders)."""
     value = index.cell[(face * index.side + j) * index.side + i]
     if value > FIRST_ROW:
         return winding

@@ -218,7 +218,7 @@ def march_edge(network, sea, ship, fuel, edge, k, t, cutoff, work):
     ----------
     network, sea, ship : NetworkArrays, SeaArrays, ShipArrays
     fuel : FuelTable or None
-        None if the fuel is not asked for: nothing of it is compiled then.
+        None if the fuel is not needed; its code is then not compiled.
     edge : int
     k : int
         Interval of the times that holds the departure.

@@ -1,4 +1,4 @@
-"""What a ship does at one point of a leg: the one compiled formula every search shares."""
+"""Motion of a ship at one point of a leg: the compiled formula that all searches share."""
 
 import math
 
@@ -221,7 +221,7 @@ def fuel_rate_at_speed(sample, index, course, fuel, setting, static_depth, limit
     """Return (fuel rate [kg/s], ok) of a ship whose speed through water is known.
 
     The heading follows from the course, the current across it and the speed, as in
-    `point_speed`; the limits are taken as kept. ``needs = axes_needed(fuel)``.
+    `point_speed`; limits are not tested. ``needs = axes_needed(fuel)``.
     """
     east, north = course
     if needs == 0:

@@ -29,7 +29,7 @@ FUEL_PRICE: Final = 7  # cost of a kilogram of fuel
 CHARTED_DEPTH: Final = 8  # least charted depth [m below datum]; +inf not checked
 PENALTY_FACTOR: Final = 9  # factor >= 1 on time and cost in comparisons
 FIXED_TIME: Final = 10  # NaN where sailed; else the leg takes this long [s] (a canal)
-FIXED_COST: Final = 11  # cost of the leg beside fuel (a canal's fee and fuel)
+FIXED_COST: Final = 11  # cost of the leg in addition to fuel (fee and fuel of a canal)
 PIECES: Final = 12  # number of pieces; 0: by length
 GENE_COLUMNS: Final = 13
 

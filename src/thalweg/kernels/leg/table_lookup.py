@@ -59,7 +59,7 @@ class TableArrays(NamedTuple):
     curve_guess : int64[settings]
         Column at which a search for the crossing begins.
     safety : float64[7]
-        What is dangerous in waves (see `thalweg.kernels.leg.wave_limits`); empty when nothing is.
+        Limits of safety in waves (see `thalweg.kernels.leg.wave_limits`); empty if there are none.
     motions : float32[speeds, angles, periods]
         One over the wave height that reaches a limit of motions [1/m]; empty when there is none.
     motion_grid : float64[3, 2]

@@ -325,14 +325,14 @@ def _sift_down(heap, place, distance, size, node):
 
 @jit
 def keep_spaced_points(x, y, spacing, keep):
-    """Keep points in order when they are farther than their spacing from every point kept before.
+    """Select points in order that are farther than their spacing from all points selected before.
 
     Parameters
     ----------
     x, y : float64[N]
         Positions in a plane.
     spacing : float64[N]
-        A point is kept if and only if its nearest kept point is farther away (strictly).
+        A point is selected if and only if its nearest selected point is (strictly) farther away.
     keep : bool[N]
         Filled.
     """

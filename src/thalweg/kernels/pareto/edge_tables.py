@@ -1,4 +1,4 @@
-"""Sailing edges at a price: arrival and fuel at every setting, tabulated by time of departure."""
+"""Tables of edges by time of departure: arrival, fuel and cost at every setting."""
 
 import math
 from typing import NamedTuple

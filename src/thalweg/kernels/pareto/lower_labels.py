@@ -1,4 +1,4 @@
-"""The lower front: dynamic programming over bins of time with what is most favourable in each."""
+"""The lower front: dynamic programming over bins of time with the best conditions in each bin."""
 
 import math
 from typing import NamedTuple
@@ -21,9 +21,11 @@ from thalweg.kernels.pareto.time_expanded_labels import (
 
 _SAFETY_FACTOR = 2.0  # of the difference met midway between two slices
 _ROUNDING = 1e-6  # of tables in single precision
-_LARGEST_USEFUL_ERROR = 0.25  # off by more: what holds whatever the sea is may be the larger bound
+_LARGEST_USEFUL_ERROR = (
+    0.25  # with larger errors the bound that is independent of the sea may be larger
+)
 _HALVINGS = 4  # to find when an edge closes
-_CLOSING_ERROR = 0.01  # what an edge may be off by after the last moment it was met open
+_CLOSING_ERROR = 0.01  # relative error of an edge after the last time at which it is open
 
 
 class LowerLabels(NamedTuple):
@@ -52,7 +54,7 @@ class LowerLabels(NamedTuple):
 
 
 class InterpolationBounds(NamedTuple):
-    """How far tables may be off between a slice and the next, by block and edge of the node.
+    """Bounds of the interpolation error between successive slices, by block and edge of the node.
 
     Attributes
     ----------
@@ -198,7 +200,7 @@ def _lower_bin_costs(labels, clock, waits, head, sooner, later, cost, b):
 
 @inlined
 def least_in_any_sea(world, slack, edge, s, rate, longest):
-    """Return the least duration and reduced cost of an edge, whatever the sea is."""
+    """Return the least duration and reduced cost of an edge in any conditions."""
     prices = world.prices
     took = prices.fixed_time[edge]
     if took == took:
@@ -372,9 +374,9 @@ def process_bins_lower(world, labels, target, clock, blocks, slack, agenda, begi
 
     Notes
     -----
-    Whoever is at a node in a bin has a reduced cost of at least that of the bin, or, where one may
-    wait, of at least the least up to that bin. From there an edge is left at any moment of the
-    bin: the earliest arrival and the least cost over those moments are taken together.
+    A ship at a node in a bin has a reduced cost of at least that of the bin, or, where it may wait,
+    of at least the least up to that bin. It may depart at any moment of the bin: the earliest
+    arrival and the least cost over those moments are combined.
     """
     active, counts = agenda.active, agenda.counts
     for b in range(begin, end):

@@ -1,4 +1,4 @@
-"""The least cost plus a price of time: lines that no front can be below."""
+"""Lower bounds of a front from the least cost plus a price of time (scalarisation)."""
 
 import math
 from typing import NamedTuple
@@ -30,7 +30,7 @@ class ScalarisedLabelTarget(NamedTuple):
     rate : float
         Price of a second.
     known : float
-        Cost plus priced time of a real path: what is not below leads nowhere.
+        Cost plus priced time of a real path; labels that are not below it are not extended.
     time_to_go : float64[N]
         Lower bound of the time to the goal [s].
     floor : float64[N]
@@ -133,8 +133,8 @@ def process_bins_scalarised(world, labels, target, clock, blocks, slack, agenda,
     ----------
     world : FrontArrays
     labels : LowerLabels
-        ``cost`` holds cost plus priced time; ``best`` what a ship has that waits since an earlier
-        bin, ``dead`` what the node was left with in this bin.
+        ``cost`` holds cost plus priced time; ``best`` that of a ship that has waited since an
+        earlier bin, ``dead`` that at the departure from the node in this bin.
     target : TimePriced
     clock : TimeBins
     blocks : EdgeTables
@@ -144,7 +144,7 @@ def process_bins_scalarised(world, labels, target, clock, blocks, slack, agenda,
 
     Notes
     -----
-    Since the time is in the value, nothing is lost by not knowing when in its bin a ship arrives:
+    The value includes the time, so the unknown moment of arrival within a bin causes no error:
     only the sea is taken at the most favourable moment of the bin.
     """
     active, counts = agenda.active, agenda.counts

@@ -26,7 +26,7 @@ class BinLabels(NamedTuple):
     cost : float32[L]
         inf where there is none.
     when : float32[L, 2]
-        True time [s after departure]; when the node before was left, NaN if upon arrival.
+        True time [s after departure]; departure from the previous node, NaN if on arrival.
     source : int32[L, 2]
         Label it comes from, -1 at the start; edge times number of settings plus setting.
     best : float64[N]
@@ -91,7 +91,7 @@ class ActiveNodes(NamedTuple):
 
 @inlined
 def may_be_non_dominated(target, clock, node, time, cost):
-    """Return whether a label may still lead to an arrival that nothing known dominates.
+    """Return whether a label may still lead to an arrival that no known arrival dominates.
 
     It may if for some bin of arrival the largest of the lower bounds of the cost at the end of
     the bin is below what is known for its start.
@@ -120,7 +120,7 @@ def may_be_non_dominated(target, clock, node, time, cost):
 
 @inlined
 def _insert_label(labels, target, clock, head, time, cost, slot, left, code):
-    """Keep an arrival if it is the cheapest in its bin; return the bin, or -1."""
+    """Store an arrival if it is the cheapest in its bin; return the bin, or -1."""
     b = int(time / clock.width)
     if b < labels.first[head] or b > labels.last[head]:
         return -1

@@ -1,4 +1,4 @@
-"""When to leave for an edge: ships that may wait, and edges that open."""
+"""Time of departure on an edge: ships that may wait, and edges that open."""
 
 import math
 
@@ -7,7 +7,7 @@ from thalweg.kernels.compilation.decorators import allocation_free, kernel_only
 from thalweg.kernels.leg.edge_sailing import MarchCutoff, interval_of, sail_edge, sample_station
 from thalweg.kernels.leg.point_speed import water_depth
 
-OPENING_TOLERANCE = 0.1  # an opening is found to this [s]
+OPENING_TOLERANCE = 0.1  # accuracy of opening times [s]
 
 
 @kernel_only

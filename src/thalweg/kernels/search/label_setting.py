@@ -200,7 +200,7 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
         Lower bound of the distance from each state to the goal [m], obeying the triangle
         inequality with the edge lengths; zeros make the search Dijkstra's.
     labels : NodeLabels
-        Filled; nothing may be reached before.
+        Filled; no node may be reached before.
     memory : Workspace
         Work space; its counts are filled: how many nodes were settled, how many edges left them,
         how many of these were sailed because they could be useful, and how many of these were
@@ -208,13 +208,14 @@ def label_setting(network, sea, ship, query, distances, labels, memory):
 
     Notes
     -----
-    Cost by time is exact when every edge keeps order (later departure, later arrival), which
-    waiting provides, and every penalty factor is 1. With other factors, and for cost by distance,
-    one label per node is exact only as far as being there earlier is never worse and the time
-    does not change which edges are open; ties of cost go to the earlier time.
+    Cost by time is exact if every edge is FIFO (a later departure arrives later), which waiting
+    provides, and every penalty factor is 1. With other factors, and for cost by distance, one label
+    per node is exact only if an earlier arrival is never worse and the time does not change which
+    edges are open; of equal costs the earlier time is used.
 
-    A ship waits only while it stays afloat; a node that falls dry is one state for each time it is
-    afloat, so that arriving at a later tide is not lost to arriving at an earlier one.
+    A ship waits only while it stays afloat. A node that falls dry has one state for each interval
+    in which it is afloat, so that an arrival at an earlier tide does not dominate one at a later
+    tide.
     """
     nodes, keys, place, counts = memory.nodes, memory.keys, memory.place, memory.counts
     labels.cost[query.start], labels.time[query.start] = 0.0, query.depart

@@ -1,9 +1,9 @@
-"""The same two places over and over: one departure at a time, with all that never changes kept.
+"""Repeated earliest-arrival searches between two nodes; data independent of departure are reused.
 
-Against `thalweg.kernels.search.label_setting` nothing differs in what is found. Bounds of the time
-still to go come from a search backwards at the greatest speeds the water ever allows, a departure
-already known bounds the arrival from above, and nodes that fall dry keep the list of their times
-afloat in place of a copy of their edges for each of them.
+The results are those of `thalweg.kernels.search.label_setting`. A backward search at the greatest
+possible speeds gives lower bounds of the time to the goal; a known departure gives an upper bound
+of the arrival. Nodes that fall dry have a list of intervals afloat, not a copy of their edges for
+each interval.
 """
 
 import math
@@ -22,8 +22,8 @@ from thalweg.kernels.leg.edge_sailing import MarchCutoff, interval_of, sail_edge
 from thalweg.kernels.search import heap
 from thalweg.kernels.search.edge_departure import wait_for_edge
 
-CURRENT_DIRECTIONS = 16  # directions for which the strongest current is kept
-_SHRINK = 1.0 - 1e-7  # keeps bounds below the truth in single precision
+CURRENT_DIRECTIONS = 16  # directions for which the strongest current is tabulated
+_SHRINK = 1.0 - 1e-7  # so that bounds are below the exact values in single precision
 _DEPTH_ROUNDING = 1e-3  # depth that rounding may hide [m]
 
 
@@ -171,7 +171,7 @@ def _larger_of_each(first, second):
     return max(first[0], second[0]), max(first[1], second[1])
 
 
-SPEED_CAP_DEPTH_STEP = 0.25  # of the depths for which the greatest speed is kept [m]
+SPEED_CAP_DEPTH_STEP = 0.25  # of the depths for which the greatest speed is tabulated [m]
 
 
 @allocation_free

@@ -1,4 +1,4 @@
-"""When nodes are afloat: a node that falls dry is one state for each time it is.
+"""Safe intervals of tidal nodes: one state for each interval with sufficient depth.
 
 As `thalweg.search.tidal_states`, but without a copy of the edges for each state.
 """
@@ -15,7 +15,7 @@ _ROUNDING = 1e-3  # depths are in single precision [m]
 
 
 class TidalStates(NamedTuple):
-    """Times afloat of every node: those of node n are ``ptr[n]:ptr[n + 1]``, in order.
+    """Intervals with sufficient depth of all nodes; those of node n are ``ptr[n]:ptr[n + 1]``.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class TidalStates(NamedTuple):
 
 @allocation_free
 def count_tidal_states(sea, charted, can_wait, required, counts):
-    """Fill how many times afloat each node has; 1 for those that never change or cannot wait."""
+    """Fill the number of intervals of each node; 1 if always the same or without waiting."""
     least = np.float32(required - _ROUNDING)
     for n in range(counts.shape[0]):
         counts[n] = 1
@@ -68,7 +68,7 @@ def _depth(sea, charted, n, t):
 
 @allocation_free
 def fill_tidal_states(sea, charted, can_wait, required, states):
-    """Fill the times afloat of every node; depth is linear between the times of the data."""
+    """Fill the intervals of every node; depth is linear between the times of the data."""
     least = np.float32(required - _ROUNDING)
     last = sea.times.shape[0] - 1
     for n in range(states.ptr.shape[0] - 1):
@@ -81,7 +81,7 @@ def fill_tidal_states(sea, charted, can_wait, required, states):
         for t in range(last + 1):
             afloat = _depth(sea, charted, n, t) >= least
             if afloat and not before:
-                if open_now:  # a later time afloat: it begins in the middle of the dry time
+                if open_now:  # a later interval: it begins in the middle of the dry period
                     begin = _threshold_time(sea, charted, n, t - 1, t, required)
                     middle = 0.5 * (states.until[s] + begin)
                     states.closes[s] = middle

@@ -1,4 +1,4 @@
-"""A way between the ends of a network, what it costs, and how it is drawn taut."""
+"""An alternative path between the ends of a network: its waypoints, length, cost and canals."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 
-_BORDER_TOLERANCE = 25.0  # [m] to which edges are cut at borders of control areas
+_BORDER_TOLERANCE = 25.0  # accuracy at which edges are split at borders of control areas [m]
 
 
 @dataclass(frozen=True)
 class EdgeWeights:
     """Weights of a static shortest-path search, without time or weather.
 
-    The objective of a voyage is another thing (`thalweg.core.objective.Objective`); `priced`
+    These are not the objective of a voyage (`thalweg.core.objective.Objective`); `priced`
     approximates it by lengths, with factors for zones and emission control areas.
 
     Attributes
@@ -39,8 +39,8 @@ class EdgeWeights:
     weight : float64[E], optional
         Weight of every edge; by default its length [m].
     leg_cost : callable, optional
-        The same for legs (lat1, lon1, lat2, lon2) [deg], for pulling ways taut; without it they
-        are pulled by their length.
+        Cost of legs (lat1, lon1, lat2, lon2) [deg], used to pull paths straight; by default their
+        length [m].
     """
 
     weight: FloatArray | None = None
@@ -56,7 +56,7 @@ class EdgeWeights:
         chart : Chart
             With the zones.
         factor : float, optional
-            What a mile inside an emission control area costs over one outside.
+            Cost of a mile inside an emission control area over that of a mile outside [-].
 
         Raises
         ------
@@ -81,23 +81,23 @@ class EdgeWeights:
 
 @dataclass(frozen=True, eq=False)
 class AlternativePath:
-    """One of several ways between the ends of a network.
+    """One of several paths between the ends of a network.
 
     Attributes
     ----------
     lat, lon : float64[P]
-        Waypoints [deg], pulled taut over the chart.
+        Waypoints [deg], after string pulling over the chart.
     length : float
         Length [m]; a canal counts with its own.
     cost : float
-        Cost by the weighing that favours this way most: as pulled, where it tells what legs cost
-        (canals count with the weight of their edges), else as found on the network.
+        Cost by the edge weights that favour this path most: of the pulled path if they have a
+        ``leg_cost`` (canals count with the weight of their edges), else of the network path.
     ratio : float
-        Cost on the network over that of the best way by the same weighing; 1 for the best.
+        Cost on the network over that of the best path by the same weights; 1 for the best.
     canals : tuple of str
-        Names of the canals it passes, in order.
+        Names of its canals, in order.
     path : int64[K]
-        Nodes of the network it was found on.
+        Its nodes on the network.
     """
 
     lat: FloatArray
@@ -115,13 +115,26 @@ class AlternativePath:
 
 
 def eca_fractions(network: Network, chart: Chart) -> FloatArray:
-    """Return the share (0 to 1) of every edge inside emission control areas; 0 of canals."""
+    """Return the share (0 to 1) of every edge inside emission control areas; 0 of canals.
+
+    Parameters
+    ----------
+    network : Network
+        Its edges.
+    chart : Chart
+        With emission control areas.
+
+    Returns
+    -------
+    ndarray (E,)
+        Fraction of each edge [-].
+    """
     share = np.zeros(network.n_edges)
     if not chart.zones.eca:
         return share
     sailed = np.flatnonzero(np.isnan(network.edges.fixed_time))
     a, b = network.tails()[sailed].astype(np.int64), network.graph.target[sailed].astype(np.int64)
-    key = np.minimum(a, b) * network.n_nodes + np.maximum(a, b)  # each pair is looked at once
+    key = np.minimum(a, b) * network.n_nodes + np.maximum(a, b)  # each pair is tested once
     keys, back = np.unique(key, return_inverse=True)
     a, b = keys // network.n_nodes, keys % network.n_nodes
     lat, lon = network.lat, network.lon
@@ -131,15 +144,15 @@ def eca_fractions(network: Network, chart: Chart) -> FloatArray:
 
 
 def checked_edge_weights(network: Network, edge_weights: EdgeWeights) -> FloatArray:
-    """Return the weight of every edge; `InputError` if they make no sense."""
+    """Return the weight of every edge; `InputError` for a wrong shape or a negative weight."""
     if edge_weights.weight is None:
         return network.edges.length
     weight = np.ascontiguousarray(edge_weights.weight, float)
     if weight.shape != (network.n_edges,) or not np.all(weight >= 0.0):
         raise InputError(
-            f"Weights of shape {weight.shape} do not weigh {network.n_edges} edges.",
+            f"Weights of shape {weight.shape} do not fit {network.n_edges} edges or are negative.",
             "One number of 0 or more for each edge.",
-            "Build them from the network's length.",
+            "Build them from network.edges.length.",
         )
     return weight
 
@@ -148,7 +161,7 @@ def taut_path(
     network: Network, chart: Chart, path: IntArray, ratio: float, edge_weights: EdgeWeights,
     sides: PassingSides | None = None,
 ) -> AlternativePath:  # fmt: skip
-    """Return the way along nodes of a network, pulled taut; ``ratio`` as in `AlternativePath`."""
+    """Return a path of nodes after string pulling; ``ratio`` as in `AlternativePath`."""
     lat, lon = network.lat[path], network.lon[path]
     lat, lon = pull_taut(chart, lat, lon, leg_cost=edge_weights.leg_cost, sides=sides)
     weight = checked_edge_weights(network, edge_weights)

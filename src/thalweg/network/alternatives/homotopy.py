@@ -1,4 +1,4 @@
-"""On which side ways pass islands: counts of crossings that tell them apart."""
+"""Homotopy classes of paths: on which side they pass islands, by meridian crossings."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from thalweg.chart.coast.rings import Rings
 
 CrossingCounts: TypeAlias = NDArray[np.int8]
-_MAX_ISLANDS = 120  # islands that count, the largest ones
+_MAX_ISLANDS = 120  # only the largest islands count
 
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
-    """Islands that make a difference, and how the edges of a network cross the lines behind them.
+    """Islands that separate paths, and the crossings of their meridians by the network's edges.
 
     Attributes
     ----------
@@ -31,8 +31,8 @@ class Obstacles:
         A position [deg] on each island; the first is the south pole, whose line is a whole
         meridian.
     crossings : int8[E, K + C]
-        For each edge, the crossings of the meridian north of each point (+1 eastward), then 1 for
-        each of C canals it is.
+        For each edge, the crossings of the meridian north of each point (+1 eastward), then for
+        each of C canals 1 if the edge is that canal.
     """
 
     points: FloatArray
@@ -49,7 +49,7 @@ class Obstacles:
         return crossings
 
     def along(self, chart: Chart, lat: FloatArray, lon: FloatArray) -> bytes:
-        """Return the counts of a way given by its waypoints [deg], as a key."""
+        """Return the crossings of a path given by its waypoints [deg], as a key."""
         nodes = np.arange(len(lat))
         return (
             _meridian_crossing_counts(chart, lat, lon, nodes[:-1], nodes[1:], self.points)
@@ -59,7 +59,7 @@ class Obstacles:
 
 
 def obstacles(network: Network, chart: Chart, island: float) -> Obstacles:
-    """Return the land that ways over a network can pass on either side.
+    """Return the land that paths over a network can pass on either side.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Ways that differ in kind: through other canals, round other islands, cheaper at other prices."""
+"""Search for alternative paths: other sides of islands, other canals, other prices."""
 
 from __future__ import annotations
 
@@ -31,10 +31,9 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _SMALLEST_ISLAND: Final = 0.02  # islands narrower than this share of the distance do not count
-_CANDIDATES_PER_PATH: Final = 3  # kinds of way looked at for each that is asked for
-_MIN_COST_DIFFERENCE: Final = (
-    0.005  # ways round the same islands differ when one costs more than this more
-)
+_CANDIDATES_PER_PATH: Final = 3  # homotopy classes considered for each requested path
+# paths of one homotopy class differ if their costs differ by more than this fraction
+_MIN_COST_DIFFERENCE: Final = 0.005
 
 
 @renamed_arguments(weighings="edge_weight_sets")
@@ -47,47 +46,48 @@ def alternative_paths(
     stretch: float = 0.3,
     island: float | None = None,
 ) -> tuple[AlternativePath, ...]:
-    """Return ways that pass land on different sides, or other canals, best first.
+    """Return paths that pass land on different sides or use other canals, best first.
 
     Parameters
     ----------
     network : Network
-        With start and goal, as the builders make it. It needs slack for what is to be found.
+        With start and goal. Its ``slack`` must be large enough for the alternatives.
     chart : Chart
         The chart it was built for.
-    edge_weight_sets : sequence of Weighing, optional
-        What ways cost: lengths by default; several when prices differ from place to place, such as
-        lengths times factors of 1, 1.2 and 1.56 inside emission control areas.
+    edge_weight_sets : sequence of EdgeWeights, optional
+        Costs of the edges, lengths by default. Give several sets when prices differ from place to
+        place, such as lengths times 1, 1.2 and 1.56 inside emission control areas.
     most : int, optional
-        How many ways at most.
+        Largest number of paths.
     stretch : float, optional
-        Ways more than ``1 + stretch`` times as costly as the best, by every weighing, are left out.
+        Paths more than ``1 + stretch`` times as costly as the best, by every set of weights, are
+        left out.
     island : float, optional
-        Land narrower than this [m] (square root of its area) may be passed on either side without
-        making another way; by default 2 % of the distance.
+        Land narrower than this [m] (square root of its area) does not separate paths; by default
+        2 % of the distance.
 
     Returns
     -------
-    tuple of Way
-        First those that are the best by some weighing in the order given, then the others by how
-        much more they cost. Each is the best of its kind by the weighing that favours it most. Of
-        two ways round the same islands the second is given only if it is the best by a weighing,
-        and the first costs over 0.5 % more by that: it goes round a zone, say.
+    tuple of AlternativePath
+        First those that are the best by a set of weights, in the order of the sets, then the others
+        by increasing cost. Each is the best of its homotopy class by the weights that favour it
+        most. A second path of one class is returned only if it is the best by a set of weights
+        and the first costs over 0.5 % more by that set, for example if it avoids a zone.
 
     Raises
     ------
     NoRouteError
-        If there is no way at all.
+        If no path connects start and goal.
     InputError
-        If the network has no ends, or a weight makes no sense.
+        If the network has no start or goal, or a weight is negative or of a wrong shape.
 
     Notes
     -----
-    Every node has a least way from start to goal by way of it: two shortest-path trees give all of
-    them at once (the plateau method; Abraham et al. 2013, "Alternative routes in road networks").
-    Each is told apart by how often, and in which sense, it crosses the meridians north of every
-    island that counts, all the way round the globe, and which canals it passes: equal counts mean
-    that one way can be moved into the other over water (for ways that do not cross themselves).
+    Two shortest-path trees, from start and from goal, give the least path through every node (the
+    plateau method; Abraham et al. 2013, "Alternative routes in road networks"). The homotopy class
+    of a path is the number of its signed crossings of the meridian north of each island, on the
+    whole globe, with the canals it uses. Two paths of one class can be deformed into each other
+    over water (if neither crosses itself).
     """
     _check(network, most, stretch)
     start, goal = network.meta.start, network.meta.goal
@@ -112,7 +112,7 @@ def paths_without_canals(
     edge_weights: EdgeWeights | None = None,
     threshold: float = 0.5,
 ) -> tuple[AlternativePath, ...]:
-    """Return the best way, and the best ones without some of the canals that it passes.
+    """Return the best path, and the best ones without some of the canals that it uses.
 
     Parameters
     ----------
@@ -120,23 +120,23 @@ def paths_without_canals(
         With start and goal, and a ``slack`` of at least the threshold.
     chart : Chart
         The chart it was built for.
-    edge_weights : Weighing, optional
-        What ways cost; by default their length.
+    edge_weights : EdgeWeights, optional
+        Costs of the edges; by default their lengths.
     threshold : float, optional
-        Ways more than ``1 + threshold`` times as costly as the best are left out.
+        Paths more than ``1 + threshold`` times as costly as the best are left out.
 
     Returns
     -------
-    tuple of Way
-        The best way first. Where it passes n canals there are ``2**n - 1`` further runs, one for
-        each proper subset of them that stays open; equal ways are given once.
+    tuple of AlternativePath
+        The best path first. If it uses n canals there are ``2**n - 1`` further searches, one for
+        each proper subset of them that stays open; equal paths are returned once.
 
     Raises
     ------
     NoRouteError
-        If there is no way at all.
+        If no path connects start and goal.
     InputError
-        If the network has no ends, or a value makes no sense.
+        If the network has no start or goal, or a value is out of range.
     """
     _check(network, 1, threshold)
     edge_weights = edge_weights or EdgeWeights()
@@ -162,7 +162,7 @@ def paths_without_canals(
 
 @dataclass(frozen=True, eq=False)
 class _PathClass:
-    """The best way of a kind by one weighing: its cost over the best, and its nodes."""
+    """The best path of a homotopy class by one set of weights: relative cost and nodes."""
 
     signature: bytes
     ratio: float
@@ -174,14 +174,14 @@ def _check(network: Network, most: int, stretch: float) -> None:
     if network.meta.start < 0 or network.meta.goal < 0:
         raise InputError(
             "The network has no start and goal.",
-            "Ways lead from meta.start to meta.goal.",
+            "Paths are searched from meta.start to meta.goal.",
             "Add them with thalweg.network.with_endpoints.",
         )
     if not (most >= 1 and stretch >= 0.0):
         raise InputError(
-            f"{most!r} ways, at most {stretch!r} costlier, cannot be looked for.",
-            "One way or more, and a share of 0 or more.",
-            "Give 4 ways and 0.3, say.",
+            f"A search for {most!r} paths, at most {stretch!r} costlier, is not possible.",
+            "One path or more, and a fraction of 0 or more.",
+            "Give 4 paths and 0.3, say.",
         )
 
 
@@ -191,8 +191,8 @@ def _no_path(network: Network) -> NoRouteError:
         for k in (network.meta.start, network.meta.goal)
     ]
     return NoRouteError(
-        f"There is no way from {ends[0]} to {ends[1]} on this network.",
-        "",
+        f"There is no path from {ends[0]} to {ends[1]} on this network.",
+        "Start and goal must be connected by edges of the network.",
         "Build it with more slack, or allow more canals.",
     )
 
@@ -207,7 +207,7 @@ def _reversed_graph(network: Network) -> tuple[Graph, IntArray]:
 def _best_of_each_class(
     network: Network, seen: Obstacles, edge_weights: EdgeWeights, order: int, stretch: float
 ) -> list[_PathClass]:
-    """Return the best way of every kind, by way of any node, up to the stretch."""
+    """Return the best path of every homotopy class, up to the stretch."""
     weight = checked_edge_weights(network, edge_weights)
     sides = []
     forward = network.graph, np.arange(network.n_edges)
@@ -236,14 +236,14 @@ def _best_of_each_class(
     kinds = []
     for k in np.sort(first):
         path = _path_through_node(came, goes, int(nodes[k]))
-        if len(set(path)) == len(path):  # ways that turn back on themselves are no kind
+        if len(set(path)) == len(path):  # a path that visits a node twice is not an alternative
             ratio = float(total[nodes[k]] / best)
             kinds.append(_PathClass(signature[k].tobytes(), ratio, order, np.array(path)))
     return kinds
 
 
 def _path_through_node(came: IntArray, goes: IntArray, node: int) -> list[int]:
-    """Return the nodes from start to goal by way of one, given both trees."""
+    """Return the nodes from start to goal through a node, given both trees."""
     path = [node]
     while came[path[-1]] >= 0:
         path.append(int(came[path[-1]]))
@@ -257,7 +257,7 @@ def _taut_paths(
     network: Network, chart: Chart, seen: Obstacles, kinds: list[_PathClass],
     edge_weight_sets: Sequence[EdgeWeights], most: int,
 ) -> tuple[AlternativePath, ...]:  # fmt: skip
-    """Return ways pulled taut, each kind once."""
+    """Return paths after string pulling, each homotopy class once."""
     ways: list[tuple[bytes, AlternativePath]] = []
     known: set[bytes] = set()
     for kind in kinds:

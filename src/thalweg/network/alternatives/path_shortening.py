@@ -1,4 +1,4 @@
-"""String pulling over a chart: the taut, or the cheapest, line near a way, by tested legs."""
+"""String pulling over a chart: the shortest or cheapest line near a path, by tested legs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: Cost of legs (lat1, lon1, lat2, lon2) [deg]; by default their length [m].
 LegCost: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
-#: Counts (n, K) that tell on which side of islands legs [deg] pass; equal sums are equal sides.
+#: Meridian crossings (n, K) of legs [deg]; paths with equal sums pass islands on the same sides.
 PassingSides: TypeAlias = Callable[
     [FloatArray, FloatArray, FloatArray, FloatArray], NDArray[np.int8]
 ]
@@ -27,29 +27,29 @@ PolylineCoordinates: TypeAlias = tuple[FloatArray, FloatArray]
 
 _MAX_SKIPPED_WAYPOINTS: Final = 48  # waypoints a leg may skip at once
 _BISECTIONS: Final = 7
-_LONGEST_LEG: Final = 60.0 * NAUTICAL_MILE  # legs are cut to this while waypoints are moved
+_LONGEST_LEG: Final = 60.0 * NAUTICAL_MILE  # legs are split to this while waypoints are moved
 _STEP_LENGTHS: Final = tuple(NAUTICAL_MILE * s for s in (24.0, 12.0, 6.0, 3.0, 1.5, 0.75, 0.3))
 _MAX_SWEEPS: Final = 6
 _MOVE_DIRECTIONS: Final = np.radians(np.arange(0.0, 360.0, 45.0))
-_MIN_GAIN: Final = 1e-5  # a round that gains a smaller share is the last
+_MIN_GAIN: Final = 1e-5  # the iteration stops at a smaller relative gain
 
 
 @dataclass(frozen=True)
 class _LegRules:
-    """What legs are allowed and cost."""
+    """Tests and costs of legs."""
 
     chart: Chart
     cost: LegCost
     sides: PassingSides | None
 
     def allowed(self, start: PolylineCoordinates, end: PolylineCoordinates) -> BoolArray:
-        """Return which legs touch nothing."""
+        """Return which legs touch neither land nor no-go zones."""
         return ~np.asarray(self.chart.legs_blocked(*start, *end))
 
     def same_side(
         self, start: PolylineCoordinates, by: PolylineCoordinates, end: PolylineCoordinates
     ) -> BoolArray:
-        """Return which legs pass islands on the side that the way by a third position does."""
+        """Return which legs pass islands on the same side as the path through a third position."""
         if self.sides is None:
             return np.ones(len(start[0]), bool)
         round_it = self.sides(*start, *by) + self.sides(*by, *end)
@@ -65,32 +65,32 @@ def pull_taut(
     sides: PassingSides | None = None,
     rounds: int = 12,
 ) -> PolylineCoordinates:
-    """Return a way pulled taut: waypoints left out and corners cut while all legs stay allowed.
+    """Return a path after string pulling: waypoints removed and corners cut by allowed legs.
 
     Parameters
     ----------
     chart : Chart
-        Tests the legs; those through canals stay.
+        Tests the legs; legs through canals are not changed.
     lat, lon : ndarray
-        Way [deg] of allowed legs.
+        Path of allowed legs [deg].
     leg_cost : callable, optional
-        What legs cost; by default their length. With a cost waypoints are moved sideways as well,
-        in the ways that cost changes from place to place.
+        Cost of legs; by default their length [m]. With a cost, waypoints are also moved sideways,
+        because the cost differs from place to place.
     sides : callable, optional
-        Tells the sides on which islands are passed, to keep them (see
+        Meridian crossings of legs, so that islands stay on the same side (see
         `thalweg.network.alternatives.homotopy`).
     rounds : int
-        How often corners are cut at most; 0 only leaves waypoints out.
+        Largest number of passes that cut corners; with 0, waypoints are only removed.
 
     Returns
     -------
     lat, lon : ndarray
-        The way [deg]; it costs no more than the one given.
+        The path [deg]; it costs no more than the given one.
 
     Notes
     -----
-    Local. Without ``sides`` a leg between two waypoints may pass a small island the other way
-    round where that is cheaper.
+    The search is local. Without ``sides`` a leg between two waypoints may pass a small island on
+    the other side if that is cheaper.
     """
     rules = _LegRules(chart, leg_cost or leg_lengths, sides)
     move = leg_cost is not None
@@ -106,7 +106,20 @@ def pull_taut(
 
 
 def total_cost(line: PolylineCoordinates, leg_cost: LegCost | None = None) -> float:
-    """Return what a way costs; by default its length [m]."""
+    """Return the cost of a path; by default its length [m].
+
+    Parameters
+    ----------
+    line : tuple of ndarray
+        Latitudes and longitudes of the waypoints [deg].
+    leg_cost : callable, optional
+        Cost of legs (lat1, lon1, lat2, lon2) [deg].
+
+    Returns
+    -------
+    float
+        Sum over all legs.
+    """
     lat, lon = line
     return float(np.sum((leg_cost or leg_lengths)(lat[:-1], lon[:-1], lat[1:], lon[1:])))
 
@@ -139,7 +152,7 @@ def leg_lengths(
 
 
 def _drop_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
-    """Return the cheapest way over some of the waypoints, in their order."""
+    """Return the cheapest path through a subset of the waypoints, in their order."""
     while True:
         keep = _cheapest_subset(rules, line)
         count = len(line[0])
@@ -168,13 +181,13 @@ def _cheapest_subset(rules: _LegRules, line: PolylineCoordinates) -> IntArray:
 
 
 def _cheapest_chain(count: int, first: IntArray, second: IntArray, price: FloatArray) -> IntArray:
-    """Return the cheapest way from the first to the last of some numbers, over ascending hops."""
+    """Return the cheapest chain of ascending indices from the first to the last."""
     best, came = np.full(count, np.inf), np.zeros(count, np.int64)
     best[0] = 0.0
     rows = np.searchsorted(first, np.arange(count + 1))
     for here in range(count - 1):
         row = slice(rows[here], rows[here + 1])
-        reach = best[here] + price[row] * (1.0 + 1e-12)  # fewer waypoints of equal ways
+        reach = best[here] + price[row] * (1.0 + 1e-12)  # of equal paths, prefer fewer waypoints
         better = reach < best[second[row]]
         best[second[row][better]] = reach[better]
         came[second[row][better]] = here
@@ -185,7 +198,7 @@ def _cheapest_chain(count: int, first: IntArray, second: IntArray, price: FloatA
 
 
 def _cut_corners(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
-    """Cut every corner as far as legs allow and cost falls: two waypoints in the place of one."""
+    """Replace every corner by two waypoints, as far as legs allow and the cost falls."""
     count = len(line[0])
     if count < 3:
         return line
@@ -235,7 +248,7 @@ def _cut_is_better(
 
 
 def _move_waypoints(rules: _LegRules, line: PolylineCoordinates) -> PolylineCoordinates:
-    """Move the waypoints of a line cut into short legs to where it costs less."""
+    """Split a line into short legs and move its waypoints to where it costs less."""
     lat, lon, _ = geodesy.densify(*line, _LONGEST_LEG)
     for step in _STEP_LENGTHS:
         for _ in range(_MAX_SWEEPS):

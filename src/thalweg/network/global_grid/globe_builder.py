@@ -95,20 +95,19 @@ def globe(
         (`thalweg.network.global_grid.straits`) are halved further still, unless this is 0.
     border_levels : int, optional
         How often faces along the borders of zones with prices (emission control, penalty and price
-        zones) are halved: what lies beyond a border is worth going round it only if there are
-        nodes near it.
+        zones) are halved: a route along a border is found only if there are nodes near it.
     directions : {12, 6}, optional
-        Legs along the edges of faces (6), or across them as well: ways in open water are then at
+        Legs along the edges of faces (6), or across them as well: paths in open water are then at
         most 5 % longer than the shortest, not 24 %.
     north, south : float, optional
-        Nodes beyond these latitudes [deg] are left out: charts know no ice, and without a limit
-        ways lead through the Arctic. The default of 72 N closes the Northwest and Northeast
-        Passages and leaves the North Cape open. Start and goal may lie beyond a limit, which then
-        gives way as far as 1 degree past them.
+        Nodes beyond these latitudes [deg] are left out: charts contain no ice, and without a limit
+        paths lead through the Arctic. The default of 72 N closes the Northwest and Northeast
+        Passages and leaves the North Cape open. If start or goal is beyond a limit, the limit is
+        moved to 1 degree past it.
     slack : float, optional
-        Nodes are kept when the shortest path start-node-goal is at most ``1 + slack`` times the
+        Nodes are used if the shortest path start-node-goal is at most ``1 + slack`` times the
         shortest path from start to goal; by default 1 under 100 nautical miles falling to 0.35 over
-        1,000 and 0.15 over 5,000. ``math.inf`` keeps the whole sea.
+        1,000 and 0.15 over 5,000. ``math.inf`` uses the whole sea.
     sample_spacing : float, optional
         Fields are sampled along edges at least this often [m].
 
@@ -123,12 +122,12 @@ def globe(
     InputError
         For values out of range, start or goal not on navigable water, or both the same.
     NoRouteError
-        If start and goal do not connect; it says when a canal that the chart has not would do.
+        If start and goal do not connect; the message names a canal that would connect them.
 
     Notes
     -----
     Seuren (2020), section 4.2.1, with leaf faces closed over their hanging vertices and every leg
-    tested against the coast along the geodesic. The grid of a coastline is made once and kept on
+    tested against the coast along the geodesic. The grid of a coastline is built once and cached on
     disk (`thalweg.network.global_grid.grid`).
     """
     start, goal = check_endpoints(chart, start, goal)
@@ -284,7 +283,7 @@ def _add_attachments(
 
 
 def _sheet_subset(sheet: _UnassembledGlobe, keep: BoolArray) -> _UnassembledGlobe:
-    """Return the sheet with only the nodes that are kept; start and goal always are."""
+    """Return the sheet with only the selected nodes; start and goal are always selected."""
     keep = keep.copy()
     keep[sheet.start : sheet.start + 2] = True
     new = (np.cumsum(keep) - 1).astype(np.int32)
@@ -340,7 +339,7 @@ def _no_route(
         titles = " and the ".join(canal.title for canal in missing)
         remedy = f"Allow the {titles}: with all canals a route exists."
     return NoRouteError(
-        f"There is no way by water from {names[0]} to {names[1]} on this chart.",
+        f"There is no path by water from {names[0]} to {names[1]} on this chart.",
         f"The network reaches {names[2]}, {away[best] / NAUTICAL_MILE:.1f} nm from the goal.",
         remedy,
         reasons={"land": sheet.grid.rejected},

@@ -1,4 +1,4 @@
-"""The geodesic grid of a coastline: nodes and legs that touch no land, kept on disk."""
+"""The geodesic grid of a coastline: nodes and legs that touch no land, cached on disk."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ from thalweg.network.global_grid.straits import FINEST_STRAIT_LEVEL, narrow_stra
 if TYPE_CHECKING:
     from thalweg.chart import Chart
 
-FORMAT: Final = 2  # raise when the arrays or the way they are made change
+FORMAT: Final = 2  # increase when the arrays or their construction change
 _BORDER_INDEX_SIDE: Final = 128
-_MAX_FILES: Final = 8  # grids kept on disk, the newest ones
+_MAX_FILES: Final = 8  # grids cached on disk, the newest ones
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def globe_grid(chart: Chart, fineness: GridResolution) -> GlobeGrid:
 
 @dataclass(frozen=True)
 class _GridRequest:
-    """What to make, and where it is kept; two orders for one file are the same."""
+    """A grid to build, and its file in the cache; two requests for one file are equal."""
 
     chart: Chart
     fineness: GridResolution

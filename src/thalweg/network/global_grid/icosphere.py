@@ -37,16 +37,16 @@ CrossingTest: TypeAlias = Callable[[FloatArray, FloatArray], BoolArray]
 
 @dataclass(frozen=True)
 class RefinementRule:
-    """Where a grid is halved beyond its level: faces with an edge that is crossed.
+    """Refinement of faces beyond the level of the grid: those with a crossed edge.
 
     Attributes
     ----------
     crossed : callable
-        Tells which edges (unit vectors of their ends) are crossed.
+        Returns which edges (unit vectors of their ends) are crossed.
     levels : int
-        How many levels such faces get.
+        Number of extra levels of such faces.
     deeper : callable, optional
-        How many more they get, by the unit vectors (F, 3) of their middles.
+        Number of further levels, by the unit vectors (F, 3) of the middles of faces.
     """
 
     crossed: CrossingTest
@@ -180,7 +180,7 @@ class _Subdivision:
         return np.asarray(middles[which.ravel()].reshape(keys.shape))
 
     def crossed_faces(self, faces: IntArray, crossed: CrossingTest) -> BoolArray:
-        """Return which faces have an edge that is crossed; every edge is asked once."""
+        """Return which faces have a crossed edge; every edge is tested once."""
         keys = np.concatenate([edge_keys(faces[:, s], faces[:, (s + 1) % 3]) for s in range(3)])
         edges, which = np.unique(keys, return_inverse=True)
         first, second = edge_vertices(edges)

@@ -30,7 +30,18 @@ _TO_GEODETIC = (
 
 
 def conformal_unit_vectors(lat: ArrayLike, lon: ArrayLike) -> FloatArray:
-    """Return unit vectors (..., 3) on the conformal sphere of positions [deg]."""
+    """Return unit vectors (..., 3) on the conformal sphere of positions [deg].
+
+    Parameters
+    ----------
+    lat, lon : array_like (...)
+        Positions on the ellipsoid [deg].
+
+    Returns
+    -------
+    ndarray (..., 3)
+        Unit vectors [-].
+    """
     phi, lam = np.radians(np.asarray(lat, float)), np.radians(np.asarray(lon, float))
     sine = np.clip(np.sin(phi), -1.0 + 1e-15, 1.0 - 1e-15)
     tan_chi = np.sinh(np.arctanh(sine) - _E * np.arctanh(_E * sine))
@@ -47,7 +58,20 @@ def conformal_positions(vectors: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def angle_to_point(vectors: FloatArray, point: FloatArray) -> FloatArray:
-    """Return the angle [rad] between unit vectors (..., 3) and one point (3,)."""
+    """Return the angle [rad] between unit vectors (..., 3) and one point (3,).
+
+    Parameters
+    ----------
+    vectors : ndarray (..., 3)
+        Unit vectors.
+    point : ndarray (3,)
+        Unit vector.
+
+    Returns
+    -------
+    ndarray (...)
+        Angles [rad].
+    """
     difference = vectors - point
     chord = np.sqrt(np.einsum("...k,...k->...", difference, difference))
     return 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from thalweg.chart import Chart
 
 _FINEST_COAST_SPACING = 1.5 * NAUTICAL_MILE
-_NODE_BUDGET = 60_000  # nodes of the open sea, and as many of the coasts, unless more are asked for
+_NODE_BUDGET = 60_000  # default limit of nodes at sea, and the same of nodes at coasts
 _MAX_NODE_BUDGET = 6_000_000
 _SLACK_GROWTH = 1.8
 _MAX_EXTRA_LEVELS = 2
@@ -108,9 +108,9 @@ def lattice(
     area : (south, north, west, east), optional
         Box [deg] to stay in.
     slack : float, optional
-        Nodes are kept when the shortest path start-node-goal is at most ``1 + slack`` times the
+        Nodes are used if the shortest path start-node-goal is at most ``1 + slack`` times the
         shortest path from start to goal; by default 1 under 100 nautical miles falling to 0.35
-        over 1000. ``math.inf`` keeps every node within the area or on the globe.
+        over 1000. ``math.inf`` uses every node within the area or on the globe.
     along : sequence of (lat, lon), optional
         A path from start to goal [deg], by great circles; only water near it is covered.
     width : float, optional
@@ -129,8 +129,8 @@ def lattice(
     InputError
         For values out of range, start or goal not on navigable water, or both the same.
     NoRouteError
-        If start and goal do not connect however large and fine the lattice is made, or not by a
-        path within ``detour``.
+        If start and goal do not connect on the largest and finest lattice, or not by a path within
+        ``detour``.
     """
     start, goal = check_endpoints(chart, start, goal)
     di, dj = unique_offsets(directions)
@@ -158,7 +158,7 @@ def lattice(
 
 
 def default_spacing(distance: float) -> float:
-    """Return the spacing [m] used for a distance [m] when none is asked for."""
+    """Return the spacing [m] used for a distance [m] by default."""
     return min(max(distance / 100.0, 100.0), 30.0 * NAUTICAL_MILE)
 
 
@@ -336,7 +336,7 @@ def _coarser(
     Raises
     ------
     InputError
-        If what is too fine was asked for.
+        If the requested spacing or number of levels is too fine.
     """
     spacing, coast, ends = sizes
     level = refusal.level
@@ -393,7 +393,7 @@ def _no_route(
     away = float(geodesy.distance(*nearest, *wish.goal)) / NAUTICAL_MILE
     names = [geodesy.format_position(*place) for place in (wish.start, wish.goal, nearest)]
     return NoRouteError(
-        f"There is no way by water from {names[0]} to {names[1]} on this chart.",
+        f"There is no path by water from {names[0]} to {names[1]} on this chart.",
         f"The network reaches {names[2]}, {away:.1f} nm from the goal.",
         "Choose another start or goal, a finer chart, or a finer spacing.",
         reasons=draft.rejected,

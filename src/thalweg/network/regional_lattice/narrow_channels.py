@@ -28,7 +28,7 @@ _MIN_WIDTH: Final = 50.0  # [m] narrower channels are not distinguished by width
 _MIN_LAND_SIZE: Final = 0.5  # open-sea spacings: smaller land is passed on its other side
 _MAX_NODES: Final = 2000
 _SHORE_SPACING: Final = 0.25  # widths: between places along a shore
-_THINNING_CELL: Final = 0.5  # widths: of which one place each is kept
+_THINNING_CELL: Final = 0.5  # in widths: one position per cell is used
 _NEAREST_SHORE_PLACES: Final = 16  # places searched around each for one on another shore
 _NEIGHBOURS: Final = 24
 _REACH: Final = 3.0  # spacings
@@ -116,7 +116,7 @@ def _shores(
 
 
 def _split_edges(edges: ShoreEdges, apart: float) -> tuple[ShoreEdges, IntArray]:
-    """Cut edges into parts at most ``apart`` [m] long; return also of which edge each part is."""
+    """Split edges into parts at most ``apart`` [m] long; return also the edge of each part."""
     a, b = edges
     parts = np.ceil(np.linalg.norm(b - a, axis=1) * MEAN_RADIUS / apart).astype(np.int64)
     parts = np.clip(parts, 1, _MAX_PARTS)

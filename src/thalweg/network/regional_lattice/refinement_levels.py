@@ -65,7 +65,7 @@ class Level:
         return first, ptr, self.j, self.around
 
     def where(self, keep: BoolArray, new_node: IntArray) -> Level:
-        """Return the level with only the nodes that are kept, renumbered."""
+        """Return the level with only the selected nodes, renumbered."""
         mine = keep[self.node]
         node = new_node[self.node[mine]].astype(np.int32)
         return Level(self.step, self.i[mine], self.j[mine], node, self.around)

@@ -98,7 +98,7 @@ class UnassembledLattice:
         return shortest_path_tree(self.edges.graph, weight, node).distance
 
     def where(self, keep: BoolArray) -> UnassembledLattice:
-        """Return the lattice with only the nodes that are kept (start and goal always are)."""
+        """Return the lattice with only the selected nodes, and start and goal."""
         keep = keep.copy()
         keep[-2:] = True
         if keep.all():

@@ -1,7 +1,7 @@
 """Networks on a model's nodes, sampled where their edges cross the sides of its triangles.
 
-Between nodes a model's fields are linear in each triangle, so the values where an edge crosses the
-sides tell all there is to know along it, and no other place need be held in memory than the nodes.
+The fields of a model are linear in each triangle. So the values where an edge crosses the sides of
+triangles determine the values along the whole edge, and only values at nodes are stored.
 """
 
 from __future__ import annotations

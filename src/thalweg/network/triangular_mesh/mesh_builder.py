@@ -73,12 +73,12 @@ def mesh(
         Nodes of the model [deg].
     triangles : array_like of int (M, 3), optional
         Triangles of the model. Legs that leave them (over holes, islands or the outside) are left
-        out. Without them nothing but the chart bounds the network.
+        out. Without them only the chart bounds the network.
     speed, curl : array_like (N,), optional
         Largest current [m/s] and largest dimensionless curl over time, 0 when not given.
     largest_spacing : float, optional
-        Nodes are thinned to at most this spacing [m], and less where the flow asks for it (see
-        `spacing_fraction`); by default all nodes are kept.
+        Nodes are thinned to at most this spacing [m], and less in strong or turning flow (see
+        `spacing_fraction`); by default all nodes are used.
     alpha, curl_power, speed_power : float, optional
         See `spacing_fraction`.
     rings : int, optional

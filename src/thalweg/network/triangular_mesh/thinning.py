@@ -45,10 +45,10 @@ def spacing_fraction(
 
 
 def thin_by_spacing(x: ArrayLike, y: ArrayLike, spacing: ArrayLike) -> BoolArray:
-    """Return which points of a plane are kept, in their order, no nearer than their spacing.
+    """Return a selection of points of a plane, in their order, no nearer than their spacing.
 
-    The first point is kept; every next one if and only if its distance to the nearest point kept
-    before is larger than its own spacing (all in one unit).
+    The first point is selected; every next one if and only if its distance to the nearest point
+    selected before is larger than its own spacing (all in one unit).
 
     Raises
     ------

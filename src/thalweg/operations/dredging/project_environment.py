@@ -262,7 +262,7 @@ def _node_at(network: Network, place: Position) -> int:
 
 
 def fixed_route_network(chart: Chart, route: Sequence[Position]) -> Network:
-    """Return a charted way as a network: one line, with waiting anywhere on it.
+    """Return a charted route as a network: one line of nodes where the ship may wait.
 
     Raises
     ------

@@ -71,7 +71,7 @@ def _sea(sources: Mapping[str, Any]) -> Sea:
         raise InputError(
             f"map is {mapping!r}.",
             "It names the variable of each quantity, such as map: {crs: 'EPSG:32611'}.",
-            "Write it that way.",
+            "Give the value in this form.",
             field="map",
         )
     named = [] if isinstance(tides, bool) else _as_list(tides)
@@ -84,7 +84,9 @@ def _sea(sources: Mapping[str, Any]) -> Sea:
 
 def _check_names(what: str, given: list[Any], possible: str) -> None:
     if not all(isinstance(name, (str, PathLike)) for name in given):
-        raise InputError(f"{what} is {given!r}.", possible, "Write it that way.", field=what)
+        raise InputError(
+            f"{what} is {given!r}.", possible, "Give the value in this form.", field=what
+        )
 
 
 def _check_estuary_sources(sources: Mapping[str, Any]) -> None:

@@ -52,7 +52,7 @@ def parse_start(value: Any) -> float:
         raise InputError(
             f"start is the number {value!r}.",
             "Times are ISO 8601 in UTC, such as 2026-01-01T06:30Z.",
-            "Write the time that way.",
+            "Give the time in this form.",
             field="start",
         )
     return parse_time(value)

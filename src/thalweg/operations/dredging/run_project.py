@@ -233,7 +233,7 @@ def no_passage_error(
 
 
 def _passable_depth(ways: SiteNetwork, loaded: Any) -> float:
-    """Return the greatest depth that some route has everywhere at its highest tides [m]."""
+    """Return the greatest least depth of all routes at their highest tides [m]."""
     low, high = -_MAX_DEPTH, _MAX_DEPTH
     limits = loaded.limits
 

@@ -1,6 +1,6 @@
 """`LegPlanner`: legs between any two places, planned on request.
 
-A simulation of vessels and sites asks for a leg from one place to another, at the present time and
+A simulation of vessels and sites requests a leg from one place to another, at the present time and
 load. The network, the frozen sea and the searches of each pair of places are prepared once.
 """
 

@@ -30,8 +30,8 @@ class CleaningRules:
     fastest : float
         Highest speed between two positions [m/s]; positions that need more are outliers.
     max_outliers : int
-        At most this number of successive positions are dropped as outliers; a longer run elsewhere
-        is kept, and the track is broken before and after it.
+        At most this number of successive positions are removed as outliers; a longer run at
+        another place remains, and the track is split before and after it.
     """
 
     longest_gap: float = 1800.0

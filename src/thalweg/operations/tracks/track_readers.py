@@ -192,7 +192,7 @@ def _one_vessel(
         return (known[0] if known else None), every
     listed = ", ".join(known[:10]) + (", ..." if len(known) > 10 else "")
     if vessel is None or names is None or str(vessel).strip() not in known:
-        asked = "none was chosen" if vessel is None else f"{vessel!r} was asked for"
+        asked = "none was chosen" if vessel is None else f"{vessel!r} was requested"
         raise InputError(
             f"The tracks are of {len(known)} named ships, and {asked}.",
             f"Ships: {listed or 'the file names none'}.",

@@ -85,7 +85,7 @@ def cut_segments(
     length: float = SEGMENT_DURATION,
     steady: bool = True,
 ) -> MeasuredSegments:
-    """Cut all sailing of a track into segments.
+    """Divide all sailing of a track into segments.
 
     Parameters
     ----------

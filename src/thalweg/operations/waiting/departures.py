@@ -53,13 +53,13 @@ class Departures:
         length = self._length
         if not (math.isfinite(length) and 0.0 < self.step <= length):
             raise InputError(
-                f"Departures every {self.step:g} s over {length:g} s are asked for.",
+                f"Departures every {self.step:g} s over {length:g} s were requested.",
                 "The step is positive and no longer than the window or period.",
                 "Correct them.",
             )
         if len(self) > MAX_DEPARTURES:
             raise InputError(
-                f"{len(self)} departures are asked for.",
+                f"{len(self)} departures were requested.",
                 f"A table holds at most {MAX_DEPARTURES}.",
                 "Use a longer step or a shorter window.",
             )

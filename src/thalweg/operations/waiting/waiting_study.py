@@ -133,7 +133,7 @@ def waiting_study(
     count = begin.size * waits.size * len(DEPARTURE_RULES)
     if not 0 < count <= MAX_PLANS:
         raise InputError(
-            f"{count} plans of waiting are asked for.",
+            f"{count} waiting plans were requested.",
             f"A study has 1 to {MAX_PLANS} plans: starts times waits times rules.",
             "Give at least one start and one wait, and fewer if there are too many.",
         )

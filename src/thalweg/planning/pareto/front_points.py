@@ -16,7 +16,20 @@ _MIN_COURSE_CHANGE = 2e-5
 
 
 def track_from_front_point(network: Network, point: Any) -> Track:
-    """Return a point of a network front as a track."""
+    """Return a point of a network front as a track.
+
+    Parameters
+    ----------
+    network : Network
+        The network of the front.
+    point : FrontPoint
+        A point of its front.
+
+    Returns
+    -------
+    Track
+        With waits and settings.
+    """
     path = np.asarray(point.path)
     wait = np.maximum(0.0, np.asarray(point.path_depart) - np.asarray(point.path_arrive))
     wait[-1] = 0.0

@@ -30,7 +30,7 @@ class ParetoFront:
     values : ndarray (n,)
         Of the routes of the plan, in their order.
     stages : tuple of str (n,)
-        Origin of each route: ``"fastest"`` (refined for time), ``"exact"``, ``"way round"`` (a
+        Source of each route: ``"fastest"`` (refined for time), ``"exact"``, ``"way round"`` (a
         fixed route with its best speeds), ``"polish"``, the evolutionary method, or ``"constant
         speed"`` (of the weather-blind route).
     ways : tuple of str (n,)
@@ -110,7 +110,20 @@ def lower_at(lower: FloatArray, time_h: float) -> float:
 
 
 def knee(time: FloatArray, value: FloatArray) -> int:
-    """Return the index of the point of a front farthest below the line through its ends."""
+    """Return the index of the point of a front farthest below the line through its ends.
+
+    Parameters
+    ----------
+    time : ndarray (n,)
+        Times of the points, ascending.
+    value : ndarray (n,)
+        Values of the points, descending.
+
+    Returns
+    -------
+    int
+        Index of the point.
+    """
     if len(time) < 3:
         return 0
     x = (time - time.min()) / max(float(np.ptp(time)), 1e-12)

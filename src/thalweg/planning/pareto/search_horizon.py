@@ -55,6 +55,18 @@ def extend_horizon(trade_off: TradeOffContext, network: Network) -> SearchHorizo
     first estimated from the speed in calm water. Where currents or weather make the ship slower,
     the period grows until the cheapest constant setting reaches the goal.
 
+    Parameters
+    ----------
+    trade_off : TradeOffContext
+        The plan and its prices.
+    network : Network
+        With start and goal.
+
+    Returns
+    -------
+    SearchHorizon
+        The frozen sea, the fastest path and the latest arrival.
+
     Raises
     ------
     InputError

@@ -26,7 +26,20 @@ _ICE_WARNING_LATITUDE = 72.0
 
 
 def route_warnings(context: PlanningContext, route: Route) -> list[str]:
-    """Return warnings about a route that limits do not cover."""
+    """Return warnings about a route that limits do not cover.
+
+    Parameters
+    ----------
+    context : PlanningContext
+        Request, data and ship of the plan.
+    route : Route
+        The evaluated route.
+
+    Returns
+    -------
+    list of str
+        One sentence for each warning.
+    """
     notes = ice_warnings(route) + data_gap_warnings(context, route)
     if not context.needs.limits.depth_checked:
         notes += shallow_water_warnings(context, route)
@@ -82,7 +95,24 @@ def provenance(
     networks: list[dict[str, Any]],
     speeds_kn: list[float | None],
 ) -> dict[str, Any]:
-    """Return the data needed to repeat a plan, as plain data."""
+    """Return the data needed to repeat a plan, as plain data.
+
+    Parameters
+    ----------
+    context : PlanningContext
+        Request, data and ship of the plan.
+    ends : list of Endpoint
+        End points and via points, in order.
+    networks : list of dict
+        Description of each network (`network_summary`).
+    speeds_kn : list of float or None
+        Ordered speed of each setting [kn]; None if there is none.
+
+    Returns
+    -------
+    dict
+        Plain data for a JSON file.
+    """
     from importlib.metadata import version
 
     table_error = dataclasses.asdict(context.table.error)
@@ -108,7 +138,24 @@ def provenance(
 def network_summary(
     network: Network, *, settled: int, depart: float, way: str = ""
 ) -> dict[str, Any]:
-    """Return the description of a network that was searched, for the provenance."""
+    """Return the description of a network that was searched, for the provenance.
+
+    Parameters
+    ----------
+    network : Network
+        The network that was searched.
+    settled : int
+        Number of nodes that the search settled.
+    depart : float
+        Departure [s since 1970-01-01T00:00Z].
+    way : str, optional
+        Name of the route alternative.
+
+    Returns
+    -------
+    dict
+        Plain data for a JSON file.
+    """
     facts = {
         "kind": network.meta.kind,
         "nodes": int(network.n_nodes),

@@ -30,7 +30,13 @@ _SEARCH_RINGS, _SEARCH_BEARINGS, _MAX_CANDIDATES = 40, 72, 40
 
 
 def check_argument_types(voyage: object, ship: object, sea: object, chart: object) -> None:
-    """Raise `InputError` when an argument of `plan` is not what it should be."""
+    """Raise `InputError` when an argument of `plan` is not what it should be.
+
+    Parameters
+    ----------
+    voyage, ship, sea, chart : object
+        Arguments of `plan`; required are a `Voyage`, `Ship`, `Sea` and `Chart`.
+    """
     wanted = {
         "voyage": (voyage, Voyage, "Voyage(start=..., goal=..., depart=...)"),
         "ship": (ship, Ship, "Ship.load(name or file) or Ship.simple(...)"),

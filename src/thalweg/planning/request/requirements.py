@@ -43,6 +43,22 @@ class Requirements:
 def derive_requirements(voyage: Voyage, *, ship: Ship, sea: Sea, chart: Chart) -> Requirements:
     """Check that the sea supplies what the ship and the voyage need.
 
+    Parameters
+    ----------
+    voyage : Voyage
+        The request.
+    ship : Ship
+        The ship that sails it.
+    sea : Sea
+        Currents, levels, waves and wind.
+    chart : Chart
+        Land, depth and zones.
+
+    Returns
+    -------
+    Requirements
+        Required variables, and the assumptions where data are absent.
+
     Raises
     ------
     MissingVariableError
@@ -105,7 +121,20 @@ def _required_depth(voyage: Voyage, ship: Ship, sea: Sea, chart: Chart, notes: l
 
 
 def required_under_keel_clearance(voyage: Voyage, ship: Ship) -> float:
-    """Return the required under-keel clearance [m]: that of the voyage, else of the ship file."""
+    """Return the required under-keel clearance [m]: that of the voyage, else of the ship file.
+
+    Parameters
+    ----------
+    voyage : Voyage
+        The request.
+    ship : Ship
+        The ship, with the clearance of its file.
+
+    Returns
+    -------
+    float
+        Clearance [m]; `Ship.min_under_keel_clearance` if the voyage gives none.
+    """
     if voyage.min_ukc_m is not None:
         return voyage.min_ukc_m
     return ship.min_under_keel_clearance

@@ -203,7 +203,26 @@ def isochrones(
     depart: float,
     until: float | None,
 ) -> np.ndarray:
-    """Return the earliest arrival at every node [s since 1970], up to a time if one is given."""
+    """Return the earliest arrival at every node [s since 1970], up to a time if one is given.
+
+    Parameters
+    ----------
+    context : PlanningContext
+        Request, data and ship of the plan.
+    network : Network
+        With start and goal.
+    frozen : FrozenSea
+        The sea at the stations of the network.
+    depart : float
+        Departure [s since 1970-01-01T00:00Z].
+    until : float or None
+        Latest arrival that is computed [s since 1970-01-01T00:00Z].
+
+    Returns
+    -------
+    ndarray (N,)
+        Arrivals [s since 1970-01-01T00:00Z]; inf where a node is not reached.
+    """
     everywhere = earliest_arrival(
         _ship_on_network(context, network, frozen, context.needs.limits),
         start=network.meta.start,

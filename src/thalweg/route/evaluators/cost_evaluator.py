@@ -52,7 +52,7 @@ class CostEvaluator:
 
     @property
     def chart(self) -> Chart | None:
-        """The chart that tracks keep clear of."""
+        """The chart whose land and zones tracks must avoid."""
         return self.evaluator.chart
 
     @property

@@ -63,7 +63,7 @@ class Polyline:
         return replace(self, lat=lat, lon=lon)
 
     def kept(self, index: IntArray) -> Polyline:
-        """Return the line through some of its points; joined legs keep the first setting."""
+        """Return the line through some of its points; joined legs get the first setting."""
         return Polyline(
             self.lat[index],
             self.lon[index],
@@ -75,7 +75,7 @@ class Polyline:
     def required_points(self, evaluator: PolylineEvaluator) -> NDArray[np.bool_]:
         """Return which points must stay: the ends and where the setting changes.
 
-        Evaluators of cost choose settings, so that only the ends and canals are kept.
+        Cost evaluators choose settings; for them only the ends and canals are fixed.
         """
         kept = evaluator.fixed_points(self.lat, self.lon)
         if not evaluator.chooses_settings:

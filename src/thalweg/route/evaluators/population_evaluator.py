@@ -69,7 +69,7 @@ class Evaluator:
 
     @property
     def chart(self) -> Chart | None:
-        """The chart that tracks keep clear of."""
+        """The chart whose land and zones tracks must avoid."""
         return self.time_evaluator.chart
 
     @property
@@ -269,8 +269,8 @@ def make_evaluator(
     prices : LegPrices, optional
         Prices of fuel, time, waiting and canal dues; by default 1 per kilogram of fuel.
     spacing : float, optional
-        Longest piece that legs are cut into [m]; by default half a cell of the raster, at least a
-        400th of ``total`` and at most 100 km.
+        Longest piece into which legs are split [m]; by default half a cell of the raster, at least
+        a 400th of ``total`` and at most 100 km.
     total : float
         Rough length of the tracks [m].
     canals : float64 array (C, 3), optional

@@ -97,7 +97,7 @@ class TimeEvaluator:
         return fixed
 
     def pieces(self, lat: FloatArray, lon: FloatArray) -> IntArray:
-        """Return how many pieces each leg of polylines (..., n) is cut into."""
+        """Return the number of pieces into which each leg of polylines (..., n) is split."""
         return np.maximum(2, np.ceil(rough_lengths(lat, lon) / self.spacing)).astype(np.int64)
 
     def sail(
@@ -224,7 +224,7 @@ def _least_depths(chart: Chart, legs: FloatArray) -> FloatArray:
     b = direct(lat1[leg], lon1[leg], direction, (number + 1) * part)
     beside = np.minimum(_CORRIDOR_HALF_WIDTH, 1e-3 * length)[leg]
     depth = np.full(len(leg), math.inf)
-    for side in (-0.5 * math.pi, 0.5 * math.pi):  # a corridor: the same however legs are cut
+    for side in (-0.5 * math.pi, 0.5 * math.pi):  # a corridor: independent of the division of legs
         ends = *direct(*a, direction + side, beside), *direct(*b, direction + side, beside)
         depth = np.minimum(depth, np.asarray(chart.depths.along(*ends), dtype=np.float64))
     least: FloatArray = np.minimum.reduceat(depth, first)

@@ -69,21 +69,21 @@ def _text_of(path: Path) -> str:
             raise InputError(
                 f"The route file {path.name!r} has {size / 1e6:.0f} MB.",
                 f"Files up to {LARGEST_FILE / 1e6:.0f} MB are read.",
-                "Cut it to the route.",
+                "Reduce it to the route.",
                 file=str(path),
             )
         return path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(
             f"The route file {path.name!r} is not text (UTF-8).",
-            "",
+            "Route files are text in UTF-8.",
             "Save it as UTF-8 text.",
             file=str(path),
         ) from None
     except OSError as error:
         raise InputError(
             f"The route file {str(path)!r} cannot be read: {error.strerror}.",
-            "",
-            "Check the path.",
+            "The file must exist and be readable.",
+            "Check the path and its permissions.",
             file=str(path),
         ) from None

@@ -43,7 +43,9 @@ def parse_csv(text: str) -> ParsedTrack:
         rows = [row for row in csv.reader(io.StringIO(text.lstrip()), delimiter=separator) if row]
     except csv.Error as error:
         raise InputError(
-            f"The CSV cannot be read: {error}.", "", "Check its quotes and that it is a table."
+            f"The CSV cannot be read: {error}.",
+            "A route is a table with a header and one waypoint per row.",
+            "Check its quotes and that it is a table.",
         ) from None
     header = [_bare(name) for name in rows[0]] if rows else []
     lat, lon = _column(header, "lat"), _column(header, "lon")

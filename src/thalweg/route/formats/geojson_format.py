@@ -1,4 +1,4 @@
-"""Routes as GeoJSON (RFC 7946): lines cut at the antimeridian, positions as [lon, lat]."""
+"""Routes as GeoJSON (RFC 7946): lines split at the antimeridian, positions as [lon, lat]."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.route.formats.parsed_track import ParsedTrack, position_of, waypoint_order
 from thalweg.route.route import Route
 
-_LINE_SPACING = 20.0 * NAUTICAL_MILE  # legs are geodesics, GeoJSON lines are not: cut them finely
+_LINE_SPACING = 20.0 * NAUTICAL_MILE  # legs are geodesics, GeoJSON lines are not: use short pieces
 _KINDS = "LineString, MultiLineString or Points"
 
 
 def parse_geojson(text: str) -> ParsedTrack:
     """Read the first line of a GeoJSON text, or its points in order.
 
-    Lines that continue from the end of the one before are one line, and lines cut at the
+    Lines that continue from the end of the one before are one line, and lines split at the
     antimeridian are joined; other lines are other routes. Where there are both lines and points,
     the points are taken if there are two or more (they are the waypoints, with their ``waiting_h``
     and ``ordered_speed_kn``), else the lines.
@@ -37,7 +37,9 @@ def parse_geojson(text: str) -> ParsedTrack:
         data = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise InputError(
-            f"The GeoJSON cannot be read: {error}.", "", "Check that the file is whole."
+            f"The GeoJSON cannot be read: {error}.",
+            "The file must be JSON text as in RFC 7946.",
+            "Check that the file is complete.",
         ) from None
     lines: list[list[list[Any]]] = []
     points: list[tuple[Any, dict[str, Any]]] = []
@@ -127,7 +129,9 @@ def _geometries(data: Any) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
 def _listed(value: Any) -> list[Any]:
     if not isinstance(value, list):
         raise InputError(
-            "The GeoJSON has coordinates or features that are not lists.", "", "Check the file."
+            "The GeoJSON has coordinates or features that are not lists.",
+            "RFC 7946 requires lists of features and of [lon, lat] positions.",
+            "Correct the file.",
         )
     return value
 
@@ -143,7 +147,7 @@ def _position(item: Any, number: int) -> Position:
 
 
 def _without_cuts(positions: list[Position]) -> list[Position]:
-    """Return points without those where a line was cut at the antimeridian."""
+    """Return points without those where a line was split at the antimeridian."""
     kept: list[Position] = []
     for index, (lat, lon) in enumerate(positions):
         beside = positions[max(index - 1, 0) : index] + positions[index + 1 : index + 2]
@@ -155,7 +159,7 @@ def _without_cuts(positions: list[Position]) -> list[Position]:
 
 
 def _line_parts(route: Route) -> list[list[list[float]]]:
-    """Return the line as lists of [lon, lat], cut where it crosses the antimeridian."""
+    """Return the line as lists of [lon, lat], split where it crosses the antimeridian."""
     track = route.track
     lat, lon, _ = densify(track.lat, track.lon, _LINE_SPACING)
     parts: list[list[list[float]]] = [[[float(lon[0]), float(lat[0])]]]

@@ -41,7 +41,9 @@ def parse_gpx(text: str) -> ParsedTrack:
         root = fromstring(text)
     except (ElementTree.ParseError, DefusedXmlException) as error:
         raise InputError(
-            f"The GPX cannot be read: {error}.", "", "Check that the file is whole."
+            f"The GPX cannot be read: {error}.",
+            "The file must be well-formed XML.",
+            "Check that the file is complete.",
         ) from None
     points = _points(root, "rte", "rtept") or _points(root, "trk", "trkpt")
     if not points:

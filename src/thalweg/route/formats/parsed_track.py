@@ -51,6 +51,18 @@ LONGEST_WAIT = 366.0 * DAY  #: [s]
 def waypoint_order(values: Mapping[str, object], number: int) -> WaypointOrder:
     """Return what a file orders at the numbered waypoint (from 1), by name; blanks are none.
 
+    Parameters
+    ----------
+    values : mapping of str to object
+        Values of the file at the waypoint, by name.
+    number : int
+        Number of the waypoint, for messages.
+
+    Returns
+    -------
+    WaypointOrder
+        Wait, setting and speed.
+
     Raises
     ------
     InputError
@@ -86,12 +98,30 @@ def number_of(text: object, what: str, remedy: str = "Give degrees, such as 52.5
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"The {what} is {text!r}, not a number.", "", remedy, value=text)
+        raise InputError(
+            f"The {what} is {text!r}, not a number.",
+            "Decimal numbers are possible.",
+            remedy,
+            value=text,
+        )
     return value
 
 
 def position_of(lat: object, lon: object, number: int) -> Position:
-    """Return a checked position of the numbered waypoint (from 1)."""
+    """Return a checked position of the numbered waypoint (from 1).
+
+    Parameters
+    ----------
+    lat, lon : object
+        Numbers or text in degrees.
+    number : int
+        Number of the waypoint, for messages.
+
+    Returns
+    -------
+    (lat, lon)
+        Position [deg].
+    """
     what = f"waypoint {number}"
     return check_position(
         number_of(lat, f"latitude of {what}"), number_of(lon, f"longitude of {what}"), what

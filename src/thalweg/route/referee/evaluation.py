@@ -110,8 +110,8 @@ def evaluate(
     route that waits, the time between two of them is part of the tolerance, since its waits may be
     too short by as much. Wind is relative to the moving water; angles of wind and waves are from
     the heading. A waiting ship burns the fuel of its hotel load and does not drift (it is at
-    anchor); only its clearance is checked, and not at the first waypoint, where it is at its berth.
-    If the sea has no current variables, still water is assumed, and the route states this.
+    anchor); only its clearance is checked, and not at the first waypoint, where the ship is at its
+    berth. If the sea has no current variables, still water is assumed, and the route states this.
 
     Fuel is priced per piece: the exact share inside the emission control areas of the chart at the
     terms inside, the rest at those outside, times the factor of price zones. A leg from one end of

@@ -68,7 +68,7 @@ class TrackPoints:
 
 @dataclass(frozen=True)
 class TrackPieces:
-    """A track cut into short pieces, with its legs.
+    """A track split into short pieces, with its legs.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ class TrackPieces:
 def cut_into_pieces(
     track: Track, step: float, least: int, chart: Chart | None = None
 ) -> TrackPieces:
-    """Cut every leg into equal pieces.
+    """Split every leg into equal pieces.
 
     Parameters
     ----------

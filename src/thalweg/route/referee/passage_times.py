@@ -18,7 +18,7 @@ SlownessFunction = Callable[
 ]
 
 TIME_TOLERANCE = 1e-5  #: change of any time [s] that ends the iteration
-_MAX_ITERATIONS = 14  # iterations before a stretch is cut
+_MAX_ITERATIONS = 14  # iterations before a stretch is split
 _MIN_WINDOW = 64  # least number of pieces solved next, after one that did not converge
 _MAX_ITERATIONS_SINGLE_PIECE = 60  # iterations on a single piece
 # Butcher's matrix of the two-stage Gauss method (Hairer, Norsett & Wanner 1993, table II.7.3)

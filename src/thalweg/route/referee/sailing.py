@@ -22,7 +22,7 @@ from thalweg.route.track import Track
 
 @dataclass(frozen=True)
 class SailedTrack:
-    """A track, cut and sailed at one step size.
+    """A track, divided into pieces and sailed at one step size.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class SailedTrack:
 def sail_track(
     world: SailingEnvironment, track: Track, step: float, least: int, coarse: SailedTrack | None
 ) -> SailedTrack:
-    """Cut and sail a track; a coarser solution gives the first guess.
+    """Divide a track into pieces and sail it; a coarser solution gives the first guess.
 
     Parameters
     ----------
@@ -115,6 +115,24 @@ def sailing_state_along(
     """Return the motion of the ship at points of a track, some of which may be in canals.
 
     In canals the speed is that of the canal, and the sea is not sampled.
+
+    Parameters
+    ----------
+    world : SailingEnvironment
+        Ship, sea and chart.
+    canals : CanalLegs
+        Legs of the track in canals.
+    points : TrackPoints
+        Positions and courses.
+    time : ndarray (n,)
+        Times [s since 1970-01-01T00:00Z].
+    guess : ndarray (n,), optional
+        Speeds [m/s] from which an iteration starts.
+
+    Returns
+    -------
+    SailingState
+        Speeds, headings and conditions at the points.
     """
     fixed = canals.speed[points.leg]
     free = np.flatnonzero(np.isnan(fixed))
@@ -166,7 +184,20 @@ def _least_charted_depths(world: SailingEnvironment, pieces: TrackPieces) -> Flo
 
 
 def data_spacings(world: SailingEnvironment, share: float) -> list[float]:
-    """Return a share of the spacing of every source of data that is sampled [m]."""
+    """Return a share of the spacing of every source of data that is sampled [m].
+
+    Parameters
+    ----------
+    world : SailingEnvironment
+        Ship, sea and chart.
+    share : float
+        Fraction of the spacing of the data [-].
+
+    Returns
+    -------
+    list of float
+        Lengths [m].
+    """
     return [
         row.spacing_deg * METRES_PER_DEGREE * share
         for row in world.sea.coverage()

@@ -147,7 +147,24 @@ def make_sailing_environment(ship: Ship, sea: Sea, chart: Chart | None) -> Saili
 def sample_sea_and_depth(
     world: SailingEnvironment, points: TrackPoints, time: FloatArray
 ) -> tuple[dict[str, FloatArray], FloatArray]:
-    """Return (sampled sea variables, water depth [m]) at points and times."""
+    """Return (sampled sea variables, water depth [m]) at points and times.
+
+    Parameters
+    ----------
+    world : SailingEnvironment
+        Ship, sea and chart.
+    points : TrackPoints
+        Positions and courses.
+    time : ndarray (n,)
+        Times [s since 1970-01-01T00:00Z].
+
+    Returns
+    -------
+    sampled : dict of str to ndarray
+        Sea variables by CF standard name [SI].
+    depth : ndarray (n,)
+        Water depth [m]; NaN where unknown.
+    """
     sampled = world.sea.sample(world.names, time, points.lat, points.lon)
     if WAVE_HEIGHT in sampled and WAVE_NORTH in sampled:  # no waves have no direction
         flat = (sampled[WAVE_HEIGHT] == 0.0) & ~np.isfinite(sampled[WAVE_NORTH])
@@ -205,7 +222,28 @@ def conditions_at(
     depth: FloatArray,
     heading: FloatArray,
 ) -> Conditions:
-    """Return the conditions a ship model reads."""
+    """Return the conditions a ship model reads.
+
+    Parameters
+    ----------
+    world : SailingEnvironment
+        Ship, sea and chart.
+    points : TrackPoints
+        Positions and courses.
+    time : ndarray (n,)
+        Times [s since 1970-01-01T00:00Z].
+    sampled : dict of str to ndarray
+        Sea variables by CF standard name [SI].
+    depth : ndarray (n,)
+        Water depth [m].
+    heading : ndarray (n,)
+        Headings [rad from north].
+
+    Returns
+    -------
+    Conditions
+        For the model of the ship.
+    """
     crab = (heading - points.course + math.pi) % (2.0 * math.pi) - math.pi
     more = {"depth": depth, "crab_angle": crab} if world.has_depth else {"crab_angle": crab}
     return Conditions.from_sea(

@@ -132,7 +132,7 @@ def compass_search_of_tracks(lines: ScoredTracks, *, radius: float) -> ScoredTra
     Returns
     -------
     ScoredTracks
-        Nowhere worse.
+        With costs that are not higher than before.
     """
     row, place = np.nonzero(lines.free)
     if not len(row):

@@ -1,4 +1,4 @@
-"""Corner cutting: corners of a line are cut off as far as obstacles allow, again and again."""
+"""Corner cutting: corners of a line are cut off repeatedly, as far as obstacles allow."""
 
 from __future__ import annotations
 

@@ -101,9 +101,9 @@ def polish(
     Returns
     -------
     Route
-        Evaluated by the referee and not worse than the given one: it keeps every limit, costs no
+        Evaluated by the referee and not worse than the given one: it violates no limit, costs no
         more and arrives no later than ``arrive_by``. The given one if no better route is found.
-        Canals and waits are kept.
+        Canals and waits do not change.
 
     Raises
     ------

@@ -114,7 +114,7 @@ def optimise_lateral_offsets(
     Returns
     -------
     LateralProblem
-        Tracks that are nowhere worse.
+        Tracks with costs that are not higher than before.
 
     Notes
     -----

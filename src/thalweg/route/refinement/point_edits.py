@@ -102,7 +102,7 @@ def _remove_in_place(population: Population, k: int, out: IntArray, first: BoolA
 
 
 def split_long_legs(lines: ScoredTracks, *, legs: int) -> ScoredTracks:
-    """Return tracks with legs longer than a share 1 / ``legs`` of the length cut in the middle.
+    """Return tracks with legs longer than a share 1 / ``legs`` of the length split at their middle.
 
     The values stay the same; the tracks have more points to move.
 

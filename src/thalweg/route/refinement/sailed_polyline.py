@@ -47,7 +47,7 @@ def optimise_line_offsets(
     Returns
     -------
     Polyline
-        Nowhere worse; see `optimise_lateral_offsets`.
+        With a cost that is not higher; see `optimise_lateral_offsets`.
     """
     tracks = SailedPolyline.of(line, evaluator)
     if not np.isfinite(tracks.value).all() or len(line) < 3:
@@ -73,7 +73,7 @@ class SailedPolyline:
 
     @classmethod
     def of(cls, line: Polyline, evaluator: PolylineEvaluator) -> SailedPolyline:
-        """Sail a line and keep it with its cost."""
+        """Return a line with its cost and times, as evaluated."""
         return cls(line, evaluator, float(evaluator.sail(line.batch())[1][0]))
 
     @property

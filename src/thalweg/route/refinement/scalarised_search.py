@@ -54,7 +54,7 @@ def scalarised_local_search(
     Returns
     -------
     ScoredTracks
-        Nowhere worse.
+        With costs that are not higher than before.
 
     Notes
     -----

@@ -49,7 +49,7 @@ class ScoredTracks:
 
     @classmethod
     def of(cls, evaluator: Evaluator, population: Population, price: FloatArray) -> ScoredTracks:
-        """Sail tracks and keep them with their prices."""
+        """Return tracks with their times, costs and prices, as evaluated."""
         scores, arrive = evaluator.sail(population)
         return cls(evaluator, population, price, scores, arrive)
 

@@ -12,7 +12,7 @@ from thalweg.core.geodesy import MEAN_RADIUS, unit_vectors
 from thalweg.route.route import Route
 from thalweg.route.track import Track
 
-_NOT_SIMPLIFIED_UP_TO = 16  # waypoints; shorter routes are kept as they are
+_NOT_SIMPLIFIED_UP_TO = 16  # waypoints; shorter routes are not changed
 #: Largest lateral offset of the route, as shares of its length, widest first.
 _OFFSET_TOLERANCES = (1e-3, 2e-4, 4e-5, 1e-5, 2e-6)
 _MAX_COST_INCREASE = 6e-5  # relative increase of the cost of the simplified route
@@ -39,13 +39,13 @@ def simplified_route(
     most : float
         Largest cost of the simplified route.
     held : bool array, optional
-        Waypoints that are kept, such as ends of canals.
+        Waypoints that are not removed, such as ends of canals.
 
     Returns
     -------
     Route
-        The given one, or one through some of its waypoints that keeps every limit and costs at
-        most 6e-5 more. Waypoints where the ship waits or changes its setting are kept.
+        The given one, or one through some of its waypoints that violates no limit and costs at
+        most 6e-5 more. Waypoints where the ship waits or changes its setting are not removed.
     """
     track = route.track
     if len(track.lat) <= _NOT_SIMPLIFIED_UP_TO or not route.feasible:

@@ -75,7 +75,7 @@ def smooth(
     limits : Limits
         Limits along the route (`thalweg.core.limits.Limits`).
     chart : Chart, optional
-        Land, zones and charted depth that are kept clear.
+        Land, zones and charted depth that the track must avoid.
     objective : {"time", "distance"}
     wait : bool, optional
         Whether the ship may wait where it did not before; by default only if it waits somewhere.

@@ -45,7 +45,7 @@ def choose_speeds(
     latest : float
         Latest arrival [s after the origin].
     whole : bool
-        Do not split legs: the line keeps its waypoints.
+        Do not split legs: the waypoints of the line do not change.
 
     Returns
     -------
@@ -188,7 +188,7 @@ def choose_speeds_of_tracks(lines: ScoredTracks, *, rounds: int = 3) -> ScoredTr
     Returns
     -------
     ScoredTracks
-        Nowhere worse.
+        With costs that are not higher than before.
     """
     for _ in range(rounds):
         before = lines.value

@@ -52,7 +52,7 @@ class VerticalLayers:
         return int(np.argmin(self.top))
 
     def describe(self) -> str:
-        """Return their number and kind in words."""
+        """Return their number and kind as text."""
         return f"{self.top.size} {'sigma' if self.is_sigma else 'z'} layers"
 
     def shares(self, draught: float, column: FloatArray) -> FloatArray:

@@ -112,7 +112,7 @@ def _message_length(head: bytes) -> int | None:
 
 
 def _decode(path: Path, folder: Path) -> list[dict[str, Any]]:
-    # -P keeps this folder off the module path, where its modules could hide other packages
+    # -P removes this folder from the module path, where its modules could hide other packages
     command = [sys.executable, "-P", str(WORKER), str(path.resolve()), str(folder)]
     try:
         done = subprocess.run(

@@ -1,10 +1,10 @@
 """UGRID: unstructured meshes of triangles, or of polygons divided into triangles.
 
-Values at nodes are linear in each triangle. Values of faces are kept at the centre of the face and
-averaged to its nodes (over the faces that are known at that time, weighted by the inverse of the
-distance to their centres). Each face is divided into triangles between its centre and its edges,
-and values are linear in those. So a field is continuous, has the file's value at every face centre,
-and is unknown throughout a face that is unknown (dry).
+Values at nodes are linear in each triangle. Values of faces are stored at the centre of the face
+and averaged to its nodes (over the faces that are known at that time, weighted by the inverse of
+the distance to their centres). Each face is divided into triangles between its centre and its
+edges, and values are linear in those. So a field is continuous, has the file's value at every face
+centre, and is unknown throughout a face that is unknown (dry).
 """
 
 from __future__ import annotations

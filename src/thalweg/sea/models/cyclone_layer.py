@@ -156,7 +156,7 @@ class StormLayer:
         """Return all fields: the ambient sea, and the vortex within its outer radius.
 
         Waves are those of the local wind over the equivalent fetch. Within the radius of maximum
-        wind they keep the height at that radius, because waves do not decay in the eye as the
+        wind they have the height at that radius, because waves do not decay in the eye as the
         wind does.
         """
         values = self._ambient_fields(dot.shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -75,11 +76,11 @@ def vortex_state(track: BestTrack, time: FloatArray) -> VortexState:
     radius = formulas.radius_of_maximum_wind_willoughby2006(wind, lat)
     coriolis = formulas.coriolis_parameter(lat)
     turning = np.abs(coriolis) * np.maximum(symmetric, 1.0)
-    surplus = b * deficit / (formulas.AIR_DENSITY * np.e) - symmetric**2
+    surplus = b * deficit / (formulas.AIR_DENSITY * math.e) - symmetric**2
     radius = np.clip(
         surplus / np.maximum(turning, 1e-9), radius, np.maximum(radius, MAX_WIND_RADIUS)
     )
-    fitted = formulas.AIR_DENSITY * np.e * (symmetric**2 + turning * radius) / b
+    fitted = formulas.AIR_DENSITY * math.e * (symmetric**2 + turning * radius) / b
     fetch = formulas.equivalent_fetch_young2013(wind, np.hypot(east, north), radius)
     centre = unit_vectors(lat, lon)
     return VortexState(centre, coriolis, radius, fitted, b, symmetric, added, fetch)

@@ -152,7 +152,7 @@ def automatic_times(start: float, end: float, time_step: float | None = None) ->
 
 
 def constant_layer(values: Mapping[str, float], label: str) -> FormulaLayer:
-    """Return a layer with the same values [SI] everywhere and at all times.
+    """Return a layer with constant values [SI].
 
     Parameters
     ----------

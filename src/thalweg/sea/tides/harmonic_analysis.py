@@ -354,7 +354,7 @@ def _check_record(times: FloatArray, records: Mapping[str, NDArray[np.floating]]
             raise InputError(
                 f"The record of {name!r} has shape {values.shape} for {times.size} times.",
                 "The shape must be (times,) or (nodes, times).",
-                "Transpose or cut it.",
+                "Transpose it, or select the part of equal length.",
                 field=name,
             )
         if not np.isfinite(values).any():

@@ -1,4 +1,4 @@
-"""Series of water level as their keepers write them: NOOS (Matroos) and DIA (Donar).
+"""Readers for series of water level in the formats NOOS (Matroos) and DIA (Donar).
 
 * NOOS: a header of ``# Key : value`` lines, then ``YYYYMMDDhhmm value`` in metres.
 * DIA (Rijkswaterstaat): blocks of ``KEY;value`` lines; ``TYD`` gives start, end and step; after

@@ -142,7 +142,7 @@ def read_record(
 
 
 def readable_name(name: str) -> str:
-    """Return the first part of a canonical name in words, for messages."""
+    """Return the first part of a canonical name as plain text, for messages."""
     return name.split("_above_")[0].replace("_", " ")
 
 

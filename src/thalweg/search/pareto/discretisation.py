@@ -1,4 +1,4 @@
-"""How a front divides time: bins, slices of the tables of edges, windows of nodes, and memory."""
+"""Division of time for a front: bins, slices of edge tables, windows of nodes, and memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the front is searched in: network, sea, a ship with settings, prices, and bounds."""
+"""The problem of a front: network, sea, a ship with settings, prices, and bounds."""
 
 from __future__ import annotations
 
@@ -400,7 +400,7 @@ def ship_at_setting(ship: ShipArrays, setting: int) -> ShipArrays:
 
 
 def without_wave_limits(ship: ShipArrays) -> ShipArrays:
-    """Return a ship that nothing is forbidden in waves: never slower than itself."""
+    """Return a ship without limits in waves; it is never slower than the ship itself."""
     none = np.empty(0), np.empty((0, 0, 0), np.float32), np.empty((0, 0))
     table = ship.table._replace(safety=none[0], motions=none[1], motion_grid=none[2])
     return ship._replace(table=table, needs=int(axes_needed(table)))

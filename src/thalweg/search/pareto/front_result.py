@@ -64,7 +64,7 @@ class FrontWork:
     pruned : int
         Labels dropped because they could not lead to the front.
     slices : int
-        Times at which the tables of edges stand.
+        Times at which edges are tabulated.
     table_error : float
         Difference between these tables and the legs themselves, as a share, met on a sample of
         edges at times between slices (95th percentile).
@@ -94,7 +94,7 @@ class NetworkFront:
         By ascending time and falling cost.
     lower_time, lower_cost : float64[L]
         The lower front: no path on the network that takes at most a time costs less than the
-        last value up to that time. Empty when it was not asked for.
+        last value up to that time. Empty if it was not requested.
     bin_s : float
         Width of the bins of time [s].
     work : FrontWork
@@ -181,7 +181,7 @@ def cheapest(front: NetworkFront, arrive_by: float | None = None) -> FrontPoint:
     if not in_time:
         earliest = front.fastest.arrive
         raise InputError(
-            f"No way arrives by {arrive_by:.0f} s.",
+            f"No path arrives by {arrive_by:.0f} s.",
             f"The earliest arrival is {earliest:.0f} s, "
             f"{(earliest - arrive_by) / 3600.0:.2f} h later.",
             "Ask for a later arrival or depart earlier.",

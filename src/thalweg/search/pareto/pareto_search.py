@@ -105,37 +105,37 @@ def pareto_front(
     ------
     InputError
         If the latest arrival is before the earliest possible (``details["earliest"]``), if the
-        memory does not suffice (``details["memory"]``), or if the request makes no sense.
+        memory does not suffice (``details["memory"]``), or if a value of the request is invalid.
     NoRouteError
         If there is no path at all, with the reasons.
 
     Notes
     -----
     Time-expanded dynamic programming: every node holds one label, the cheapest, in each bin of
-    time; bins are processed in order, and every label is sailed on along all edges at all
-    settings. What is exact and what is not:
+    time; bins are processed in order, and every label is extended along all edges at all
+    settings. Exactness:
 
-    * A label keeps its own time, not that of its bin, and every point of the front is sailed
-      again, leg by leg, with the kernel that `earliest_arrival` sails with: its time and cost
-      are those of a real path. The fastest point is that of `earliest_arrival` at the highest
-      setting, as exact as that is; with limits in waves, which a lower setting may keep where the
-      highest does not, it is the fastest path found.
-    * One label per bin is not always the right one: a dearer label of the same bin may be
-      earlier by less than the bin and win later. So the front is on or above the true one,
-      and nearer the narrower the bins are.
+    * A label has its own time, not that of its bin, and every point of the front is sailed
+      again, leg by leg, with the kernel of `earliest_arrival`: its time and cost are those of a
+      real path. The fastest point is that of `earliest_arrival` at the highest setting, with the
+      same accuracy. With limits in waves a lower setting may be allowed where the highest is not;
+      the fastest point is then the fastest path found.
+    * One label per bin can be the wrong one: a label of the same bin with a higher cost may be
+      earlier by less than the bin and lead to a better path. So the front is on or above the true
+      one, and approaches it as the bins narrow.
     * While searching, durations and costs of edges are interpolated linearly between departures at
       slices of time (``work.slices``; chosen so that the interpolation is right within 0.1 % at 95
-      % of a sample, see ``work.table_error``, or the tables would be too large). This may mislead
-      a choice, not a number: all points are sailed again. Where an edge opens or closes between two
-      slices it is sailed exactly.
+      % of a sample, see ``work.table_error``, or the tables would be too large). This may affect
+      a choice, but no result: all points are sailed again. Where an edge opens or closes between
+      two slices it is sailed exactly.
     * Where the ship may wait, a label is dropped if an earlier one costs no more with the waiting
       in between paid: exact, since the earlier ship can wait. A waiting ship leaves at slices, and
       where an edge is closed at all settings at one of the slices around, at the start of any bin.
-      Elsewhere (and with ``wait=False`` everywhere) labels are compared inside a bin only.
+      At other nodes (and at all nodes with ``wait=False``) labels are compared inside a bin only.
     * The lower front is the larger of two bounds. One lets every arrival count for the start of
       its bin and leaves at any moment of the bin, whatever is earliest and cheapest; it closes as
-      the bins narrow. The other is the least cost plus a price of time, for up to 6 prices, which
-      loses nothing to the bins but bounds the lower hull of the front only. Both take an edge at
+      the bins narrow. The other is the least cost plus a price of time, for up to 6 prices; it
+      has no error from the bins but bounds the lower hull of the front only. Both take an edge at
       the most favourable moment of the bin, less twice the difference to the leg itself midway
       between the two slices around, at the lowest and the highest setting. Both let a ship wait
       without end where it may wait at all; waiting then costs no more than sailing at its cheapest.
@@ -143,8 +143,8 @@ def pareto_front(
       difference, and no edge that is closed at both slices opens for a moment between them. An edge
       open at one slice only is considered up to when it closes, less 1 %.
     * Labels are dropped as well when even the largest currents along the edges, the best weather
-      and the best prices of every edge do not lead them below what is known of the goal. This
-      loses nothing.
+      and the best prices of every edge do not lead them below the known arrivals at the goal. This
+      does not affect the result.
     """
     network, request = ship_on_network.network, _request(ship_on_network, query)
     _check_bin_width(bin_s)
@@ -234,7 +234,7 @@ def _set_labels(
 
 
 class _SeedPaths(NamedTuple):
-    """Ways to begin with, and what to raise if there are none in the end."""
+    """Seed paths, and the error to raise if the search finds no path."""
 
     points: list[FrontPoint]
     refusal: InputError | NoRouteError | None
@@ -258,7 +258,7 @@ def _find_seed_paths(
         refusal = _no_route(network, front_problem, request)
     elif arrive > request.latest:
         refusal = InputError(
-            f"No way arrives by {request.latest:.0f} s.",
+            f"No path arrives by {request.latest:.0f} s.",
             f"The earliest arrival is {arrive:.0f} s, {(arrive - request.latest) / 3600:.2f} h "
             "later.",
             "Ask for a later arrival, depart earlier or allow a higher setting.",
@@ -299,7 +299,7 @@ def _no_route(network: Network, front_problem: FrontProblem, request: FrontReque
     off = distance_bounds(lat[reached], lon[reached], *to)
     nearest = int(reached[np.argmin(off)])
     return NoRouteError(
-        f"There is no way from node {request.start} to node {request.goal}.",
+        f"There is no path from node {request.start} to node {request.goal}.",
         "Edges were refused: " + ", ".join(f"{n} {why}" for why, n in reasons.items()) + "."
         if reasons else "The network does not link the two.",
         "Relax the limits or take another departure.",
@@ -326,13 +326,13 @@ def _request(ship_on_network: MultiSettingShipOnNetwork, query: FrontQuery) -> F
         raise InputError(
             f"The settings {chosen.tolist()} are not all the ship's.",
             f"It has settings 0 to {count - 1}.",
-            "",
+            "Give settings of the ship.",
         )
     if not (0 <= start < network.n_nodes and 0 <= goal < network.n_nodes and start != goal):
         raise InputError(
-            f"There is no way from node {start} to node {goal} to search for.",
-            f"The network has nodes 0 to {network.n_nodes - 1}; start and goal differ.",
-            "",
+            f"A search from node {start} to node {goal} is not possible.",
+            f"The network has nodes 0 to {network.n_nodes - 1}; start and goal must differ.",
+            "Give two nodes of this network.",
         )
     if not (math.isfinite(depart) and math.isfinite(latest) and latest > depart):
         raise InputError(

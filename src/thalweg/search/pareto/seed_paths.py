@@ -79,6 +79,22 @@ def seed_paths(
     They are the fastest path, and the best for each price of time in the most favourable weather,
     at every setting and at two settings one after the other. Those that take too long are left out.
     A dense front known from the beginning avoids most labels.
+
+    Parameters
+    ----------
+    front_problem : FrontProblem
+        Network, sea, ship and prices.
+    request : FrontRequest
+        Nodes, times and settings.
+    fastest : PlannedPath
+        The earliest arrival.
+    bounds : BoundsToGoal
+        Lower bounds of time and cost to the goal.
+
+    Returns
+    -------
+    list of FrontPoint
+        Sailed paths.
     """
     paths = [fastest]
     known = {fastest.states.tobytes()}
@@ -158,7 +174,17 @@ def _path_through(front_problem: FrontProblem, path: IntArray) -> PlannedPath:
 
 
 def tighten_target(target: LabelTarget, clock: TimeBins, point: FrontPoint) -> None:
-    """Lower what is known of arriving at the goal by a point."""
+    """Lower what is known of arriving at the goal by a point.
+
+    Parameters
+    ----------
+    target : LabelTarget
+        Upper bounds of the cost at the goal; changed in place.
+    clock : TimeBins
+        The division of time.
+    point : FrontPoint
+        A sailed path.
+    """
     b = int(point.time / clock.width) + 1
     np.minimum(target.upper[b:], point.cost, out=target.upper[b:])
 

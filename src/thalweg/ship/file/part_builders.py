@@ -61,6 +61,22 @@ def with_safety_limits(
 ) -> ShipLimits:
     """Return limits with those of safety and comfort in a ship file.
 
+    Parameters
+    ----------
+    limits : ShipLimits
+        Limits of wave height and wind speed.
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+    loading : Loading
+        Its loading.
+
+    Returns
+    -------
+    ShipLimits
+        With limits of safety and comfort.
+
     Raises
     ------
     InputError
@@ -76,6 +92,18 @@ def with_safety_limits(
 
 def build_loading(file: ShipFile, hull: Hull) -> Loading:
     """Return the loading of a ship file.
+
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+
+    Returns
+    -------
+    Loading
+        Draughts and displacements.
 
     Raises
     ------
@@ -163,7 +191,22 @@ def resistance_methods(file: ShipFile) -> list[str]:
 
 
 def build_speed_loss(file: ShipFile, hull: Hull, loading: Loading) -> KwonSpeedLoss | None:
-    """Return the speed loss chosen under ``models.speed_loss``."""
+    """Return the speed loss chosen under ``models.speed_loss``.
+
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+    loading : Loading
+        Its loading.
+
+    Returns
+    -------
+    KwonSpeedLoss or None
+        The speed loss; None for ``none``.
+    """
     models = file.models
     name = models.speed_loss
     if name not in SPEED_LOSSES:
@@ -187,7 +230,20 @@ def build_speed_loss(file: ShipFile, hull: Hull, loading: Loading) -> KwonSpeedL
 
 
 def hull_for_kwon(hull: Hull, loading: Loading) -> Hull:
-    """The hull with what Kwon's method needs, estimated where that is possible."""
+    """The hull with what Kwon's method needs, estimated where that is possible.
+
+    Parameters
+    ----------
+    hull : Hull
+        The hull.
+    loading : Loading
+        Its loading.
+
+    Returns
+    -------
+    Hull
+        With a block coefficient, length and displaced volume if possible.
+    """
     if hull.number("displacement_m3") is None and not math.isnan(loading.displacement_full):
         deep = {"displacement_m3": loading.displacement_full, "draught_m": loading.draught_full}
         hull = Hull({**hull.values, **deep}, hull.estimated)

@@ -288,14 +288,14 @@ def _check_powers(powers: tuple[float, ...], plant: EnginePlant) -> None:
     least = plant.loads[0] * plant.rating
     if np.isfinite(least) and min(powers) * 1000.0 < least * (1 - 1e-9):
         raise InputError(
-            f"powers_kw asks for {min(powers):g} kW.",
+            f"powers_kw requests {min(powers):g} kW.",
             f"One engine gives no less than {least / 1000:g} kW (engine.least_load).",
             "Raise it, or correct engine.least_load.",
             key="powers_kw",
         )
     if max(powers) * 1000.0 > plant.largest_power * (1 + 1e-9):
         raise InputError(
-            f"powers_kw asks for {max(powers):g} kW.",
+            f"powers_kw requests {max(powers):g} kW.",
             f"The engines give {plant.largest_power / 1000:g} kW.",
             "Lower it, or correct engine.power_kw.",
             key="powers_kw",

@@ -126,7 +126,7 @@ def _annotation_parts(schema: type[BaseModel], keys: Sequence[str]) -> list[Any]
 
 
 def _range_words(schema: type[BaseModel], keys: Sequence[str]) -> str:
-    """Return the range of a key's numbers in words."""
+    """Return the range of a key's numbers as text."""
     words = []
     for part in _annotation_parts(schema, keys):
         words += [f"greater than {part.gt:g}"] if isinstance(part, Gt) else []

@@ -29,6 +29,20 @@ def simple_data(
 def build_model(file: ShipFile, hull: Hull, loading: Loading) -> ShipModel:
     """Return the model that a ship file chooses.
 
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+    loading : Loading
+        Its loading.
+
+    Returns
+    -------
+    ShipModel
+        The model.
+
     Raises
     ------
     InputError

@@ -79,7 +79,10 @@ def _read_file(path: Path) -> tuple[Any, str]:
         text = raw.decode("utf-8")
     except UnicodeDecodeError:
         raise InputError(
-            f"The ship file {path} is not text in UTF-8.", "", "Save it as UTF-8.", file=str(path)
+            f"The ship file {path} is not text in UTF-8.",
+            "Ship files are YAML text in UTF-8.",
+            "Save it as UTF-8.",
+            file=str(path),
         ) from None
     return parse_ship(text, path.name), f"ship file {path.name}"
 

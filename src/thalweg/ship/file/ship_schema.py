@@ -50,7 +50,7 @@ class Section(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _keys_have_values(cls, data: Any) -> Any:
-        """Refuse keys without a value; None stands for "not given" in the typed sections only."""
+        """Refuse keys without a value; None means "not given" in the typed sections only."""
         if isinstance(data, Mapping):
             for key, value in data.items():
                 if value is None and key in cls.model_fields:

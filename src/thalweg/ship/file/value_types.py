@@ -64,14 +64,14 @@ def as_list(value: Any) -> tuple[Any, ...]:
 
 
 def as_flag(value: Any) -> bool:
-    """Return true or false; no other value stands for them."""
+    """Return true or false; other values are refused."""
     if not isinstance(value, bool):
         raise wrong_value("true or false")
     return value
 
 
 def as_word(value: Any) -> str:
-    """Return a word in lower case, with underscores for spaces and hyphens."""
+    """Return a choice in lower case, with underscores for spaces and hyphens."""
     return as_text(value).strip().casefold().replace("-", "_").replace(" ", "_")
 
 

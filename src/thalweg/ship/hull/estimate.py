@@ -14,7 +14,7 @@ class Estimate:
     key : str
         Its key in a ship file, with the unit.
     value : float or str
-        A word for choices.
+        Text if the particular is a choice.
     method : str
         The regression or rule of the estimate.
     """

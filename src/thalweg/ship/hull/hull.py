@@ -239,6 +239,22 @@ def required_particulars(
 ) -> list[float]:
     """Return the numbers a method needs, or raise an error that names those missing.
 
+    Parameters
+    ----------
+    hull : Hull
+        The hull.
+    keys : tuple of str
+        Keys of a ship file.
+    method : str
+        Name of the method, for the message.
+    instead : str
+        Remedy of the message.
+
+    Returns
+    -------
+    list of float
+        Values in the units of the keys.
+
     Raises
     ------
     InputError
@@ -255,7 +271,7 @@ def required_particulars(
 
 
 def _available_regressions(missing: list[str]) -> str:
-    """Return in words which regressions could supply missing particulars, and their inputs."""
+    """Return text on the regressions that could supply missing particulars, and their inputs."""
     from thalweg.ship.hull.particulars_regressions import ESTIMATORS  # many formulas, seldom needed
 
     ways = [

@@ -78,6 +78,22 @@ def _estimators_for(key: str) -> tuple[Estimator, ...]:
 def estimate_or_raise(hull: Hull, keys: tuple[str, ...], method: str, *, instead: str) -> Hull:
     """Return the hull with all keys known, or raise an error that names those that are not.
 
+    Parameters
+    ----------
+    hull : Hull
+        The hull.
+    keys : tuple of str
+        Keys of a ship file.
+    method : str
+        Name of the method, for the message.
+    instead : str
+        Remedy of the message.
+
+    Returns
+    -------
+    Hull
+        With estimates of missing keys.
+
     Raises
     ------
     InputError

@@ -238,7 +238,7 @@ def length_over_surface_no_bulb(length_waterline: ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray
-        Length over wetted surface [m]; a bulb adds what it stands out before the waterline.
+        Length over wetted surface [m]; with a bulb, its length forward of the waterline is added.
 
     References
     ----------

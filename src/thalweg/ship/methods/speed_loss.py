@@ -6,20 +6,20 @@ tables B.1 to B.3::
 
     loss = C_beta C_U C_form / 100        (fraction of the calm-water speed V)
 
-Two places need a choice, made here and kept selectable:
+Two points require a choice; both can be selected:
 
 * **Sign of the last term of C_U for C_B 0.75 and 0.80.** Reprints print a minus. With it C_U
   turns negative at ordinary speeds (Fn > 0.17 for C_B 0.80): weather would push a full ship
   forward. With a plus the rows 0.75, 0.80 and 0.85 form one family (1.02, 0.98, 0.93 at
   Fn 0.15), and the row 0.85 has a plus in print. ``sign="plus"`` is the default,
-  ``sign="printed"`` gives the minus. The 2008 paper itself was not at hand.
+  ``sign="printed"`` gives the minus. The 2008 paper itself was not available.
 * **Classes.** Beaufort number and heading sector are classes in the tables. A staircase
   in either makes optimal routes jump, so by default the Beaufort number is continuous,
   B = (v / 0.836)^(2/3), and C_beta runs linearly between the middles of the sectors.
   ``classes=True`` gives the tables as printed.
 
 C_beta falls again when the wind rises beyond B 4, 6 or 8, so far that a hurricane on the beam would
-cost nothing; the composed ship therefore never lets the loss fall while the wind rises
+cause no loss; in the composed ship the loss therefore never falls while the wind rises
 (``hold=True``).
 """
 
@@ -239,6 +239,20 @@ def kwon_notes(
 
     The bound of Beaufort 6 is for displacements under 100,000 m3 (C_form passes 50 % there), that
     of 8 for larger ones.
+
+    Parameters
+    ----------
+    wind_speed : array_like
+        Wind speed at 10 m [m/s].
+    block_coefficient : array_like
+        C_B [-].
+    displacement_volume : array_like
+        Displaced volume [m3].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty inside the range.
     """
     highest = 6.0 if np.nanmin(np.asarray(displacement_volume, float)) < 1e5 else 8.0
     return range_notes(

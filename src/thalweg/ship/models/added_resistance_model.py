@@ -298,9 +298,21 @@ WIND_METHODS: Final[Mapping[str, Callable[[Hull, str], WindResistance]]] = Mappi
 def build_wave_resistance(models: ModelsSection, hull: Hull) -> AddedWaveResistance | None:
     """Return the wave part chosen in a ship file; None for ``none``.
 
-    A method that lets waves from astern push the ship is cut off at zero unless the file says
+    A negative resistance in waves from astern is set to zero unless the file says
     ``wave_push: true``: the push of high seas is the least certain part of such methods, and a
     search would look for it.
+
+    Parameters
+    ----------
+    models : ModelsSection
+        Methods of the ship file.
+    hull : Hull
+        Its hull.
+
+    Returns
+    -------
+    AddedWaveResistance or None
+        The resistance model.
 
     Raises
     ------
@@ -324,6 +336,18 @@ def _without_negative_resistance(waves: AddedWaveResistance) -> AddedWaveResista
 
 def build_wind_resistance(models: ModelsSection, hull: Hull) -> WindResistance | None:
     """Return the wind part chosen in a ship file; None for ``none``.
+
+    Parameters
+    ----------
+    models : ModelsSection
+        Methods of the ship file.
+    hull : Hull
+        Its hull.
+
+    Returns
+    -------
+    WindResistance or None
+        The resistance model.
 
     Raises
     ------

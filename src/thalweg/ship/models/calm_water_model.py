@@ -197,7 +197,7 @@ def hull_form_of(hull: Hull) -> HullForm:
 
 
 def stern_shape(hull: Hull) -> float:
-    """C_stern from a word or a number; 0 when not given."""
+    """Return C_stern from the name of a stern shape or a number; 0 by default."""
     given = hull.values.get("stern_shape", 0.0)
     return STERN_SHAPES[given] if isinstance(given, str) else float(given)
 
@@ -349,6 +349,18 @@ CALM_WATER_METHODS: Final[Mapping[str, Callable[[Hull, ShipFile], CalmWaterResis
 
 def build_calm_water(file: ShipFile, hull: Hull) -> CalmWaterResistance:
     """Return the calm-water part chosen in a ship file.
+
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+
+    Returns
+    -------
+    CalmWaterResistance
+        The resistance model.
 
     Raises
     ------

@@ -93,7 +93,7 @@ class SpeedPowerLaw:
 class KnownSpeedModel:
     """A ship whose engine settings have known calm-water speeds.
 
-    At a setting the engine keeps its power and fuel rate; weather takes speed.
+    At a setting the engine power and the fuel rate are constant; weather reduces the speed.
 
     Attributes
     ----------
@@ -279,6 +279,13 @@ def cubic_law(speed: ArrayLike, *, reference_speed: float, reference_value: floa
 
 def check_table_rises(speeds: FloatArray, columns: Mapping[str, Any]) -> None:
     """Refuse a table whose speeds repeat, or whose power or fuel falls while the speed rises.
+
+    Parameters
+    ----------
+    speeds : ndarray (n,)
+        Speeds of the table.
+    columns : mapping of str to array_like
+        Power and fuel at the speeds, by name.
 
     Raises
     ------

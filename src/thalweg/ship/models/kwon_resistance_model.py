@@ -30,7 +30,7 @@ _WIND_CONDITIONS: Final = ("wind_speed", "wind_angle")
 class KwonResistanceModel:
     """Speed and power from the resistance in calm water; weather reduces the speed by a share.
 
-    A setting keeps its power: that of its calm-water speed at the depth there is.
+    The power of a setting is constant: that of its calm-water speed at the given depth.
 
     Attributes
     ----------

@@ -98,6 +98,18 @@ def unused_efficiencies(given: PropulsionSection, method: str = "efficiencies") 
 
     All in one (``propulsive_efficiency``) goes before its parts, a hull efficiency before wake and
     thrust deduction, which make one only together; a propeller of the B-series makes its own.
+
+    Parameters
+    ----------
+    given : PropulsionSection
+        Propulsion of the ship file.
+    method : str, optional
+        Method of propulsion of the file.
+
+    Returns
+    -------
+    tuple of str
+        Keys without effect.
     """
     idle: tuple[str, ...] = ()
     if method == "wageningen_b":
@@ -243,6 +255,18 @@ def build_propulsion(file: ShipFile, hull: Hull) -> PropulsionModel:
     """Return the propulsion chosen in a ship file; constant efficiencies when none is named.
 
     ``engine.sea_margin_percent`` raises the power of every speed by that much.
+
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+
+    Returns
+    -------
+    PropulsionModel
+        From resistance to brake power.
 
     Raises
     ------

@@ -241,6 +241,20 @@ class SafetyLimits:
 def build_safety_limits(given: LimitsSection, hull: Hull, loading: Loading) -> SafetyLimits | None:
     """Return the safety and comfort limits of a ship file; None when it states none.
 
+    Parameters
+    ----------
+    given : LimitsSection
+        Limits of the ship file.
+    hull : Hull
+        Its hull.
+    loading : Loading
+        Its loading.
+
+    Returns
+    -------
+    SafetyLimits or None
+        Limits in waves.
+
     Raises
     ------
     InputError
@@ -298,7 +312,20 @@ def _dangerous_situation_limits(
 
 
 def natural_roll_period(hull: Hull, size: MotionHull) -> float | None:
-    """Return the natural roll period [s], given or by the IS Code from GM; None when unknown."""
+    """Return the natural roll period [s], given or by the IS Code from GM; None when unknown.
+
+    Parameters
+    ----------
+    hull : Hull
+        With the roll period or GM, if known.
+    size : MotionHull
+        Dimensions of the hull [m].
+
+    Returns
+    -------
+    float or None
+        Period [s].
+    """
     own, gm = hull.number("roll_period_s"), hull.number("metacentric_height_m")
     if own is not None or gm is None:
         return own
@@ -307,7 +334,7 @@ def natural_roll_period(hull: Hull, size: MotionHull) -> float | None:
 
 
 def _acceleration_limits(given: LimitsSection) -> tuple[AccelerationLimit, ...]:
-    """The limits of motions in a ship file; an infinite position stands for the bow."""
+    """The limits of motions in a ship file; an infinite position means the bow."""
     found = []
     if given.max_vertical_acceleration_m_s2 is not None:
         place = math.inf if given.acceleration_at_m is None else given.acceleration_at_m

@@ -32,8 +32,20 @@ def _has_reference(file: ShipFile) -> bool:
 def calm_speeds(file: ShipFile, law: str) -> tuple[FloatArray, FloatArray]:
     """Calm-water speeds full and empty [m/s], ascending, from the only key that gives them.
 
-    The law of a table has those of the table, and ``speeds_kn`` are settings on it; for other laws
-    it is the other way round.
+    With the law ``table`` they are the speeds of the table, and ``speeds_kn`` are settings on it;
+    with other laws ``speeds_kn`` are used and the speeds of a table are not.
+
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    law : str
+        Law of power over speed: ``"table"``, ``"cubic"`` or another.
+
+    Returns
+    -------
+    full, empty : ndarray
+        Speeds [m/s].
 
     Raises
     ------
@@ -152,6 +164,18 @@ def _reference_speed(file: ShipFile) -> float:
 def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
     """Return the model with the ordered settings of a ship file, on its table or cubic law.
 
+    Parameters
+    ----------
+    model : KnownSpeedModel
+        The model without settings of the file.
+    file : ShipFile
+        With ``powers_kw`` or ``speeds_kn``.
+
+    Returns
+    -------
+    KnownSpeedModel
+        With one setting for each value.
+
     Raises
     ------
     InputError
@@ -184,7 +208,7 @@ def with_settings(model: KnownSpeedModel, file: ShipFile) -> KnownSpeedModel:
         return model.with_speeds(top, 1.0)
     if watts[0] < model.powers[0] * (1 - 1e-9) or watts[-1] > model.powers[-1] * (1 + 1e-9):
         raise InputError(
-            f"powers_kw asks for {watts[0] / 1e3:g} to {watts[-1] / 1e3:g} kW.",
+            f"powers_kw requests {watts[0] / 1e3:g} to {watts[-1] / 1e3:g} kW.",
             f"The table runs from {model.powers[0] / 1e3:g} to {model.powers[-1] / 1e3:g} kW.",
             "Ask for powers inside.",
             key="powers_kw",

@@ -86,7 +86,22 @@ class SquatModel:
 
 
 def squat_model_of(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel | None:
-    """Return a ship's squat, or None when its particulars are too few."""
+    """Return a ship's squat, or None when its particulars are too few.
+
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+    loading : Loading
+        Its loading.
+
+    Returns
+    -------
+    SquatModel or None
+        The model of squat.
+    """
     length = hull.number("length_between_perpendiculars_m") or hull.number("length_waterline_m")
     breadth = hull.number("breadth_m")
     if not (length and breadth) or math.isnan(loading.displacement_full):
@@ -99,6 +114,20 @@ def squat_model_of(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel |
 
 def build_squat_model(file: ShipFile, hull: Hull, loading: Loading) -> SquatModel | None:
     """Return the squat that limits a ship's speed, by ``models.squat``; None for ``none``.
+
+    Parameters
+    ----------
+    file : ShipFile
+        The ship file.
+    hull : Hull
+        Its hull.
+    loading : Loading
+        Its loading.
+
+    Returns
+    -------
+    SquatModel or None
+        The model of squat.
 
     Raises
     ------

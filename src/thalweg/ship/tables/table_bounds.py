@@ -14,6 +14,18 @@ def table_bounds(table: TableArrays, of: np.ufunc) -> FloatArray:
     """Return the largest (np.fmax) or least (np.fmin) value of a table by setting, or beyond it.
 
     Parts take their extremes each for itself.
+
+    Parameters
+    ----------
+    table : TableArrays
+        The table.
+    of : numpy.ufunc
+        ``numpy.fmax`` or ``numpy.fmin``.
+
+    Returns
+    -------
+    ndarray (settings,)
+        Bounds in the unit of the table.
     """
     columns = table.n_columns or table.n_settings
     low, high = np.zeros(columns), np.zeros(columns)

@@ -27,7 +27,7 @@ PACKAGE: Final = Path(__file__).resolve().parents[1]
 
 
 def cached_table(facts: Any, build: Callable[[], TableWithMaxima]) -> TableWithMaxima:
-    """Return a table from disk, or build and keep it.
+    """Return a table from disk, or build and store it.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def _source_stamps() -> list[tuple[str, int, int]]:
 
 
 def _read(path: Path) -> TableWithMaxima | None:
-    """Return the kept table; None when there is none or it is damaged."""
+    """Return the stored table; None if there is none or it is damaged."""
     try:
         with np.load(path, allow_pickle=False) as file:
             data = {name: file[name] for name in file.files}

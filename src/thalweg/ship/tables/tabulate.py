@@ -30,7 +30,7 @@ _LARGEST_AXIS = 1025
 
 @dataclass(frozen=True)
 class AxisRange:
-    """The range of one axis and the number of grid points to begin with.
+    """The range of one axis and the initial number of grid points.
 
     Attributes
     ----------
@@ -139,7 +139,22 @@ def tabulate_cubed_speed(speeds: Sequence[float] | FloatArray) -> PerformanceTab
 
 
 def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[str, FloatArray]:
-    """Return conditions drawn evenly over the axes, by name."""
+    """Return conditions drawn evenly over the axes, by name.
+
+    Parameters
+    ----------
+    axes : sequence of AxisRange
+        Axes and their ranges.
+    count : int
+        Number of conditions.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    dict of str to ndarray (count,)
+        Values in SI units, by condition.
+    """
     draw = np.random.default_rng(seed)
     return {a.name: draw.uniform(a.start, a.stop, count) for a in axes}
 
@@ -147,7 +162,19 @@ def random_conditions(axes: Sequence[AxisRange], count: int, seed: int) -> dict[
 def table_error(found: FloatArray, truth: FloatArray) -> TableError:
     """Measure how far looked-up values are from the model's.
 
-    Where one of both is unknown the table is wrong by all of it; where both are, nothing counts.
+    Where one of the two is unknown, the error is the whole value; where both are, it is ignored.
+
+    Parameters
+    ----------
+    found : ndarray (..., settings)
+        Values from the table.
+    truth : ndarray (..., settings)
+        Values of the model.
+
+    Returns
+    -------
+    TableError
+        Errors relative to the greatest value of each setting.
     """
     sound, known = np.isfinite(truth), np.isfinite(truth) | np.isfinite(found)
     if not known.any():

@@ -144,14 +144,44 @@ def _unknown_power_error(ship: str, why: str) -> InputError:
 def tabulate_fuel_of_balance(
     model: TabulatedResistance, load_factor: float, tolerance: float
 ) -> TableWithMaxima:
-    """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_tabulate_rate_of_power`."""
+    """Tabulate the fuel rate [kg/s] of a resistance-based ship; see `_tabulate_rate_of_power`.
+
+    Parameters
+    ----------
+    model : TabulatedResistance
+        The model of the ship.
+    load_factor : float
+        Load, 0 (empty) to 1 (full).
+    tolerance : float
+        Largest relative error of the table [-].
+
+    Returns
+    -------
+    TableWithMaxima
+        Fuel rate [kg/s].
+    """
     return _tabulate_rate_of_power(model, load_factor, tolerance, model.plant.fuel)
 
 
 def tabulate_power_of_balance(
     model: TabulatedResistance, load_factor: float, tolerance: float
 ) -> TableWithMaxima:
-    """Tabulate the brake power [W] of a resistance-based ship; see `_tabulate_rate_of_power`."""
+    """Tabulate the brake power [W] of a resistance-based ship; see `_tabulate_rate_of_power`.
+
+    Parameters
+    ----------
+    model : TabulatedResistance
+        The model of the ship.
+    load_factor : float
+        Load, 0 (empty) to 1 (full).
+    tolerance : float
+        Largest relative error of the table [-].
+
+    Returns
+    -------
+    TableWithMaxima
+        Power [W].
+    """
     return _tabulate_rate_of_power(model, load_factor, tolerance, np.asarray)
 
 
@@ -160,9 +190,9 @@ def _tabulate_rate_of_power(
 ) -> TableWithMaxima:
     """Tabulate what follows from the power of every setting of a resistance-based ship.
 
-    A setting of power takes the same in all weather: one constant. A setting of speed takes what
-    holding it asks for, up to all that the engines give: what wind, waves and depth ask for at that
-    speed adds up, and a curve over the sum is the power, or the fuel.
+    A setting of power has the same power in all weather: one constant. A setting of speed has the
+    power required to maintain that speed, up to the available power: the resistances of wind, waves
+    and depth at that speed add up, and a curve over the sum gives the power or the fuel.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Tables of resistance-based ships: the resistance of wind, waves and depth at each of many speeds.
 
-At one speed the resistances of wind, waves and depth add up. So the table keeps each on its own
+At one speed the resistances of wind, waves and depth add up. So the table has each on its own
 axes, for a column of speeds, and finds the speed at which they leave the engines nothing to spare
 (see `thalweg.ship.tables.output_curve`).
 """
@@ -252,14 +252,42 @@ def _resistance_reserve_curve(
 
 
 def calm_resistance(balance: ForceBalance, speeds: FloatArray) -> FloatArray:
-    """Resistance in calm, deep water without wind [N], as a column."""
+    """Resistance in calm, deep water without wind [N], as a column.
+
+    Parameters
+    ----------
+    balance : ForceBalance
+        Forces of the ship at one draught.
+    speeds : ndarray (n,)
+        Speeds through water [m/s].
+
+    Returns
+    -------
+    ndarray (n, 1)
+        Resistance [N].
+    """
     return balance.resistance(_calm_conditions(speeds), speeds)[:, None]
 
 
 def resistance_at_power(
     balance: ForceBalance, speeds: FloatArray, powers: FloatArray
 ) -> FloatArray:
-    """Resistance [N] that takes exactly the powers [W], at every speed; shape (speeds, powers)."""
+    """Resistance [N] that takes exactly the powers [W], at every speed; shape (speeds, powers).
+
+    Parameters
+    ----------
+    balance : ForceBalance
+        Forces of the ship at one draught.
+    speeds : ndarray (n,)
+        Speeds through water [m/s].
+    powers : ndarray (m,)
+        Brake powers [W].
+
+    Returns
+    -------
+    ndarray (n, m)
+        Resistance [N].
+    """
     top = 200.0 * float(np.max(balance.calm.total(speeds[-1:], np.array([np.inf]))))
     v, p = (grid.ravel() for grid in np.meshgrid(speeds, powers, indexing="ij"))
     if np.isinf(p).any():
@@ -273,7 +301,20 @@ def resistance_at_power(
 
 
 def resistance_terms(balance: ForceBalance, limits: ShipLimits) -> list[ResistanceTerm]:
-    """Return what wind, waves and depth add to the resistance, up to the limits."""
+    """Return what wind, waves and depth add to the resistance, up to the limits.
+
+    Parameters
+    ----------
+    balance : ForceBalance
+        Forces of the ship at one draught.
+    limits : ShipLimits
+        Greatest wave height and wind speed.
+
+    Returns
+    -------
+    list of ResistanceTerm
+        Terms of wind, waves and depth.
+    """
     axes, found = condition_axes(balance, limits), []
     wind, waves, calm = balance.wind, balance.waves, balance.calm
     if wind is not None:
@@ -312,7 +353,20 @@ def _wave_term(waves: AddedWaveResistance, axes: Mapping[str, AxisRange]) -> Res
 
 
 def condition_axes(balance: ForceBalance, limits: ShipLimits) -> dict[str, AxisRange]:
-    """Return the axes a balance has, by condition: up to the limits, from just below the keel."""
+    """Return the axes a balance has, by condition: up to the limits, from just below the keel.
+
+    Parameters
+    ----------
+    balance : ForceBalance
+        Forces of the ship at one draught.
+    limits : ShipLimits
+        Greatest wave height and wind speed.
+
+    Returns
+    -------
+    dict of str to AxisRange
+        Axes by condition.
+    """
     found = {name: axis for name, axis in _INITIAL_AXES.items() if name in balance.reads}
     for name, limit in (("wind_speed", limits.wind_speed), ("wave_height", limits.wave_height)):
         if name in found:

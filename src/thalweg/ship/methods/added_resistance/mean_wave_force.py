@@ -68,7 +68,22 @@ def spectral_density(
 
 
 def spectral_shape(ratio: FloatArray, *, spectrum: Spectrum, gamma: float) -> FloatArray:
-    """Return E w / Hs^2 as a function of w / w_p."""
+    """Return E w / Hs^2 as a function of w / w_p.
+
+    Parameters
+    ----------
+    ratio : ndarray
+        Frequency over peak frequency w / w_p [-].
+    spectrum : str
+        Name of the spectrum.
+    gamma : float
+        Peak enhancement of JONSWAP [-].
+
+    Returns
+    -------
+    ndarray
+        E w / Hs^2 [-].
+    """
     inverse = 1.0 / (ratio * ratio)
     q = inverse * inverse
     shape = 0.3125 * q * np.exp(-1.25 * q)
@@ -80,7 +95,20 @@ def spectral_shape(ratio: FloatArray, *, spectrum: Spectrum, gamma: float) -> Fl
 
 
 def log_spaced_nodes(low: float, high: float, *, step: float) -> FloatArray:
-    """Return equal steps in the logarithm that pass through one, from `low` to `high`."""
+    """Return equal steps in the logarithm that pass through one, from `low` to `high`.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the range, above 0.
+    step : float
+        Step of the natural logarithm [-].
+
+    Returns
+    -------
+    ndarray
+        Ascending values from ``low`` to ``high``.
+    """
     first, last = np.floor(np.log(low) / step), np.ceil(np.log(high) / step)
     return np.asarray(np.exp(step * np.arange(first, last + 1.0)))
 

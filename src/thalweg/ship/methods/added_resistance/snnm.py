@@ -82,7 +82,20 @@ class SnnmHull:
 
 
 def entrance_length(breadth: ArrayLike, *, entrance_angle_deg: ArrayLike) -> FloatArray:
-    """L_E from the half angle of entrance [deg], as E1 = atan(0.495 B / L_E) is that angle [m]."""
+    """L_E from the half angle of entrance [deg], as E1 = atan(0.495 B / L_E) is that angle [m].
+
+    Parameters
+    ----------
+    breadth : array_like
+        Breadth B [m].
+    entrance_angle_deg : array_like
+        Half angle of entrance [deg].
+
+    Returns
+    -------
+    ndarray
+        Length of entrance L_E [m].
+    """
     return np.asarray(0.495 * np.asarray(breadth) / np.tan(np.radians(entrance_angle_deg)))
 
 
@@ -341,6 +354,20 @@ def snnm_validity(speed: ArrayLike, hull: SnnmHull, *, gravity: float = GRAVITY)
 
     L_PP > 75 m, 4 < L_PP/B < 9, 2.2 < B/T < 9, 0.05 < Fr < 0.30, 0.50 < C_B < 0.90, and a trim of
     at most 0.03 L_PP, beyond which the formula has no value.
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed through water [m/s].
+    hull : SnnmHull
+        Particulars of the hull [SI].
+    gravity : float, optional
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty inside the range.
     """
     length, breadth, draught, trim, block, _, _, _ = hull.arrays()
     ranges: dict[str, tuple[ArrayLike, float, float]] = {

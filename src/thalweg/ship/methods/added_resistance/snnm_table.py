@@ -1,11 +1,10 @@
 """The SNNM formula for one hull and many conditions, with precomputed sums over the spectrum.
 
 The sums of `thalweg.ship.methods.added_resistance.snnm.snnm` run over about a hundred frequencies.
-For one hull most of what stands under them depends on few numbers: the motion on the peak
-frequency in units of the hull's own, and on how far the ship overtakes the waves; the reflection
-on the peak frequency and the draught that counts. Partial sums over these are tabulated once, in
-steps of two thousandths of the peak frequency; what is left of the formula is evaluated as it
-stands.
+For one hull most factors of the summands depend on few numbers: the motion on the peak frequency in
+units of the hull's natural frequency and on the speed of the ship relative to the waves; the
+reflection on the peak frequency and the effective draught. Partial sums over these are tabulated
+once, in steps of two thousandths of the peak frequency; the other factors are evaluated directly.
 """
 
 from __future__ import annotations

@@ -46,7 +46,20 @@ def in_head_sector(wave_angle: ArrayLike) -> FloatArray:
 
 
 def head_sector_validity(wave_angle: ArrayLike, *, method: str) -> list[RangeNote]:
-    """Return which waves come from outside the sector, where the resistance is taken as zero."""
+    """Return which waves come from outside the sector, where the resistance is taken as zero.
+
+    Parameters
+    ----------
+    wave_angle : array_like
+        Direction from which waves come, relative to the bow [rad].
+    method : str
+        Name of the method, for the note.
+
+    Returns
+    -------
+    list of RangeNote
+        Empty inside the sector.
+    """
     degrees = np.degrees(np.abs(np.asarray(wave_angle, dtype=float)))
     outside = np.where(in_head_sector(wave_angle) == 1.0, 0.0, degrees)
     return range_notes(method, {"wave angle": (outside, 0.0, np.degrees(HEAD_SECTOR))})
@@ -287,6 +300,22 @@ def stawave2_validity(
     """Return what is outside the range of STAwave-2 (ITTC 7.5-04-01-01.2).
 
     75 < L_PP < 350 m, 4 < L_PP/B < 9, 2.2 < B/T < 9, 0.10 < Fr < 0.30, 0.39 < C_B < 0.90.
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed through water [m/s].
+    length_between_perpendiculars, breadth, draught : array_like
+        L_PP, B and T [m].
+    block_coefficient : array_like
+        C_B [-].
+    gravity : float, optional
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty inside the range.
     """
     length, wide = np.asarray(length_between_perpendiculars), np.asarray(breadth)
     ranges: dict[str, tuple[ArrayLike, float, float]] = {
@@ -302,6 +331,19 @@ def stawave2_validity(
 def stawave1_validity(
     wave_height: ArrayLike, *, length_between_perpendiculars: float
 ) -> list[RangeNote]:
-    """Return which wave heights exceed 2.25 sqrt(L_PP / 100) (unverified: from memory)."""
+    """Return which wave heights exceed 2.25 sqrt(L_PP / 100) (unverified: from memory).
+
+    Parameters
+    ----------
+    wave_height : array_like
+        Significant wave height [m].
+    length_between_perpendiculars : float
+        L_PP [m].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty inside the range.
+    """
     highest = 2.25 * float(np.sqrt(length_between_perpendiculars / 100.0))
     return range_notes("stawave1", {"wave height": (wave_height, 0.0, highest)})

@@ -99,7 +99,7 @@ class FujiwaraShip:
     length_overall, breadth : float
         L_OA and B [m].
     frontal_area, lateral_area, deck_area : float
-        A_XV, A_YV, and A_OD of what stands on deck, seen from the side [m2].
+        Frontal area A_XV, lateral area A_YV, and lateral area A_OD of superstructures on deck [m2].
     superstructure_height : float
         h_BR, top of the superstructure above the water [m].
     area_centre_forward : float
@@ -306,7 +306,20 @@ def ittc_curve(wind_angle: ArrayLike, *, curve: str = "tanker_laden") -> FloatAr
 
 
 def yu_2021_area(breadth: ArrayLike, *, draught_aft: ArrayLike) -> FloatArray:
-    """Frontal area 0.8 B T_A of Yu (2021) [m2]; a rule of thumb, it uses the draught."""
+    """Frontal area 0.8 B T_A of Yu (2021) [m2]; a rule of thumb, it uses the draught.
+
+    Parameters
+    ----------
+    breadth : array_like
+        Breadth B [m].
+    draught_aft : array_like
+        Draught aft T_A [m].
+
+    Returns
+    -------
+    ndarray
+        Area [m2].
+    """
     return np.asarray(0.8 * np.asarray(breadth, dtype=float) * np.asarray(draught_aft))
 
 

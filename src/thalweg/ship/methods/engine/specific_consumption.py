@@ -135,7 +135,7 @@ def sfoc_load_factor(load: ArrayLike) -> FloatArray:
     Parameters
     ----------
     load : array_like
-        Power over maximum continuous rating [-], 0.2 to 1; evaluated beyond as it stands.
+        Power over maximum continuous rating [-], 0.2 to 1; also evaluated outside this range.
 
     Returns
     -------
@@ -175,7 +175,7 @@ def fuel_rate(
     Returns
     -------
     ndarray
-        Fuel [kg/s]; 0 at zero power; NaN for negative power. Overload is not cut off.
+        Fuel [kg/s]; 0 at zero power; NaN for negative power. Overload is not limited.
 
     References
     ----------
@@ -199,7 +199,7 @@ def engines_needed(
     Parameters
     ----------
     power : array_like
-        Power asked for [W].
+        Required power [W].
     engine_mcr : array_like
         Maximum continuous rating of one engine [W].
     count : int
@@ -232,7 +232,7 @@ def plant_fuel_rate(
     Parameters
     ----------
     power : array_like
-        Power asked for [W].
+        Required power [W].
     engine_mcr : array_like
         Maximum continuous rating of one engine [W].
     count : int

@@ -200,7 +200,7 @@ def solve_advance(
 
     The root of K_T(J) rho V_A^2 D^2 = T J^2 is unique between J = 0 (at the bollard) and the J of
     no thrust. Newton's method finds it from a near point; where it does not converge, its steps are
-    kept inside the bracket.
+    limited to the bracket.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def _newton_step(
 def _bracketed_advance(
     share: FloatArray, stream: FloatArray, polynomial: FloatArray, largest: float
 ) -> FloatArray:
-    """The same root by Newton steps kept inside a bracket: slower, but always converges."""
+    """The same root by Newton steps limited to a bracket: slower, but always converges."""
     low, high = np.zeros_like(share), np.full_like(share, largest)
     ratio = 0.5 * (low + high)
     for _ in range(60):
@@ -325,7 +325,7 @@ def operating_point(
     force, flow = np.asarray(thrust, dtype=float), np.asarray(advance_speed, dtype=float)
     loaded = np.sqrt(np.maximum(force, 0.0) / (density * size**4 * np.where(kt > 0.0, kt, 1.0)))
     moving = flow / (np.where(advance > 0.0, advance, 1.0) * size)
-    light = advance > 0.5 * largest  # of the two ways to find n, the one that loses no digits
+    light = advance > 0.5 * largest  # of the two equations for n, the one without cancellation
     rate = np.where(np.isnan(advance), np.nan, np.where(light, moving, loaded))
     torque = kq * density * rate**2 * size**5
     efficiency = advance * kt / (2.0 * np.pi * kq)

@@ -92,7 +92,22 @@ def constant_efficiency_power(
 def viscous_coefficient(
     friction_coefficient: ArrayLike, *, form_factor: ArrayLike, correlation: ArrayLike
 ) -> FloatArray:
-    """C_V = (1 + k) C_F + C_A, with `form_factor` 1 + k."""
+    """C_V = (1 + k) C_F + C_A, with `form_factor` 1 + k.
+
+    Parameters
+    ----------
+    friction_coefficient : array_like
+        Friction coefficient C_F [-].
+    form_factor : array_like
+        Form factor 1 + k [-].
+    correlation : array_like
+        Correlation allowance C_A [-].
+
+    Returns
+    -------
+    ndarray
+        Viscous resistance coefficient [-].
+    """
     line = np.asarray(friction_coefficient, dtype=float)
     return np.asarray(np.asarray(form_factor) * line + np.asarray(correlation))
 
@@ -167,7 +182,22 @@ def wake_fraction_single(
 def wake_fraction_twin(
     hull: HullForm, *, propeller_diameter: ArrayLike, viscous: ArrayLike
 ) -> FloatArray:
-    """Wake fraction of a twin-screw ship, w = 0.3095 C_B + 10 C_V C_B - 0.23 D / sqrt(B T)."""
+    """Wake fraction of a twin-screw ship, w = 0.3095 C_B + 10 C_V C_B - 0.23 D / sqrt(B T).
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    propeller_diameter : array_like
+        Diameter D [m].
+    viscous : array_like
+        Viscous resistance coefficient C_V [-].
+
+    Returns
+    -------
+    ndarray
+        Wake fraction [-].
+    """
     block = hull.block_coefficient
     size = np.asarray(propeller_diameter, dtype=float) / np.sqrt(hull.breadth * hull.draught)
     return np.asarray(0.3095 * block + 10.0 * np.asarray(viscous) * block - 0.23 * size)
@@ -208,25 +238,77 @@ def thrust_deduction_single(
 
 
 def thrust_deduction_twin(hull: HullForm, *, propeller_diameter: ArrayLike) -> FloatArray:
-    """Thrust deduction of a twin-screw ship, t = 0.325 C_B - 0.1885 D / sqrt(B T)."""
+    """Thrust deduction of a twin-screw ship, t = 0.325 C_B - 0.1885 D / sqrt(B T).
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    propeller_diameter : array_like
+        Diameter D [m].
+
+    Returns
+    -------
+    ndarray
+        Thrust deduction [-].
+    """
     size = np.asarray(propeller_diameter, dtype=float) / np.sqrt(hull.breadth * hull.draught)
     return np.asarray(0.325 * hull.block_coefficient - 0.1885 * size)
 
 
 def relative_rotative_single(hull: HullForm, *, area_ratio: ArrayLike) -> FloatArray:
-    """eta_R = 0.9922 - 0.05908 A_E/A_0 + 0.07424 (C_P - 0.0225 lcb), single screw."""
+    """eta_R = 0.9922 - 0.05908 A_E/A_0 + 0.07424 (C_P - 0.0225 lcb), single screw.
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    area_ratio : array_like
+        Expanded blade area ratio A_E/A_0 [-].
+
+    Returns
+    -------
+    ndarray
+        Relative rotative efficiency [-].
+    """
     shape = hull.prismatic_coefficient - 0.0225 * hull.lcb_percent
     return np.asarray(0.9922 - 0.05908 * np.asarray(area_ratio) + 0.07424 * shape)
 
 
 def relative_rotative_twin(hull: HullForm, *, pitch_ratio: ArrayLike) -> FloatArray:
-    """eta_R = 0.9737 + 0.111 (C_P - 0.0225 lcb) - 0.06325 P/D, twin screw."""
+    """eta_R = 0.9737 + 0.111 (C_P - 0.0225 lcb) - 0.06325 P/D, twin screw.
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    pitch_ratio : array_like
+        Pitch over diameter P/D [-].
+
+    Returns
+    -------
+    ndarray
+        Relative rotative efficiency [-].
+    """
     shape = hull.prismatic_coefficient - 0.0225 * hull.lcb_percent
     return np.asarray(0.9737 + 0.111 * shape - 0.06325 * np.asarray(pitch_ratio))
 
 
 def hull_efficiency(wake_fraction: ArrayLike, thrust_deduction: ArrayLike) -> FloatArray:
-    """eta_H = (1 - t) / (1 - w)."""
+    """eta_H = (1 - t) / (1 - w).
+
+    Parameters
+    ----------
+    wake_fraction : array_like
+        Wake fraction w [-].
+    thrust_deduction : array_like
+        Thrust deduction t [-].
+
+    Returns
+    -------
+    ndarray
+        Hull efficiency [-].
+    """
     deduction = np.asarray(thrust_deduction, dtype=float)
     return np.asarray((1.0 - deduction) / (1.0 - np.asarray(wake_fraction, dtype=float)))
 

@@ -64,7 +64,7 @@ def reynolds_number(
 ) -> FloatArray:
     """Reynolds number V L / nu, not below 1e5.
 
-    The bound keeps the friction lines, which have a pole near Re = 100, finite for a ship that
+    With the bound the friction lines, which have a pole near Re = 100, are finite for a ship that
     hardly moves; the resistance still goes to zero with the square of the speed.
 
     Parameters
@@ -95,7 +95,24 @@ def ittc_1957(reynolds: ArrayLike) -> FloatArray:
 def dynamic_force(
     coefficient: ArrayLike, *, speed: ArrayLike, area: ArrayLike, density: ArrayLike
 ) -> FloatArray:
-    """Force 0.5 rho V^2 A C [N]."""
+    """Force 0.5 rho V^2 A C [N].
+
+    Parameters
+    ----------
+    coefficient : array_like
+        Force coefficient C [-].
+    speed : array_like
+        Speed V [m/s].
+    area : array_like
+        Reference area A [m2].
+    density : array_like
+        Density rho of the fluid [kg/m3].
+
+    Returns
+    -------
+    ndarray
+        Force [N].
+    """
     velocity = np.asarray(speed, dtype=float)
     force = 0.5 * np.asarray(density) * velocity**2 * np.asarray(area) * np.asarray(coefficient)
     return np.asarray(force)

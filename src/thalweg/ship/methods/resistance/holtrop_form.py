@@ -66,7 +66,24 @@ def hull_form(
     waterplane_coefficient: ArrayLike,
     lcb_percent: ArrayLike,
 ) -> HullForm:
-    """Return the particulars as float arrays (see `HullForm`)."""
+    """Return the particulars as float arrays (see `HullForm`).
+
+    Parameters
+    ----------
+    length_waterline, breadth, draught : array_like
+        Length L_WL, breadth B and draught T [m].
+    displacement : array_like
+        Displaced volume [m3].
+    midship_coefficient, waterplane_coefficient : array_like
+        C_M and C_WP [-].
+    lcb_percent : array_like
+        Centre of buoyancy forward of L/2 [% of the length].
+
+    Returns
+    -------
+    HullForm
+        Of float arrays.
+    """
     given = (
         *(length_waterline, breadth, draught, displacement),
         *(midship_coefficient, waterplane_coefficient, lcb_percent),
@@ -79,6 +96,18 @@ def wetted_surface(hull: HullForm, *, bulb_area: ArrayLike = 0.0) -> FloatArray:
 
     L (2T + B) sqrt(C_M) (0.453 + 0.4425 C_B - 0.2862 C_M - 0.003467 B/T + 0.3696 C_WP)
     + 2.38 A_BT / C_B, with A_BT the transverse area of the bulb [m2].
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    bulb_area : array_like, optional
+        Transverse area of the bulb A_BT [m2].
+
+    Returns
+    -------
+    ndarray
+        Wetted surface [m2].
     """
     shape = (
         0.453
@@ -103,6 +132,18 @@ def form_factor_1982(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatAr
     """Form factor 1 + k1 of Holtrop and Mennen (1982).
 
     `stern_shape` is C_stern: -25 pram with gondola, -10 V-shaped, 0 normal, +10 U-shaped sections.
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    stern_shape : array_like, optional
+        C_stern [-].
+
+    Returns
+    -------
+    ndarray
+        Form factor 1 + k1 [-].
     """
     ratio = hull.draught / hull.length
     middle = 48.20 * np.maximum(ratio - 0.02, 0.0) ** 2.078 + 0.479948
@@ -119,7 +160,20 @@ def form_factor_1982(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatAr
 
 
 def form_factor_1984(hull: HullForm, *, stern_shape: ArrayLike = 0.0) -> FloatArray:
-    """Form factor 1 + k1 of Holtrop (1984); `stern_shape` as in `form_factor_1982`."""
+    """Form factor 1 + k1 of Holtrop (1984); `stern_shape` as in `form_factor_1982`.
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    stern_shape : array_like, optional
+        C_stern [-].
+
+    Returns
+    -------
+    ndarray
+        Form factor 1 + k1 [-].
+    """
     c14 = 1.0 + 0.011 * np.asarray(stern_shape)
     return 0.93 + 0.487118 * c14 * (
         (hull.breadth / hull.length) ** 1.06806

@@ -21,7 +21,20 @@ _LEAST_FROUDE_NUMBER: Final = 0.02  #: Froude number below which the wave resist
 
 
 def bulb_height(bulb_centre_height: ArrayLike, draught_fore: ArrayLike) -> FloatArray:
-    """Height of the bulb centre that counts: h_B, at most 0.6 T_F [m]."""
+    """Height of the bulb centre that counts: h_B, at most 0.6 T_F [m].
+
+    Parameters
+    ----------
+    bulb_centre_height : array_like
+        Height of the centre of the bulb above the keel h_B [m].
+    draught_fore : array_like
+        Draught forward T_F [m].
+
+    Returns
+    -------
+    ndarray
+        Height [m].
+    """
     return np.asarray(
         np.minimum(bulb_centre_height, HIGHEST_BULB_CENTRE * np.asarray(draught_fore))
     )
@@ -34,7 +47,24 @@ def bulb_wave_factor(
     bulb_area: ArrayLike,
     bulb_centre_height: ArrayLike,
 ) -> FloatArray:
-    """Factor c2 = exp(-1.89 sqrt(c3)): reduction of wave making by a bulb; 1 without a bulb."""
+    """Factor c2 = exp(-1.89 sqrt(c3)): reduction of wave making by a bulb; 1 without a bulb.
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    draught_fore : array_like
+        Draught forward T_F [m].
+    bulb_area : array_like
+        Transverse area of the bulb A_BT [m2].
+    bulb_centre_height : array_like
+        Height of its centre above the keel h_B [m].
+
+    Returns
+    -------
+    ndarray
+        Factor c2 [-].
+    """
     area = np.asarray(bulb_area, dtype=float)
     height = bulb_height(bulb_centre_height, draught_fore)
     depth = 0.31 * np.sqrt(area) + np.asarray(draught_fore) - height
@@ -43,7 +73,20 @@ def bulb_wave_factor(
 
 
 def transom_wave_factor(hull: HullForm, *, transom_area: ArrayLike) -> FloatArray:
-    """Factor c5 = 1 - 0.8 A_T / (B T C_M)."""
+    """Factor c5 = 1 - 0.8 A_T / (B T C_M).
+
+    Parameters
+    ----------
+    hull : HullForm
+        Form of the hull [SI].
+    transom_area : array_like
+        Immersed transom area A_T [m2].
+
+    Returns
+    -------
+    ndarray
+        Factor c5 [-].
+    """
     section = hull.breadth * hull.draught * hull.midship_coefficient
     return 1.0 - 0.8 * np.asarray(transom_area, dtype=float) / section
 

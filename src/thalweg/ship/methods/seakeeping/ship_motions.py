@@ -140,9 +140,9 @@ def jensen_motions(
 
     The published decay uses the wave number along the ship. In beam seas that is zero, pressure
     no longer fades with depth, heave tends to 1/2 (not to 0) in ever shorter waves, and the
-    acceleration in a sea depends on where the spectrum is cut off. Pressure under a wave fades
+    acceleration in a sea depends on where the spectrum is truncated. Pressure under a wave fades
     with its own wave number whatever the heading, which is what ``strip`` uses (as strip theory
-    does); this correction is ours.
+    does); this correction is not part of the published method.
 
     References
     ----------
@@ -229,7 +229,7 @@ class ShipResponse:
     pitch : SeaResponse
         [rad].
     motion : SeaResponse
-        Vertical motion at the point asked for [m].
+        Vertical motion at the requested point [m].
     acceleration : SeaResponse
         Vertical acceleration there [m/s2].
     acceleration_parts : ndarray
@@ -275,8 +275,8 @@ def ship_response(
     peak_factor : array_like, optional
         gamma of the spectrum; without it that of DNV-RP-C205.
     decay : str
-        As in `jensen_motions`. ``strip`` unless asked otherwise, since with ``published`` the
-        accelerations in beam seas depend on where the spectrum is cut off.
+        As in `jensen_motions`. ``strip`` by default, since with ``published`` the
+        accelerations in beam seas depend on where the spectrum is truncated.
     gravity : float
         [m/s2].
 

@@ -47,7 +47,7 @@ class DangerousSituations:
     Parameters
     ----------
     encounter_period : ndarray
-        [s]; infinite where the ship keeps pace with the waves.
+        [s]; infinite where the ship has the speed of the waves.
     surf_riding : ndarray of bool
         Surf-riding and broaching-to may occur.
     marginal_surging : ndarray of bool
@@ -140,11 +140,11 @@ def encounter_period(
     Returns
     -------
     ndarray
-        [s], without sign; infinite where the ship keeps pace with the waves.
+        [s], without sign; infinite where the ship has the speed of the waves.
 
     References
     ----------
-    MSC.1/Circ.1228, 1.6. The 3 stands for g / (2 pi) in knots per second, 3.03.
+    MSC.1/Circ.1228, 1.6. The 3 approximates g / (2 pi) in knots per second, 3.03.
     """
     t = as_float_array(wave_period)
     t = np.where(t > 0.0, t, np.nan)

@@ -60,7 +60,7 @@ def bottom_speed_ratio(depth_to_draught: ArrayLike) -> FloatArray:
     """Speed under a flat bottom over the ship's speed, V_B / V (Zeng et al. 2019).
 
     0.4277 exp{(D/T)^-0.07634}, not below one. The paper ends the formula at D/T = 4, where it
-    jumps by 5 %; followed on it reaches one at D/T = 8.5, which keeps it continuous.
+    jumps by 5 %; extended, it reaches one at D/T = 8.5 and is continuous.
     """
     ratio = np.asarray(depth_to_draught, dtype=float)
     known = np.where(ratio > 1.0, ratio, np.nan)
@@ -203,7 +203,22 @@ def karpov_speed(
 def karpov_validity(
     speed: ArrayLike, *, depth: ArrayLike, gravity: float = GRAVITY
 ) -> list[RangeNote]:
-    """Return which depth Froude numbers exceed 1.0, where the fit of the curves ends."""
+    """Return which depth Froude numbers exceed 1.0, where the fit of the curves ends.
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed through water [m/s].
+    depth : array_like
+        Water depth [m].
+    gravity : float, optional
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty inside the range.
+    """
     froude = froude_number(speed, length=_positive(depth), gravity=gravity)
     return range_notes(
         "karpov", {"depth Froude number": (froude, 0.0, LARGEST_KARPOV_FROUDE_NUMBER)}
@@ -257,6 +272,22 @@ def lackenby_1963_deep_speed(
     """Deep-water speed with the same power, V (1 + dV / V) [m/s], see `lackenby_1963_speed_loss`.
 
     The resistance in shallow water is that of this speed in deep water, times it over V.
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed in shallow water V [m/s].
+    depth : array_like
+        Water depth [m].
+    midship_area : array_like
+        Submerged area of the midship section [m2].
+    gravity : float, optional
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    ndarray
+        Speed in deep water [m/s].
     """
     loss = lackenby_1963_speed_loss(speed, depth=depth, midship_area=midship_area, gravity=gravity)
     return np.asarray(np.asarray(speed, dtype=float) * (1.0 + loss))
@@ -269,6 +300,23 @@ def lackenby_1963_validity(
     midship_area: ArrayLike,
     gravity: float = GRAVITY,
 ) -> list[RangeNote]:
-    """Return what exceeds a speed loss of 30 %, the end of Lackenby's chart (unverified)."""
+    """Return what exceeds a speed loss of 30 %, the end of Lackenby's chart (unverified).
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed in shallow water [m/s].
+    depth : array_like
+        Water depth [m].
+    midship_area : array_like
+        Submerged area of the midship section [m2].
+    gravity : float, optional
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    list of RangeNote
+        Empty inside the range.
+    """
     loss = lackenby_1963_speed_loss(speed, depth=depth, midship_area=midship_area, gravity=gravity)
     return range_notes("lackenby_1963", {"speed loss": (loss, 0.0, 0.30)})

@@ -15,7 +15,7 @@ from thalweg.ship.methods.validity import RangeNote, range_notes
 #: Width of open water that takes part in the flow, in ship breadths (van Halem 2019).
 OPEN_WATER_BREADTHS: Final = 9.0
 
-_DEEP_WATER_DEPTH: Final = 1e5  # stands for infinite depth [m]
+_DEEP_WATER_DEPTH: Final = 1e5  # used as infinite depth [m]
 _LANDWEBER: Final = (1.002, 0.005, -0.1159, 0.0191)
 #: Where Landweber's cubic is least: 0 = c1 + 2 c2 q + 3 c3 q^2. Beyond, it would rise again.
 _LARGEST_BLOCKAGE_PARAMETER: Final = float(
@@ -270,14 +270,14 @@ def shallow_water_speed(
 
     Notes
     -----
-    The polynomial exceeds one by up to 0.2 % for very small q; it is cut at one. It has its least
-    value, 0.39, at q = 4.02, where the ship nearly fills a channel; beyond, it is held there (as
-    it stands it would rise again, and a narrower channel would let the ship go faster).
+    The polynomial exceeds one by up to 0.2 % for very small q; it is limited to one. It has its
+    least value, 0.39, at q = 4.02, where the ship nearly fills a channel; beyond, this value is
+    used (the polynomial rises again, so that a narrower channel would allow a higher speed).
 
     References
     ----------
     O. Schlichting (1934) and L. Landweber (1939) as used by van Oord; van Halem (2019), eq. 2.5,
-    where V_max and the root of the tanh are missing and 0.0191 is cut to 0.019.
+    where V_max and the root of the tanh are missing and 0.0191 is rounded to 0.019.
     """
     v, h = as_float_array(deep_speed), np.minimum(as_float_array(depth), _DEEP_WATER_DEPTH)
     b, width = as_float_array(breadth), _waterway_width(breadth, channel_width)
@@ -327,7 +327,7 @@ def shallow_water_speed_limit(
     Returns
     -------
     ndarray
-        Speed through the water [m/s]; 0 where the clearance leaves no room for squat.
+        Speed through the water [m/s]; 0 where the clearance allows no squat.
 
     Notes
     -----
