@@ -18,8 +18,8 @@ from thalweg.kernels.compilation.jit import jit
 from thalweg.kernels.leg.table_lookup import table_value
 from thalweg.ship import Conditions, Ship, library_names
 from thalweg.ship.models.resistance_model import ResistanceModel
-from thalweg.ship.tables.tabulate_fuel import tabulate_fuel_of_balance
-from thalweg.ship.tables.tabulate_resistance import tabulate_balance
+from thalweg.ship.models.tabulate_fuel import tabulate_fuel_of_balance
+from thalweg.ship.models.tabulate_resistance import tabulate_balance
 
 #: a full ship: calm water, shallow water, waves of every heading, wind, propeller chain
 FULL = {

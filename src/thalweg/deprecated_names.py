@@ -86,7 +86,7 @@ MOVED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
         "north_sea_current": ("thalweg.sea.models.stratified_coast", "stratified_coast_current"),
     },
     "thalweg.sea.repeat": {
-        "repeated": ("thalweg.sea.tides.periodic_repeat", "repeat_in_time"),
+        "repeated": ("thalweg.sea.periodic_repeat", "repeat_in_time"),
     },
     "thalweg.sea.tide_files": {
         "read_constituents": ("thalweg.sea.tides.constituent_files", "read_constituents"),

@@ -8,7 +8,7 @@ import pytest
 from thalweg.chart import Chart
 from thalweg.chart.coast import coast_cache
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 
 SQUARE = Rings.from_lists([([(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)], False)])
 

@@ -7,7 +7,6 @@ import pytest
 
 from thalweg.ship.file.part_builders import SPEED_LOSSES
 from thalweg.ship.file.resistance_ship_builder import RUDDER_METHODS
-from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.methods.engine.specific_consumption import BASE_SFOC
 from thalweg.ship.models.added_resistance_model import WAVE_METHODS, WIND_METHODS
 from thalweg.ship.models.calm_water_model import (
@@ -17,6 +16,7 @@ from thalweg.ship.models.calm_water_model import (
     STERN_SHAPES,
 )
 from thalweg.ship.models.propulsion_model import PROPULSION_METHODS
+from thalweg.ship.schema.ship_schema import ShipFile
 
 PAGE = (Path(__file__).parents[2] / "docs" / "howto" / "ship_file.md").read_text(encoding="utf-8")
 ROWS = {

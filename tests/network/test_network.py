@@ -17,7 +17,7 @@ from thalweg.core import geodesy
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.kernels.network import graph_building
 from thalweg.network import Graph, Network, check_network, lattice, shortest_path, with_endpoints
-from thalweg.network.regional_lattice.conformal_projection import (
+from thalweg.network.conformal_projection import (
     great_circle_projection,
     mercator_projection,
 )

@@ -18,8 +18,8 @@ from thalweg.route import Track, evaluate
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.sea import Sea
 from thalweg.ship import Ship
-from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+from thalweg.ship.schema.ship_schema import ShipFile
 
 
 def terms_of(sections: dict) -> FuelTerms:

@@ -16,6 +16,7 @@ from thalweg.core.time import parse_time
 from thalweg.kernels import codes
 from thalweg.sea import Sea
 from thalweg.sea import standard_names as nm
+from thalweg.sea.periodic_repeat import drift_deg, repeat_in_time
 from thalweg.sea.tides import (
     constituent_files,
     foreman,
@@ -25,7 +26,6 @@ from thalweg.sea.tides import (
 )
 from thalweg.sea.tides.constituents import Constituents, unit_phasors
 from thalweg.sea.tides.harmonic_analysis import analyse, check_rayleigh
-from thalweg.sea.tides.periodic_repeat import drift_deg, repeat_in_time
 
 utide = pytest.importorskip("utide")
 

@@ -8,8 +8,8 @@ import pytest
 
 from thalweg.core.errors import InputError
 from thalweg.ship import Ship
-from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
+from thalweg.ship.schema.ship_schema import ShipFile
 
 
 def terms_of(sections: dict) -> FuelTerms:

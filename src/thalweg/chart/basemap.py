@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 from thalweg.core.types import FloatArray
 
 

@@ -19,7 +19,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 from thalweg.core.errors import InputError, ThalwegWarning
 
 GeoJsonSource: TypeAlias = "str | PathLike[str] | Mapping[str, Any] | list[Any]"

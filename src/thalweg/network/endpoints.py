@@ -22,11 +22,11 @@ from thalweg.network.assembly import (
     evenly_spaced_samples,
     measured_pairs,
 )
-from thalweg.network.network import Edges, Graph, Network, Samples, Stations
-from thalweg.network.regional_lattice.conformal_projection import (
+from thalweg.network.conformal_projection import (
     angle_to_point,
     conformal_unit_vectors,
 )
+from thalweg.network.network import Edges, Graph, Network, Samples, Stations
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart

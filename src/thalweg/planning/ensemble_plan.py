@@ -17,8 +17,8 @@ from thalweg.core.pareto_fronts import (
     evenly_spaced_subset,
     non_dominated_indices,
 )
-from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.plan import Plan
+from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.request.requirements import required_under_keel_clearance
 from thalweg.planning.request.voyage_objective import PricedObjective, priced_objective
 from thalweg.planning.voyage import Voyage

@@ -14,7 +14,7 @@ from thalweg.core.file_writing import write_text
 from thalweg.core.objective import Objective
 from thalweg.core.time import format_time
 from thalweg.core.units import HOUR, NAUTICAL_MILE
-from thalweg.planning.pareto.plan_front import ParetoFront
+from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route
 

@@ -13,7 +13,6 @@ import numpy as np
 from thalweg.chart import Chart
 from thalweg.core.errors import InputError
 from thalweg.core.units import KNOT
-from thalweg.planning.network_selection.network_choice import NetworkBuilder, NetworkChoice
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext, Proof, in_objective_unit
 from thalweg.planning.planning_context import PlanningContext, ShipTables, performance_table_of
@@ -29,6 +28,7 @@ from thalweg.planning.request.chart_restrictions import (
     exclude_ice_latitudes,
 )
 from thalweg.planning.request.coverage_check import check_argument_types, endpoints_within_coverage
+from thalweg.planning.request.network_choice import NetworkBuilder, NetworkChoice
 from thalweg.planning.request.requirements import derive_requirements
 from thalweg.planning.request.voyage_endpoints import Endpoint, check_distinct, resolve_endpoint
 from thalweg.planning.single.passage import PassageResult, plan_passage
@@ -63,7 +63,7 @@ def plan(
         Land, depth and zones; by default the GSHHG coastline at resolution "i".
     network : {"auto", "lattice", "mesh", "globe"} or callable
         How the network is built; see
-        `thalweg.planning.network_selection.network_choice.NetworkChoice`.
+        `thalweg.planning.NetworkChoice`.
     resolution : float, optional
         Spacing of the network [m]; by default it depends on the distance.
     progress : callable, optional

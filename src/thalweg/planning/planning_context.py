@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from thalweg.chart import Chart
-from thalweg.planning.network_selection.network_choice import NetworkChoice
+from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.request.requirements import Requirements, required_under_keel_clearance
 from thalweg.planning.voyage import Voyage
 from thalweg.route import Route, Track, evaluate

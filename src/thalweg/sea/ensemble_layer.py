@@ -21,8 +21,8 @@ from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
 from thalweg.sea.coverage import Coverage
 from thalweg.sea.grids.gridded_layer import GridLayer
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
+from thalweg.sea.triangle_mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.grids.triangle_mesh import Mesh
+from thalweg.sea.triangle_mesh import Mesh
 
 Samples: TypeAlias = dict[str, FloatArray]
 

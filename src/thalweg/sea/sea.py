@@ -28,7 +28,6 @@ from thalweg.sea.files.file_opener import open_layers
 from thalweg.sea.fill_policies import CALM_VALUES, layers_filled
 from thalweg.sea.freeze import DerivedChannel, freeze_grid_fields, freeze_station_fields
 from thalweg.sea.frozen_fields import GridFields, StationFields
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.inspection import Inspection, inspect_layers
 from thalweg.sea.layer import Layer
 from thalweg.sea.models import cyclone_layer
@@ -36,6 +35,7 @@ from thalweg.sea.models.function_layer import FieldFunction, constant_layer, lay
 from thalweg.sea.tides.constituents import Constituents
 from thalweg.sea.tides.harmonic_analysis import TideAnalysis
 from thalweg.sea.tides.tidal_layer import tidal_layers
+from thalweg.sea.triangle_mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, TONNE
-from thalweg.ship.file.ship_schema import CostsSection, ShipFile
 from thalweg.ship.methods.engine.fuel_properties import (
     Fuel,
     co2_mass,
     equal_energy_mass,
     fuel_named,
 )
+from thalweg.ship.schema.ship_schema import CostsSection, ShipFile
 
 FUEL_QUANTITIES: Final = ("fuel", "cost", "co2")
 _SHARE_NOISE: Final = 1e-9  #: of shares that are quotients of lengths

@@ -19,12 +19,12 @@ from thalweg.ship.methods.seakeeping.ship_motions import MotionHull, motions_val
 from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import dangerous_situations
 from thalweg.ship.methods.shallow_water.squat import dynamic_under_keel_clearance, squat_validity
 from thalweg.ship.models.resistance_protocol import ResistanceBased
-from thalweg.ship.models.seaway_limits import (
+from thalweg.ship.models.squat_model import SquatModel, squat_model_of
+from thalweg.ship.seaway_limits import (
     EXPOSURE_TIME,
     MEAN_TO_PEAK_PERIOD_RATIO,
     natural_roll_period,
 )
-from thalweg.ship.models.squat_model import SquatModel, squat_model_of
 from thalweg.ship.ship import Ship
 
 _DANGER_WORDS: Final = {

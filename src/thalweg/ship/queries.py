@@ -179,7 +179,7 @@ class ShipQueries:
         InputError
             If the ship's fuel is unknown, or its speed is a field, which has no settings.
         """
-        from thalweg.ship.tables.tabulate_fuel import fuel_table
+        from thalweg.ship.models.tabulate_fuel import fuel_table
 
         found = fuel_table(self.model, self.loading.load_factor, tolerance, ship=self.name)
         return replace(found, fingerprint=self.fingerprint())
@@ -192,7 +192,7 @@ class ShipQueries:
         InputError
             If the ship's brake power is unknown, or its speed is a field.
         """
-        from thalweg.ship.tables.tabulate_fuel import power_table
+        from thalweg.ship.models.tabulate_fuel import power_table
 
         found = power_table(
             self.model,

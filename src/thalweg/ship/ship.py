@@ -22,7 +22,6 @@ from thalweg.ship.file.known_speed_ship_builder import estimates_of_known_speeds
 from thalweg.ship.file.part_builders import build_limits, build_loading, with_safety_limits
 from thalweg.ship.file.ship_builder import build_model, simple_data
 from thalweg.ship.file.ship_file import library_names, read_ship
-from thalweg.ship.file.ship_schema import ShipFile, empty_ship_file
 from thalweg.ship.fuel_prices import FuelTerms, fuel_terms
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import complete_hull
@@ -39,6 +38,7 @@ from thalweg.ship.models.fuel_from_power import hotel_load_fuel_rate, hotel_powe
 from thalweg.ship.models.function_model import FunctionModel, SpeedFunction, model_of_function
 from thalweg.ship.plugins import load_plugin
 from thalweg.ship.queries import ShipQueries
+from thalweg.ship.schema.ship_schema import ShipFile, empty_ship_file
 from thalweg.ship.ship_limits import ShipLimits
 
 _SINGLE_PRECISION = 2.0**-23

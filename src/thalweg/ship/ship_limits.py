@@ -17,7 +17,7 @@ from thalweg.ship.condition_variables import (
 )
 
 if TYPE_CHECKING:
-    from thalweg.ship.models.seaway_limits import SafetyLimits
+    from thalweg.ship.seaway_limits import SafetyLimits
 
 
 @dataclass(frozen=True)

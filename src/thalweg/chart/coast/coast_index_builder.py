@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 from thalweg.core.geodesy import geocentric_positions, geocentric_unit_vectors
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry.cube_sphere import (

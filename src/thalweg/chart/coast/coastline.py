@@ -14,8 +14,8 @@ from thalweg.chart.basemap import coastline_lines, land_polygons
 from thalweg.chart.coast.coast_cache import gshhg_index
 from thalweg.chart.coast.coast_index_builder import build_index, empty_index
 from thalweg.chart.coast.gshhg import read_land_rings
-from thalweg.chart.coast.rings import Rings
 from thalweg.chart.geojson_polygons import GeoJsonSource, read_land_areas
+from thalweg.chart.rings import Rings
 from thalweg.core.types import FloatArray
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
 from thalweg.kernels.geometry.shore_distance import shore_distances

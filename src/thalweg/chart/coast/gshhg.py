@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 from thalweg.core.errors import DatasetError, InputError
 
 RESOLUTIONS: Final = {"c": "crude", "l": "low", "i": "intermediate", "h": "high", "f": "full"}

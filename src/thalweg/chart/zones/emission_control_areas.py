@@ -20,7 +20,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 from thalweg.core.errors import InputError, ThalwegWarning, unknown_name_error
 from thalweg.core.geodesy import densify
 from thalweg.core.time import TimeLike, parse_time

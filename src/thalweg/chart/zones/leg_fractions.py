@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart.coast.coast_index_builder import empty_index
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 from thalweg.core.geodesy import direct, inverse
 from thalweg.core.types import FloatArray
 from thalweg.kernels.codes import LAND

@@ -4,7 +4,7 @@ import math
 
 from thalweg.kernels.compilation.decorators import inlined
 
-# entries of the numbers of a ship (`thalweg.ship.models.seaway_limits.SafetyLimits.kernel_arrays`)
+# entries of the numbers of a ship (`thalweg.ship.seaway_limits.SafetyLimits.kernel_arrays`)
 SURF_RIDING_SPEED = 0  # 1.8 sqrt(L) in m/s; inf when surf-riding is not checked
 HIGH_WAVE_LENGTH = 1  # length of the ship for successive high waves [m]; 0 when not checked
 ROLL_PERIOD = 2  # [s]; 0 when roll is not checked

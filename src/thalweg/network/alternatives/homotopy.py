@@ -15,7 +15,7 @@ from thalweg.network.network import Network
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
-    from thalweg.chart.coast.rings import Rings
+    from thalweg.chart.rings import Rings
 
 CrossingCounts: TypeAlias = NDArray[np.int8]
 _MAX_ISLANDS = 120  # only the largest islands count

@@ -15,7 +15,7 @@ from thalweg.core.units import NAUTICAL_MILE
 from thalweg.kernels import codes
 from thalweg.network.alternatives.path_shortening import pull_taut
 from thalweg.network.assembly import Pairs
-from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
+from thalweg.network.conformal_projection import conformal_unit_vectors
 from thalweg.network.regional_lattice.lattice_builder import lattice
 from thalweg.network.shortest_paths import shortest_path
 

@@ -14,14 +14,14 @@ from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import Position
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.core.units import NAUTICAL_MILE
-from thalweg.network.endpoints import check_endpoints
-from thalweg.network.network import Network, NetworkMeta
-from thalweg.network.regional_lattice.conformal_projection import (
+from thalweg.network.conformal_projection import (
     ConformalProjection,
     conformal_unit_vectors,
     great_circle_projection,
     mercator_projection,
 )
+from thalweg.network.endpoints import check_endpoints
+from thalweg.network.network import Network, NetworkMeta
 from thalweg.network.regional_lattice.directions import largest_angle_gap, unique_offsets
 from thalweg.network.regional_lattice.refinement_levels import LatticeSpecification, TooManyPoints
 from thalweg.network.regional_lattice.region import Box, Corridor, Region

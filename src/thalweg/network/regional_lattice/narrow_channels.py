@@ -10,12 +10,12 @@ from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.network.alternatives.homotopy import ring_areas
 from thalweg.network.assembly import Pairs, allowed_legs, measured_pairs
-from thalweg.network.endpoints import concatenate_pairs
-from thalweg.network.network import Stations
-from thalweg.network.regional_lattice.conformal_projection import (
+from thalweg.network.conformal_projection import (
     conformal_positions,
     conformal_unit_vectors,
 )
+from thalweg.network.endpoints import concatenate_pairs
+from thalweg.network.network import Stations
 
 ShoreEdges: TypeAlias = tuple[FloatArray, FloatArray]
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.types import BoolArray, FloatArray, Int32Array, IntArray
-from thalweg.network.regional_lattice.conformal_projection import (
+from thalweg.network.conformal_projection import (
     ConformalProjection,
     angle_to_point,
     conformal_positions,

@@ -22,6 +22,11 @@ from thalweg.network.assembly import (
     evenly_spaced_samples,
     measured_pairs,
 )
+from thalweg.network.conformal_projection import (
+    ConformalProjection,
+    angle_to_point,
+    conformal_unit_vectors,
+)
 from thalweg.network.endpoints import (
     LINK_REACH,
     canal_pairs,
@@ -30,11 +35,6 @@ from thalweg.network.endpoints import (
     links_to_nodes,
 )
 from thalweg.network.network import Network, NetworkMeta, Samples, Stations
-from thalweg.network.regional_lattice.conformal_projection import (
-    ConformalProjection,
-    angle_to_point,
-    conformal_unit_vectors,
-)
 from thalweg.network.regional_lattice.narrow_channels import channel_nodes, channel_pairs
 from thalweg.network.regional_lattice.refinement_levels import (
     LatticeSpecification,

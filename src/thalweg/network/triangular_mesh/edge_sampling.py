@@ -12,8 +12,8 @@ import numpy as np
 
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry.triangle_crossings import crossed_sides
+from thalweg.network.conformal_projection import mercator_projection
 from thalweg.network.network import Network, Samples, Stations
-from thalweg.network.regional_lattice.conformal_projection import mercator_projection
 
 
 def sampled_on_triangle_sides(network: Network) -> Network:

@@ -25,8 +25,8 @@ from thalweg.network.assembly import (
     evenly_spaced_samples,
 )
 from thalweg.network.assembly import measured_pairs as measure_pairs
+from thalweg.network.conformal_projection import mercator_projection
 from thalweg.network.network import Network, NetworkMeta, Stations
-from thalweg.network.regional_lattice.conformal_projection import mercator_projection
 from thalweg.network.triangular_mesh.node_neighbours import pairs_by_ring
 from thalweg.network.triangular_mesh.thinning import spacing_fraction, thin_by_spacing
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from thalweg.core.geodesy import MEAN_RADIUS
 from thalweg.core.limits import SITE_LEG_TIGHTENING
 from thalweg.core.types import FloatArray
-from thalweg.network.regional_lattice.conformal_projection import conformal_unit_vectors
+from thalweg.network.conformal_projection import conformal_unit_vectors
 from thalweg.operations.dredging.cycles import SailedLeg, leg_energy
 from thalweg.operations.dredging.project_environment import (
     LoadedShip,

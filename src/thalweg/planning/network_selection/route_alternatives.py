@@ -11,7 +11,7 @@ from thalweg.chart import Chart
 from thalweg.core.errors import NoRouteError
 from thalweg.network import Network, lattice, shortest_path
 from thalweg.network.network_concatenation import concatenate_networks
-from thalweg.planning.network_selection.network_choice import build_network, lattice_between
+from thalweg.planning.network_selection.network_builder import build_network, lattice_between
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
+from thalweg.planning.plan_front import BaselineComparison
 from thalweg.route import Route, Track, better_route, evaluate
 from thalweg.sea import Sea
 
@@ -22,26 +22,6 @@ if TYPE_CHECKING:
 
 
 _MAX_SPEEDS = 6
-
-
-@dataclass(frozen=True, eq=False)
-class BaselineComparison:
-    """The shortest route, sailed at constant settings through the same weather.
-
-    Attributes
-    ----------
-    routes : tuple of Route
-        Scored by the referee, one per setting that reaches the goal; by ascending time.
-    values : ndarray
-        Their values, in the unit of the front.
-    rows : tuple of dict
-        Savings of the front over each: ``saved_h`` at the same value, ``saved`` (and
-        ``saved_percent``) at the same time; None outside the range of the front.
-    """
-
-    routes: tuple[Route, ...]
-    values: FloatArray
-    rows: tuple[dict[str, Any], ...]
 
 
 def weather_blind_tracks(

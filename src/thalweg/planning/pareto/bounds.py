@@ -10,9 +10,9 @@ from thalweg.core.geodesy import distance
 from thalweg.core.pareto_fronts import ROUNDING_TOLERANCE, non_dominated_indices
 from thalweg.core.units import HOUR
 from thalweg.planning.pareto.exploration import strongest_current
-from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.pareto.trade_off_context import ExploredAlternative, TradeOffContext
 from thalweg.planning.plan_data import Proof
+from thalweg.planning.plan_front import ParetoFront
 from thalweg.search import table_bounds
 
 _KIND = (

@@ -17,7 +17,7 @@ from thalweg.network import (
     alternative_paths,
     fixed_route,
 )
-from thalweg.planning.network_selection.network_choice import lattice_between
+from thalweg.planning.network_selection.network_builder import lattice_between
 from thalweg.planning.pareto.exploration import network_pareto_front
 from thalweg.planning.pareto.front_points import track_from_front_point
 from thalweg.planning.pareto.search_horizon import extend_horizon

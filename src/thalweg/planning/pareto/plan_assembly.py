@@ -25,7 +25,6 @@ from thalweg.planning.pareto.bounds import (
     derive_proof,
     open_water_lower_front,
 )
-from thalweg.planning.pareto.plan_front import ParetoFront
 from thalweg.planning.pareto.route_names import route_labels
 from thalweg.planning.pareto.search_horizon import shortest_path_length
 from thalweg.planning.pareto.trade_off_context import (
@@ -36,6 +35,7 @@ from thalweg.planning.pareto.trade_off_context import (
 )
 from thalweg.planning.plan import Plan
 from thalweg.planning.plan_data import PlotContext
+from thalweg.planning.plan_front import ParetoFront
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.report.provenance import (
     finite_or_none,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.chart import Chart
-from thalweg.chart.coast.rings import Rings
+from thalweg.chart.rings import Rings
 from thalweg.core.geodesy import distance, format_position, inverse, wrap_longitude
 from thalweg.core.types import FloatArray
 from thalweg.network import Network

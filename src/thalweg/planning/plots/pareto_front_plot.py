@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thalweg.core.file_writing import save_figure
-from thalweg.planning.pareto.plan_front import knee
+from thalweg.planning.plan_front import knee
 
 if TYPE_CHECKING:
     from thalweg.planning.plan_data import PlanData

@@ -1,1 +1,1 @@
-"""The request: end points, coverage of the data, required variables, restrictions."""
+"""The request: end points, network, coverage of the data, required variables, restrictions."""

@@ -16,7 +16,7 @@ from thalweg.core.units import HOUR
 from thalweg.kernels.compilation import warm_up
 from thalweg.network import Network
 from thalweg.planning.frozen_sea import FrozenSea, freeze_at_stations
-from thalweg.planning.network_selection.network_choice import build_network
+from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error

@@ -21,7 +21,7 @@ from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.files import coordinates as co
 from thalweg.sea.files import projections
 from thalweg.sea.grids.triangle_grid import TriangleGrid
-from thalweg.sea.grids.triangle_mesh import Mesh
+from thalweg.sea.triangle_mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 
 from thalweg.core.bounding_box import BoundingBox
 from thalweg.core.types import FloatArray, IntArray
-from thalweg.sea.grids.triangle_mesh import Mesh
+from thalweg.sea.triangle_mesh import Mesh
 
 
 class GridLocation(NamedTuple):

@@ -19,9 +19,9 @@ from thalweg.sea.grids.block_cache import BlockCache
 from thalweg.sea.grids.grid_protocol import Grid, GridLocation
 from thalweg.sea.grids.source_variables import GridWindow, Quantity
 from thalweg.sea.grids.time_axis import TimeAxis, TimeLocation
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples, nan_pairs
 from thalweg.sea.recognition_record import RecognitionRecord
+from thalweg.sea.triangle_mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)

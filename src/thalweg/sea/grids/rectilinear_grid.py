@@ -10,7 +10,7 @@ import numpy as np
 from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.types import BoolArray, FloatArray, IntArray
 from thalweg.sea.grids.grid_protocol import GridLocation
-from thalweg.sea.grids.triangle_mesh import Mesh
+from thalweg.sea.triangle_mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)

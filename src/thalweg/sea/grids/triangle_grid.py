@@ -12,7 +12,7 @@ from thalweg.core.bounding_box import EDGE_TOLERANCE, BoundingBox
 from thalweg.core.types import FloatArray, IntArray
 from thalweg.kernels.geometry import field_sampling
 from thalweg.sea.grids.grid_protocol import GridLocation
-from thalweg.sea.grids.triangle_mesh import Mesh
+from thalweg.sea.triangle_mesh import Mesh
 
 MAX_TRIANGLES_PER_BIN = 12.0  #: triangles in a typical bin; with more, bins are made smaller
 MAX_BINS = 1500  #: bins per side at most

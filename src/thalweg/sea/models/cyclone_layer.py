@@ -15,7 +15,6 @@ from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.argument_checks import parse_time_step
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples
 from thalweg.sea.models import cyclone_formulas as formulas
 from thalweg.sea.models.cyclone_track import BestTrack, load_best_track
@@ -25,6 +24,7 @@ from thalweg.sea.models.cyclone_vortex import (
     vortex_state,
     vortex_wind,
 )
+from thalweg.sea.triangle_mesh import Mesh
 
 DEFAULT_STORM: Final = "danielle-1998"
 TIME_STEP: Final = 3600.0  #: [s] step at which the moving storm is frozen

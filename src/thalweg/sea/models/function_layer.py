@@ -14,8 +14,8 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Samples, nan_pairs
+from thalweg.sea.triangle_mesh import Mesh
 
 FieldFunction: TypeAlias = Callable[[FloatArray, FloatArray, FloatArray], ArrayLike]
 Evaluate: TypeAlias = Callable[[Sequence[str], FloatArray, FloatArray, FloatArray], Samples]

@@ -14,7 +14,6 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import BoolArray, FloatArray
 from thalweg.sea import standard_names as nm
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.layer_stack import (
     sample_stack,
@@ -23,6 +22,7 @@ from thalweg.sea.layer_stack import (
     stack_times,
     stack_variables,
 )
+from thalweg.sea.triangle_mesh import Mesh
 
 DEFAULT_FETCH = 500_000.0  #: [m] assumed fetch of the wind
 DEFAULT_DURATION = 24.0 * 3600.0  #: [s] assumed duration of the wind

@@ -20,12 +20,12 @@ from thalweg.sea.ensemble_layer import check_not_ensemble
 from thalweg.sea.grids.grid_protocol import Grid, GridLocation
 from thalweg.sea.grids.gridded_layer import GridLayer
 from thalweg.sea.grids.triangle_grid import TriangleGrid
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples, nan_pairs
 from thalweg.sea.models.function_layer import automatic_times
 from thalweg.sea.tides import harmonic_analysis
 from thalweg.sea.tides.constituents import Constituents, tidal_signal, unit_phasors
 from thalweg.sea.tides.model_run_analysis import analyse_layer, has_tides, no_tides_error
+from thalweg.sea.triangle_mesh import Mesh
 
 TIME_STEP: Final = 600.0  #: [s] step at which kernels receive the tide
 POINTS_PER_BLOCK: Final = 1 << 13  #: points predicted at once

@@ -1,1 +1,1 @@
-"""Ship files: schema, reader and builder."""
+"""Ship files: reader and builder."""

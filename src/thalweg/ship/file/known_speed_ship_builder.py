@@ -5,7 +5,6 @@ from __future__ import annotations
 from thalweg.core.errors import InputError
 from thalweg.core.units import DAY, TONNE
 from thalweg.ship.file.part_builders import build_speed_loss, hull_for_kwon, lightship_estimate
-from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.loading_state import Loading
@@ -23,6 +22,7 @@ from thalweg.ship.models.speed_power_laws import (
     with_settings,
 )
 from thalweg.ship.models.squat_model import build_squat_model
+from thalweg.ship.schema.ship_schema import ShipFile
 
 
 def build_known_speed_model(file: ShipFile, hull: Hull, loading: Loading) -> KnownSpeedModel:

@@ -8,13 +8,13 @@ from typing import Final
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.units import KNOT, SEA_WATER_DENSITY, TONNE
-from thalweg.ship.file.ship_schema import LoadingSection, ShipFile
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars, volume_at
 from thalweg.ship.hull.hull_checks import check_depth
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.models.known_speed_model import KwonSpeedLoss
 from thalweg.ship.models.speed_power_laws import SPEED_POWER_LAWS
+from thalweg.ship.schema.ship_schema import LoadingSection, ShipFile
 from thalweg.ship.ship_limits import ShipLimits
 
 SAFETY_KEYS: Final = frozenset(
@@ -83,7 +83,7 @@ def with_safety_limits(
     """
     if not file.limits.gives(*SAFETY_KEYS):
         return limits
-    from thalweg.ship.models.seaway_limits import (
+    from thalweg.ship.seaway_limits import (
         build_safety_limits,  # reads the methods of motions
     )
 

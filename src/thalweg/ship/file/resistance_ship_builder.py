@@ -16,7 +16,6 @@ from thalweg.ship.file.part_builders import (
     lightship_estimate,
     resistance_methods,
 )
-from thalweg.ship.file.ship_schema import ModelsSection, ShipFile
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_particulars, hull_at_load_factor
@@ -30,6 +29,7 @@ from thalweg.ship.models.kwon_resistance_model import KwonResistanceModel
 from thalweg.ship.models.propulsion_model import build_propulsion
 from thalweg.ship.models.resistance_model import ResistanceModel
 from thalweg.ship.models.squat_model import build_squat_model
+from thalweg.ship.schema.ship_schema import ModelsSection, ShipFile
 
 RUDDER_METHODS = ("none", "schless_2023")
 _MODEL_SECTIONS = {"hull", "propulsion", "engine", "loading", "models", "water"}

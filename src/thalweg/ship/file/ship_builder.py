@@ -7,12 +7,12 @@ from typing import Any
 
 from thalweg.ship.file.known_speed_ship_builder import build_known_speed_model
 from thalweg.ship.file.part_builders import resistance_methods
-from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.fuel_prices import fuel_terms
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.model_protocol import ShipModel
 from thalweg.ship.models.speed_power_laws import SPEED_POWER_LAWS
+from thalweg.ship.schema.ship_schema import ShipFile
 
 
 def simple_data(

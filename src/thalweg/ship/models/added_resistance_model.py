@@ -11,7 +11,6 @@ import numpy as np
 
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import FloatArray
-from thalweg.ship.file.ship_schema import ModelsSection
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
@@ -39,6 +38,7 @@ from thalweg.ship.methods.relative_angles import relative_wind
 from thalweg.ship.methods.resistance.holtrop_form import length_of_run
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of
+from thalweg.ship.schema.ship_schema import ModelsSection
 
 #: entrance to 0.99 B as a share of (1 - C_P) L_WL: 0.17 L for a tanker, 0.36 L for a slender ship
 _ENTRANCE_FRACTION: Final = 0.85

@@ -12,7 +12,6 @@ import numpy as np
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import SEA_WATER_DENSITY
-from thalweg.ship.file.ship_schema import ShipFile, WaterSection
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
@@ -47,6 +46,7 @@ from thalweg.ship.methods.shallow_water.shallow_water_resistance import (
     zeng_2019_friction,
 )
 from thalweg.ship.methods.validity import RangeNote
+from thalweg.ship.schema.ship_schema import ShipFile, WaterSection
 
 #: names of the components of calm-water resistance; each is there, zero where a method has none
 CALM_WATER_COMPONENTS: Final = (

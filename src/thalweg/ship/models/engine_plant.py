@@ -9,7 +9,6 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
-from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.methods.engine.fuel_properties import fuel_named
 from thalweg.ship.methods.engine.specific_consumption import (
@@ -20,6 +19,7 @@ from thalweg.ship.methods.engine.specific_consumption import (
     plant_fuel_rate,
 )
 from thalweg.ship.methods.validity import RangeNote, range_notes
+from thalweg.ship.schema.ship_schema import ShipFile
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from thalweg.core.types import FloatArray
-from thalweg.ship.file.ship_schema import EngineSection, ShipFile
 from thalweg.ship.hull.estimate import Estimate
+from thalweg.ship.schema.ship_schema import EngineSection, ShipFile
 
 
 def hotel_power(engine: EngineSection) -> float:

@@ -11,7 +11,6 @@ import numpy as np
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
-from thalweg.ship.file.ship_schema import PropulsionSection, ShipFile
 from thalweg.ship.hull.estimate import Estimate
 from thalweg.ship.hull.hull import Hull
 from thalweg.ship.hull.hull_estimates import estimate_or_raise
@@ -32,6 +31,7 @@ from thalweg.ship.methods.resistance.friction_lines import ittc_1957, reynolds_n
 from thalweg.ship.methods.resistance.holtrop_form import HullForm, form_factor_1984
 from thalweg.ship.methods.validity import RangeNote
 from thalweg.ship.models.calm_water_model import FORM_KEYS, hull_form_of, stern_shape
+from thalweg.ship.schema.ship_schema import PropulsionSection, ShipFile
 
 
 @dataclass(frozen=True, eq=False)

@@ -155,7 +155,7 @@ class ResistanceModel:
         return float(self._table(load_factor, 0.01)[1][setting])
 
     def tabulate(self, load_factor: float, tolerance: float) -> TabulatedModel:
-        """Tabulate the speed; see `thalweg.ship.tables.tabulate_resistance`.
+        """Tabulate the speed; see `thalweg.ship.models.tabulate_resistance`.
 
         Raises
         ------
@@ -166,22 +166,22 @@ class ResistanceModel:
         return table.parts, table.error, table.finish
 
     def tabulate_fuel(self, load_factor: float, tolerance: float) -> TabulatedModel:
-        """Tabulate the fuel rate [kg/s]; see `thalweg.ship.tables.tabulate_fuel`."""
-        from thalweg.ship.tables.tabulate_fuel import tabulate_fuel_of_balance
+        """Tabulate the fuel rate [kg/s]; see `thalweg.ship.models.tabulate_fuel`."""
+        from thalweg.ship.models.tabulate_fuel import tabulate_fuel_of_balance
 
         table, _ = self._stored("fuel", load_factor, tolerance, tabulate_fuel_of_balance)
         return table.parts, table.error, table.finish
 
     def tabulate_power(self, load_factor: float, tolerance: float) -> TabulatedModel:
-        """Tabulate the brake power [W]; see `thalweg.ship.tables.tabulate_fuel`."""
-        from thalweg.ship.tables.tabulate_fuel import tabulate_power_of_balance
+        """Tabulate the brake power [W]; see `thalweg.ship.models.tabulate_fuel`."""
+        from thalweg.ship.models.tabulate_fuel import tabulate_power_of_balance
 
         table, _ = self._stored("power", load_factor, tolerance, tabulate_power_of_balance)
         return table.parts, table.error, table.finish
 
     def _table(self, load_factor: float, tolerance: float) -> TableWithMaxima:
         """The table of speeds and the greatest speeds."""
-        from thalweg.ship.tables.tabulate_resistance import tabulate_balance
+        from thalweg.ship.models.tabulate_resistance import tabulate_balance
 
         return self._stored("table", load_factor, tolerance, tabulate_balance)
 

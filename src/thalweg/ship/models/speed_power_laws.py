@@ -11,8 +11,8 @@ import numpy as np
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.core.units import DAY, KNOT, TONNE
-from thalweg.ship.file.ship_schema import ShipFile, TableSection
 from thalweg.ship.models.known_speed_model import KnownSpeedModel, cubic_law
+from thalweg.ship.schema.ship_schema import ShipFile, TableSection
 
 
 def speed_power_law_name(file: ShipFile) -> str:

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.types import FloatArray
-from thalweg.ship.file.ship_schema import ShipFile
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.shallow_water.squat import (
@@ -21,6 +20,7 @@ from thalweg.ship.methods.shallow_water.squat import (
     shallow_water_speed,
     shallow_water_speed_limit,
 )
+from thalweg.ship.schema.ship_schema import ShipFile
 
 SQUAT_METHODS: Final = ("none", "van_halem_2019", "barrass_2004")
 

@@ -19,7 +19,7 @@ from thalweg.ship.tables.output_curve import OutputCurve
 from thalweg.ship.tables.table_parts import TableError, TablePart, invalid_part_error
 
 if TYPE_CHECKING:
-    from thalweg.ship.models.seaway_limits import SafetyLimits
+    from thalweg.ship.seaway_limits import SafetyLimits
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,10 +21,10 @@ from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 from thalweg.sea.coverage import Coverage
-from thalweg.sea.grids.triangle_mesh import Mesh
 from thalweg.sea.layer import Layer, Samples
 from thalweg.sea.sea import Sea
 from thalweg.sea.tides import schureman
+from thalweg.sea.triangle_mesh import Mesh
 
 FORTNIGHT_H: Final = 360.0  #: 30 S2; M2 is 5.7 degrees early
 MONTH_H: Final = 707.974  #: 57 M2; S2 is 0.8 degrees early

@@ -18,12 +18,7 @@ from thalweg.ship.model_protocol import FuelTableModel, PowerTableModel, ShipMod
 from thalweg.ship.models.force_balance import ForceBalance
 from thalweg.ship.models.function_model import FunctionModel
 from thalweg.ship.models.resistance_protocol import TabulatedResistance
-from thalweg.ship.tables.output_curve import OutputCurve
-from thalweg.ship.tables.performance_table import PerformanceTable
-from thalweg.ship.tables.table_cache import TableWithMaxima
-from thalweg.ship.tables.table_parts import TableError, TablePart
-from thalweg.ship.tables.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense
-from thalweg.ship.tables.tabulate_resistance import (
+from thalweg.ship.models.tabulate_resistance import (
     ERROR_SAMPLES,
     calm_resistance,
     conditions_per_setting,
@@ -32,6 +27,11 @@ from thalweg.ship.tables.tabulate_resistance import (
     resistance_at_power,
     resistance_terms,
 )
+from thalweg.ship.tables.output_curve import OutputCurve
+from thalweg.ship.tables.performance_table import PerformanceTable
+from thalweg.ship.tables.table_cache import TableWithMaxima
+from thalweg.ship.tables.table_parts import TableError, TablePart
+from thalweg.ship.tables.tabulate import DEFAULT_AXES, constant_part, table_error, tabulate_dense
 
 _CURVE_POINTS: Final = 1025  #: of the curves of fuel and power
 _SPEED_FIELD: Final = "its speed is a field of place and time"

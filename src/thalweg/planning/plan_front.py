@@ -13,8 +13,27 @@ from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
 
 if TYPE_CHECKING:
-    from thalweg.planning.pareto.baseline import BaselineComparison
     from thalweg.route import Route
+
+
+@dataclass(frozen=True, eq=False)
+class BaselineComparison:
+    """The shortest route, sailed at constant settings through the same weather.
+
+    Attributes
+    ----------
+    routes : tuple of Route
+        Scored by the referee, one per setting that reaches the goal; by ascending time.
+    values : ndarray
+        Their values, in the unit of the front.
+    rows : tuple of dict
+        Savings of the front over each: ``saved_h`` at the same value, ``saved`` (and
+        ``saved_percent``) at the same time; None outside the range of the front.
+    """
+
+    routes: tuple[Route, ...]
+    values: FloatArray
+    rows: tuple[dict[str, Any], ...]
 
 
 @dataclass(frozen=True, eq=False)

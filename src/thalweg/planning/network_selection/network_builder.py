@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TypeAlias
-
 from thalweg.chart import Chart
-from thalweg.core.errors import InputError, NoRouteError, unknown_name_error
+from thalweg.core.errors import NoRouteError
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.units import NAUTICAL_MILE
 from thalweg.network import (
@@ -19,47 +15,13 @@ from thalweg.network import (
     with_endpoints,
 )
 from thalweg.planning.network_selection.model_mesh import model_mesh_network
+from thalweg.planning.request.network_choice import NetworkChoice
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.sea import Mesh, Sea
 
-#: A builder of the user: (chart, start, goal, spacing) -> Network with its endpoints attached.
-NetworkBuilder: TypeAlias = Callable[..., Network]
-
-NETWORK_KINDS = ("auto", "lattice", "mesh", "globe")
 #: Voyages of at least this distance [m] with a route longer than this multiple of it are searched
 #: in a corridor around the path over the globe network.
 _LONG_DISTANCE, _DETOUR_RATIO = 1500.0 * NAUTICAL_MILE, 1.3
-
-
-@dataclass(frozen=True)
-class NetworkChoice:
-    """How the network is built.
-
-    Attributes
-    ----------
-    network : {"auto", "lattice", "mesh", "globe"} or callable
-        ``auto`` uses the mesh of the hydrodynamic model where the sea has one that contains both
-        ends, else a lattice. ``mesh`` always uses the mesh. ``globe`` is a coarse geodesic grid of
-        all seas, for routes around continents. A callable is called with ``(chart, start, goal,
-        spacing=...)``.
-    spacing : float, optional
-        Spacing of the nodes [m]; of a mesh that in still water, finer where the current is strong
-        or turns.
-    """
-
-    network: str | NetworkBuilder = "auto"
-    spacing: float | None = None
-
-    def __post_init__(self) -> None:
-        if not callable(self.network) and self.network not in NETWORK_KINDS:
-            raise unknown_name_error("network", str(self.network), NETWORK_KINDS)
-        number = isinstance(self.spacing, (int, float)) and not isinstance(self.spacing, bool)
-        if self.spacing is not None and not (number and 0.1 <= self.spacing <= 1e6):
-            raise InputError(
-                f"The resolution is {self.spacing!r} m.",
-                "A resolution is between 0.1 m and 1,000 km.",
-                "Give the spacing of the network in metres.",
-            )
 
 
 def build_network(

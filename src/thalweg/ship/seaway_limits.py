@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.types import FloatArray
 from thalweg.kernels.leg import wave_limits as places
-from thalweg.ship.file.ship_schema import LimitsSection
 from thalweg.ship.hull.hull import Hull, required_particulars
 from thalweg.ship.loading_state import Loading
 from thalweg.ship.methods.seakeeping.motion_sickness import (
@@ -26,6 +25,7 @@ from thalweg.ship.methods.seakeeping.stability_msc1_circ1228 import (
     roll_period,
     surf_riding_speed,
 )
+from thalweg.ship.schema.ship_schema import LimitsSection
 
 #: the situations of MSC.1/Circ.1228 that a ship file may name
 DANGEROUS_SITUATIONS: Final = (

@@ -10,8 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from pydantic_core import PydanticCustomError
 
 from thalweg.core.errors import InputError
-from thalweg.ship.file.schema_errors import input_error
-from thalweg.ship.file.value_types import (
+from thalweg.ship.schema.schema_errors import input_error
+from thalweg.ship.schema.value_types import (
     AppendageCount,
     Coefficient,
     Consumption,

@@ -1,0 +1,1 @@
+"""Schema of the ship file: sections, types of values, error messages."""
