@@ -43,7 +43,8 @@ def test_a_port_moves_to_covered_water_with_a_note():
     found = ask((50.5, 1.5), "Rotterdam", known_where(lambda lat, lon: lon < 4.0))
     end = found.best.track
     assert 3.9 < end.lon[-1] < 4.0 and abs(end.lat[-1] - 51.9) < 0.1
-    assert any("Rotterdam" in note and "moved" in note for note in found.notes)
+    assert any("Rotterdam, NL" in note and "moved" in note for note in found.notes)
+    assert found.provenance["to"] == "Rotterdam, NL"
 
 
 def test_a_port_moves_to_water_deep_enough():

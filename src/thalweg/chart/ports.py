@@ -1,53 +1,95 @@
-"""Ports by name or UN/LOCODE: the World Port Index (NGA Pub. 150), and ports missing from it.
+"""Ports by name or UN/LOCODE, from one table of four sources.
 
-The others (Sydney, Oslo, Singapore and some 290 more) come from searoute 1.6.0 (Apache-2.0). Only
-those with water nearby are used, and entries with wrong positions were removed. Their positions
-are accurate to a few miles.
+The table holds the World Port Index (NGA Pub. 150), ports of searoute 1.6.0 that the index lacks,
+the other names that searoute uses, and a few more names and corrections with their sources
+(``data/port_aliases.csv``). Positions are accurate to a few miles.
 """
 
 from __future__ import annotations
 
 import csv
 import gzip
-import io
-import unicodedata
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
 from typing import Final
 
+from thalweg.chart.countries import country_code_of
+from thalweg.chart.port_names import normalised_port_name, place_name, written_names
 from thalweg.core.errors import InputError, close_matches
+from thalweg.core.geodesy import distance, format_position
+from thalweg.core.units import NAUTICAL_MILE
 
-# Common English names of ports that the index lists under another name.
-ENGLISH_NAMES: Final = {
-    "alexandria egypt": "EGALY",
-    "antwerp": "BEANR",
-    "flushing": "NLVLI",
-    "genoa": "ITGOA",
-    "ghent": "BEGNE",
-    "goteborg": "SEGOT",
-    "hull": "GBHUL",
-    "leghorn": "ITLIV",
-    "lisbon": "PTLIS",
-    "naples": "ITNAP",
-    "piraeus": "GRPIR",
-    "suez": "EGSUZ",
-    "venice": "ITVCE",
-}
+#: Points for the harbour size of the World Port Index ("" is unknown). Each linked country adds
+#: one point.
+SIZE_POINTS: Final = {"large": 40, "medium": 12, "small": 4, "very small": 1, "": 1}
+#: A port is clearly larger than another if it has this many times its points.
+CLEARLY_LARGER: Final = 4.0
+#: Ports of one name and country within this distance [m] are parts of one port.
+SAME_PORT: Final = 15.0 * NAUTICAL_MILE
+#: Most ports that a message lists.
+_MOST_LISTED: Final = 10
 
 
 @dataclass(frozen=True)
 class Port:
-    """A port: name, ISO country code, UN/LOCODE ('' if it has none) and position [deg]."""
+    """A port.
+
+    Attributes
+    ----------
+    name : str
+        Name in the index.
+    country_code : str
+        ISO 3166 code of the country.
+    locode : str
+        UN/LOCODE, empty if the port has none.
+    lat, lon : float
+        Position [deg].
+    size : str
+        Harbour size of the World Port Index: large, medium, small, very small, or empty.
+    region : str
+        Coast or region of the World Port Index, or empty.
+    country_links : int
+        Countries to which searoute lists a liner connection.
+    """
 
     name: str
     country_code: str
     locode: str
     lat: float
     lon: float
+    size: str = ""
+    region: str = ""
+    country_links: int = 0
 
     def __str__(self) -> str:
-        return f"{self.name}, {self.country_code}" + (f" ({self.locode})" if self.locode else "")
+        return self.label + (f" ({self.locode})" if self.locode else "")
+
+    @property
+    def label(self) -> str:
+        """Name and country: 'Sydney, AU'."""
+        return f"{self.name}, {self.country_code}"
+
+    @property
+    def importance(self) -> int:
+        """Points for harbour size and liner connections."""
+        return SIZE_POINTS[self.size] + self.country_links
+
+    def is_part_of(self, other: Port) -> bool:
+        """Return whether both are in one country and within `SAME_PORT` of each other."""
+        return self.country_code == other.country_code and (
+            float(distance(self.lat, self.lon, other.lat, other.lon)) <= SAME_PORT
+        )
+
+    def is_in(self, place: str) -> bool:
+        """Return whether the port is in a country (code or name) or region ('Nova Scotia')."""
+        code = country_code_of(place)
+        if code:
+            return self.country_code == code
+        words = normalised_port_name(place).split()
+        return bool(words) and set(words) <= set(normalised_port_name(self.region).split())
 
 
 @dataclass(frozen=True)
@@ -56,103 +98,203 @@ class Ports:
 
     @cached_property
     def all(self) -> tuple[Port, ...]:
-        """Every port of the index, in the order of the file."""
-        packed = resources.files("thalweg.chart").joinpath("data/world_port_index.csv.gz")
-        text = gzip.decompress(packed.read_bytes()).decode("utf-8")
-        return tuple(_port_from_row(row) for row in csv.DictReader(io.StringIO(text)))
+        """Every port of the table."""
+        return tuple(port for port, _ in self._rows)
 
     @cached_property
-    def others(self) -> tuple[Port, ...]:
-        """Ports that are missing from the index."""
-        table = resources.files("thalweg.chart").joinpath("data/more_ports.csv")
-        text = table.read_text(encoding="utf-8")
-        return tuple(_port_from_row(row) for row in csv.DictReader(io.StringIO(text)))
+    def _rows(self) -> list[tuple[Port, str]]:
+        """Every port with its other names, separated by semicolons."""
+        tables = (_packed_table("world_port_index.csv.gz"), _table("more_ports.csv"))
+        return [(_port_from_row(r), r.get("alternate_names", "")) for t in tables for r in t]
+
+    @cached_property
+    def _by_locode(self) -> dict[str, Port]:
+        return {port.locode: port for port in self.all if port.locode}
+
+    @cached_property
+    def _by_name(self) -> dict[str, dict[Port, bool]]:
+        """Ports by normalised name, and whether it is their own name or a former or local one.
+
+        Names are entered with and without the word for "port".
+        """
+        by_name: dict[str, dict[Port, bool]] = defaultdict(dict)
+        for name, port, own in self._names():
+            normalised = normalised_port_name(name)
+            by_name[normalised][port] = own or by_name[normalised].get(port, False)
+            place = place_name(normalised)
+            if place != normalised and not country_code_of(place):
+                by_name[place][port] = own or by_name[place].get(port, False)
+        by_name.pop("", None)
+        return dict(by_name)
+
+    def _names(self) -> Iterator[tuple[str, Port, bool]]:
+        """Return every name, its port and whether it is its own; one in brackets is another."""
+        for port, others in self._rows:
+            for i, name in enumerate(written_names(port.name)):
+                yield name, port, i < 2
+            for field in others.split(";"):
+                for name in written_names(field):
+                    yield name, port, False
+        for row in _table("port_aliases.csv"):
+            yield row["name"], self._by_locode[row["unlocode"]], True
 
     def lookup(self, text: str) -> Port:
-        """Return the port of a name ('Rotterdam', 'Rotterdam, NL') or UN/LOCODE ('NLRTM').
+        """Return the port of a name or UN/LOCODE.
 
-        Case and accents do not matter.
+        Names are "Rotterdam", "Rotterdam, NL", "Rotterdam, Netherlands" or, with a region of the
+        World Port Index, "Sydney, Cape Breton Island". Case and accents do not matter, but a
+        UN/LOCODE in small letters that is also a name is taken as a name. Of several ports of one
+        name the answer is the one that is clearly larger than all others (by `CLEARLY_LARGER`).
+        A former or local name of the World Port Index counts only where no port has it as its own
+        name; if it belongs to a clearly larger port, the name is ambiguous.
 
         Raises
         ------
         InputError
-            If the port is unknown (the message lists similar names), or several ports have the
-            name (the message lists their LOCODEs).
+            If the port is unknown (the message lists similar names), or ports of comparable size
+            have the name (the message lists them and how to write each).
         """
-        wanted = normalised_port_name(text)
-        known = (*self.all, *self.others)
-        found = [
-            port for port in known if port.locode and normalised_port_name(port.locode) == wanted
-        ]
-        found = found[:1] or self._named(text)
-        if len(found) == 1:
-            return found[0]
-        if not found:
+        named = self._named(text)
+        code = "".join(text.split())
+        port = self._by_locode.get(code.upper())
+        if port is not None and (code.isupper() or not named):
+            return port
+        if not named:
             raise self._unknown(text)
-        raise InputError(
-            f"There are {len(found)} ports named {text!r}.",
-            "They are " + "; ".join(str(port) for port in found[:10]) + ".",
-            "Give the UN/LOCODE, or add the country: " + _with_country(found[0]) + ".",
-            value=text,
-            near=[port.locode or _with_country(port) for port in found],
-        )
+        return _clearly_largest(named, text)
 
-    def _named(self, text: str) -> list[Port]:
-        """Return the ports of a name: exactly, by English name, or as words of a longer name."""
-        name, _, country = text.rpartition(",") if "," in text else (text, "", "")
-        code = country.strip().upper()
-        wanted = normalised_port_name(name)
-        pool, others = (
-            [port for port in ports if not code or port.country_code == code]
-            for ports in (self.all, self.others)
-        )
-        found = [port for port in pool if normalised_port_name(port.name) == wanted]
-        if not found and wanted in ENGLISH_NAMES:
-            found = [port for port in (*pool, *others) if port.locode == ENGLISH_NAMES[wanted]][:1]
-        if not found:
-            found = [port for port in others if normalised_port_name(port.name) == wanted]
-        if not found and len(wanted) >= 4:
-            found = [
-                port for port in pool if f" {wanted} " in f" {normalised_port_name(port.name)} "
-            ]
+    def _named(self, text: str) -> dict[Port, bool]:
+        """Return the ports of a name, with or without its country or region."""
+        found = self._with_name(text)
+        if not found and "," in text:
+            name, _, place = text.rpartition(",")
+            named = self._with_name(name)
+            found = {port: own for port, own in named.items() if port.is_in(place)}
         return found
 
+    def _with_name(self, name: str) -> dict[Port, bool]:
+        normalised = normalised_port_name(name)
+        return self._by_name.get(normalised) or self._by_name.get(place_name(normalised)) or {}
+
     def _unknown(self, text: str) -> InputError:
-        wanted = normalised_port_name(text.split(",")[0])
-        by_name = {normalised_port_name(port.name): port for port in (*self.others, *self.all)}
-        within = [n for n in by_name if len(wanted) >= 3 and wanted in n.split()]
-        near = list(dict.fromkeys([*close_matches(wanted, by_name, 4), *within]))[:5]
-        listed = "; ".join(str(by_name[name]) for name in near)
+        """Return the error of a name that no port has: a wrong country, a country, or a typo."""
+        name, comma, place = text.rpartition(",") if "," in text else (text, "", "")
+        elsewhere = _separate_ports(self._with_name(name)) if comma else []
+        code = "" if comma else country_code_of(text)
+        if elsewhere:
+            asked = f"There is no port named {name.strip()!r} in {place.strip()!r}."
+            return _listing_error(asked, "Ports of this name: ", elsewhere, text, name)
+        if code:
+            inside = _by_importance(port for port in self.all if port.country_code == code)
+            asked = f"There is no port named {text!r}: it is a country or territory."
+            return _listing_error(asked, "Its largest ports: ", inside[:5], text)
+        return self._misspelt(text, normalised_port_name(name))
+
+    def _misspelt(self, text: str, wanted: str) -> InputError:
+        within = [n for n in self._by_name if len(wanted) >= 3 and wanted in n.split()]
+        names = list(dict.fromkeys([*within[:3], *close_matches(wanted, self._by_name, 4)]))
+        near = list(dict.fromkeys(_by_importance(self._by_name[name])[0] for name in names))[:5]
         return InputError(
-            f"There is no port named {text!r} in the index of ports.",
-            f"Nearest in spelling: {listed}." if near else "No port has a similar name.",
-            "Give one of these, its UN/LOCODE, or a position such as 52.0N 4.1E.",
+            f"There is no port named {text!r} in the table of ports.",
+            f"Nearest in spelling: {'; '.join(map(str, near))}." if near else "",
+            ("Give one of these" if near else "Check the spelling")
+            + ", or give a UN/LOCODE or a position such as 52.0N 4.1E.",
             value=text,
-            near=[by_name[name].name for name in near],
+            near=[port.locode or port.label for port in near],
         )
 
 
-#: Letters that are not a base letter with an accent.
-_LETTER_SUBSTITUTES: Final = str.maketrans(
-    {"ø": "o", "æ": "ae", "œ": "oe", "ł": "l", "đ": "d", "ð": "d"}
-)
+def _by_importance(ports: Iterable[Port]) -> list[Port]:
+    return sorted(ports, key=lambda port: -port.importance)
 
 
-def normalised_port_name(text: str) -> str:
-    """Return text without case, accents, punctuation and double spaces, for comparing."""
-    plain = unicodedata.normalize("NFKD", text.casefold().translate(_LETTER_SUBSTITUTES))
-    kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
-    return " ".join("".join(kept).split())
+def _separate_ports(ports: Iterable[Port]) -> list[Port]:
+    """Return the ports, the most important first, without other parts of the same port."""
+    separate: list[Port] = []
+    for port in _by_importance(ports):
+        if not any(port.is_part_of(other) for other in separate):
+            separate.append(port)
+    return separate
+
+
+def _clearly_largest(named: Mapping[Port, bool], text: str) -> Port:
+    """Return the port that a text means, of the ports with that name as own or former name."""
+    own = _separate_ports(port for port, is_own in named.items() if is_own)
+    former = [
+        port
+        for port in _separate_ports(port for port, is_own in named.items() if not is_own)
+        if not any(port.is_part_of(other) for other in own)
+    ]
+    leader = (own or former)[0]
+    points = leader.importance
+    rivals = [port for port in own or former if port.importance * CLEARLY_LARGER > points]
+    if own:
+        rivals += [port for port in former if port.importance > CLEARLY_LARGER * points]
+    if rivals != [leader]:
+        raise _ambiguous(text, _by_importance([*own, *former]))
+    return leader
+
+
+def _ambiguous(text: str, found: Sequence[Port]) -> InputError:
+    name = text.rpartition(",")[0] if "," in text else text
+    asked = f"{len(found)} ports of comparable size can be meant by {text!r}."
+    return _listing_error(asked, "They are ", found, text, name)
+
+
+def _listing_error(
+    asked: str, before: str, found: Sequence[Port], text: str, name: str = ""
+) -> InputError:
+    """Return an error that lists ports and how to write each."""
+    listed = list(found[:_MOST_LISTED])
+    ways = [_way_to_write(port, found, name.strip()) for port in listed]
+    return InputError(
+        asked,
+        before + "; ".join(map(_described, listed)) + ".",
+        f"Write {' or '.join(map(repr, ways))}.",
+        value=text,
+        near=[port.locode or port.label for port in listed],
+    )
+
+
+def _described(port: Port) -> str:
+    facts = (port.locode or "no LOCODE", port.size and f"{port.size} harbour", port.region)
+    return f"{port.label} ({', '.join(fact for fact in facts if fact)})"
+
+
+def _way_to_write(port: Port, found: Sequence[Port], name: str) -> str:
+    """Return a text that names one of the ports found: with country, LOCODE, region or position."""
+    name = name or port.name
+    compatriots = [p for p in found if p.country_code == port.country_code and p is not port]
+    if not compatriots:
+        return f"{name}, {port.country_code}"
+    if port.locode:
+        return port.locode
+    if port.region and not any(p.is_in(port.region) for p in compatriots):
+        return f"{name}, {port.region}"
+    return format_position(port.lat, port.lon)
+
+
+def _packed_table(name: str) -> list[dict[str, str]]:
+    packed = resources.files("thalweg.chart").joinpath(f"data/{name}").read_bytes()
+    return list(csv.DictReader(gzip.decompress(packed).decode("utf-8").splitlines()))
+
+
+def _table(name: str) -> list[dict[str, str]]:
+    text = resources.files("thalweg.chart").joinpath(f"data/{name}").read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
 
 
 def _port_from_row(row: dict[str, str]) -> Port:
-    locode = row["unlocode"].replace(" ", "").upper()
-    country = row.get("country_code") or locode[:2]
-    return Port(row["name"], country, locode, float(row["lat"]), float(row["lon"]))
-
-
-def _with_country(port: Port) -> str:
-    return f"'{port.name}, {port.country_code}'"
+    return Port(
+        row["name"],
+        row.get("country_code") or row["unlocode"][:2],
+        row["unlocode"],
+        float(row["lat"]),
+        float(row["lon"]),
+        row["size"],
+        row.get("region", ""),
+        int(row["country_links"]),
+    )
 
 
 PORTS = Ports()

@@ -24,7 +24,8 @@ def add_command(commands: Any) -> None:
         "plan",
         help="plan a voyage",
         description="Plan a voyage between two places. A place is a position (52.0,4.1, or "
-        "'52.0N 4.1E' as one argument), a port name or a UN/LOCODE.",
+        "'52.0N 4.1E' as one argument), a port name ('Rotterdam', 'Newcastle, AU', "
+        "'Tripoli, Libya') or a UN/LOCODE (NLRTM).",
         epilog="Example: thalweg plan NLRTM GBSOU --ship handysize-bulker --sea forecast.nc "
         "--depart 2026-01-01T06:00Z --objective fuel --out results",
     )

@@ -30,7 +30,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
     ----------
     start, goal : (lat, lon) or str
         Departure and destination: degrees, or text (``"52.0N 4.1E"``, ``"52.0,4.1"``, the name of
-        a port or its UN/LOCODE).
+        a port, ``"Rotterdam"`` or ``"Newcastle, AU"``, or its UN/LOCODE).
     depart : str, datetime or float, optional
         Time of departure, ISO 8601 in UTC (or seconds since 1970). Not needed with a window.
     depart_window : pair of times, optional

@@ -24,7 +24,7 @@ class Endpoint:
     Attributes
     ----------
     name : str
-        Name of the port, or the position as text.
+        Name and country of the port ("Sydney, AU"), or the position as text.
     lat, lon : float
         Position used [deg].
     moved_distance_m : float
@@ -73,7 +73,7 @@ def resolve_endpoint(place: Place, chart: Chart, what: str) -> Endpoint:
         position = parse_position(place)
         if position is None:
             port = PORTS.lookup(place)
-            found = _snap_to_water(port.name, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
+            found = _snap_to_water(port.label, port.lat, port.lon, chart, what, MAX_SNAP_PORT)
             return replace(found, is_port=True)
     else:
         position = place

@@ -1,0 +1,72 @@
+"""Comparison of names of ports: without case, accents, punctuation and words for "port"."""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import Final
+
+#: Letters that are not a base letter with an accent.
+_LETTER_SUBSTITUTES: Final = str.maketrans(
+    {"ø": "o", "æ": "ae", "œ": "oe", "ł": "l", "đ": "d", "ð": "d", "ı": "i"}
+)
+#: Words for "port" before and after the name of a place; the longer forms come first.
+_PORT_WORDS_BEFORE: Final = (
+    "port of ",
+    "port de ",
+    "porto di ",
+    "porto de ",
+    "puerto de ",
+    "puerto del ",
+    "bahia de ",
+    "rade de ",
+    "port ",
+    "porto ",
+    "puerto ",
+    "mina ",
+    "rada ",
+)
+_PORT_WORDS_AFTER: Final = (
+    " harbours",
+    " harbors",
+    " harbour",
+    " harbor",
+    " port",
+    " gang",
+    " hang",
+    " ko",
+    " luka",
+    " hamn",
+    " havn",
+)
+#: A place name of fewer letters is not shortened further.
+_SHORTEST_PLACE: Final = 4
+
+
+def normalised_port_name(text: str) -> str:
+    """Return text without case, accents, punctuation and double spaces; "St." is "saint"."""
+    plain = unicodedata.normalize("NFKD", text.casefold().translate(_LETTER_SUBSTITUTES))
+    kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
+    words = "".join(kept).split()
+    return " ".join("saint" if word == "st" else word for word in words)
+
+
+def place_name(normalised: str) -> str:
+    """Return a normalised name without the word for "port" ("puerto colon" is "colon")."""
+    for word in _PORT_WORDS_BEFORE:
+        if normalised.startswith(word) and len(normalised) - len(word) >= _SHORTEST_PLACE:
+            return normalised.removeprefix(word)
+    for word in _PORT_WORDS_AFTER:
+        if normalised.endswith(word) and len(normalised) - len(word) >= _SHORTEST_PLACE:
+            return normalised.removesuffix(word)
+    return normalised
+
+
+def written_names(name: str) -> tuple[str, ...]:
+    """Return the names in one field: the whole, the part before brackets, the part in brackets.
+
+    "Mumbai (Bombay)" is also Mumbai and Bombay.
+    """
+    outside, bracket, inside = name.partition("(")
+    if not bracket:
+        return (name,)
+    return tuple(n for n in (name, outside.strip(" -"), inside.strip(" )")) if n)
