@@ -11,6 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position
+from thalweg.core.given_numbers import as_number, shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.track import Track
@@ -81,12 +82,11 @@ def _first_value(
 
 def number_of(text: object, what: str, remedy: str = "Give degrees, such as 52.5.") -> float:
     """Return a finite number, or raise `InputError` naming what it should have been."""
-    try:
-        value = float(text)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        value = math.nan
+    value = as_number(text)
     if not math.isfinite(value):
-        raise InputError(f"The {what} is {text!r}, not a number.", "", remedy, value=text)
+        raise InputError(
+            f"The {what} is {shortened_repr(text)}, not a number.", "", remedy, value=text
+        )
     return value
 
 
