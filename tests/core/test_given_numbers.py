@@ -191,7 +191,7 @@ def test_types_of_arguments_are_checked(value):
     with pytest.raises(InputError, match="not a mapping"):
         Sea.from_functions(value)
     with pytest.raises(InputError, match=r"not numbers|speed"):
-        SHIP.with_speeds([value], **BY_TYPE)
+        SHIP.with_speeds([[1.0], [value, value]])
 
 
 @pytest.mark.parametrize("value", ["x", HUGE, [1], {}])

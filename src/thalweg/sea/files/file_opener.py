@@ -184,6 +184,7 @@ def open_file(source: Any) -> list[OpenedFile]:
         found = False
     if not found:
         raise _missing_file_error(path)
+    _check_name(path)
     if path.is_dir():
         return [_open_zarr(path)]
     facts = _file_facts(path)
@@ -204,6 +205,19 @@ def open_file(source: Any) -> list[OpenedFile]:
     if packed is not None:
         raise not_data_error(path, f"is compressed ({packed})", "Decompress it first.")
     raise not_data_error(path, "is not in a known format of met-ocean data")
+
+
+def _check_name(path: Path) -> None:
+    """Refuse names that the libraries for NetCDF and GRIB cannot open."""
+    try:
+        str(path).encode("utf-8")
+    except UnicodeEncodeError:
+        raise InputError(
+            f"The name of the file {str(path)!r} is not text in UTF-8.",
+            "The libraries that read met-ocean data open names in UTF-8 only.",
+            "Rename the file.",
+            file=str(path),
+        ) from None
 
 
 def _file_facts(path: Path) -> dict[str, Any]:
