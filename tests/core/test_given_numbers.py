@@ -11,7 +11,7 @@ import pytest
 from thalweg.chart import Chart
 from thalweg.chart.geojson_polygons import parse_polygons, read_features
 from thalweg.core.errors import InputError, ThalwegError
-from thalweg.core.given_numbers import as_number, float_array, is_number, shortened_repr
+from thalweg.core.given_numbers import float_array, is_number, shortened_repr, to_number
 from thalweg.core.strict_yaml import MAX_DEPTH, parse_yaml
 from thalweg.core.time import format_time, parse_time
 from thalweg.operations.dredging.project import Project
@@ -33,7 +33,7 @@ SHIP = Ship.simple(10.0)
     "value", [True, np.True_, HUGE, LONG, -HUGE, None, [1], "x", {}], **BY_TYPE
 )
 def test_what_is_not_a_number(value):
-    assert math.isnan(as_number(value)) and not is_number(value)
+    assert math.isnan(to_number(value)) and not is_number(value)
     assert len(shortened_repr(value)) <= 60
 
 
@@ -44,7 +44,7 @@ def test_what_is_not_an_array_of_numbers(values):
 
 
 def test_numbers_are_numbers():
-    assert as_number("5.5") == 5.5 and as_number(np.float32(2.0)) == 2.0
+    assert to_number("5.5") == 5.5 and to_number(np.float32(2.0)) == 2.0
     assert is_number(3) and is_number(np.int64(3)) and not is_number("3")
     assert not is_number(math.inf)
     assert float_array([1, 2.5], "values").tolist() == [1.0, 2.5]

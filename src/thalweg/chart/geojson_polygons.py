@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from thalweg.chart.coast.rings import Rings
 from thalweg.core.errors import InputError, ThalwegWarning
-from thalweg.core.given_numbers import as_number, shortened_repr
+from thalweg.core.given_numbers import shortened_repr, to_number
 
 GeoJsonSource: TypeAlias = "str | PathLike[str] | Mapping[str, Any] | list[Any]"
 
@@ -158,7 +158,7 @@ def _checked_list(value: Any, what: str) -> list[Any]:
 
 def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:
     try:
-        ring = np.array([[as_number(p[0]), as_number(p[1])] for p in coordinates])
+        ring = np.array([[to_number(p[0]), to_number(p[1])] for p in coordinates])
     except (TypeError, ValueError, IndexError, KeyError):
         ring = np.empty((0, 2))
     if len(ring) < 4 or not np.isfinite(ring).all():

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import as_number
+from thalweg.core.given_numbers import to_number
 from thalweg.core.types import BoolArray, FloatArray
 
 EDGE_TOLERANCE: Final = 2e-5  #: [deg] a position this far outside counts as inside (float32 axes)
@@ -42,10 +42,10 @@ class BoundingBox:
             west equals east.
         """
         values = south, north, west, east = (
-            as_number(south),
-            as_number(north),
-            as_number(west),
-            as_number(east),
+            to_number(south),
+            to_number(north),
+            to_number(west),
+            to_number(east),
         )
         swapped = south > north or abs(south) > 90 or abs(north) > 90
         if not all(np.isfinite(values)) or swapped or west == east:

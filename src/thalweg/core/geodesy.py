@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pyproj import Geod
 
 from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import as_number
+from thalweg.core.given_numbers import to_number
 from thalweg.core.types import FloatArray
 
 Position: TypeAlias = tuple[float, float]
@@ -189,7 +189,7 @@ def densify(
 
 def check_position(lat: float, lon: float, what: str = "position") -> Position:
     """Return (lat, lon) with longitude wrapped, or raise `InputError` for impossible values."""
-    lat, lon = as_number(lat), as_number(lon)
+    lat, lon = to_number(lat), to_number(lon)
     if not (math.isfinite(lat) and math.isfinite(lon)):
         raise InputError(
             f"The {what} ({lat}, {lon}) is not a number.", "", "Give lat, lon in degrees."

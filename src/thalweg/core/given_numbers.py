@@ -11,7 +11,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.types import FloatArray
 
 
-def as_number(value: object) -> float:
+def to_number(value: object) -> float:
     """Return a value as a float; NaN for what is not a number.
 
     Truth values are not numbers (``true`` in a list of coordinates is an error), and neither are
@@ -27,7 +27,7 @@ def as_number(value: object) -> float:
 
 def is_number(value: object) -> bool:
     """Return whether a value is a finite number; text and truth values are not."""
-    return not isinstance(value, (str, bytes, np.ndarray)) and math.isfinite(as_number(value))
+    return not isinstance(value, (str, bytes, np.ndarray)) and math.isfinite(to_number(value))
 
 
 def float_array(values: ArrayLike, what: str) -> FloatArray:

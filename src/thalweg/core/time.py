@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import as_number, shortened_repr
+from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.units import DAY
 
 TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
@@ -53,7 +53,7 @@ def parse_time(value: TimeLike) -> float:
             "Give one such as 2026-01-01T06:30Z.",
         )
     else:
-        seconds = as_number(value)
+        seconds = to_number(value)
         if not math.isfinite(seconds) and isinstance(value, (float, np.floating)):
             raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
         return _calendar_time(seconds, value)

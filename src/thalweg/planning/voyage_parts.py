@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeAlias
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, check_position
-from thalweg.core.given_numbers import as_number, shortened_repr
+from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.objective import ObjectiveName
 from thalweg.core.time import TimeLike, format_time, parse_time
 
@@ -244,7 +244,7 @@ def _place(place: Any, what: str) -> Place:
 def _check_number(name: str, value: Any, *, above: float, below: float, unit: str) -> None:
     if value is None:
         return
-    if isinstance(value, bool) or not math.isfinite(as_number(value)) or isinstance(value, str):
+    if isinstance(value, bool) or not math.isfinite(to_number(value)) or isinstance(value, str):
         raise InputError(
             f"{name} must be a number, not {shortened_repr(value)}.",
             f"It is between {max(above, 0):g} and {below:g} {unit}.",

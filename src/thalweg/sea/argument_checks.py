@@ -8,7 +8,7 @@ import numpy as np
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
-from thalweg.core.given_numbers import as_number, is_number, shortened_repr
+from thalweg.core.given_numbers import is_number, shortened_repr, to_number
 from thalweg.core.time import TimeLike, parse_time
 
 
@@ -33,7 +33,7 @@ def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
     if area is None:
         return WORLD
     try:
-        south, north, west, east = (as_number(x) for x in area)
+        south, north, west, east = (to_number(x) for x in area)
     except (TypeError, ValueError):
         south = north = west = east = np.nan
     if not (-90.0 <= south < north <= 90.0 and np.isfinite([west, east]).all()):

@@ -11,7 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position
-from thalweg.core.given_numbers import as_number, shortened_repr
+from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.track import Track
@@ -82,7 +82,7 @@ def _first_value(
 
 def number_of(text: object, what: str, remedy: str = "Give degrees, such as 52.5.") -> float:
     """Return a finite number, or raise `InputError` naming what it should have been."""
-    value = as_number(text)
+    value = to_number(text)
     if not math.isfinite(value):
         raise InputError(
             f"The {what} is {shortened_repr(text)}, not a number.", "", remedy, value=text
