@@ -207,7 +207,7 @@ class Chart:
 
     def within(self, south: float, north: float, west: float, east: float) -> Chart:
         """Return this chart clipped to a box that no leg may leave [deg]."""
-        box = BoundingBox.checked(float(south), float(north), float(west), float(east))
+        box = BoundingBox.checked(south, north, west, east)
         return replace(self, area=box)
 
     def without_canals(self, *names: str) -> Chart:

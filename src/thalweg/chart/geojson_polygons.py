@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from thalweg.chart.rings import Rings
 from thalweg.core.errors import InputError, ThalwegWarning
+from thalweg.core.given_numbers import shortened_repr, to_number
 
 GeoJsonSource: TypeAlias = "str | PathLike[str] | Mapping[str, Any] | list[Any]"
 
@@ -51,6 +52,8 @@ def read_features(
     if isinstance(source, (str, PathLike)):
         try:
             data = json.loads(Path(source).read_text(encoding="utf-8"))
+        except RecursionError:
+            raise _nesting_error(what) from None
         except (OSError, ValueError) as error:
             raise InputError(
                 f"The {what} file {str(source)!r} cannot be read: {error}.",
@@ -58,7 +61,18 @@ def read_features(
                 "Check the path and the file.",
                 file=str(source),
             ) from error
-    return list(_features(data, {}, what))
+    try:
+        return list(_features(data, {}, what))
+    except RecursionError:
+        raise _nesting_error(what) from None
+
+
+def _nesting_error(what: str) -> InputError:
+    return InputError(
+        f"The GeoJSON of the {what} is nested too deeply.",
+        "A polygon is a list of rings of positions, in a feature of a collection.",
+        "Check the GeoJSON.",
+    )
 
 
 def _features(
@@ -75,7 +89,7 @@ def _features(
         given = data.get("properties") or {}
         if not isinstance(given, Mapping):
             raise InputError(
-                f"A feature of the {what} has the properties {str(given)[:40]!r}.",
+                f"A feature of the {what} has the properties {shortened_repr(given, 40)}.",
                 "Properties are names with values.",
                 "Check the GeoJSON.",
             )
@@ -162,7 +176,7 @@ def _checked_list(value: Any, what: str) -> list[Any]:
     if isinstance(value, (list, tuple, np.ndarray)):
         return list(value)
     raise InputError(
-        f"The GeoJSON of the {what} holds {str(value)[:40]!r} where a list belongs.",
+        f"The GeoJSON of the {what} holds {shortened_repr(value, 40)} where a list belongs.",
         "Coordinates and features are lists.",
         "Check the GeoJSON.",
     )
@@ -170,7 +184,7 @@ def _checked_list(value: Any, what: str) -> list[Any]:
 
 def _ring(coordinates: Any, what: str) -> NDArray[np.float64]:
     try:
-        ring = np.array([[float(p[0]), float(p[1])] for p in coordinates])
+        ring = np.array([[to_number(p[0]), to_number(p[1])] for p in coordinates])
     except (TypeError, ValueError, IndexError, KeyError):
         ring = np.empty((0, 2))
     if len(ring) < 4 or not np.isfinite(ring).all():

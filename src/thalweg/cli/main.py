@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 import warnings
@@ -20,7 +21,7 @@ from thalweg.cli import (
     tracks_command,
     waiting_command,
 )
-from thalweg.cli.exit_codes import INTERRUPTED, print_error
+from thalweg.cli.exit_codes import INTERRUPTED, SUCCESS, exit_code, print_error
 from thalweg.cli.options import accept_negative_positions
 from thalweg.core.errors import InputError, ThalwegError, ThalwegWarning
 
@@ -81,28 +82,67 @@ def main(argv: Sequence[str] | None = None) -> int:
         0 done, 2 bad input, 3 no coverage, 4 no route.
     """
     as_json = "--json" in (sys.argv[1:] if argv is None else argv)
+    _prepare_streams()
     try:
-        arguments = build_parser().parse_args(argv)
-    except InputError as error:
-        return print_error(error, as_json=as_json)
+        code = _run_command(argv, as_json)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:  # the reader of the output has closed it
+        _discard_output()
+        return SUCCESS
+    except OSError as error:
+        return _report_system_error(error, as_json=as_json)
+    except KeyboardInterrupt:
+        with contextlib.suppress(OSError):
+            print("stopped", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _run_command(argv: Sequence[str] | None, as_json: bool) -> int:
+    """Parse and run a command; errors of this package become messages and exit codes."""
     with warnings.catch_warnings():
         warnings.filterwarnings("default", category=ThalwegWarning)
         warnings.showwarning = _show_warning
         try:
-            code = int(arguments.run(arguments))
-            sys.stdout.flush()
-            return code
+            arguments = build_parser().parse_args(argv)
+            as_json = as_json or getattr(arguments, "json", False)
+            return int(arguments.run(arguments))
         except ThalwegError as error:
-            return print_error(error, as_json=as_json or getattr(arguments, "json", False))
-        except BrokenPipeError:
-            # the reader of the output has closed it: the flush at exit must not raise again
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 0
-        except OSError as error:
-            return print_error(_system_error(error), as_json=as_json)
-        except KeyboardInterrupt:
-            print("stopped", file=sys.stderr)
-            return INTERRUPTED
+            try:
+                return print_error(error, as_json=as_json)
+            except OSError:
+                if as_json:
+                    raise
+                return exit_code(error)  # nothing can be written to stderr
+
+
+def _prepare_streams() -> None:
+    """Give closed outputs a place to write to, and let all texts be written in any encoding."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 to the end
+        elif stream is getattr(sys, f"__{name}__") and stream.errors == "strict":
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _discard_output() -> None:
+    """Send what is left in the buffer nowhere: the flush at exit must not raise again."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _report_system_error(error: OSError, *, as_json: bool) -> int:
+    """Print an error of the operating system, on stderr if stdout cannot be written."""
+    message = _system_error(error)
+    try:
+        print_error(message, as_json=as_json)
+        sys.stdout.flush()
+    except OSError:
+        _discard_output()
+        with contextlib.suppress(OSError):
+            print_error(message, as_json=False)
+    return exit_code(message)
 
 
 def _system_error(error: OSError) -> InputError:

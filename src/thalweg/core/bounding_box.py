@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import to_number
 from thalweg.core.types import BoolArray, FloatArray
 
 EDGE_TOLERANCE: Final = 2e-5  #: [deg] a position this far outside counts as inside (float32 axes)
@@ -40,7 +41,12 @@ class BoundingBox:
             If a value is not finite, a latitude is beyond 90 degrees, south is above north, or
             west equals east.
         """
-        values = (south, north, west, east)
+        values = south, north, west, east = (
+            to_number(south),
+            to_number(north),
+            to_number(west),
+            to_number(east),
+        )
         swapped = south > north or abs(south) > 90 or abs(north) > 90
         if not all(np.isfinite(values)) or swapped or west == east:
             raise InputError(

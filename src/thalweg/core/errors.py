@@ -158,6 +158,8 @@ def _json_value(value: Any) -> Any:
         return _json_value(value.tolist())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
+    if isinstance(value, int) and value.bit_length() > 64:
+        return None  # JSON readers cannot take it, and Python may refuse to write it
     if isinstance(value, (str, int, bool)) or value is None:
         return value
     return str(value)

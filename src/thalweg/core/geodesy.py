@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pyproj import Geod
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import to_number
 from thalweg.core.types import FloatArray
 
 Position: TypeAlias = tuple[float, float]
@@ -277,7 +278,7 @@ def check_position(lat: float, lon: float, what: str = "position") -> Position:
     lat, lon : float
         Position with the longitude in -180 to 180 [deg].
     """
-    lat, lon = float(lat), float(lon)
+    lat, lon = to_number(lat), to_number(lon)
     if not (math.isfinite(lat) and math.isfinite(lon)):
         raise InputError(
             f"The {what} ({lat}, {lon}) is not a pair of numbers.",

@@ -8,18 +8,41 @@ import yaml
 
 from thalweg.core.errors import InputError
 
+MAX_DEPTH = 30  #: levels of nesting; the deepest file of the documentation has six
+
 
 class StrictLoader(yaml.SafeLoader):
-    """`yaml.SafeLoader` that refuses references and repeated keys."""
+    """`yaml.SafeLoader` that refuses references, repeated keys and impossible values."""
+
+    def __init__(self, stream: Any) -> None:
+        super().__init__(stream)
+        self._depth = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Refuse references, which can blow a small file up."""
+        """Refuse references, which can make a small file very large, and deep nesting."""
         if self.check_event(yaml.AliasEvent):
             event = self.peek_event()
             raise yaml.composer.ComposerError(
                 None, None, "references (*name) are not allowed", event.start_mark
             )
-        return super().compose_node(parent, index)
+        if self._depth >= MAX_DEPTH:
+            raise yaml.composer.ComposerError(
+                None, None, f"more than {MAX_DEPTH} levels are nested", self.peek_event().start_mark
+            )
+        self._depth += 1
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        """Name the line of a value that cannot exist, such as 2026-99-99."""
+        try:
+            value = super().construct_object(node, deep=deep)
+        except (ValueError, OverflowError) as problem:
+            raise _value_error(node, str(problem).partition(";")[0]) from None
+        if isinstance(value, int) and abs(value) >= 1 << 63:
+            raise _value_error(node, "the number has too many digits")
+        return value
 
     def construct_mapping(self, node: Any, deep: bool = False) -> Any:
         """Refuse keys that are given twice."""
@@ -33,6 +56,14 @@ class StrictLoader(yaml.SafeLoader):
             if word is not None:
                 seen.add(word)
         return super().construct_mapping(node, deep=deep)
+
+
+def _value_error(node: Any, why: str) -> yaml.MarkedYAMLError:
+    written = str(node.value)
+    shown = written if len(written) <= 40 else f"{written[:37]}..."
+    return yaml.constructor.ConstructorError(
+        None, None, f"{shown!r} cannot be used: {why}", node.start_mark
+    )
 
 
 class StrictDumper(yaml.SafeDumper):

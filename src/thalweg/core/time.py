@@ -9,6 +9,8 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import shortened_repr, to_number
+from thalweg.core.units import DAY
 
 TimeLike: TypeAlias = "str | float | int | date | np.datetime64"
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
@@ -41,7 +43,7 @@ def parse_time(value: TimeLike) -> float:
                 "A time is a date and a time of day in UTC.",
                 "Give one such as 2026-01-01T00:00Z.",
             )
-        return float(value.astype("datetime64[ns]").astype(np.int64)) / 1e9
+        return _from_datetime64(value)
     if isinstance(value, datetime):
         moment = value
     elif isinstance(value, date):
@@ -55,23 +57,37 @@ def parse_time(value: TimeLike) -> float:
             "Give one such as 2026-01-01T06:30Z.",
         )
     else:
-        seconds = float(value)
-        if not math.isfinite(seconds):
-            raise InputError(
-                f"A time must be finite, not {value!r}.",
-                "Numbers are seconds since 1970-01-01T00:00Z.",
-                "Give a finite number or an ISO 8601 time.",
-            )
-        if not _EARLIEST <= seconds <= _LATEST:
-            raise InputError(
-                f"{value!r} seconds since 1970 is not a calendar time.",
-                "Times lie in the years 1 to 9999; a number counts seconds, not milliseconds.",
-                "Give an ISO 8601 time such as 2026-01-01T06:30Z.",
-            )
-        return seconds
+        seconds = to_number(value)
+        if not math.isfinite(seconds) and isinstance(value, (float, np.floating)):
+            raise InputError(f"A time must be finite, not {value!r}.", "", "Give an ISO 8601 time.")
+        return _calendar_time(seconds, value)
     if moment.tzinfo is None:
         moment = moment.replace(tzinfo=UTC)
-    return moment.timestamp()
+    return _calendar_time(moment.timestamp(), moment)
+
+
+def _calendar_time(seconds: float, given: object) -> float:
+    """Return seconds since 1970 in the years 1 to 9999, or raise `InputError`."""
+    if not _EARLIEST <= seconds <= _LATEST:
+        raise InputError(
+            f"{shortened_repr(given)} is not a calendar time in UTC.",
+            "Times are in the years 1 to 9999; a number counts seconds since 1970, not "
+            "milliseconds.",
+            "Give an ISO 8601 time such as 2026-01-01T06:30Z.",
+        )
+    return seconds
+
+
+def _from_datetime64(value: np.datetime64) -> float:
+    """Return seconds since 1970; nanoseconds are not used, as they end in the year 2262."""
+    unit, _ = np.datetime_data(value.dtype)
+    if unit == "generic":
+        raise InputError(
+            f"The time {value!r} has no unit.", "", "Give one such as 2026-01-01T00:00Z."
+        )
+    # the day first: microseconds overflow for years far away
+    _calendar_time(DAY * float(value.astype("datetime64[D]").astype(np.int64)), value)
+    return float(value.astype("datetime64[us]").astype(np.int64)) / 1e6
 
 
 def _parse_text(text: str) -> datetime:
@@ -87,8 +103,11 @@ def _parse_text(text: str) -> datetime:
 
 
 def format_time(seconds: float) -> str:
-    """Return ISO 8601 text in UTC with a Z, rounded to the second; 'unknown' for NaN."""
-    if not math.isfinite(seconds):
+    """Return ISO 8601 text in UTC with a Z, rounded to the second.
+
+    NaN and times outside the years 1 to 9999 are 'unknown'.
+    """
+    if not _EARLIEST <= seconds <= _LATEST:
         return "unknown"
     moment = _EPOCH + timedelta(seconds=round(seconds))
     return moment.replace(tzinfo=None).isoformat() + "Z"

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.file_reading import read_text_file
 from thalweg.core.file_writing import write_text
 from thalweg.core.time import format_time
 from thalweg.planning.voyage_parts import Itinerary, Schedule, SearchRequest, VoyagePrices
 
-_LARGEST_FILE = 1_000_000
 #: The entries of a voyage in the order of its files.
 _ENTRIES: Final = (
     "start", "goal", "depart", "depart_window", "objective", "via", "arrive_by", "wait",
@@ -147,24 +147,7 @@ class Voyage(SearchRequest, VoyagePrices, Schedule, Itinerary):
         """
         from thalweg.core.strict_yaml import parse_yaml
 
-        path = Path(path)
-        if not path.is_file():
-            raise InputError(
-                f"The voyage file {path} does not exist.", "A YAML or JSON file.", "Check the path."
-            )
-        if path.stat().st_size > _LARGEST_FILE:
-            raise InputError(
-                f"{path} is too large for a voyage file.", "At most 1 MB.", "Check the path."
-            )
-        try:
-            text = path.read_text(encoding="utf-8")
-        except UnicodeDecodeError:
-            raise InputError(
-                f"{path} is not text in UTF-8.",
-                "Voyage files are YAML or JSON text in UTF-8.",
-                "Save it as UTF-8.",
-            ) from None
-        data = parse_yaml(text, "voyage", path.name)
+        data = parse_yaml(read_text_file(path, "voyage"), "voyage", Path(path).name)
         if not isinstance(data, dict):
             raise InputError(
                 f"{path} does not hold a voyage.",

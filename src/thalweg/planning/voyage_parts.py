@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeAlias
 
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, check_position
+from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.objective import ObjectiveName
 from thalweg.core.time import TimeLike, format_time, parse_time
 
@@ -229,12 +230,12 @@ def _place(place: Any, what: str) -> Place:
         return place.strip()
     try:
         lat, lon = place
-        return check_position(float(lat), float(lon), what)
+        return check_position(lat, lon, what)
     except (TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(
-            f"The {what} {place!r} is not a place.",
+            f"The {what} {shortened_repr(place)} is not a place.",
             'A place is (lat, lon) in degrees or text such as "52.0N 4.1E" or a port.',
             "Give the place in one of these forms.",
         ) from None
@@ -243,9 +244,9 @@ def _place(place: Any, what: str) -> Place:
 def _check_number(name: str, value: Any, *, above: float, below: float, unit: str) -> None:
     if value is None:
         return
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if isinstance(value, bool) or not math.isfinite(to_number(value)) or isinstance(value, str):
         raise InputError(
-            f"{name} must be a number, not {value!r}.",
+            f"{name} must be a number, not {shortened_repr(value)}.",
             f"It is between {max(above, 0):g} and {below:g} {unit}.",
             f"Give it in {unit}." if unit else "Give a number.",
         )

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position, distance, wrap_longitude
+from thalweg.core.given_numbers import float_array, shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 
@@ -54,18 +55,18 @@ class Track:
     speed: FloatArray = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        lat = np.array(self.lat, dtype=float).reshape(-1)
-        lon = np.array(self.lon, dtype=float).reshape(-1)
+        lat = float_array(self.lat, "latitudes").reshape(-1)
+        lon = float_array(self.lon, "longitudes").reshape(-1)
         _check_positions(lat, lon)
         count = len(lat)
-        wait = np.zeros(count) if self.wait is None else np.array(self.wait, dtype=float)
+        wait = np.zeros(count) if self.wait is None else float_array(self.wait, "waits")
         if self.setting is None:
             setting = np.full(count - 1, TOP_SETTING, dtype=np.int64)
         else:
             setting = np.array(self.setting, dtype=np.int64)
         _check_lengths(count, wait, setting)
         no_speed = self.speed is None
-        speed = np.full(count - 1, math.nan) if no_speed else np.array(self.speed, dtype=float)
+        speed = np.full(count - 1, math.nan) if no_speed else float_array(self.speed, "speeds")
         _check_speeds(count, speed)
         depart = parse_time(self.depart)
         fields = {"lat": lat, "lon": wrap_longitude(lon), "wait": wait, "setting": setting}
@@ -158,16 +159,23 @@ class Track:
 
 
 def _pairs(positions: Iterable[Sequence[float]]) -> list[Position]:
+    if not isinstance(positions, Iterable):
+        raise InputError(
+            f"The route is {shortened_repr(positions)}, which is not a list of waypoints.",
+            "A route is a Track, a Route, a file or pairs (lat, lon) in degrees.",
+            "Give one of these.",
+        )
     pairs = []
     for number, pair in enumerate(positions, start=1):
-        if len(pair) != 2:
+        count = len(pair) if isinstance(pair, (Sequence, np.ndarray)) else 0
+        if count != 2 or isinstance(pair, str):
             raise InputError(
-                f"Waypoint {number} has {len(pair)} numbers.",
+                f"Waypoint {number} is {shortened_repr(pair)}.",
                 "A waypoint is a pair (lat, lon) in degrees.",
                 "Give pairs.",
                 waypoint=number,
             )
-        pairs.append(check_position(float(pair[0]), float(pair[1]), f"waypoint {number}"))
+        pairs.append(check_position(pair[0], pair[1], f"waypoint {number}"))
     return pairs
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import is_number, shortened_repr, to_number
 from thalweg.core.time import TimeLike, parse_time
 
 
@@ -30,7 +33,7 @@ def parse_area(area: tuple[float, float, float, float] | None) -> BoundingBox:
     if area is None:
         return WORLD
     try:
-        south, north, west, east = (float(x) for x in area)
+        south, north, west, east = (to_number(x) for x in area)
     except (TypeError, ValueError):
         south = north = west = east = np.nan
     if not (-90.0 <= south < north <= 90.0 and np.isfinite([west, east]).all()):
@@ -57,9 +60,12 @@ def parse_period(period: tuple[TimeLike, TimeLike] | None) -> tuple[float, float
     """
     if period is None:
         return None
-    if isinstance(period, str) or len(period) != 2:
+    listed = isinstance(period, (Sequence, np.ndarray)) and not isinstance(period, str)
+    if not listed or len(period) != 2:
         raise InputError(
-            f"The period {period!r} is not valid.", "A period is (start, end).", "Give two times."
+            f"The period {shortened_repr(period)} is not valid.",
+            "A period is (start, end).",
+            "Give two times.",
         )
     start, end = parse_time(period[0]), parse_time(period[1])
     if end < start:
@@ -84,9 +90,9 @@ def parse_time_step(time_step: float | None, *, least: float = 0.0) -> float | N
     InputError
         If the step is not finite or too small.
     """
-    if time_step is not None and not (np.isfinite(time_step) and time_step >= least):
+    if time_step is not None and not (is_number(time_step) and time_step >= least):
         raise InputError(
-            f"A time step of {time_step!r} s cannot be used.",
+            f"A time step of {shortened_repr(time_step)} s cannot be used.",
             f"It must be {least:g} s or more."
             if least
             else "It must be positive, or 0 for fields that never change.",

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.deprecated_names import renamed_attributes
@@ -201,6 +203,12 @@ class Sea:
             If one half of a vector is missing, a variable is given twice, or (when sampled) a
             function returns an array of another shape.
         """
+        if not isinstance(functions, Mapping):
+            raise InputError(
+                f"The functions are {shortened_repr(functions)}, which is not a mapping.",
+                "A mapping gives a function f(time_s, lat, lon) for each standard name.",
+                "Write it as {'wind_speed': f, 'wind_from_direction': g}.",
+            )
         layer = layer_of_functions(
             dict(functions),
             area=parse_area(area),

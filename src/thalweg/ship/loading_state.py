@@ -9,6 +9,7 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.types import FloatArray
 from thalweg.ship.methods.displacement import interpolate_loading
 
@@ -81,5 +82,17 @@ class Loading:
         )
 
     def at(self, load_factor: float) -> Loading:
-        """Return the same ship at another load factor."""
+        """Return the same ship at another load factor.
+
+        Raises
+        ------
+        InputError
+            If it is not a number.
+        """
+        if not is_number(load_factor):
+            raise InputError(
+                f"The load factor is {shortened_repr(load_factor)}, which is not a number.",
+                "It is between 0 (empty) and 1 (full).",
+                "Correct it, or leave it out.",
+            )
         return replace(self, load_factor=float(load_factor))

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import float_array
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.ship.condition_variables import HEADING_DEPENDENT, needed_variables
@@ -321,7 +322,7 @@ class Ship(ShipQueries):
         InputError
             If a speed is not positive, is outside the ship's range, or the model has one speed.
         """
-        wanted = np.unique(np.atleast_1d(np.asarray(speeds, float)))
+        wanted = np.unique(np.atleast_1d(float_array(speeds, "speeds")))
         if not isinstance(self.model, AdjustableModel):
             raise InputError(
                 f"The speed of {self.name!r} follows from its model; no speed can be ordered.",

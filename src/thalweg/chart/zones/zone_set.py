@@ -31,6 +31,7 @@ from thalweg.chart.zones.leg_fractions import (
 from thalweg.core.cache_folder import cache_folder
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import direct, inverse, wrap_longitude
+from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.types import FloatArray
 from thalweg.kernels.geometry.coast_index import outlines_touched
 from thalweg.kernels.geometry.cube_sphere import IndexArrays
@@ -306,14 +307,11 @@ def _zone_factor(kind: str, properties: Mapping[str, Any]) -> float:
     written = properties.get("factor", properties.get(f"{kind}_factor"))
     if written is None and kind == "price":
         written = properties.get("eca_factor")
-    try:
-        factor = float(written)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        factor = float("nan")
+    factor = to_number(written)
     least = "at least 1" if kind == "penalty" else "above 0"
     if not (np.isfinite(factor) and factor > 0.0 and (kind == "price" or factor >= 1.0)):
         raise InputError(
-            f"A {kind} zone has the factor {written!r}.",
+            f"A {kind} zone has the factor {shortened_repr(written)}.",
             f"The factor of a {kind} zone is a number {least}.",
             "Give the feature such a property factor.",
             value=written,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from thalweg.core.errors import InputError, unknown_name_error
+from thalweg.core.file_reading import read_text_file
 from thalweg.core.file_writing import write_text
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.time import format_time
@@ -239,27 +240,8 @@ class Project:
         """
         from thalweg.core.strict_yaml import parse_yaml
 
+        text = read_text_file(path, "project", LARGEST_FILE)
         path = Path(path)
-        if not path.is_file():
-            raise InputError(
-                f"The project file {path} does not exist.",
-                "A project file is YAML or JSON; 'example' is that of the package.",
-                "Check the path.",
-            )
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(
-                f"{path} is too large for a project file.",
-                "A project file has at most 1 MB.",
-                "Check the path.",
-            )
-        try:
-            text = path.read_text(encoding="utf-8")
-        except UnicodeDecodeError:
-            raise InputError(
-                f"{path} is not text in UTF-8.",
-                "A project file is YAML or JSON.",
-                "Save it as UTF-8.",
-            ) from None
         data = parse_yaml(text, "project", path.name)
         if not isinstance(data, dict):
             raise InputError(

@@ -80,10 +80,11 @@ def _text_of(path: Path) -> str:
             "Save it as UTF-8 text.",
             file=str(path),
         ) from None
-    except OSError as error:
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
         raise InputError(
-            f"The route file {str(path)!r} cannot be read: {error.strerror}.",
-            "The file must exist and be readable.",
-            "Check the path and its permissions.",
+            f"The route file {str(path)!r} cannot be read: "
+            f"{getattr(error, 'strerror', None) or error}.",
+            "A route file is CSV, GeoJSON or GPX.",
+            "Check the path.",
             file=str(path),
         ) from None

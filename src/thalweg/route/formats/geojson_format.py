@@ -35,7 +35,7 @@ def parse_geojson(text: str) -> ParsedTrack:
     """
     try:
         data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(
             f"The GeoJSON cannot be read: {error}.",
             "The file must be JSON text as in RFC 7946.",

@@ -11,6 +11,7 @@ import numpy as np
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position, check_position
+from thalweg.core.given_numbers import shortened_repr, to_number
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.units import DAY, HOUR, KNOT
 from thalweg.route.track import Track
@@ -93,13 +94,10 @@ def _first_value(
 
 def number_of(text: object, what: str, remedy: str = "Give degrees, such as 52.5.") -> float:
     """Return a finite number, or raise `InputError` naming what it should have been."""
-    try:
-        value = float(text)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        value = math.nan
+    value = to_number(text)
     if not math.isfinite(value):
         raise InputError(
-            f"The {what} is {text!r}, not a number.",
+            f"The {what} is {shortened_repr(text)}, not a number.",
             "Decimal numbers are possible.",
             remedy,
             value=text,

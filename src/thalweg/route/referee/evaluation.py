@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import is_number, shortened_repr
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT, NAUTICAL_MILE
@@ -119,7 +120,8 @@ def evaluate(
     in calm water of the slowest setting that reaches its mean speed. Sea, land and depth are not
     checked there; the limits of draught and beam of the canal are.
     """
-    _check_given(ship, sea, min_ukc)
+    _check_given(ship, sea, chart)
+    _check_clearance(min_ukc)
     terms = _checked_terms(ship, terms)
     ship = ship if load_factor is None else ship.with_load_factor(load_factor)
     ship, track = resolve_settings(ship, as_track(route, depart), speed_kn)
@@ -194,6 +196,13 @@ def resolve_settings(ship: Ship, track: Track, speed_kn: float | None = None) ->
         If a setting does not exist, or the ship cannot sail at a speed.
     """
     if speed_kn is not None:
+        if not is_number(speed_kn):
+            raise InputError(
+                f"The ordered speed is {shortened_repr(speed_kn)}, which is not a number.",
+                "It is a calm-water speed in knots.",
+                "Correct it, or leave it out.",
+                field="speed_kn",
+            )
         ship = ship.with_speeds([speed_kn * KNOT])
         return ship, _with_settings(track, np.zeros(len(track) - 1, dtype=np.int64))
     count = len(ship.speeds)
@@ -224,21 +233,25 @@ def _nearest_settings(ship: Ship, wanted: FloatArray) -> tuple[NDArray[np.int64]
     return np.asarray(np.argmin(off, axis=1), dtype=np.int64), same
 
 
-def _check_given(ship: Ship, sea: Sea, min_ukc: float | None) -> None:
+def _check_given(ship: Ship, sea: Sea, chart: Chart | None) -> None:
+    from thalweg.chart import Chart
     from thalweg.sea import Sea
     from thalweg.ship import Ship
 
-    for name, value, kind in (("ship", ship, Ship), ("sea", sea, Sea)):
-        if not isinstance(value, kind):
+    for name, value, kind in (("ship", ship, Ship), ("sea", sea, Sea), ("chart", chart, Chart)):
+        if not isinstance(value, kind) and not (name == "chart" and value is None):
             raise InputError(
-                f"The {name} is {value!r}, which is not a {kind.__name__}.",
+                f"The {name} is {shortened_repr(value)}, which is not a {kind.__name__}.",
                 f"It must be a thalweg.{kind.__name__}.",
                 f"Give a {kind.__name__}.",
                 field=name,
             )
-    if min_ukc is not None and not 0.0 <= min_ukc < 100.0:
+
+
+def _check_clearance(min_ukc: float | None) -> None:
+    if min_ukc is not None and not (is_number(min_ukc) and 0.0 <= min_ukc < 100.0):
         raise InputError(
-            f"An under-keel clearance of {min_ukc!r} m is not possible.",
+            f"An under-keel clearance of {shortened_repr(min_ukc)} m is not possible.",
             "It is between 0 and 100 m.",
             "Correct it.",
             field="min_ukc",
@@ -259,9 +272,11 @@ def _checked_terms(ship: Ship, terms: FuelTerms | None) -> FuelTerms:
 
 
 def _checked_step(step: float) -> float:
-    if not (math.isfinite(step) and step > 0.0):
+    if not (is_number(step) and step > 0.0):
         raise InputError(
-            f"A step of {step!r} m cannot be used.", "It is a length above zero.", "Leave it out."
+            f"A step of {shortened_repr(step)} m cannot be used.",
+            "It is a length above zero.",
+            "Leave it out.",
         )
     return float(step)
 

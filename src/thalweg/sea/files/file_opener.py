@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from thalweg.core.errors import DatasetError, InputError
+from thalweg.core.given_numbers import shortened_repr
 from thalweg.sea.files import grib, netcdf3_check, time_concatenation
 from thalweg.sea.files.ensemble_members import check_member_counts, combine_members, ensemble_file
 from thalweg.sea.files.file_contents import NothingRecognised, layer_candidates
@@ -177,8 +178,13 @@ def open_file(source: Any) -> list[OpenedFile]:
             "Give one of these.",
         )
     path = Path(source).expanduser()
-    if not path.exists():
+    try:
+        found = path.exists()
+    except (OSError, ValueError):  # a name that no file can have
+        found = False
+    if not found:
         raise _missing_file_error(path)
+    _check_name(path)
     if path.is_dir():
         return [_open_zarr(path)]
     facts = _file_facts(path)
@@ -201,6 +207,19 @@ def open_file(source: Any) -> list[OpenedFile]:
     raise not_data_error(path, "is not in a known format of met-ocean data")
 
 
+def _check_name(path: Path) -> None:
+    """Refuse names that the libraries for NetCDF and GRIB cannot open."""
+    try:
+        str(path).encode("utf-8")
+    except UnicodeEncodeError:
+        raise InputError(
+            f"The name of the file {str(path)!r} is not text in UTF-8.",
+            "The libraries that read met-ocean data open names in UTF-8 only.",
+            "Rename the file.",
+            file=str(path),
+        ) from None
+
+
 def _file_facts(path: Path) -> dict[str, Any]:
     status = path.stat()
     return {"name": path.name, "size": status.st_size, "mtime_ns": status.st_mtime_ns}
@@ -212,7 +231,7 @@ def _missing_file_error(path: Path) -> InputError:
 
     near = close_matches(path.name, [p.name for p in folder.iterdir()]) if folder.is_dir() else []
     return InputError(
-        f"There is no file {str(path)!r}.",
+        f"There is no file {shortened_repr(str(path), 200)}.",
         f"The folder {'exists' if folder.is_dir() else 'does not exist either'}.",
         f"Did you mean {' or '.join(near)}?" if near else "Check the path.",
         file=str(path),

@@ -1,0 +1,61 @@
+"""Reading small text files that a user names, with errors that state the cause."""
+
+from __future__ import annotations
+
+import os
+from os import PathLike
+from pathlib import Path
+
+from thalweg.core.errors import InputError
+from thalweg.core.given_numbers import shortened_repr
+
+
+def read_text_file(path: str | PathLike[str], kind: str, largest: int = 1_000_000) -> str:
+    """Return the text of a file.
+
+    Parameters
+    ----------
+    path : str or Path
+    kind : str
+        Kind of the file in errors, such as ``voyage``.
+    largest : int
+        Largest size [bytes].
+
+    Raises
+    ------
+    InputError
+        If the path is not a path, or the file is missing, too large or not text in UTF-8.
+    """
+    if not isinstance(path, (str, PathLike)):
+        raise InputError(
+            f"The {kind} file is {shortened_repr(path)}, which is not a path.",
+            "A path is text, such as 'north_sea.yaml', or a pathlib.Path.",
+            "Give the path of a file.",
+        )
+    name = shortened_repr(os.fspath(path), 200)
+    try:
+        with Path(path).open("rb") as file:
+            raw = file.read(largest + 1)
+    except FileNotFoundError:
+        raise InputError(
+            f"The {kind} file {name} does not exist.", "It is a text file.", "Check the path."
+        ) from None
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        why = getattr(error, "strerror", None) or error
+        raise InputError(
+            f"The {kind} file {name} cannot be read: {why}.",
+            "It is a text file that you may read.",
+            "Check the path and the permissions.",
+        ) from None
+    if len(raw) > largest:
+        raise InputError(
+            f"The {kind} file {name} is too large.",
+            f"At most {largest / 1e6:g} MB are read.",
+            "Check the path.",
+        )
+    try:
+        return raw.decode("utf-8").replace("\r\n", "\n")
+    except UnicodeDecodeError:
+        raise InputError(
+            f"The {kind} file {name} is not text in UTF-8.", "", "Save it as UTF-8."
+        ) from None
