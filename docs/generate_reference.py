@@ -1,4 +1,4 @@
-"""Write the API reference, docs/reference/*.md, from the docstrings.
+"""Write the API reference, docs/reference/*.md, from the docstrings, and the index of decisions.
 
 Run ``make docs`` after a change of a public name, signature or docstring. One page is written for
 each package, with every name of its ``__all__``. `MORE_NAMES` adds names that the how-to pages
@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 FOLDER = Path(__file__).parent / "reference"
+DECISIONS = Path(__file__).parent / "decisions"
 #: Names described in addition to those that a package exports.
 MORE_NAMES: dict[str, tuple[str, ...]] = {
     "sea": (
@@ -320,11 +321,29 @@ def pages() -> dict[str, str]:
     return {"README.md": index_text()} | {f"{page}.md": page_text(page) for page in PAGES}
 
 
+def decisions_text() -> str:
+    """Return the index of the decision records: one line for each, by number."""
+    records = sorted(path for path in DECISIONS.glob("[0-9]*.md"))
+    titles = [path.read_text("utf-8").partition("\n")[0].removeprefix("# ") for path in records]
+    rows = [
+        f"| {int(path.name[:4])} | [{title.partition('. ')[2]}]({path.name}) |"
+        for path, title in zip(records, titles, strict=True)
+    ]
+    head = (
+        f"{NOTE.replace('Change the docstrings', 'Add a record')}\n\n# Decisions\n\n"
+        "Each record states the context, the decision and its consequences. Records are not "
+        "renumbered;\na decision that replaces another one says so.\n\n"
+        "| number | decision |\n|---|---|\n"
+    )
+    return head + "\n".join(rows) + "\n"
+
+
 def main() -> int:
     """Write all pages."""
     FOLDER.mkdir(exist_ok=True)
     for name, text in pages().items():
         (FOLDER / name).write_text(text, encoding="utf-8")
+    (DECISIONS / "README.md").write_text(decisions_text(), encoding="utf-8")
     return 0
 
 

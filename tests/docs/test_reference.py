@@ -36,6 +36,17 @@ def test_no_page_is_left_over():
     assert {path.name for path in (ROOT / "docs" / "reference").iterdir()} == set(PAGES)
 
 
+def test_every_decision_is_in_the_index():
+    folder = ROOT / "docs" / "decisions"
+    index = (folder / "README.md").read_text("utf-8")
+    assert index == reference.decisions_text(), "run `make docs`"
+    records = [path.name for path in folder.glob("*.md") if path.name != "README.md"]
+    assert records and all(f"]({name})" in index for name in records)
+    for name in records:
+        title = (folder / name).read_text("utf-8").partition("\n")[0]
+        assert title.startswith(f"# {int(name[:4])}. "), name
+
+
 @pytest.mark.parametrize("package", ["", *reference.PAGES])
 def test_every_public_name_is_on_a_page(package):
     module = import_module(f"thalweg.{package}".rstrip("."))
