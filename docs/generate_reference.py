@@ -1,8 +1,8 @@
 """Write the API reference, docs/reference/*.md, from the docstrings, and the index of decisions.
 
 Run ``make docs`` after a change of a public name, signature or docstring. One page is written for
-each package, with every name of its ``__all__``. `MORE_NAMES` adds names that the how-to pages
-import from modules of a package.
+each package, with every name of its ``__all__`` and of those of its sub-packages. `MORE_NAMES` adds
+names that the how-to pages import from modules of a package.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 FOLDER = Path(__file__).parent / "reference"
@@ -43,24 +44,11 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "plots.space_time_diagram.draw_space_time_diagram",
     ),
     "operations": (
-        "dredging.project.Project",
-        "dredging.project_inputs.example_file",
-        "dredging.project_inputs.open_project",
-        "dredging.project_inputs.open_project_inputs",
         "dredging.project_environment.ProjectEnvironment",
         "dredging.project_environment.project_network",
         "dredging.project_environment.freeze_site_network",
-        "dredging.run_project.run_project",
-        "waiting.trip_durations.trip_table",
-        "waiting.waiting_optimisation.plan_waiting",
-        "waiting.waiting_study.waiting_study",
-        "waiting.waiting_study.break_even_power",
-        "tracks.track_analysis.analyse_tracks",
-        "openclsim.leg_planner.LegPlanner",
-        "openclsim.plugin.PlannedRouteMovable",
-        "plots.track_plot.draw_tracks",
-        "plots.waiting_plot.draw_waiting",
         "examples.estuary.synthetic_estuary",
+        "openclsim.plugin.PlannedRouteMovable",
         "examples.synthetic_tracks.SyntheticCycle",
         "examples.synthetic_tracks.synthetic_track",
     ),
@@ -78,6 +66,9 @@ MORE_NAMES: dict[str, tuple[str, ...]] = {
         "objective.Objective",
         "objective.LegPrices",
         "objective.KeyFigure",
+        "limits.Limits",
+        "limits.Tightening",
+        "geodesy.direct",
     ),
 }
 PACKAGES = ("sea", "ship", "chart", "network", "route", "search", "evolution", "planning")
@@ -89,11 +80,30 @@ WIDTH = 92
 def public_objects(page: str) -> dict[str, Any]:
     """Return the objects of a page by dotted name below ``thalweg``."""
     package = import_module(f"thalweg.{page}")
-    found = {f"{page}.{name}": getattr(package, name) for name in getattr(package, "__all__", ())}
+    found = exports(page)
+    for part in sorted(path.parent.name for path in package_folder(package).glob("*/__init__.py")):
+        found |= new_ones(exports(f"{page}.{part}"), found)
     for path in MORE_NAMES.get(page, ()):
         module, _, name = f"thalweg.{page}.{path}".rpartition(".")
-        found[f"{page}.{path}"] = getattr(import_module(module), name)
+        found |= new_ones({f"{page}.{path}": getattr(import_module(module), name)}, found)
     return found
+
+
+def exports(package: str) -> dict[str, Any]:
+    """Return the objects of the ``__all__`` of a package by dotted name below ``thalweg``."""
+    module = import_module(f"thalweg.{package}")
+    return {f"{package}.{name}": getattr(module, name) for name in getattr(module, "__all__", ())}
+
+
+def new_ones(objects: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
+    """Return the objects that are not yet known by another name."""
+    ids = {id(value) for value in known.values()}
+    return {name: value for name, value in objects.items() if id(value) not in ids}
+
+
+def package_folder(package: ModuleType) -> Path:
+    """Return the folder of a package."""
+    return Path(str(package.__file__)).parent
 
 
 def members(cls: type) -> Iterator[tuple[str, Any]]:
@@ -246,7 +256,9 @@ def inline(text: str) -> str:
 
 
 def first_line(value: Any) -> str:
-    """Return the first sentence of a docstring, for tables."""
+    """Return the first paragraph of a docstring, for tables."""
+    if not callable(value) and not inspect.ismodule(value):
+        return f"`{value!r}`"
     paragraph = (inspect.getdoc(value) or "").partition("\n\n")[0].replace("\n", " ")
     return inline(paragraph).replace("|", "\\|")
 
@@ -255,8 +267,9 @@ def section(name: str, value: Any) -> str:
     """Return the text on one class or function."""
     short = name.rpartition(".")[2]
     parts = [f"## {short}", f"`thalweg.{name}`"]
-    if callable(value):
-        parts.append(f"```python\n{signature(short, value)}\n```")
+    if not callable(value):
+        return "\n\n".join([*parts, f"Value: `{value!r}`"])
+    parts.append(f"```python\n{signature(short, value)}\n```")
     parts.append(markdown(value.__doc__ or ""))
     if inspect.isclass(value) and not issubclass(value, Exception):
         for member, described in members(value):

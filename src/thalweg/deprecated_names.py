@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
+from operator import attrgetter
 from types import ModuleType
 from typing import Any, Final, TypeVar, cast
 
@@ -23,6 +24,10 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 MOVED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
     "thalweg.chart.eca": {
         "emission_areas": ("thalweg.chart.zones.emission_control_areas", "emission_control_areas"),
+    },
+    "thalweg.network.ways": {
+        "alternatives": ("thalweg.network.alternatives.path_search", "paths_without_canals"),
+        "ways_round": ("thalweg.network.alternatives.path_search", "alternative_paths"),
     },
     "thalweg.operations.estuary": {
         "synthetic_estuary": ("thalweg.operations.examples.estuary", "synthetic_estuary"),
@@ -71,12 +76,14 @@ MOVED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
     },
     "thalweg.planning.st_picture": {
         "draw_st": ("thalweg.planning.plots.space_time_diagram", "draw_space_time_diagram"),
+        "write_st": ("thalweg.planning.plots.space_time_diagram", "write_space_time_diagram"),
     },
     "thalweg.sea.constituents": {
         "Constituents": ("thalweg.sea.tides.constituents", "Constituents"),
     },
     "thalweg.sea.north_sea": {
         "M2_PERIOD": ("thalweg.sea.models.stratified_coast", "M2_PERIOD"),
+        "SCENARIOS": ("thalweg.sea.models.stratified_coast", "TIDAL_ELLIPSES"),
         "north_sea_current": ("thalweg.sea.models.stratified_coast", "stratified_coast_current"),
     },
     "thalweg.sea.repeat": {
@@ -112,6 +119,9 @@ RENAMED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
         "shortest": ("thalweg.network.shortest_paths", "shortest_path"),
         "ways_round": ("thalweg.network.alternatives.path_search", "alternative_paths"),
     },
+    "thalweg.operations.waiting": {
+        "RULES": ("thalweg.operations.waiting.waiting_optimisation", "DEPARTURE_RULES"),
+    },
     "thalweg.route": {
         "Distribution": ("thalweg.route.ensemble_evaluation", "EnsembleResult"),
         "Spread": ("thalweg.route.ensemble_evaluation", "MemberStatistics"),
@@ -125,6 +135,14 @@ RENAMED: Final[Mapping[str, Mapping[str, tuple[str, str]]]] = {
         "extreme": ("thalweg.ship.tables.table_bounds", "table_bounds"),
         "front": ("thalweg.search.pareto.pareto_search", "pareto_front"),
     },
+}
+
+#: Packages whose name was that of a function.
+FUNCTIONS_OF_PACKAGES: Final[Mapping[str, tuple[str, str]]] = {
+    "thalweg.network.alternatives": (
+        "thalweg.network.alternatives.path_search",
+        "paths_without_canals",
+    ),
 }
 
 
@@ -198,6 +216,61 @@ def renamed_arguments(**names: str) -> Callable[[_Function], _Function]:
         return cast(_Function, accept)
 
     return decorate
+
+
+def renamed_attributes(**names: str) -> Callable[[Any, str], Any]:
+    """Return a class's ``__getattr__`` that answers for old names of attributes and methods.
+
+    Parameters
+    ----------
+    **names : str
+        Old name = new name, dotted if it is an attribute of an attribute; ``module:name`` for a
+        function or constant of a module.
+
+    Returns
+    -------
+    callable
+        Raises AttributeError for any other name.
+    """
+
+    def lookup(self: Any, name: str) -> Any:
+        owner = type(self).__name__
+        if name not in names:
+            raise AttributeError(f"{owner!r} object has no attribute {name!r}")
+        new = names[name]
+        if ":" not in new:
+            warn_renamed(f"{owner}.{name}", f"{owner}.{new}")
+            return attrgetter(new)(self)
+        warn_renamed(f"{owner}.{name}", new.replace(":", "."))
+        module, _, path = new.partition(":")
+        return attrgetter(path)(import_module(module))
+
+    return lookup
+
+
+def limits_as_array(function: _Function) -> _Function:
+    """Let a function take ``limits`` as the array of three numbers of before, with a warning."""
+
+    @functools.wraps(function)
+    def accept(*args: Any, **kwargs: Any) -> Any:
+        if hasattr(kwargs.get("limits"), "dtype"):
+            from thalweg.core.limits import Limits
+
+            warn_renamed(f"{function.__name__}(limits=array)", "thalweg.core.limits.Limits")
+            kwargs["limits"] = Limits(*kwargs["limits"])
+        return function(*args, **kwargs)
+
+    return cast(_Function, accept)
+
+
+class CallableModule(ModuleType):
+    """A package that can be called like the function which once had its name."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Call the function of today, `FUNCTIONS_OF_PACKAGES`, with a warning."""
+        module, new = FUNCTIONS_OF_PACKAGES[self.__name__]
+        warn_renamed(self.__name__, f"{module}.{new}")
+        return getattr(import_module(module), new)(*args, **kwargs)
 
 
 class _OldModules(MetaPathFinder, Loader):

@@ -23,7 +23,7 @@ reference = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(reference)
 PAGES = reference.pages()
 #: Public functions, methods and classes without a section Parameters or Returns.
-MAX_UNDESCRIBED = 173
+MAX_UNDESCRIBED = 182
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -66,7 +66,7 @@ def test_names_that_pages_import_are_in_the_reference():
     text = "\n".join(PAGES.values())
     for module, names in re.findall(r"^from (thalweg[\w.]*) import ((?:.|,\n)+)$", code, re.M):
         for name in re.findall(r"\w+", names):
-            described = f"`{module}.{name}`" in text or name.isupper() or name.islower()
+            described = f"## {name}\n" in text or name.isupper() or name == "codes"
             assert described, f"add {module}.{name} to MORE_NAMES"
 
 
@@ -83,7 +83,8 @@ def callables(name, value):
     yield name, value
     if inspect.isclass(value):
         for member, method in reference.members(value):
-            if not isinstance(method, property) and not hasattr(method, "func"):
+            own = member in vars(value)
+            if own and not isinstance(method, property) and not hasattr(method, "func"):
                 yield f"{name}.{member}", getattr(method, "__func__", method)
 
 

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from thalweg.core.errors import InputError, unknown_name_error
 from thalweg.core.geodesy import Position, distance
 from thalweg.core.units import HOUR
+from thalweg.deprecated_names import renamed_attributes
 
 END_TOLERANCE: Final = 2.0  # a leg ends at a canal's end when it ends this near to it [m]
 _END_TOLERANCE_DEGREES: Final = 2e-5  # only ends nearer than this in latitude are measured
@@ -62,6 +63,11 @@ class Canal:
     max_draught: float = np.inf
     max_beam: float = np.inf
     source: str = ""
+
+    if not TYPE_CHECKING:
+        __getattr__ = renamed_attributes(
+            why_not="transit_restriction",
+        )
 
     def __post_init__(self) -> None:
         path = np.array(self.path, float)

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ from thalweg.chart.zones.emission_control_areas import EcaZone, select_emission_
 from thalweg.chart.zones.zone_set import Zones
 from thalweg.core.bounding_box import WORLD, BoundingBox
 from thalweg.core.time import TimeLike
+from thalweg.deprecated_names import renamed_attributes
 from thalweg.kernels.codes import LAND, OK
 from thalweg.kernels.geometry.coast_index import CoastArrays
 
@@ -56,6 +57,23 @@ class Chart:
     zones: Zones = NO_ZONES
     depths: DepthLayers = NO_DEPTHS
     canals: tuple[Canal, ...] = ()
+
+    if not TYPE_CHECKING:
+        __getattr__ = renamed_attributes(
+            coastline_lines="coastline.lines",
+            depth_along="depths.along",
+            depth_at="depths.at",
+            eca_share="zones.eca_fraction",
+            in_eca="zones.in_eca",
+            kernel="arrays",
+            land="coastline",
+            land_polygons="coastline.polygons",
+            port="thalweg.chart.ports:PORTS.lookup",
+            ports="thalweg.chart.ports:PORTS",
+            shore_distance="coastline.shore_distance",
+            warning_depth_at="thalweg.chart.depth.depth_layers:coarse_depth",
+            zone_factor="zones.factors",
+        )
 
     def __post_init__(self) -> None:
         if self.canals and self.zones.no_go:  # a canal through a no-go zone is closed

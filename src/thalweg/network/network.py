@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thalweg.core.types import BoolArray, Float32Array, FloatArray, Int32Array, IntArray
+from thalweg.deprecated_names import renamed_attributes
 
 
 @dataclass(frozen=True)
@@ -213,6 +214,26 @@ class Network:
     samples: Samples
     can_wait: BoolArray
     meta: NetworkMeta
+
+    if not TYPE_CHECKING:
+        __getattr__ = renamed_attributes(
+            course="edges.course",
+            depth="edges.depth",
+            fee="edges.fee",
+            fixed_time="edges.fixed_time",
+            length="edges.length",
+            factor="edges.penalty_factor",
+            price="edges.price_factor",
+            indptr="graph.indptr",
+            target="graph.target",
+            station_lat="stations.lat",
+            station_lon="stations.lon",
+            via_a="samples.station_a",
+            via_b="samples.station_b",
+            via_ptr="samples.ptr",
+            via_s="samples.fraction",
+            via_w="samples.weight",
+        )
 
     @property
     def n_nodes(self) -> int:

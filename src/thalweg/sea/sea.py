@@ -7,13 +7,14 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from thalweg.core.time import TimeLike, parse_time
 from thalweg.core.types import FloatArray
+from thalweg.deprecated_names import renamed_attributes
 from thalweg.sea import layer_stack, sea_maps
 from thalweg.sea.argument_checks import parse_area, parse_period, parse_time_step
 from thalweg.sea.coverage import Coverage
@@ -56,6 +57,11 @@ class Sea:
 
     layers: tuple[Layer, ...]
     assumptions: tuple[str, ...] = ()
+
+    if not TYPE_CHECKING:
+        __getattr__ = renamed_attributes(
+            knows="provides",
+        )
 
     def __post_init__(self) -> None:
         member_count(self.layers)

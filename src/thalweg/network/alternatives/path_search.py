@@ -12,6 +12,7 @@ import numpy as np
 from thalweg.core.errors import InputError, NoRouteError
 from thalweg.core.geodesy import distance, format_position
 from thalweg.core.types import FloatArray, IntArray
+from thalweg.deprecated_names import renamed_arguments
 from thalweg.kernels.network.static_paths import tree_sums
 from thalweg.network.alternatives.alternative_path import (
     AlternativePath,
@@ -36,6 +37,7 @@ _MIN_COST_DIFFERENCE: Final = (
 )
 
 
+@renamed_arguments(weighings="edge_weight_sets")
 def alternative_paths(
     network: Network,
     chart: Chart,
@@ -102,6 +104,7 @@ def alternative_paths(
     return _taut_paths(network, chart, seen, found, edge_weight_sets, most)
 
 
+@renamed_arguments(weighing="edge_weights")
 def paths_without_canals(
     network: Network,
     chart: Chart,

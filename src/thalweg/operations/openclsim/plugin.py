@@ -16,6 +16,7 @@ from shapely.geometry import Point, shape
 
 from thalweg.core.errors import InputError
 from thalweg.core.geodesy import Position
+from thalweg.deprecated_names import renamed_arguments
 from thalweg.operations.dredging.cycles import SailedLeg
 
 try:
@@ -61,6 +62,7 @@ class PlannedRouteMovable(Movable):
                                  UnloadingFunction, HasContainer, HasResource, Log), {})
     """
 
+    @renamed_arguments(fairways="leg_planner")
     def __init__(self, leg_planner: LegPlanner, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self.leg_planner = leg_planner

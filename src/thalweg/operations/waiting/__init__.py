@@ -1,5 +1,6 @@
 """Waiting studies: the departures and waits that give the shortest trips or the least energy."""
 
+from thalweg.deprecated_names import renamed
 from thalweg.operations.waiting.departures import Departures
 from thalweg.operations.waiting.trip_durations import trip_table
 from thalweg.operations.waiting.trip_table import TripTable
@@ -23,3 +24,5 @@ __all__ = [
     "trip_table",
     "waiting_study",
 ]
+
+__getattr__ = renamed("thalweg.operations.waiting")

@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 from thalweg.core.errors import CoverageError, InputError, unknown_name_error
 from thalweg.core.time import TimeLike, format_time, parse_time
 from thalweg.core.types import FloatArray
+from thalweg.deprecated_names import renamed_arguments
 from thalweg.operations.waiting.trip_table import TripTable
 
 DEPARTURE_RULES: Final = ("none", "current", "next trip", "optimum")
@@ -70,6 +71,7 @@ class WaitingPlan:
         return self.duration - sum(b - a for a, b in zip(self.departs, self.arrives))
 
 
+@renamed_arguments(most_wait="max_wait")
 def plan_waiting(
     trips: Sequence[TripTable],
     *,
@@ -110,6 +112,7 @@ def plan_waiting(
     return grid.follow(rule, first, grid.values() if rule == "optimum" else None)
 
 
+@renamed_arguments(most_wait="max_wait")
 def optimum_energy(
     trips: Sequence[TripTable], *, max_wait: float, hotel_power: float = 0.0
 ) -> FloatArray:

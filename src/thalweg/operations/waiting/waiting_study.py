@@ -14,6 +14,7 @@ from thalweg.core.errors import InputError
 from thalweg.core.time import TimeLike, format_time, parse_time, to_datetime64
 from thalweg.core.types import FloatArray
 from thalweg.core.units import HOUR
+from thalweg.deprecated_names import renamed_arguments
 from thalweg.operations.waiting.trip_table import TripTable
 from thalweg.operations.waiting.waiting_optimisation import (
     DEPARTURE_RULES,
@@ -95,6 +96,7 @@ class WaitingStudy:
         }
 
 
+@renamed_arguments(most_waits="max_waits")
 def waiting_study(
     trips: Sequence[TripTable],
     *,
@@ -148,6 +150,7 @@ def waiting_study(
     return WaitingStudy(tuple(trips), float(hotel_power), begin, waits, plans)
 
 
+@renamed_arguments(most_wait="max_wait")
 def break_even_power(
     trips: Sequence[TripTable],
     *,

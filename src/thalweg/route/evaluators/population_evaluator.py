@@ -17,6 +17,7 @@ from thalweg.core.limits import Limits
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
@@ -233,6 +234,7 @@ class Evaluator:
         return replace(self, world=self.world._replace(terms=terms))
 
 
+@limits_as_array
 def make_evaluator(
     *,
     table: PerformanceTable | TableArrays,

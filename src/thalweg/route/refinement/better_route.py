@@ -11,6 +11,7 @@ import numpy as np
 
 from thalweg.core.geodesy import unwrap_longitude
 from thalweg.core.limits import REFINEMENT_TIGHTENING, Limits
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
@@ -52,6 +53,7 @@ _WAIT_EXTENSIONS = (
 ScoreFunction = Callable[[Track], Route]
 
 
+@limits_as_array
 def better_route(
     scored: Route,
     *,

@@ -13,6 +13,7 @@ from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitud
 from thalweg.core.limits import REFINEMENT_TIGHTENING, Limits, Tightening
 from thalweg.core.objective import Objective
 from thalweg.core.time import TimeLike, parse_time
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_ends
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator, make_cost_evaluator
@@ -54,6 +55,7 @@ _MIN_ZONE_SHARE = (
 )
 
 
+@limits_as_array
 def polish(
     scored: Route,
     *,

@@ -12,6 +12,7 @@ import numpy as np
 
 from thalweg.core.geodesy import rough_lengths
 from thalweg.core.limits import Limits
+from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator
@@ -49,6 +50,7 @@ _MAX_WAITS_TRIED = 48
 _MIN_LEG_SHARE = 2e-5  # legs below this share of the track are merged with a neighbour
 
 
+@limits_as_array
 def smooth(
     track: Track,
     *,
