@@ -32,8 +32,6 @@ MANY_ARGUMENTS = {
     "network.triangular_mesh.mesh_builder.mesh": "public entry point with keyword options",
     "route.evaluators.population_evaluator.make_evaluator": "public entry point with options",
     "route.referee.evaluation.evaluate": "public entry point with keyword options",
-    "route.refinement.better_route.better_route": "public entry point with keyword options",
-    "route.refinement.cost_refinement.polish": "public entry point with keyword options",
     "sea.sea.Sea.freeze_grid": "bounds of an area and a period, each an argument of its own",
     "ship.methods.added_resistance.snnm.snnm": "parameters of a published formula",
     "ship.methods.added_resistance.stawave.stawave2": "parameters of a published formula",
