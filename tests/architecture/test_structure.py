@@ -30,7 +30,6 @@ MANY_ARGUMENTS = {
     "network.global_grid.globe_builder.globe": "public entry point with keyword options",
     "network.regional_lattice.lattice_builder.lattice": "public entry point with keyword options",
     "network.triangular_mesh.mesh_builder.mesh": "public entry point with keyword options",
-    "route.evaluators.population_evaluator.make_evaluator": "public entry point with options",
     "route.referee.evaluation.evaluate": "public entry point with keyword options",
     "sea.sea.Sea.freeze_grid": "bounds of an area and a period, each an argument of its own",
     "ship.methods.added_resistance.snnm.snnm": "parameters of a published formula",
