@@ -33,7 +33,15 @@ from tests.evolution import jet
 from thalweg import Chart, Ship
 from thalweg.core.geodesy import positions_along, rough_lengths
 from thalweg.core.limits import Limits
-from thalweg.evolution import Evaluator, Genome, evolve, make_evaluator, refine_front
+from thalweg.evolution import (
+    EvaluationResolution,
+    Evaluator,
+    Genome,
+    TabulatedShip,
+    evolve,
+    make_evaluator,
+    refine_front,
+)
 from thalweg.evolution.indicators import hypervolume
 from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing
@@ -66,13 +74,11 @@ def ocean() -> Evaluator:
     """Return an evaluator for the North Atlantic."""
     ship = Ship.load("handysize-bulker")
     return make_evaluator(
-        table=ship.tabulate(),
-        fuel=ship.tabulate_fuel(),
-        fields=weather(),
-        limits=Limits(),
+        TabulatedShip(ship.tabulate(), ship.tabulate_fuel(), Limits()),
+        weather(),
         depart=0.0,
         chart=Chart.gshhg("i"),
-        spacing=25_500.0,
+        resolution=EvaluationResolution(spacing=25_500.0),
     )
 
 

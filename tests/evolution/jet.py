@@ -13,7 +13,13 @@ import numpy as np
 
 from thalweg.chart import Chart
 from thalweg.core.limits import Limits
-from thalweg.evolution import Evaluator, Genome, make_evaluator
+from thalweg.evolution import (
+    EvaluationResolution,
+    Evaluator,
+    Genome,
+    TabulatedShip,
+    make_evaluator,
+)
 from thalweg.kernels import codes
 from thalweg.route import evaluate
 from thalweg.sea import Sea
@@ -26,6 +32,7 @@ NM = 1852.0
 KNOT = NM / 3600.0
 T0 = 1_767_225_600.0
 LATEST_H = 32.0
+NO_LIMITS = Limits()
 REFERENCE = (32.0, 32.0)  # of the hypervolume: hours, tonnes
 
 SPEED_KN = (8.8, 9.5, 9.9, 10.3, 10.6, 10.8, 14.1, 14.3, 14.5, 14.8, 15.0, 15.2)
@@ -120,22 +127,16 @@ def fields(cells: int = 200):
     )
 
 
-def limits() -> Limits:
-    return Limits()
-
-
-def evaluator(**more) -> Evaluator:
+def evaluator(*, fuel=None, limits=NO_LIMITS, **more) -> Evaluator:
+    ship = TabulatedShip(speed_table(), fuel_table() if fuel is None else fuel, limits)
     given = {
-        "table": speed_table(),
-        "fuel": fuel_table(),
         "fields": fields(),
-        "limits": limits(),
         "depart": T0,
         "chart": chart(),
         "latest": T0 + LATEST_H * 3600.0 / SHRINK,
-        "spacing": 5.0 * NM / SHRINK,
+        "resolution": EvaluationResolution(spacing=5.0 * NM / SHRINK),
     }
-    return make_evaluator(**{**given, **more})
+    return make_evaluator(ship, **{**given, **more})
 
 
 def straight(setting: int, points: int = 12) -> Genome:

@@ -16,7 +16,7 @@ from thalweg.core.geodesy import positions_along
 from thalweg.core.limits import Limits
 from thalweg.core.units import DAY, NAUTICAL_MILE, TONNE
 from thalweg.planning import Voyage, plan
-from thalweg.route import Route, Track, evaluate, polish
+from thalweg.route import RefinementConditions, Route, Track, evaluate, polish
 from thalweg.sea import Sea
 from thalweg.ship import Ship
 
@@ -167,10 +167,18 @@ def test_polishing_finds_the_speeds_or_better(fastest, chart, way, days):
     inside, zones = zones_of(fastest[way], chart)
     mixed = as_route(at_mix(fastest[way], inside, best_mix(zones, days * DAY)), chart)
     route = polish(
-        fastest[way], ship=SHIP, sea=Sea.calm(), chart=chart, table=SHIP.tabulate(),
-        fuel=SHIP.tabulate_fuel(), limits=Limits(), min_ukc=None,
+        fastest[way],
+        RefinementConditions(
+            ship=SHIP,
+            sea=Sea.calm(),
+            chart=chart,
+            table=SHIP.tabulate(),
+            limits=Limits(),
+            min_ukc=None,
+        ),
+        fuel=SHIP.tabulate_fuel(),
         arrive_by=days * DAY,
-    )  # fmt: skip
+    )
     assert route.feasible
     assert route.time_h <= 24.0 * days + 1e-3
     assert route.cost <= mixed.cost * 1.0005

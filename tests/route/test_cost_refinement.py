@@ -15,7 +15,7 @@ from thalweg.chart.canals import SUEZ
 from thalweg.core.errors import InputError
 from thalweg.core.limits import Limits
 from thalweg.core.units import HOUR, KNOT, NAUTICAL_MILE
-from thalweg.route import Track, better_route, evaluate, join, polish, smooth
+from thalweg.route import RefinementConditions, Track, better_route, evaluate, join, polish, smooth
 from thalweg.route.refinement.speed_profile import _efficient_settings, _knapsack
 from thalweg.sea import Sea
 from thalweg.ship import Ship
@@ -41,12 +41,14 @@ def zone(west, south, east, north, **properties):
 def polished(route, ship=BULKER, sea=None, chart=OPEN, **more):
     return polish(
         route,
-        ship=ship,
-        sea=Sea.calm() if sea is None else sea,
-        chart=chart,
-        table=ship.tabulate(),
+        RefinementConditions(
+            ship=ship,
+            sea=Sea.calm() if sea is None else sea,
+            chart=chart,
+            table=ship.tabulate(),
+            limits=FREE,
+        ),
         fuel=ship.tabulate_fuel(),
-        limits=FREE,
         **more,
     )
 
@@ -63,16 +65,13 @@ def test_jet_and_eddies_from_a_straight_line(hours, best, floor):
     latest = jet.T0 + hours * HOUR / jet.SHRINK
     route = polish(
         start,
-        ship=ship,
-        sea=sea,
-        chart=chart,
-        table=jet.speed_table(),
+        RefinementConditions(
+            ship=ship, sea=sea, chart=chart, table=jet.speed_table(), limits=FREE, min_ukc=None
+        ),
         fuel=jet.fuel_table(),
-        limits=FREE,
         objective="fuel",
         arrive_by=latest,
         fields=jet.fields(),
-        min_ukc=None,
     )
     assert route.feasible
     assert route.arrive <= latest + 1e-6
@@ -194,9 +193,12 @@ def by_cubed_speed(**costs):
 def by_cost(start, ship, chart, arrive_by):
     table = ship.tabulate()
     return polish(
-        start, ship=ship, sea=Sea.calm(), chart=chart, table=table, fuel=table, limits=FREE,
-        objective="cost", arrive_by=arrive_by,
-    )  # fmt: skip
+        start,
+        RefinementConditions(ship=ship, sea=Sea.calm(), chart=chart, table=table, limits=FREE),
+        fuel=table,
+        objective="cost",
+        arrive_by=arrive_by,
+    )
 
 
 def test_the_cost_of_time_and_cubed_speed():
@@ -259,9 +261,15 @@ def test_time_lost_to_weather_is_not_used():
     start = evaluate([(0, 0), (0, 1), (0, 2)], ship=ship, sea=sea, chart=OPEN, depart=0)
     assert 7.5 < start.time_h < 8.2 and start.feasible
     route = polish(
-        start, ship=ship, sea=sea, chart=OPEN, table=ship.tabulate(), fuel=ship.tabulate_fuel(),
-        limits=Limits(wave_height=4.0), objective="fuel", arrive_by=12 * HOUR, thin=False,
-    )  # fmt: skip
+        start,
+        RefinementConditions(
+            ship=ship, sea=sea, chart=OPEN, table=ship.tabulate(), limits=Limits(wave_height=4.0)
+        ),
+        fuel=ship.tabulate_fuel(),
+        objective="fuel",
+        arrive_by=12 * HOUR,
+        thin=False,
+    )
     assert route.feasible
     assert route.arrive <= 8.3 * HOUR + 60.0
     assert route.fuel_t <= start.fuel_t
@@ -344,11 +352,9 @@ def test_refining_for_time_keeps_the_canal_and_the_settings(world):
     start = suez_route(world, wait=[0, 0, 3600.0, 0, 0, 0], setting=[11, 11, 5, 5, 8])
     better = better_route(
         start,
-        ship=BULKER,
-        sea=Sea.calm(),
-        chart=world,
-        table=BULKER.tabulate(),
-        limits=FREE,
+        RefinementConditions(
+            ship=BULKER, sea=Sea.calm(), chart=world, table=BULKER.tabulate(), limits=FREE
+        ),
         wait=False,
     )
     assert better.feasible
@@ -369,7 +375,10 @@ def test_smoothing_keeps_several_settings():
     track = Track([0, 0.2, -0.2, 0], [0, 1, 2, 3], 0.0, None, [11, 0, 11])
     start = evaluate(track, ship=BULKER, sea=Sea.calm(), chart=OPEN)
     better = better_route(
-        start, ship=BULKER, sea=Sea.calm(), chart=OPEN, table=BULKER.tabulate(), limits=FREE
+        start,
+        RefinementConditions(
+            ship=BULKER, sea=Sea.calm(), chart=OPEN, table=BULKER.tabulate(), limits=FREE
+        ),
     )
     assert better.arrive <= start.arrive
     assert list(dict.fromkeys(better.track.setting.tolist())) == [11, 0]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.route.planar import Plane, ship
 from thalweg.chart import Chart
 from thalweg.core.limits import Limits
-from thalweg.route import Track, better_route, evaluate
+from thalweg.route import RefinementConditions, Track, better_route, evaluate
 from thalweg.sea import Sea
 
 NO_LIMITS = Limits()
@@ -70,11 +70,13 @@ def test_smoothing_keeps_charted_depth():
     assert scored.feasible
     better = better_route(
         scored,
-        ship=boat,
-        sea=Sea.calm(),
-        chart=chart,
-        table=boat.tabulate(),
-        limits=Limits(required_depth=5.0),
+        RefinementConditions(
+            ship=boat,
+            sea=Sea.calm(),
+            chart=chart,
+            table=boat.tabulate(),
+            limits=Limits(required_depth=5.0),
+        ),
     )
     assert better.feasible
     assert better.min_ukc_m >= 0.0
@@ -101,11 +103,9 @@ def test_smoothing_is_never_for_the_worse(seed, east, north, objective):
     scored = evaluate(track, ship=boat, sea=sea)
     better = better_route(
         scored,
-        ship=boat,
-        sea=sea,
-        chart=None,
-        table=boat.tabulate(),
-        limits=NO_LIMITS,
+        RefinementConditions(
+            ship=boat, sea=sea, chart=None, table=boat.tabulate(), limits=NO_LIMITS
+        ),
         objective=objective,
     )
     assert better.feasible

@@ -8,7 +8,7 @@ import pytest
 from tests.route.planar import Islands, Plane, rectangle, ship
 from thalweg.chart import Chart
 from thalweg.core.limits import Limits
-from thalweg.route import Track, better_route, evaluate
+from thalweg.route import RefinementConditions, Track, better_route, evaluate
 from thalweg.route.evaluators.polyline import polyline_of_track
 from thalweg.route.evaluators.time_evaluator import make_time_evaluator
 from thalweg.route.refinement.string_pulling import string_pull
@@ -28,7 +28,9 @@ def improved(track, boat, sea, *, chart=None, limits=NO_LIMITS, **options):
     scored = evaluate(track, ship=boat, sea=sea, chart=chart, strict=False)
     table = ship(1.0).tabulate() if boat.speed_field is not None else boat.tabulate()
     better = better_route(
-        scored, ship=boat, sea=sea, chart=chart, table=table, limits=limits, **options
+        scored,
+        RefinementConditions(ship=boat, sea=sea, chart=chart, table=table, limits=limits),
+        **options,
     )
     assert better.feasible
     return scored, better
@@ -316,12 +318,14 @@ def test_waits_for_the_tide_are_found_and_cut_to_what_they_must_be():
         assert not scored.feasible
         better = better_route(
             scored,
-            ship=boat,
-            sea=sea,
-            chart=None,
-            table=boat.tabulate(),
-            limits=Limits(required_depth=5.0),
-            min_ukc=0.5,
+            RefinementConditions(
+                ship=boat,
+                sea=sea,
+                chart=None,
+                table=boat.tabulate(),
+                limits=Limits(required_depth=5.0),
+                min_ukc=0.5,
+            ),
         )
         assert better.feasible
         assert better.time_h * 3600 == pytest.approx(opens + 0.6 * 111319.49 / 5.0, abs=2.0)

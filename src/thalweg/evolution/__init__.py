@@ -5,15 +5,22 @@ from thalweg.evolution.evolve import EvolutionProgress, EvolutionResult, evolve
 from thalweg.evolution.memetic import refine_front
 from thalweg.evolution.variation import OperatorWeights, VariationSettings
 from thalweg.route.evaluators.population import Genome, Population
-from thalweg.route.evaluators.population_evaluator import Evaluator, make_evaluator
+from thalweg.route.evaluators.population_evaluator import (
+    EvaluationResolution,
+    Evaluator,
+    TabulatedShip,
+    make_evaluator,
+)
 
 __all__ = [
+    "EvaluationResolution",
     "Evaluator",
     "EvolutionProgress",
     "EvolutionResult",
     "Genome",
     "OperatorWeights",
     "Population",
+    "TabulatedShip",
     "VariationSettings",
     "evolve",
     "make_evaluator",

@@ -10,7 +10,11 @@ from thalweg.route.ensemble_evaluation import (
 from thalweg.route.formats import read_track, write_csv, write_geojson, write_gpx
 from thalweg.route.referee.evaluation import evaluate
 from thalweg.route.referee.wind_speed_only import with_wind_speed
-from thalweg.route.refinement.better_route import better_route, shorten_waits
+from thalweg.route.refinement.better_route import (
+    RefinementConditions,
+    better_route,
+    shorten_waits,
+)
 from thalweg.route.refinement.cost_refinement import polish
 from thalweg.route.refinement.smoothing import smooth
 from thalweg.route.route import Route, Violation
@@ -20,6 +24,7 @@ from thalweg.route.track import Track
 __all__ = [
     "EnsembleResult",
     "MemberStatistics",
+    "RefinementConditions",
     "Route",
     "Track",
     "Violation",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from thalweg.core.types import FloatArray
 from thalweg.core.units import KNOT
 from thalweg.planning.plan_front import BaselineComparison
-from thalweg.route import Route, Track, better_route, evaluate
+from thalweg.route import RefinementConditions, Route, Track, better_route, evaluate
 from thalweg.sea import Sea
 
 if TYPE_CHECKING:
@@ -36,16 +36,12 @@ def weather_blind_tracks(
     depart = context.voyage.earliest_departure
     top = len(context.ship.speeds) - 1
     rough = Track(lat, lon, depart, None, np.full(len(lat) - 1, top))  # type: ignore[arg-type]
-    common = {"ship": context.ship, "sea": sea, "chart": context.chart, "min_ukc": context.min_ukc}
-    scored = evaluate(rough, strict=False, **common)  # type: ignore[arg-type]
-    short = better_route(
-        scored,
-        table=context.table,
-        limits=context.needs.limits,
-        objective="distance",
-        wait=False,
-        **common,  # type: ignore[arg-type]
-    ).track
+    ship, chart, min_ukc = context.ship, context.chart, context.min_ukc
+    scored = evaluate(rough, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
+    conditions = RefinementConditions(
+        ship, sea, chart, context.table, context.needs.limits, min_ukc
+    )
+    short = better_route(scored, conditions, objective="distance", wait=False).track
     legs = len(short.lat) - 1
     chosen = settings[np.unique(np.linspace(0, len(settings) - 1, _MAX_SPEEDS).round().astype(int))]
     return [short.replaced(setting=np.full(legs, s)) for s in chosen]

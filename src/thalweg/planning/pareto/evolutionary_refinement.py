@@ -16,7 +16,15 @@ from thalweg.core.pareto_fronts import (
     non_dominated_indices,
 )
 from thalweg.core.types import FloatArray
-from thalweg.evolution import Evaluator, EvolutionResult, Genome, evolve, make_evaluator
+from thalweg.evolution import (
+    EvaluationResolution,
+    Evaluator,
+    EvolutionResult,
+    Genome,
+    TabulatedShip,
+    evolve,
+    make_evaluator,
+)
 from thalweg.evolution.memetic import refine_front
 from thalweg.planning.pareto.trade_off_context import (
     ExploredAlternative,
@@ -112,16 +120,15 @@ def _evaluator(
     assert explored.exact is not None  # an interrupted front is not refined
     slowest = max(point.path_arrive[-1] for point in explored.exact.points)
     until = min(latest, depart + 1.1 * (float(slowest) - depart) + 3600.0)
+    total = float(np.median([rough_lengths(track.lat, track.lon).sum() for track in seeds]))
     return make_evaluator(
-        table=context.table,
-        fuel=trade_off.consumption,
-        fields=_freeze_raster(trade_off, seeds, depart, until),
-        limits=trade_off.limits,
+        TabulatedShip(context.table, trade_off.consumption, trade_off.limits),
+        _freeze_raster(trade_off, seeds, depart, until),
         depart=depart,
         chart=context.chart,
         latest=until,
         prices=trade_off.objective.prices,
-        total=float(np.median([rough_lengths(track.lat, track.lon).sum() for track in seeds])),
+        resolution=EvaluationResolution(total=total),
     )
 
 

@@ -20,7 +20,7 @@ from thalweg.planning.network_selection.network_builder import build_network
 from thalweg.planning.planning_context import PlanningContext
 from thalweg.planning.request.voyage_endpoints import Endpoint
 from thalweg.planning.single.no_route_diagnosis import late_arrival_error, no_route_error
-from thalweg.route import Route, Track, better_route
+from thalweg.route import RefinementConditions, Route, Track, better_route
 from thalweg.route.refinement.better_route import comparison_key
 from thalweg.search import (
     DepartureWindow,
@@ -238,14 +238,12 @@ def refine_track(context: PlanningContext, track: Track, limits: Limits) -> Rout
     """Evaluate a track, refine it, and return the better route."""
     context.report_progress("refining the route")
     scored = context.evaluate(track)
+    conditions = RefinementConditions(
+        context.ship, context.sea, context.chart, context.table, limits, context.min_ukc
+    )
     return better_route(
         scored,
-        ship=context.ship,
-        sea=context.sea,
-        chart=context.chart,
-        table=context.table,
-        limits=limits,
-        min_ukc=context.min_ukc,
+        conditions,
         objective="distance" if context.voyage.objective == "distance" else "time",
         wait=context.voyage.wait,
     )

@@ -17,7 +17,9 @@ from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, canal_rates, canal_setting
 from thalweg.route.evaluators.population import Population
 from thalweg.route.evaluators.population_evaluator import (
+    EvaluationResolution,
     Evaluator,
+    TabulatedShip,
     make_evaluator,
 )
 from thalweg.route.evaluators.time_evaluator import TrackBatch
@@ -215,15 +217,14 @@ def make_cost_evaluator(
         for c in (passed.canals if passed.any else ())
     ]
     evaluator = make_evaluator(
-        table=table,
-        fuel=fuel,
-        fields=fields,
-        limits=limits,
+        TabulatedShip(table, fuel, limits),
+        fields,
         depart=track.depart,
         chart=chart,
         prices=prices,
-        total=float(track.lengths.sum()),
         canals=np.array(canals, float).reshape(-1, 3),
-        zone_resolution=_ZONE_RESOLUTION,
+        resolution=EvaluationResolution(
+            total=float(track.lengths.sum()), zone_resolution=_ZONE_RESOLUTION
+        ),
     )
     return CostEvaluator(evaluator, 0.0)

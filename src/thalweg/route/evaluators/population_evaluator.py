@@ -17,7 +17,6 @@ from thalweg.core.limits import Limits
 from thalweg.core.objective import FUEL_MASS, LegPrices
 from thalweg.core.time import format_time
 from thalweg.core.types import FloatArray
-from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels import codes
 from thalweg.kernels.leg import population_sailing as columns
 from thalweg.kernels.leg.population_sailing import FitnessArrays, sail_population
@@ -234,32 +233,65 @@ class Evaluator:
         return replace(self, world=self.world._replace(terms=terms))
 
 
-@limits_as_array
+@dataclass(frozen=True, eq=False)
+class TabulatedShip:
+    """Tables of a ship and the limits along its route.
+
+    Attributes
+    ----------
+    table, fuel : PerformanceTable or TableArrays
+        Speed through water [m/s] and fuel rate [kg/s].
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
+    """
+
+    table: PerformanceTable | TableArrays
+    fuel: PerformanceTable | TableArrays
+    limits: Limits
+
+
+@dataclass(frozen=True)
+class EvaluationResolution:
+    """How finely an evaluator divides tracks.
+
+    Attributes
+    ----------
+    spacing : float, optional
+        Longest piece that legs are cut into [m]; by default half a cell of the raster, at least a
+        400th of ``total`` and at most 100 km.
+    total : float
+        Rough length of the tracks [m].
+    zone_resolution : float
+        To which crossings of the borders of control areas are found [m].
+    """
+
+    spacing: float | None = None
+    total: float = 0.0
+    zone_resolution: float = _ZONE_RESOLUTION
+
+
+_DEFAULT_RESOLUTION = EvaluationResolution()
+
+
 def make_evaluator(
-    *,
-    table: PerformanceTable | TableArrays,
-    fuel: PerformanceTable | TableArrays,
+    ship: TabulatedShip,
     fields: GridFields,
-    limits: Limits,
+    *,
     depart: float,
     chart: Chart | None = None,
     latest: float = math.inf,
     prices: LegPrices = FUEL_MASS,
-    spacing: float | None = None,
-    total: float = 0.0,
     canals: FloatArray | None = None,
-    zone_resolution: float = _ZONE_RESOLUTION,
+    resolution: EvaluationResolution = _DEFAULT_RESOLUTION,
 ) -> Evaluator:
     """Return an evaluator of time and cost.
 
     Parameters
     ----------
-    table, fuel : PerformanceTable or TableArrays
-        Speed through water [m/s] and fuel rate [kg/s].
+    ship : TabulatedShip
+        Tables of the ship and its limits.
     fields : GridFields
         The sea frozen around the tracks.
-    limits : Limits
-        Limits along the route (`thalweg.core.limits.Limits`).
     depart : float
         [s since 1970-01-01T00:00Z].
     chart : Chart, optional
@@ -268,17 +300,12 @@ def make_evaluator(
         Latest arrival [s since 1970-01-01T00:00Z].
     prices : LegPrices, optional
         Prices of fuel, time, waiting and canal dues; by default 1 per kilogram of fuel.
-    spacing : float, optional
-        Longest piece into which legs are split [m]; by default half a cell of the raster, at least
-        a 400th of ``total`` and at most 100 km.
-    total : float
-        Rough length of the tracks [m].
     canals : float64 array (C, 3), optional
         Time [s], fuel [kg] and dues of each canal of the chart; by default with the fuel rate of
         the slowest setting that reaches the mean speed of the canal in calm water. Empty: the
         tracks pass no canal.
-    zone_resolution : float
-        To which crossings of the borders of control areas are found [m].
+    resolution : EvaluationResolution
+        How finely tracks are divided.
 
     Raises
     ------
@@ -288,14 +315,15 @@ def make_evaluator(
     """
     _check_latest_arrival(depart, latest)
     time_evaluator = make_time_evaluator(
-        table=table,
+        table=ship.table,
         chart=chart,
         fields=fields,
-        limits=limits,
+        limits=ship.limits,
         origin=depart,
         by_length=False,
-        total=total,
+        total=resolution.total,
     )
+    fuel, spacing = ship.fuel, resolution.spacing
     rates = fuel if isinstance(fuel, TableArrays) else fuel.kernel_arrays()
     if rates.n_settings != time_evaluator.table.n_settings:
         raise InputError(
@@ -313,7 +341,8 @@ def make_evaluator(
         time_evaluator.raster, time_evaluator.table, rates, time_evaluator.limits, terms
     )
     passed = _canal_table(chart, world) if canals is None else canals
-    return Evaluator(world, time_evaluator, prices, depart, latest, passed, zone_resolution)
+    finest = resolution.zone_resolution
+    return Evaluator(world, time_evaluator, prices, depart, latest, passed, finest)
 
 
 def _canal_table(chart: Any, world: FitnessArrays) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ import numpy as np
 
 from thalweg.core.geodesy import unwrap_longitude
 from thalweg.core.limits import REFINEMENT_TIGHTENING, Limits
-from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels import codes
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_legs, sea_stretches
@@ -53,16 +53,35 @@ _WAIT_EXTENSIONS = (
 ScoreFunction = Callable[[Track], Route]
 
 
-@limits_as_array
+@dataclass(frozen=True, eq=False)
+class RefinementConditions:
+    """Ship, sea, chart and limits that a route is refined with.
+
+    Attributes
+    ----------
+    ship : Ship
+    sea : Sea
+    chart : Chart or None
+    table : PerformanceTable or TableArrays
+        Speed through water of the ship [m/s].
+    limits : Limits
+        Limits along the route (`thalweg.core.limits.Limits`).
+    min_ukc : float or None
+        As for `evaluate`.
+    """
+
+    ship: Ship
+    sea: Sea
+    chart: Chart | None
+    table: PerformanceTable | TableArrays
+    limits: Limits
+    min_ukc: float | None = 0.0
+
+
 def better_route(
     scored: Route,
+    conditions: RefinementConditions,
     *,
-    ship: Ship,
-    sea: Sea,
-    chart: Chart | None,
-    table: PerformanceTable | TableArrays,
-    limits: Limits,
-    min_ukc: float | None = 0.0,
     objective: str = "time",
     wait: bool | None = None,
 ) -> Route:
@@ -72,15 +91,8 @@ def better_route(
     ----------
     scored : Route
         As evaluated by the referee.
-    ship : Ship
-    sea : Sea
-    chart : Chart or None
-    table : PerformanceTable or TableArrays
-        Of the ship.
-    limits : Limits
-        Limits along the route (`thalweg.core.limits.Limits`).
-    min_ukc : float or None
-        As for `evaluate`.
+    conditions : RefinementConditions
+        Ship, sea, chart and limits.
     objective : {"time", "distance"}
     wait : bool, optional
         Whether the ship may wait where it did not before; by default only if it waits somewhere.
@@ -90,22 +102,14 @@ def better_route(
     Route
         Evaluated by the referee; not worse than the given one, and feasible if the given one is.
     """
+    ship, sea, chart = conditions.ship, conditions.sea, conditions.chart
+    table, limits, min_ukc = conditions.table, conditions.limits, conditions.min_ukc
 
     def score(track: Track) -> Route:
         return evaluate(track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False)
 
     if canal_legs(scored.track, chart).any:
-        better = partial(
-            better_route,
-            ship=ship,
-            sea=sea,
-            chart=chart,
-            table=table,
-            limits=limits,
-            min_ukc=min_ukc,
-            objective=objective,
-            wait=wait,
-        )
+        better = partial(better_route, conditions=conditions, objective=objective, wait=wait)
         refined = _refine_between_canals(scored, chart, score, better)
         return min(scored, refined, key=lambda item: comparison_key(item, objective, chart))
     best, infeasible = scored, None

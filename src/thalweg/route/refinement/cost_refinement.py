@@ -10,10 +10,9 @@ import numpy as np
 
 from thalweg.core.errors import unknown_name_error
 from thalweg.core.geodesy import direct, inverse, rough_lengths, unwrap_longitude
-from thalweg.core.limits import REFINEMENT_TIGHTENING, Limits, Tightening
+from thalweg.core.limits import REFINEMENT_TIGHTENING, Tightening
 from thalweg.core.objective import Objective
 from thalweg.core.time import TimeLike, parse_time
-from thalweg.deprecated_names import limits_as_array
 from thalweg.kernels.leg.table_lookup import TableArrays
 from thalweg.route.canal_legs import canal_ends
 from thalweg.route.evaluators.cost_evaluator import CostEvaluator, make_cost_evaluator
@@ -24,7 +23,7 @@ from thalweg.route.evaluators.polyline import (
 )
 from thalweg.route.evaluators.time_evaluator import penalty_factors
 from thalweg.route.referee.evaluation import evaluate
-from thalweg.route.refinement.better_route import freeze_around_track
+from thalweg.route.refinement.better_route import RefinementConditions, freeze_around_track
 from thalweg.route.refinement.sailed_polyline import optimise_line_offsets
 from thalweg.route.refinement.simplification import simplified_route
 from thalweg.route.refinement.smoothing import resampled_polyline
@@ -36,8 +35,8 @@ from thalweg.ship.consumption import consumption_table, leg_prices
 
 if TYPE_CHECKING:
     from thalweg.chart import Chart
-    from thalweg.sea import GridFields, Sea
-    from thalweg.ship import PerformanceTable, Ship
+    from thalweg.sea import GridFields
+    from thalweg.ship import PerformanceTable
     from thalweg.ship.fuel_prices import FuelTerms
 
 _OBJECTIVE_COLUMNS = {"fuel": "fuel", "cost": "cost", "co2": "co2"}
@@ -55,20 +54,14 @@ _MIN_ZONE_SHARE = (
 )
 
 
-@limits_as_array
 def polish(
     scored: Route,
+    conditions: RefinementConditions,
     *,
-    ship: Ship,
-    sea: Sea,
-    chart: Chart | None,
-    table: PerformanceTable | TableArrays,
     fuel: PerformanceTable | TableArrays,
-    limits: Limits,
     objective: str = "cost",
     arrive_by: TimeLike | None = None,
     terms: FuelTerms | None = None,
-    min_ukc: float | None = 0.0,
     fields: GridFields | None = None,
     thin: bool = True,
 ) -> Route:
@@ -78,21 +71,16 @@ def polish(
     ----------
     scored : Route
         As evaluated by the referee, with the same terms.
-    ship : Ship
-    sea : Sea
-    chart : Chart or None
-    table, fuel : PerformanceTable or TableArrays
-        Of the ship: speed through water [m/s] and fuel rate [kg/s] (`Ship.tabulate_fuel`). Where
-        the cost is that of time and cubed speed (`FuelTerms.by_speed`) ``fuel`` is not used.
-    limits : Limits
-        Limits along the route (`thalweg.core.limits.Limits`).
+    conditions : RefinementConditions
+        Ship, sea, chart and limits.
+    fuel : PerformanceTable or TableArrays
+        Fuel rate of the ship [kg/s] (`Ship.tabulate_fuel`). Where the cost is that of time and
+        cubed speed (`FuelTerms.by_speed`) it is not used.
     objective : {"fuel", "cost", "co2"}
     arrive_by : time, optional
         Latest arrival; by default when the given route arrives, and never earlier than that.
     terms : FuelTerms, optional
         Prices of fuel and time; by default those of the ship file.
-    min_ukc : float or None
-        As for `evaluate`.
     fields : GridFields, optional
         The sea frozen around the route, if it is used for several calls.
     thin : bool
@@ -117,6 +105,7 @@ def polish(
     at the chosen settings. All this uses frozen fields; the referee evaluates the result, and
     settings are chosen again until its time of arrival is met to a few millionths of the passage.
     """
+    ship, sea, chart = conditions.ship, conditions.sea, conditions.chart
     terms = ship.fuel_terms if terms is None else terms
     if objective not in _OBJECTIVE_COLUMNS:
         kind = "objective of a cost refinement"
@@ -130,7 +119,13 @@ def polish(
 
     def score(track: Track) -> Route:
         return evaluate(
-            track, ship=ship, sea=sea, chart=chart, min_ukc=min_ukc, strict=False, terms=terms
+            track,
+            ship=ship,
+            sea=sea,
+            chart=chart,
+            min_ukc=conditions.min_ukc,
+            strict=False,
+            terms=terms,
         )
 
     def value(route: Route) -> float:
@@ -140,16 +135,16 @@ def polish(
     frozen = fields
     if frozen is None:
         frozen = freeze_around_track(
-            scored, scored.track, 0.2, ship=ship, sea=sea, limits=limits, until=latest
+            scored, scored.track, 0.2, ship=ship, sea=sea, limits=conditions.limits, until=latest
         )
 
     def evaluator_of(track: Track, step: Tightening) -> CostEvaluator:
         return make_cost_evaluator(
             ship=ship,
-            table=table,
+            table=conditions.table,
             fuel=fuel,
             fields=frozen,
-            limits=limits.tightened(step),
+            limits=conditions.limits.tightened(step),
             chart=chart,
             track=track,
             prices=prices,
