@@ -141,8 +141,8 @@ _LETTER_SUBSTITUTES: Final = str.maketrans(
 def normalised_port_name(text: str) -> str:
     """Return text without case, accents, punctuation and double spaces, for comparing."""
     plain = unicodedata.normalize("NFKD", text.casefold().translate(_LETTER_SUBSTITUTES))
-    kept = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
-    return " ".join("".join(kept).split())
+    characters = (c if c.isalnum() else " " for c in plain if not unicodedata.combining(c))
+    return " ".join("".join(characters).split())
 
 
 def _port_from_row(row: dict[str, str]) -> Port:
